@@ -42,11 +42,11 @@ struct PipelineOptions {
   RepairOptions repair = {};  ///< repair of facets that are no complex
   MeshOptions mesh = {};      ///< sizes, bounds and budgets; the time limit is one for all stages
   Start start = Start::automatic;
-  bool coarsen = true;        ///< make as few tets as the sizes ask for
-  unsigned improve = 2;       ///< level, 1 to 3; 0: leave the slivers
-  double min_dihedral = 0;    ///< degrees; 0: that of the level
-  unsigned order = 1;         ///< order of the cells, 1 or 2
-  unsigned dimension = 3;     ///< 3: tetrahedra in the solids; 2: triangles on the patches (`mesh_shells`)
+  bool coarsen = true;      ///< make as few tets as the sizes ask for
+  unsigned improve = 2;     ///< level, 1 to 3; 0: leave the slivers
+  double min_dihedral = 0;  ///< degrees; 0: that of the level
+  unsigned order = 1;       ///< order of the cells, 1 or 2
+  unsigned dimension = 3;   ///< 3: tetrahedra in the solids; 2: triangles on the patches (`mesh_shells`)
   /// Number of seeds to try, from `mesh.seed` on, until every guarantee holds; at least 1. The first mesh is
   /// kept if no seed succeeds.
   unsigned seeds = 2;

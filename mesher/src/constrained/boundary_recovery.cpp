@@ -68,7 +68,7 @@ class InTheWayOfFacet final : public Obstacles {
   std::array<Index, 3> corners_;
 };
 
-// Radians; a little more than half a circle, so that edges are not turned to and fro.
+// Radians; a little more than half a circle, so that edges are not turned back again and again.
 constexpr double straight_angle = 3.1415926536 + 1e-6;
 
 double angle(const Point& a, const Point& at, const Point& b) {

@@ -62,6 +62,15 @@ constexpr double reached_collar_angle = 130;
 /// Thrown if a stage stops early; `PipelineResult::result` says why.
 struct Ended {};
 
+/// Thrown where constrained tetrahedra keep poor shapes and other ways are left.
+struct Hopeless {};
+enum class Hope { any, good };
+
+bool is_about_shape(const Finding& f) {
+  return f.guarantee == guarantee::thin_angles || f.guarantee == guarantee::collar_dihedral ||
+         f.guarantee == guarantee::radius_edge;
+}
+
 /// A flag that is set if another one is set or the time is up.
 class Deadline {
  public:
@@ -214,7 +223,7 @@ class Pipeline {
       if (made_.guarantees_hold() || end == End::exploded) break;
     }
     if (!has_mesh && error) {
-      std::optional<PipelineResult> constrained = from_constrained(all.plc, why);
+      std::optional<PipelineResult> constrained = from_constrained(all.plc, why, Hope::any);
       if (!constrained) std::rethrow_exception(error);
       made_ = std::move(*constrained);
       return;
@@ -242,7 +251,7 @@ class Pipeline {
     } catch (const Ended&) {
       if (!hit_bound()) throw;
       std::optional<PipelineResult> constrained =
-          from_constrained(plc, describe_explosion(plc, most_vertices_, made_.result.where));
+          from_constrained(plc, describe_explosion(plc, most_vertices_, made_.result.where), Hope::any);
       if (!constrained) throw;
       is_constrained_ = true;
       made_ = std::move(*constrained);
@@ -252,36 +261,51 @@ class Pipeline {
   /// Meshes a complex where no other way is left: from its constrained tetrahedra if that keeps every
   /// guarantee; else refined as far as the budgets allow; else from these tetrahedra all the same.
   void mesh_anyhow(const Plc& plc, const std::string& why) {
-    std::optional<PipelineResult> constrained = from_constrained(plc, why);
-    is_constrained_ = constrained && constrained->guarantees_hold();
-    if (!is_constrained_) {
-      try {
-        return mesh(plc, given_.mesh.seed);
-      } catch (const Ended&) {
-        if (!hit_bound() || !constrained) throw;
-        is_constrained_ = true;
-      }
+    if (take_constrained(plc, why)) return;
+    try {
+      return mesh(plc, given_.mesh.seed);
+    } catch (const Ended&) {
+      if (!hit_bound()) throw;
+      std::optional<PipelineResult> constrained = from_constrained(plc, why, Hope::any);
+      if (!constrained) throw;
+      is_constrained_ = true;
+      made_ = std::move(*constrained);
     }
-    made_ = std::move(*constrained);
   }
 
-  /// Meshes a complex from its constrained tetrahedra; nothing where there are none, or others are asked for.
-  std::optional<PipelineResult> from_constrained(const Plc& plc, const std::string& why) {
+  /// Takes the mesh from the constrained tetrahedra if it keeps every guarantee.
+  bool take_constrained(const Plc& plc, const std::string& why) {
+    constexpr std::size_t most_triangles = 12'000;  // else it takes longer than other ways
+    if (plc.triangles.size() > most_triangles) return false;
+    std::optional<PipelineResult> constrained = from_constrained(plc, why, Hope::good);
+    is_constrained_ = constrained && constrained->guarantees_hold();
+    if (is_constrained_) made_ = std::move(*constrained);
+    return is_constrained_;
+  }
+
+  /// Meshes a complex from its constrained tetrahedra; nothing where there are none, where others are asked
+  /// for, where the mesh misses more than bounds on shapes, or, with good hope only, where many tets miss
+  /// these.
+  std::optional<PipelineResult> from_constrained(const Plc& plc, const std::string& why, Hope hope) {
     if (given_.start != Start::automatic || given_.mesh.profile == Profile::paper || given_.periodic.any())
       return {};
     PipelineResult before = std::exchange(made_, {});
     std::optional<PipelineResult> found;
     start_ = Start::constrained;
+    hope_ = hope;
     try {
       mesh(plc, given_.mesh.seed);
       made_.check.notes.push_back(fmt::format("begun with constrained tetrahedra, as {}", why));
-      found = std::move(made_);
+      if (std::ranges::all_of(made_.check.findings, is_about_shape)) found = std::move(made_);
+    } catch (const Hopeless&) {
+      found.reset();
     } catch (const PlcError&) {
       found.reset();
     } catch (const Ended&) {
       if (!hit_bound()) throw;
     }
     start_ = Start::automatic;
+    hope_ = Hope::any;
     made_ = std::move(before);
     return found;
   }
@@ -494,7 +518,7 @@ class Pipeline {
       tetrahedralize();
     else
       refine();
-    if (is_far_too_fine() && take_constrained()) return;
+    if (is_far_too_fine() && replace_refined()) return;
     reshape();
     if (start_ == Start::constrained) settle();
     make_faces_periodic();
@@ -513,17 +537,12 @@ class Pipeline {
            tets > times * prediction::count_tets(prediction::Shape(*plc_), options_.mesh);
   }
 
-  /// Takes the mesh from the constrained tetrahedra if it keeps every guarantee.
-  bool take_constrained() {
+  /// Takes the mesh from the constrained tetrahedra in place of the refined one if it keeps every guarantee.
+  bool replace_refined() {
     KnownNeighbours neighbours = std::move(neighbours_);
     const MeshOptions refined_with = refined_with_;
-    std::optional<PipelineResult> constrained =
-        from_constrained(*plc_, fmt::format("the refinement makes {} tets", made_.result.mesh.tets.size()));
-    if (constrained && constrained->guarantees_hold()) {
-      is_constrained_ = true;
-      made_ = std::move(*constrained);
+    if (take_constrained(*plc_, fmt::format("the refinement makes {} tets", made_.result.mesh.tets.size())))
       return true;
-    }
     neighbours_ = std::move(neighbours);
     refined_with_ = refined_with;
     return false;
@@ -591,7 +610,9 @@ class Pipeline {
   /// Tets beyond the bounds get better where all is done once more, as long as that makes them fewer.
   void settle() {
     constexpr unsigned most_rounds = 4;
+    constexpr std::size_t tets_per_poor = 50;
     std::size_t least = misshapen(made_.result.mesh);
+    if (hope_ == Hope::good && tets_per_poor * least > made_.result.mesh.tets.size()) throw Hopeless();
     for (unsigned round = 0; round < most_rounds && least > 0; ++round) {
       TetMesh mesh = made_.result.mesh;
       const auto before = made_.improvement;
@@ -742,10 +763,7 @@ class Pipeline {
                                       .findings_per_guarantee = std::numeric_limits<std::size_t>::max(),
                                       .threads = options_.mesh.threads},
                                      inner_);
-    const auto poor = static_cast<std::size_t>(std::ranges::count_if(report.findings, [](const Finding& f) {
-      return f.guarantee == guarantee::thin_angles || f.guarantee == guarantee::collar_dihedral ||
-             f.guarantee == guarantee::radius_edge;
-    }));
+    const auto poor = static_cast<std::size_t>(std::ranges::count_if(report.findings, is_about_shape));
     // Places are only exact when the mesh is finished.
     constexpr std::size_t worse = 1000;  // than a tet
     CheckReport of_pairs;
@@ -893,8 +911,9 @@ class Pipeline {
   PipelineOptions options_;          // for the complex at hand
   ComplexSource* source_ = nullptr;  // unless there is one complex only
   NarrowCells narrow_cells_ = NarrowCells::bounded_if_cheap;
-  Ways ways_ = Ways::none;         // that are left
-  Start start_;                    // of the mesh at hand
+  Ways ways_ = Ways::none;  // that are left
+  Start start_;             // of the mesh at hand
+  Hope hope_ = Hope::any;
   bool is_constrained_ = false;    // the mesh that is kept
   bool knows_bound_ = false;       // for them, on vertices
   std::size_t most_vertices_ = 0;  // of a refinement, in place of the given budget; 0: that

@@ -1,0 +1,189 @@
+// Tetrahedra with the facets and segments of a complex, by brute force over their sides, and meshes begun
+// with them.
+#include "constrained/constrained_tetrahedra.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "collarmesh/pipeline.h"
+#include "collarmesh/plc_builder.h"
+#include "delaunay/predicates.h"
+#include "support/acute_shapes.h"
+#include "support/shapes.h"
+
+namespace collarmesh {
+namespace {
+
+using namespace testing;
+using namespace testing::acute;
+
+double area(const Point& a, const Point& b, const Point& c) { return 0.5 * norm(cross(b - a, c - a)); }
+
+void expect_near(double made, double given, const std::string& what) {
+  EXPECT_NEAR(made, given, 1e-9 * std::fabs(given)) << what;
+}
+
+/// Every side of a tet is that of another one, or a face of the mesh; faces have one tet or two, as they
+/// should.
+void expect_conforming(const TetMesh& mesh) {
+  std::map<std::array<Index, 3>, unsigned> sides;
+  const auto sorted = [](std::array<Index, 3> v) {
+    std::sort(v.begin(), v.end());
+    return v;
+  };
+  for (const auto& [a, b, c, d] : mesh.tets) {
+    EXPECT_GT(predicates::orientation(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]), 0);
+    for (const auto& side : {std::array{a, b, c}, {a, b, d}, {a, c, d}, {b, c, d}}) ++sides[sorted(side)];
+  }
+  for (Index f = 0; f < mesh.faces.size(); ++f) {
+    const auto found = sides.find(sorted(mesh.faces[f]));
+    ASSERT_NE(found, sides.end());
+    EXPECT_EQ(found->second, mesh.face_regions[f][1] == 0 ? 1U : 2U);
+    sides.erase(found);
+  }
+  for (const auto& [side, count] : sides) EXPECT_EQ(count, 2U);
+}
+
+void expect_features_of(const Plc& plc, const TetMesh& mesh) {
+  std::vector<double> volumes(plc.regions.size(), 0), areas(plc.patches.size(), 0),
+      lengths(plc.curves.size(), 0);
+  std::vector<double> given_areas(areas), given_lengths(lengths);
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    const auto& [a, b, c, d] = mesh.tets[t];
+    volumes[mesh.tet_region[t]] +=
+        six_volume(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]) / 6;
+  }
+  for (std::size_t r = 1; r < volumes.size(); ++r) expect_near(volumes[r], plc.regions[r].volume, "a region");
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const auto& [a, b, c] = mesh.faces[f];
+    areas[mesh.face_patch[f]] += area(mesh.points[a], mesh.points[b], mesh.points[c]);
+  }
+  for (const Plc::Triangle& t : plc.triangles)
+    given_areas[t.patch] += area(plc.points[t.points[0]], plc.points[t.points[1]], plc.points[t.points[2]]);
+  for (std::size_t p = 0; p < areas.size(); ++p)
+    if (plc.patches[p].regions[0] != 0 || plc.patches[p].regions[1] != 0)
+      expect_near(areas[p], given_areas[p], "a patch");
+  for (std::size_t e = 0; e < mesh.edges.size(); ++e)
+    lengths[mesh.edge_curve[e]] += distance(mesh.points[mesh.edges[e][0]], mesh.points[mesh.edges[e][1]]);
+  for (Index c = 0; c < plc.curves.size(); ++c) {
+    const auto& points = plc.curves[c].points;
+    for (std::size_t i = plc.curves[c].closed ? 0 : 1; i < points.size(); ++i)
+      given_lengths[c] +=
+          distance(plc.points[points[i]], plc.points[points[i == 0 ? points.size() - 1 : i - 1]]);
+    expect_near(lengths[c], given_lengths[c], "a curve");
+  }
+}
+
+void expect_constrained(const std::vector<PolygonSoup>& soups, const std::string& name) {
+  SCOPED_TRACE(name);
+  const Plc plc = build_plc(soups);
+  const ConstrainedTetrahedra made = constrained_tetrahedra(plc);
+  ASSERT_FALSE(made.mesh.tets.empty());
+  expect_conforming(made.mesh);
+  expect_features_of(plc, made.mesh);
+}
+
+TEST(Constrained, HasTheFeaturesOfPlainShapes) {
+  expect_constrained({box()}, "box");
+  expect_constrained({box({0, 0, 0}, {1, 1, 1}, 5)}, "box of many squares");
+  expect_constrained({l_shape()}, "L");
+  expect_constrained({plate_with_hole(0.2, 40)}, "plate with a hole");
+  expect_constrained({cylinder(1, 3, 32, 5)}, "cylinder");
+  expect_constrained({torus(3, 1, 24, 12)}, "torus");
+  expect_constrained({icosphere(1, 6)}, "sphere");
+  expect_constrained({two_boxes()}, "two boxes");
+  expect_constrained(touching_boxes(), "boxes that touch");
+  expect_constrained(nested_boxes(3), "nested boxes");
+  expect_constrained({box_with_dangling_facet()}, "facet that ends inside");
+  expect_constrained({box_with_skew_lines(12)}, "lines inside");
+  expect_constrained({box_with_cavity(0.3)}, "cavity");
+}
+
+TEST(Constrained, HasTheFeaturesOfAcuteShapes) {
+  for (const double angle : {40., 5., 0.5}) {
+    expect_constrained(wedge(angle).soups, "wedge");
+    expect_constrained(knife(angle).soups, "knife");
+    expect_constrained(facet_ending_inside(angle).soups, "facet");
+    expect_constrained(segment_meeting_a_facet(angle).soups, "segment");
+  }
+  expect_constrained(fan(24).soups, "fan");
+  expect_constrained(comb(8, 4).soups, "comb");
+  expect_constrained(round_cone(3).soups, "cone");
+  for (const std::uint32_t seed : {1U, 2U, 3U, 4U}) {
+    for (const Shape& shape : random_members(seed)) expect_constrained(shape.soups, shape.name);
+    expect_constrained(turned(star_prism(9, 0.2), seed).soups, "star");
+    expect_constrained({random_prism(seed)}, "prism");
+    expect_constrained({random_hull(seed, 60)}, "hull");
+  }
+}
+
+TEST(Constrained, TakesNoMorePointsWhereSheetsAreNearer) {
+  for (const double height : {1e-1, 1e-3, 1e-5, 1e-7}) {
+    const Plc plc = build_plc(std::vector{box({0, 0, 0}, {1, 1, height}, 8)});
+    const ConstrainedTetrahedra made = constrained_tetrahedra(plc);
+    expect_conforming(made.mesh);
+    EXPECT_LE(made.mesh.tets.size(), 4 * plc.triangles.size()) << height;
+  }
+}
+
+TEST(Constrained, IsCancelled) {
+  const std::atomic<bool> cancel = true;
+  Execution execution;
+  execution.cancel = &cancel;
+  EXPECT_TRUE(
+      constrained_tetrahedra(build_plc(std::vector{torus(3, 1, 24, 12)}), execution).mesh.tets.empty());
+}
+
+SoupPipelineResult begun_constrained(const std::vector<PolygonSoup>& soups, double size, unsigned order = 1) {
+  PipelineOptions options;
+  options.start = Start::constrained;
+  options.mesh.size = size;
+  options.order = order;
+  return run_pipeline(soups, options);
+}
+
+TEST(ConstrainedStart, KeepsEveryGuaranteeOfPlainShapes) {
+  for (const double size : {0.5, 0.15}) {
+    for (const auto& soup :
+         {box(), l_shape(), plate_with_hole(0.2, 40), two_boxes(), box_with_dangling_facet()}) {
+      const SoupPipelineResult made = begun_constrained({soup}, size);
+      EXPECT_TRUE(made.guarantees_hold()) << size << " " << made.missed();
+    }
+    EXPECT_TRUE(begun_constrained({cylinder(0.5, 2, 48)}, size, 2).guarantees_hold());
+  }
+}
+
+/// A plate between two waves, far thinner than the size: refinement takes hundreds of thousands of vertices.
+PolygonSoup thin_wave(double height) {
+  return transformed(box({0, 0, 0}, {1, 1, 1}, 24), [height](const Point& p) {
+    return Point{p.x, p.y, 0.05 * std::sin(4 * p.x) * std::cos(3 * p.y) + height * p.z};
+  });
+}
+
+TEST(ConstrainedStart, MeshesWhatIsFarThinnerThanTheSize) {
+  const SoupPipelineResult made = begun_constrained({thin_wave(0.001)}, 0.1);
+  EXPECT_TRUE(made.guarantees_hold()) << made.missed();
+  EXPECT_LT(made.result.mesh.tets.size(), 10'000U);
+}
+
+TEST(ConstrainedStart, DoesNotDependOnThreads) {
+  PipelineOptions options;
+  options.start = Start::constrained;
+  options.mesh.size = 0.2;
+  std::vector<TetMesh> made;
+  for (const unsigned threads : {1U, 2U}) {
+    options.mesh.threads = threads;
+    made.push_back(run_pipeline(std::vector{torus(1, 0.3, 40, 20)}, options).result.mesh);
+  }
+  EXPECT_EQ(made[0].points, made[1].points);
+  EXPECT_EQ(made[0].tets, made[1].tets);
+}
+
+}  // namespace
+}  // namespace collarmesh
