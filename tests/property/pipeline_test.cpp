@@ -266,7 +266,23 @@ void expect_bounded(const PipelineResult& made) {
 TEST(Pipeline, EndsWhereTheRefinementExplodesAndNoOtherRepairMayBeTried) {
   PipelineOptions options = with_size(10);
   options.repair.mode = RepairMode::off;
+  options.start = Start::refinement;
   expect_bounded(run(box_with_a_slit(), options));
+}
+
+// The facets of a complex as they are need no more tets where sheets are near to each other.
+TEST(Pipeline, BeginsWithConstrainedTetrahedraWhereTheRefinementExplodes) {
+  PipelineOptions options = with_size(10);
+  options.repair.mode = RepairMode::off;
+  const SoupPipelineResult made = run(box_with_a_slit(), options);
+  EXPECT_FALSE(made.result.mesh.tets.empty());
+  EXPECT_LT(made.result.mesh.tets.size(), 50'000U);
+  for (const Finding& finding : made.check.findings)
+    EXPECT_TRUE(finding.guarantee == "thin_angles" || finding.guarantee == "collar_dihedral")
+        << finding.message;
+  EXPECT_TRUE(std::any_of(made.check.notes.begin(), made.check.notes.end(), [](const std::string& note) {
+    return note.starts_with("begun with constrained tetrahedra");
+  }));
 }
 
 // A coarser repair would lose the material of a thin plate elsewhere.
@@ -277,6 +293,7 @@ TEST(Pipeline, EndsWhereTheRefinementExplodesAndNoOtherRepairHelps) {
   soups[1].region_tag = 2;
   PipelineOptions options = with_size(10);
   options.repair.tolerance = 1e-9;
+  options.start = Start::refinement;
   expect_bounded(run_pipeline(soups, options));
 }
 
