@@ -36,8 +36,7 @@ bool is_solid(const Plc& plc) {
 SurfaceTolerance surface_tolerance(const Plc& plc, const PipelineOptions& options) {
   constexpr double least_per_size = 0.005;
   const Bounds& bounds = options.mesh.bounds;
-  SurfaceTolerance given =
-      tolerance_of(plc, bounds, options.mesh.size, static_cast<int>(options.order));
+  SurfaceTolerance given = tolerance_of(plc, bounds, options.mesh.size, static_cast<int>(options.order));
   if (!given.varies() || bounds.distance > 0 || bounds.tolerance) return given;
   const double least = least_per_size * default_size(plc, options.mesh);
   std::vector<double> triangles;
