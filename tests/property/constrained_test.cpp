@@ -9,8 +9,10 @@
 #include <cmath>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "collarmesh/error.h"
 #include "collarmesh/pipeline.h"
 #include "collarmesh/plc_builder.h"
 #include "delaunay/predicates.h"
@@ -174,6 +176,28 @@ TEST(ConstrainedStart, MeshesWhatIsFarThinnerThanTheSize) {
       EXPECT_TRUE(finding.guarantee == "thin_angles" || finding.guarantee == "collar_dihedral")
           << finding.message;
   }
+}
+
+TEST(ConstrainedStart, StopsWhenProgressSaysSo) {
+  PipelineOptions options;
+  options.start = Start::constrained;
+  options.mesh.size = 0.1;
+  for (const std::string_view phase : {"tetrahedralize", "remesh"}) {
+    Execution execution;
+    execution.progress = [phase](const ProgressReport& report) {
+      return report.begins || report.phase != phase;
+    };
+    const SoupPipelineResult made = run_pipeline(std::vector{torus(1, 0.3, 40, 20)}, options, execution);
+    EXPECT_EQ(made.result.status, MeshStatus::cancelled) << phase;
+    EXPECT_TRUE(made.result.mesh.tets.empty()) << phase;
+  }
+}
+
+TEST(ConstrainedStart, IsForMeshesThatAreCoarsened) {
+  PipelineOptions options;
+  options.start = Start::constrained;
+  options.coarsen = false;
+  EXPECT_THROW(run_pipeline(std::vector{box()}, options), OptionError);
 }
 
 TEST(ConstrainedStart, DoesNotDependOnThreads) {

@@ -22,6 +22,14 @@ constexpr std::size_t most_times = 20, some = 1000;
 
 bool same_sign(int a, int b, int c) { return (a >= 0 && b >= 0 && c >= 0) || (a <= 0 && b <= 0 && c <= 0); }
 
+/// Does the line from one vertex to another pass through a triangle, or its border, from side to side?
+bool crosses(const Tetrahedra& mesh, Index from, Index to, const std::array<Index, 3>& triangle) {
+  const auto& [a, b, c] = triangle;
+  return mesh.orientation(a, b, c, from) * mesh.orientation(a, b, c, to) < 0 &&
+         same_sign(mesh.orientation(from, to, a, b), mesh.orientation(from, to, b, c),
+                   mesh.orientation(from, to, c, a));
+}
+
 /// Faces that an edge to come passes through.
 class InTheWayOfEdge final : public Obstacles {
  public:
@@ -30,12 +38,7 @@ class InTheWayOfEdge final : public Obstacles {
   int face(Index p, Index q, Index r) const override {
     for (const Index v : {p, q, r})
       if (v == a_ || v == b_) return 0;
-    const int from = mesh_.orientation(p, q, r, a_), to = mesh_.orientation(p, q, r, b_);
-    if (from * to >= 0) return 0;
-    return same_sign(mesh_.orientation(a_, b_, p, q), mesh_.orientation(a_, b_, q, r),
-                     mesh_.orientation(a_, b_, r, p))
-               ? 1
-               : 0;
+    return crosses(mesh_, a_, b_, {p, q, r}) ? 1 : 0;
   }
   int edge(Index, Index) const override { return 0; }
 
@@ -52,15 +55,9 @@ class InTheWayOfFacet final : public Obstacles {
 
   int face(Index, Index, Index) const override { return 0; }
   int edge(Index p, Index q) const override {
-    const auto& [a, b, c] = corners_;
     for (const Index v : corners_)
       if (v == p || v == q) return 0;
-    const int from = mesh_.orientation(a, b, c, p), to = mesh_.orientation(a, b, c, q);
-    if (from * to >= 0) return 0;
-    return same_sign(mesh_.orientation(p, q, a, b), mesh_.orientation(p, q, b, c),
-                     mesh_.orientation(p, q, c, a))
-               ? 1
-               : 0;
+    return crosses(mesh_, p, q, corners_) ? 1 : 0;
   }
 
  private:
@@ -246,7 +243,7 @@ void BoundaryRecovery::recover_edge(const EdgeToDo& edge) {
   }
 }
 
-/// Finds the faces that the inside of ab meets, if there is a vertex in its inside that.
+/// Finds the faces that the inside of ab meets. Returns a vertex that lies on it; none if there is none.
 Index BoundaryRecovery::find_crossed(Index a, Index b, std::vector<CrossedFace>& crossed) const {
   crossed.clear();
   const InTheWayOfEdge obstacles(mesh_, a, b);

@@ -150,7 +150,7 @@ ConstrainedTetrahedra constrained_tetrahedra(const Plc& plc, const Execution& ex
   const bool ended = recovery.run([&] {
     if (execution.cancelled()) return false;
     return ++step % constrained::steps_between_reports != 0 || !execution.progress ||
-           execution.progress({"refine", 0, mesh.point_count(), mesh.size()});
+           execution.progress({"tetrahedralize", 0, mesh.point_count(), mesh.size()});
   });
   if (!ended) return {};
   return {constrained::Extraction(mesh, recovery, plc).run(), recovery.added_points()};

@@ -65,7 +65,7 @@ class Tetrahedra {
   /// Replaces tetrahedra by others that fill the same room. Their faces on its border stay.
   void replace(std::span<const Index> old, std::span<const Corners> created);
 
-  /// Changes since `begin` can be undone, the last ones first. Trials do not nest, but have marks.
+  /// Changes after a mark can be undone, the last ones first, until they are kept.
   std::size_t mark() const { return journal_.size(); }
   void undo_to(std::size_t mark);
   /// All changes stay.

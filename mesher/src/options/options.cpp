@@ -131,6 +131,8 @@ void require_consistent(const RunOptions& o) {
   require(o.coarsen || !o.periodic.any(),
           "the elements beside periodic faces are coarsened anew; leave periodic out, or coarsen");
   const bool is_papers = o.mesh.profile == Profile::paper;
+  require(o.start != Start::constrained || (o.coarsen && !is_papers),
+          "start constrained is for meshes that are coarsened; leave it out, or coarsen");
   require(!o.mesh.bounds.interior_node || (o.coarsen && !is_papers),
           "interior-node is for meshes that are coarsened; leave it out, or coarsen");
   require(!is_papers || o.mesh.bounds.radius_edge * o.mesh.bounds.radius_edge > 8 ||

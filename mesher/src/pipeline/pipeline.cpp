@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <exception>
 #include <limits>
+#include <memory>
 #include <mutex>
 #include <new>
 #include <optional>
@@ -287,12 +288,15 @@ class Pipeline {
   /// for, where the mesh misses more than bounds on shapes, or, with good hope only, where many tets miss
   /// these.
   std::optional<PipelineResult> from_constrained(const Plc& plc, const std::string& why, Hope hope) {
-    if (given_.start != Start::automatic || given_.mesh.profile == Profile::paper || given_.periodic.any())
-      return {};
+    if (given_.start != Start::automatic || !given_.coarsen || given_.periodic.any()) return {};
     PipelineResult before = std::exchange(made_, {});
     std::optional<PipelineResult> found;
     start_ = Start::constrained;
     hope_ = hope;
+    const std::unique_ptr<Pipeline, void (*)(Pipeline*)> restore(this, [](Pipeline* pipeline) {
+      pipeline->start_ = Start::automatic;
+      pipeline->hope_ = Hope::any;
+    });
     try {
       mesh(plc, given_.mesh.seed);
       made_.check.notes.push_back(fmt::format("begun with constrained tetrahedra, as {}", why));
@@ -304,8 +308,6 @@ class Pipeline {
     } catch (const Ended&) {
       if (!hit_bound()) throw;
     }
-    start_ = Start::automatic;
-    hope_ = Hope::any;
     made_ = std::move(before);
     return found;
   }
@@ -532,9 +534,8 @@ class Pipeline {
   bool is_far_too_fine() const {
     constexpr double times = 5, least = 200'000;
     const auto tets = static_cast<double>(made_.result.mesh.tets.size());
-    return start_ == Start::automatic && options_.coarsen && given_.mesh.profile == Profile::standard &&
-           made_.result.status == MeshStatus::complete && tets > least &&
-           tets > times * prediction::count_tets(prediction::Shape(*plc_), options_.mesh);
+    return start_ == Start::automatic && options_.coarsen && made_.result.status == MeshStatus::complete &&
+           tets > least && tets > times * prediction::count_tets(prediction::Shape(*plc_), options_.mesh);
   }
 
   /// Takes the mesh from the constrained tetrahedra in place of the refined one if it keeps every guarantee.
@@ -593,11 +594,21 @@ class Pipeline {
     begin("tetrahedralize", 0.06, 0.2);
     MeshResult& result = made_.result;
     neighbours_ = KnownNeighbours();
-    result.mesh = constrained_tetrahedra(*plc_, inner_).mesh;
+    Execution watched = inner_;  // stages that stop early do not all say so
+    bool stopped = false;
+    if (inner_.progress)
+      watched.progress = [&](const ProgressReport& report) {
+        stopped |= !inner_.progress(report);
+        return !stopped;
+      };
+    result.mesh = constrained_tetrahedra(*plc_, watched).mesh;
+    if (stopped) stop();
     stop_if_asked();
     begin("remesh", 0.2, 0.6);
     result.has_narrow_cells = refined_with_.bounds.lower_where_forced = true;
-    if (!remeshing::bring_to_size(result.mesh, *plc_, refined_with_, inner_) && !inner_.cancelled()) {
+    const bool brought = remeshing::bring_to_size(result.mesh, *plc_, refined_with_, watched);
+    if (stopped) stop();
+    if (!brought && !inner_.cancelled()) {
       result.status = MeshStatus::budget_hit;
       result.message =
           fmt::format("{} vertices were reached; raise max-vertices, or the sizes for a coarser mesh",
@@ -611,6 +622,7 @@ class Pipeline {
   void settle() {
     constexpr unsigned most_rounds = 4;
     constexpr std::size_t tets_per_poor = 50;
+    if (refined_with_.bounds.interior_node) return;  // the nodes are there
     std::size_t least = misshapen(made_.result.mesh);
     if (hope_ == Hope::good && tets_per_poor * least > made_.result.mesh.tets.size()) throw Hopeless();
     for (unsigned round = 0; round < most_rounds && least > 0; ++round) {
