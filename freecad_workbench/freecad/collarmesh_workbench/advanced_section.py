@@ -192,6 +192,7 @@ def in_panel_words(text):
     words = {"--" + fields[name].replace("_", "-"): text for name, text in labels.items() if name in fields}
     words["--repair wrap"] = f"{labels['Repair']}: {translate('collarmesh', 'wrap where it fails')}"
     words["--repair"] = labels["Repair"]
+    text = text.replace(" (--dimension 2)", "")
     for option in sorted(words, key=len, reverse=True):
         text = text.replace(option, f"“{words[option]}”")
     return text

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/found_in_ranges.h"
+#include "remesh/orientations.h"
 
 namespace collarmesh::remeshing {
 
@@ -98,7 +99,7 @@ bool EdgeDivision::divide(Index a, Index b) {
     worst = std::min(worst, rule_.quality(complex().corners(t), complex()[t].corners));
   Change change;
   operations_.divide_edge(a, b, std::max(0.0, least_share * worst), change);
-  if (change.kind == Change::Kind::none) return false;
+  if (change.kind == Change::Kind::none || !stays_oriented(complex(), change)) return false;
   const double size =
       std::min(0.5 * (sizes_[a] + sizes_[b]), size_at(change.feature, complex()[at].region, change.place));
   workpiece_.apply(std::move(change));

@@ -6,6 +6,8 @@
 #include <functional>
 #include <utility>
 
+#include "remesh/orientations.h"
+
 namespace collarmesh::remeshing {
 
 using improvement::Change;
@@ -111,7 +113,9 @@ bool Relaxation::contract_at(Index vertex, double below, double share) {
     if (!fits) continue;
     Change change;
     operations_.contract_onto(onto.vertex, least_quality, 0, change);
-    if (change.kind == Change::Kind::none || !workpiece_.curve_can_spare(change)) continue;
+    if (change.kind == Change::Kind::none || !stays_oriented(complex(), change) ||
+        !workpiece_.curve_can_spare(change))
+      continue;
     apply(std::move(change));
     return true;
   }
@@ -157,7 +161,7 @@ bool Relaxation::improve_below(double enough, Means means) {
     if (stopped()) return false;
     if (!complex()[item.tet].alive || quality(item.tet) != item.quality) continue;
     Change change = improvement_of(item.tet, enough, means);
-    if (change.kind == Change::Kind::none) {
+    if (change.kind == Change::Kind::none || !stays_oriented(complex(), change)) {
       auto& tried = not_better_[static_cast<unsigned>(means)];
       if (tried.size() < complex().size()) tried.resize(complex().size(), 0);
       tried[item.tet] = ++now_;
