@@ -756,12 +756,23 @@ class Pipeline {
         options.size_field = recut.sizes(options.size_field);
         if (coarsen(workpiece, options, inner_).cancelled) stop();
         if (options_.improve > 0) improve_elements(workpiece);
+        insert_where_poor(workpiece);
         complete_interior_nodes(workpiece);
       });
       poor = misshapen(mesh);
       if (poor == 0) break;
     }
     return poor;
+  }
+
+  /// Where tets still miss their bounds, or nearly so, vertices may come and go.
+  void insert_where_poor(improvement::Workpiece& workpiece) {
+    constexpr double nearly = 1.25;
+    if (options_.improve == 0) return;
+    ImproveOptions options = options_of_improvement();
+    options.keep_vertices = false;
+    options.min_dihedral = std::min(options.min_dihedral, nearly * options.bounds.thin_angle);
+    if (improve(workpiece, options, inner_).cancelled) stop();
   }
 
   /// Fixed vertices stay where they are.
