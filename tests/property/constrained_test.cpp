@@ -161,6 +161,21 @@ TEST(ConstrainedStart, KeepsEveryGuaranteeOfPlainShapes) {
   }
 }
 
+TEST(ConstrainedStart, LeavesCurvesOutsideOut) {
+  PolygonSoup wire;
+  wire.points = {{1, 0, 0}, {2, 0, 0}};
+  wire.segments = {{0, 1, 9}};
+  const SoupPipelineResult made =
+      begun_constrained({box({0, 0, 0}, {1, 1, 1}), box({2, 0, 0}, {3, 1, 1}), wire}, 0.4);
+  EXPECT_TRUE(made.guarantees_hold()) << made.missed();
+  const TetMesh& mesh = made.result.mesh;
+  EXPECT_FALSE(mesh.edges.empty());
+  for (const auto& [a, b] : mesh.edges)
+    EXPECT_TRUE(std::ranges::any_of(mesh.tets, [&](const auto& tet) {
+      return std::ranges::find(tet, a) != tet.end() && std::ranges::find(tet, b) != tet.end();
+    }));
+}
+
 /// A plate between two waves, far thinner than the size: refinement takes hundreds of thousands of vertices.
 PolygonSoup thin_wave(double height) {
   return transformed(box({0, 0, 0}, {1, 1, 1}, 24), [height](const Point& p) {
@@ -211,6 +226,7 @@ TEST(ConstrainedStart, DoesNotDependOnThreads) {
   }
   EXPECT_EQ(made[0].points, made[1].points);
   EXPECT_EQ(made[0].tets, made[1].tets);
+  EXPECT_EQ(made[0].edges, made[1].edges);
 }
 
 }  // namespace

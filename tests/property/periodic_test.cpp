@@ -100,6 +100,42 @@ TEST(PeriodicFaces, AreCutByRegions) {
   for (std::size_t axis = 0; axis < 3; ++axis) expect_alike(made.result.mesh, axis);
 }
 
+/// The unit cube with two patches at either end of x, one beside the other: 1 and 3 at the low end.
+PolygonSoup cube_with_divided_ends() {
+  PolygonSoup soup;
+  soup.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0},   {1, 1, 0},   {0, 0, 1},   {1, 0, 1},
+                 {0, 1, 1}, {1, 1, 1}, {0, 0.5, 0}, {1, 0.5, 0}, {0, 0.5, 1}, {1, 0.5, 1}};
+  const auto add = [&soup](Tag tag, std::vector<Index> corners) { soup.add_facet(corners, tag); };
+  add(1, {0, 4, 10, 8}), add(3, {8, 10, 6, 2});
+  add(2, {1, 9, 11, 5}), add(4, {9, 3, 7, 11});
+  add(5, {0, 1, 5, 4}), add(6, {2, 6, 7, 3});
+  add(7, {0, 8, 2, 3, 9, 1}), add(8, {4, 5, 11, 7, 6, 10});
+  return soup;
+}
+
+// The curve between both patches of an end is an image by one pair, and has one by the other.
+TEST(PeriodicFaces, MayHavePairsInOppositeDirections) {
+  for (const char* second : {"3=4", "4=3"})
+    for (const double size : {0.7, 0.3, 0.15}) {
+      const PipelineResult made = mesh_of_soups({cube_with_divided_ends()}, {"1=2", second}, size);
+      EXPECT_TRUE(made.guarantees_hold()) << second << " " << size << " " << made.missed();
+      if (size < 0.5) expect_alike(made.result.mesh, 0);
+    }
+}
+
+TEST(PeriodicFaces, DoNotDependOnThreads) {
+  PipelineOptions options;
+  options.mesh.size = 0.15;
+  options.periodic.pairs = {"x", "y", "z"};
+  std::vector<TetMesh> made;
+  for (const unsigned threads : {1U, 2U}) {
+    options.mesh.threads = threads;
+    made.push_back(run_pipeline(std::vector{box({0, 0, 0}, {1, 1, 1})}, options).result.mesh);
+  }
+  EXPECT_EQ(made[0].points, made[1].points);
+  EXPECT_EQ(made[0].tets, made[1].tets);
+}
+
 TEST(PeriodicFaces, CostFewElements) {
   std::size_t with = 0, without = 0;
   for (const double size : {0.2, 0.1, 0.07}) {
@@ -119,6 +155,8 @@ TEST(PeriodicFaces, ThatAreNoImagesAreRefused) {
     return std::string();
   };
   const std::vector<PolygonSoup> cube{box({0, 0, 0}, {1, 1, 1})};
+  std::vector<std::string> many(33, "x");
+  EXPECT_THROW(mesh_of_soups(cube, many, 0.3), OptionError);
   EXPECT_NE(refusal("nowhere=1", cube).find("'nowhere'"), std::string::npos);
   EXPECT_NE(refusal("1:2", cube).find("FIRST=SECOND"), std::string::npos);
   EXPECT_NE(refusal("1=2:translation,one,0,0", cube).find("'one' is no number"), std::string::npos);

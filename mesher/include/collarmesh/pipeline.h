@@ -114,8 +114,9 @@ SoupPipelineResult run_pipeline(ComplexSource& source, const PipelineOptions& op
 SoupPipelineResult run_pipeline(std::span<const PolygonSoup> soups, const PipelineOptions& options = {},
                                 const Execution& execution = {});
 
-/// Meshes a complex that exists already, with further seeds but no further repairs. A refinement that takes
-/// far more vertices than the sizes ask for ends with the status `budget_hit` unless a budget is given.
+/// Meshes a complex that exists already, with further seeds but no further repairs. Where a
+/// refinement takes far more vertices than the sizes ask for and no budget is given, the mesh begins with
+/// constrained tetrahedra; if these are of no use either, it ends with the status `budget_hit`.
 PipelineResult run_pipeline(const Plc& plc, const PipelineOptions& options = {},
                             const Execution& execution = {});
 

@@ -72,9 +72,13 @@ double angle(const Point& a, const Point& at, const Point& b) {
   return std::atan2(norm(cross(a - at, b - at)), dot(a - at, b - at));
 }
 
-/// Does the line cd part a from b, which lie in one plane with it? Exact.
+/// Does the line cd part a from b, which lie in one plane with it? Exact in the projection along the axis
+/// that is nearest to the normal; where all lie in a line there, in the next one.
 bool parts(const Point& c, const Point& d, const Point& a, const Point& b) {
-  for (unsigned axis = 0; axis < 3; ++axis) {
+  const Vector normal = cross(d - c, a - c);
+  std::array<unsigned, 3> axes{0, 1, 2};
+  std::ranges::stable_sort(axes, std::greater<>(), [&](unsigned axis) { return std::fabs(normal[axis]); });
+  for (const unsigned axis : axes) {
     const auto flat = [axis](const Point& p) { return Point{p[(axis + 1) % 3], p[(axis + 2) % 3], 0}; };
     const Point low = flat(c), high = flat(d), above{low.x, low.y, 1};
     const int of_a = predicates::orientation(low, high, flat(a), above),
@@ -176,11 +180,12 @@ void BoundaryRecovery::divide_required(Index a, Index b, Index x) {
   for (const Index f : edge.facets) remove_facet(f);
   edges_.erase(edge_key(a, b));
   required_.erase(edge_key(a, b));
-  require(a, x).curve = edge.curve;
-  require(x, b).curve = edge.curve;
+  for (const Index end : {a, b})
+    if (RequiredEdge& half = require(end, x); edge.curve != none) half.curve = edge.curve;
   for (const Index f : edge.facets)
     for (const Index end : {a, b}) {
       std::array<Index, 3> corners = facets_[f].corners;
+      if (std::ranges::find(corners, x) != corners.end()) continue;  // nothing of it is left there
       std::ranges::replace(corners, end, x);
       add_facet(corners, facets_[f].patch);
     }

@@ -3,9 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <utility>
+#include <vector>
 
 #include "collarmesh/error.h"
+#include "common/edge_key.h"
 #include "constrained/boundary_recovery.h"
 #include "constrained/tetrahedra.h"
 
@@ -37,9 +41,9 @@ class Labels {
       for (unsigned k = 0; k < 4; ++k) {
         const Tetrahedra::Face face{part[i], k};
         if (const Index facet = mesh_.facet(face); facet != none) {
-          agree(region, beside(face, facets_[facet]), facets_[facet]);
+          agree(region, beside(face, facets_[facet]), mesh_.point(facets_[facet].corners[0]));
         } else if (const Index next = mesh_.beyond(face); next == none) {
-          region = 0;
+          agree(region, 0, mesh_.point(mesh_.corners(face.tet)[(face.corner + 1) % 4]));
         } else if (region_[next] == none) {
           region_[next] = 0;
           part.push_back(next);
@@ -48,10 +52,9 @@ class Labels {
     for (const Index t : part) region_[t] = region == none ? 0 : region;
   }
 
-  void agree(Index& region, Index beside, const Facet& facet) const {
+  static void agree(Index& region, Index beside, const Point& p) {
     if (region == none) region = beside;
     if (region == beside) return;
-    const Point& p = mesh_.point(facet.corners[0]);
     const std::string message = fmt::format(
         "The facets around ({:.9g}, {:.9g}, {:.9g}) do not agree about the region between them; "
         "repair the complex.",
@@ -83,7 +86,7 @@ class Extraction {
       if (mesh_.alive(t) && regions.of(t) != 0) add_tet(mesh_.corners(t), regions.of(t));
     for (const Facet& facet : recovery_.facets())
       if (facet.alive && plc_.patches[facet.patch].regions != std::array<Index, 2>{0, 0}) add_face(facet);
-    recovery_.for_each_curve_edge([&](Index a, Index b, Index curve) { add_edge(a, b, curve); });
+    add_edges();
     for (Index v = 0; v < plc_.vertices.size(); ++v)
       if (const Index n = number_[plc_.vertices[v].point]; n != none) made_.features[n] = {0, v};
     made_.names = plc_.names;
@@ -125,12 +128,28 @@ class Extraction {
     for (const Index v : corners) made_.features[v] = {2, facet.patch};
   }
 
-  void add_edge(Index a, Index b, Index curve) {
-    if (number_[a] == none || number_[b] == none) return;
-    made_.edges.push_back({number_[a], number_[b]});
-    made_.edge_curve.push_back(curve);
-    made_.edge_tag.push_back(plc_.curves[curve].tag);
-    for (const Index v : {a, b}) made_.features[number_[v]] = {1, curve};
+  /// Those of tetrahedra that are kept: curves outside of all regions have none.
+  void add_edges() {
+    std::vector<std::uint64_t> of_tets;
+    of_tets.reserve(6 * made_.tets.size());
+    for (const auto& tet : made_.tets)
+      for (unsigned i = 0; i < 4; ++i)
+        for (unsigned j = i + 1; j < 4; ++j) of_tets.push_back(edge_key(tet[i], tet[j]));
+    std::ranges::sort(of_tets);
+    std::vector<std::array<Index, 3>> edges;  // their ends and curve
+    recovery_.for_each_curve_edge([&](Index a, Index b, Index curve) {
+      const std::array<Index, 2> ends{number_[a], number_[b]};
+      if (ends[0] != none && ends[1] != none &&
+          std::ranges::binary_search(of_tets, edge_key(ends[0], ends[1])))
+        edges.push_back({ends[0], ends[1], curve});
+    });
+    std::ranges::sort(edges);  // which come in any order
+    for (const auto& [a, b, curve] : edges) {
+      made_.edges.push_back({a, b});
+      made_.edge_curve.push_back(curve);
+      made_.edge_tag.push_back(plc_.curves[curve].tag);
+      for (const Index v : {a, b}) made_.features[v] = {1, curve};
+    }
   }
 
   const Tetrahedra& mesh_;

@@ -9,7 +9,7 @@ namespace collarmesh {
 /// A mesh whose faces and edges on features are those of a complex, as they are.
 struct ConstrainedTetrahedra {
   TetMesh mesh;                  ///< empty if the run was cancelled
-  std::size_t added_points = 0;  ///< where features could not be had otherwise; all on features
+  std::size_t added_points = 0;  ///< where features could not be had otherwise
 };
 
 /// Makes tetrahedra with the facets and segments of a complex from its points: the Delaunay ones, changed

@@ -193,33 +193,33 @@ FeatureImages find_images(const PatchPair& pair, const Plc& plc, double distance
 
 std::vector<CurveClass> curve_classes(const std::vector<PatchPair>& pairs,
                                       const std::vector<FeatureImages>& images, std::size_t curves) {
-  std::map<Index, std::vector<CurveImage>> images_of;
+  std::map<Index, std::vector<CurveImage>> images_of;  // and originals, by the motion back
   std::vector<bool> is_image(curves, false), seen(curves, false);
   for (std::size_t k = 0; k < pairs.size(); ++k)
     for (const auto& [curve, image] : images[k].curves) {
       if (curve == image) continue;  // an axis of rotation
       images_of[curve].push_back({image, pairs[k].motion});
+      images_of[image].push_back({curve, inverse(pairs[k].motion)});
       is_image[image] = true;
     }
   std::vector<CurveClass> classes;
-  for (const auto& [original, direct] : images_of) {
-    if (is_image[original] || seen[original]) continue;
-    CurveClass& of = classes.emplace_back(CurveClass{original, {}});
-    seen[original] = true;
-    std::vector<CurveImage> open{{original, {}}};
-    while (!open.empty()) {
-      const CurveImage from = open.back();
-      open.pop_back();
-      const auto next = images_of.find(from.curve);
-      if (next == images_of.end()) continue;
-      for (const auto& [curve, motion] : next->second) {
-        if (seen[curve]) continue;
-        seen[curve] = true;
-        of.images.push_back({curve, composed(from.motion, motion)});
-        open.push_back(of.images.back());
+  for (const bool of_images : {false, true})  // where pairs run in a circle, each curve is an image
+    for (const auto& [original, direct] : images_of) {
+      if (is_image[original] != of_images || seen[original]) continue;
+      CurveClass& of = classes.emplace_back(CurveClass{original, {}});
+      seen[original] = true;
+      std::vector<CurveImage> open{{original, {}}};
+      while (!open.empty()) {
+        const CurveImage from = open.back();
+        open.pop_back();
+        for (const auto& [curve, motion] : images_of.at(from.curve)) {
+          if (seen[curve]) continue;
+          seen[curve] = true;
+          of.images.push_back({curve, composed(from.motion, motion)});
+          open.push_back(of.images.back());
+        }
       }
     }
-  }
   return classes;
 }
 

@@ -170,8 +170,12 @@ class PairReader {
 }  // namespace
 
 std::vector<PatchPair> choose_pairs(const PeriodicOptions& options, const Plc& plc) {
+  constexpr std::size_t most_pairs = 32;
   std::vector<PatchPair> pairs;
   std::set<Index> used;
+  if (options.pairs.size() > most_pairs)
+    refuse(options.pairs[most_pairs],
+           fmt::format("more than {} pairs; put those with the same motion into one: A,C=B,D", most_pairs));
   for (const std::string& text : options.pairs) {
     pairs.push_back(PairReader(text, plc).read());
     for (const auto* patches : {&pairs.back().first, &pairs.back().second})

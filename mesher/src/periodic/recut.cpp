@@ -30,6 +30,9 @@ struct HashOfTriangle {
 template <class Value>
 using ByTriangle = std::unordered_map<std::array<Index, 3>, Value, HashOfTriangle>;
 
+// Copies of the complex are as many as 2 to this power at most. Groups of further pairs stay as they are.
+constexpr std::size_t most_moved = 6;
+
 std::vector<Index> keys_of(const std::unordered_map<Index, Index>& map) {
   std::vector<Index> keys;
   keys.reserve(map.size());
@@ -82,7 +85,7 @@ void Recut::find_seams(const std::vector<PatchPair>& pairs, const std::vector<Fe
 // mesh is cut open half way between the groups, where tets need nothing.
 void Recut::find_shifts() {
   shifts_.assign(mesh_.tets.size(), 0);
-  for (std::size_t k = 0; k < seams_.size(); ++k) {
+  for (std::size_t k = 0; k < std::min(most_moved, seams_.size()); ++k) {
     const std::vector<Index> first = keys_of(seams_[k].image_of), second = keys_of(seams_[k].on_other);
     const std::vector<double> to_first = distances(k, first), to_second = distances(k, second);
     const auto is_on = [&](Index v, const auto& group) {
@@ -94,7 +97,7 @@ void Recut::find_shifts() {
     for (std::size_t t = 0; t < mesh_.tets.size(); ++t) {
       const auto& corners = mesh_.tets[t];
       const bool on_first =
-          std::ranges::any_of(corners, [&](Index v) { return seams_[k].image_of.contains(v); });
+          std::ranges::any_of(corners, [&](Index v) { return is_on(v, seams_[k].image_of); });
       const bool on_second =
           std::ranges::any_of(corners, [&](Index v) { return is_on(v, seams_[k].on_other); });
       reaches_both = reaches_both || (on_first && on_second);
@@ -149,7 +152,10 @@ void Recut::find_neighbours() const {
 void Recut::number_copies() {
   copies_ = shifts_;
   copies_.push_back(0);
-  for (const Shift shift : shifts_)  // a vertex of one on several seams belongs to copies of fewer shifts
+  std::sort(copies_.begin(), copies_.end());
+  copies_.erase(std::unique(copies_.begin(), copies_.end()), copies_.end());
+  for (const Shift shift :
+       std::vector<Shift>(copies_))  // a vertex of one on several seams belongs to copies of fewer shifts
     for (Shift part = shift; part > 0; part = (part - 1) & shift) copies_.push_back(part);
   std::sort(copies_.begin(), copies_.end());
   copies_.erase(std::unique(copies_.begin(), copies_.end()), copies_.end());

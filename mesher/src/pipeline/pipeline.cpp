@@ -223,12 +223,6 @@ class Pipeline {
                                                     repair.tolerance, given_.repair.tolerance, why));
       if (made_.guarantees_hold() || end == End::exploded) break;
     }
-    if (!has_mesh && error) {
-      std::optional<PipelineResult> constrained = from_constrained(all.plc, why, Hope::any);
-      if (!constrained) std::rethrow_exception(error);
-      made_ = std::move(*constrained);
-      return;
-    }
     if (has_mesh && made_.guarantees_hold()) return;
     if (!built_last) {
       try {
@@ -240,6 +234,12 @@ class Pipeline {
     }
     if (!has_mesh) {
       bound_vertices(Ways::none);
+      if (error) {
+        std::optional<PipelineResult> constrained = from_constrained(all.plc, why, Hope::any);
+        if (!constrained) std::rethrow_exception(error);
+        made_ = std::move(*constrained);
+        return;
+      }
       mesh_anyhow(all.plc, why);
     }
     try_seeds(all.plc);
@@ -277,9 +277,10 @@ class Pipeline {
   /// Takes the mesh from the constrained tetrahedra if it keeps every guarantee.
   bool take_constrained(const Plc& plc, const std::string& why) {
     constexpr std::size_t most_triangles = 12'000;  // else it takes longer than other ways
-    if (plc.triangles.size() > most_triangles) return false;
+    if (plc.triangles.size() > most_triangles || hopeless_ == &plc) return false;
     std::optional<PipelineResult> constrained = from_constrained(plc, why, Hope::good);
     is_constrained_ = constrained && constrained->guarantees_hold();
+    hopeless_ = is_constrained_ ? nullptr : &plc;
     if (is_constrained_) made_ = std::move(*constrained);
     return is_constrained_;
   }
@@ -448,6 +449,7 @@ class Pipeline {
     all.plc = std::move(built.plc);
     tolerance_.reset();
     nearer_.reset();
+    hopeless_ = nullptr;
   }
 
   const SurfaceTolerance& tolerance(const Plc& plc) {
@@ -594,27 +596,33 @@ class Pipeline {
     begin("tetrahedralize", 0.06, 0.2);
     MeshResult& result = made_.result;
     neighbours_ = KnownNeighbours();
-    Execution watched = inner_;  // stages that stop early do not all say so
+    watch([&](const Execution& watched) { result.mesh = constrained_tetrahedra(*plc_, watched).mesh; });
+    begin("remesh", 0.2, 0.6);
+    result.has_narrow_cells = refined_with_.bounds.lower_where_forced = true;
+    bool brought = false;
+    watch([&](const Execution& watched) {
+      brought = remeshing::bring_to_size(result.mesh, *plc_, refined_with_, watched);
+    });
+    if (brought) return;
+    result.status = MeshStatus::budget_hit;
+    result.message =
+        fmt::format("{} vertices were reached; raise max-vertices, or the sizes for a coarser mesh",
+                    refined_with_.max_vertices);
+    throw Ended();
+  }
+
+  /// Runs a stage that ends early, without saying so, when progress says so.
+  template <class Stage>
+  void watch(const Stage& stage) {
+    Execution watched = inner_;
     bool stopped = false;
     if (inner_.progress)
       watched.progress = [&](const ProgressReport& report) {
         stopped |= !inner_.progress(report);
         return !stopped;
       };
-    result.mesh = constrained_tetrahedra(*plc_, watched).mesh;
+    stage(watched);
     if (stopped) stop();
-    stop_if_asked();
-    begin("remesh", 0.2, 0.6);
-    result.has_narrow_cells = refined_with_.bounds.lower_where_forced = true;
-    const bool brought = remeshing::bring_to_size(result.mesh, *plc_, refined_with_, watched);
-    if (stopped) stop();
-    if (!brought && !inner_.cancelled()) {
-      result.status = MeshStatus::budget_hit;
-      result.message =
-          fmt::format("{} vertices were reached; raise max-vertices, or the sizes for a coarser mesh",
-                      refined_with_.max_vertices);
-      throw Ended();
-    }
     stop_if_asked();
   }
 
@@ -628,8 +636,7 @@ class Pipeline {
     for (unsigned round = 0; round < most_rounds && least > 0; ++round) {
       TetMesh mesh = made_.result.mesh;
       const auto before = made_.improvement;
-      remeshing::relax(mesh, *plc_, refined_with_, inner_);
-      stop_if_asked();
+      watch([&](const Execution& watched) { remeshing::relax(mesh, *plc_, refined_with_, watched); });
       coarsen_and_improve(mesh, {});
       const std::size_t poor = misshapen(mesh);
       if (poor >= least) {
@@ -691,7 +698,7 @@ class Pipeline {
   /// the refined one: wedges that these make with the sides need their nodes on both sides.
   void make_faces_periodic() {
     if (!given_.periodic.any() || made_.result.status != MeshStatus::complete) return;
-    constexpr unsigned most_tries = 4;
+    constexpr unsigned most_tries = 4, most_rounds = 3;
     begin("periodic faces", 0.75, 0.79);
     const ImproveReport improvement = made_.improvement;
     const bool smooth = std::ranges::any_of(plc_->patches, [](const auto& patch) { return !patch.planar; });
@@ -702,8 +709,9 @@ class Pipeline {
       const PeriodicReport report =
           make_periodic(mesh, *plc_, options_.periodic, refined_with_.bounds.tolerance->largest());
       periodicity::map_corners(mesh);
-      for (std::size_t poor = 0, before = SIZE_MAX; before > 0; before = poor) {
-        poor = reshape_across(mesh);
+      std::size_t before = SIZE_MAX;
+      for (unsigned round = 0; round < most_rounds; ++round) {
+        const std::size_t poor = reshape_across(mesh, k > 0 || round > 0);
         if (poor < least) {
           least = poor;
           best = mesh;
@@ -712,6 +720,7 @@ class Pipeline {
         if (poor == 0 || poor >= before) break;
         divide_curves_at_poor_tets(mesh);
         if (before == SIZE_MAX && !(smooth && k == 0)) source = mesh;
+        before = poor;
       }
     }
     refined_ = {};
@@ -746,9 +755,9 @@ class Pipeline {
     });
   }
 
-  /// Coarsens and improves a periodic mesh while it is cut open at one place and then at another. Returns how
-  /// often its tets miss their bounds.
-  std::size_t reshape_across(TetMesh& mesh) {
+  /// Coarsens and improves a periodic mesh while it is cut open at one place and then at another; vertices
+  /// are inserted if asked for. Returns how often its tets miss their bounds.
+  std::size_t reshape_across(TetMesh& mesh, bool insert) {
     std::size_t poor = SIZE_MAX;
     for (const Moved moved : {Moved::beside_first, Moved::beside_second}) {
       change_across(mesh, moved, [&](improvement::Workpiece& workpiece, const periodicity::Recut& recut) {
@@ -756,7 +765,7 @@ class Pipeline {
         options.size_field = recut.sizes(options.size_field);
         if (coarsen(workpiece, options, inner_).cancelled) stop();
         if (options_.improve > 0) improve_elements(workpiece);
-        insert_where_poor(workpiece);
+        if (insert) insert_where_poor(workpiece);
         complete_interior_nodes(workpiece);
       });
       poor = misshapen(mesh);
@@ -950,6 +959,7 @@ class Pipeline {
   Start start_;             // of the mesh at hand
   Hope hope_ = Hope::any;
   bool is_constrained_ = false;    // the mesh that is kept
+  const Plc* hopeless_ = nullptr;  // this complex's constrained tetrahedra were tried in vain
   bool knows_bound_ = false;       // for them, on vertices
   std::size_t most_vertices_ = 0;  // of a refinement, in place of the given budget; 0: that
   const Execution& outer_;

@@ -23,7 +23,7 @@ namespace collarmesh::remeshing {
 /// edges are divided.
 class Relaxation {
  public:
-  /// The workpiece and the options are kept by reference; `sizes`: targets at the vertices.
+  /// Keeps the workpiece and the execution by reference; `sizes`: targets at the vertices.
   Relaxation(improvement::Workpiece& workpiece, const MeshOptions& options, const std::vector<double>& sizes,
              const Execution& execution);
 
