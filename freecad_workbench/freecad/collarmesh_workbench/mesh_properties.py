@@ -151,6 +151,7 @@ PROPERTIES = (
     ("App::PropertyFloat", "TimeLimit", "time_limit", RUN, doc("Give up after so many seconds; 0: never")),
 )
 ORDERS = ["1st", "2nd"]
+DIMENSIONS = ["From Shape", "1D", "2D", "3D"]  # as Gmsh's object has them
 REPAIRS = {"Automatic": "auto", "None": "none", "Wrap": "wrap"}  # the program's words
 REFINEMENTS = {"Solid": "solid_sizes", "Face": "face_sizes", "Edge": "edge_sizes"}
 
@@ -173,6 +174,18 @@ def add_properties(obj):
         obj.addProperty("App::PropertyEnumeration", "ElementOrder", QUALITY, doc("Order of the elements"))
         obj.ElementOrder = ORDERS
         obj.ElementOrder = ORDERS[preferences.second_order()]
+    if "ElementDimension" not in have:
+        obj.addProperty(
+            "App::PropertyEnumeration",
+            "ElementDimension",
+            QUALITY,
+            doc(
+                "Dimension of the elements. 3D: tetrahedra in solids; 2D: triangles on faces, for shells; 1D: lines on "
+                "edges, for beams; From Shape: by what the shape encloses"
+            ),
+        )
+        obj.ElementDimension = DIMENSIONS
+        obj.ElementDimension = DIMENSIONS[0]
     if "Repair" not in have:
         obj.addProperty(
             "App::PropertyEnumeration",
@@ -201,7 +214,12 @@ def settings_of(obj):
     for _kind, name, field, _group, _text in PROPERTIES:
         value = getattr(obj, name)
         values[field] = getattr(value, "Value", value)
-    settings = Settings(order=ORDERS.index(obj.ElementOrder) + 1, repair=REPAIRS[obj.Repair], **values)
+    settings = Settings(
+        order=ORDERS.index(obj.ElementOrder) + 1,
+        dimension=DIMENSIONS.index(obj.ElementDimension),
+        repair=REPAIRS[obj.Repair],
+        **values,
+    )
     for region in obj.MeshRegionList:
         if compatibility.is_suppressed(region):
             continue
@@ -215,6 +233,7 @@ def apply_settings(obj, settings):
     for _kind, name, field, _group, _text in PROPERTIES:
         setattr(obj, name, getattr(settings, field))
     obj.ElementOrder = ORDERS[settings.order - 1]
+    obj.ElementDimension = DIMENSIONS[settings.dimension]
     obj.Repair = next(name for name, word in REPAIRS.items() if word == settings.repair)
 
 

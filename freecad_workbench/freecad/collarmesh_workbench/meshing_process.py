@@ -12,7 +12,7 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtGui
 
-from . import compatibility, mesh_object, mesh_undo, processes, up_to_date
+from . import compatibility, elements, mesh_object, mesh_undo, processes, up_to_date
 from .later import later
 from .program import MesherError, Progress
 from .time_left import TimeLeft
@@ -51,7 +51,7 @@ def outcome_of(obj):
     outcome = _outcomes.get(_key(obj))
     if outcome is None or outcome.report is None:
         return outcome
-    is_there = obj.FemMesh.VolumeCount > 0 and getattr(obj, mesh_undo.NUMBER) == outcome.mesh_number
+    is_there = elements.is_there(obj.FemMesh) and getattr(obj, mesh_undo.NUMBER) == outcome.mesh_number
     return outcome if is_there else None
 
 
