@@ -200,6 +200,8 @@ std::string surface_text(const TetMesh& mesh, const CheckReport* judged) {
 
 std::string mesh_text(const TetMesh& mesh, const MeshMeasures& m, const CheckReport* judged) {
   if (mesh.is_surface()) return surface_text(mesh, judged);
+  if (mesh.is_curves())
+    return fmt::format("{} lines on curves, {} points\n", mesh.edges.size(), mesh.points.size());
   std::string text;
   fmt::format_to(Out(text), "{} tets, {} points, {} boundary and interface triangles, {} curve edges\n",
                  mesh.tets.size(), mesh.points.size(), mesh.faces.size(), mesh.edges.size());

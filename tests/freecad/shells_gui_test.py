@@ -98,7 +98,7 @@ async def bent_sheet():
     study.analysis.add(ObjectsFem.makeElementGeometry2D(study.analysis.document, 2))
     study.analysis.clamp("Edge", (20, 30, 0))
     study.analysis.pull_at("Edge", (20, 0, 60), FORCE, (0, 1, 0))
-    await study.mesh_by_panel("4 mm", 2, "encloses no volume", "shell_sheet.png")
+    await study.mesh_by_panel("4 mm", 2, "encloses no volume", "freecad_shell.png")
     result = await study.solve("shell_sheet_result.png")
     w.require(abs(abs(result["reactions"][1]) / FORCE - 1) < 1e-3, f"reactions {result['reactions']}")
 

@@ -37,6 +37,30 @@ def gutter():
     return Part.makeCylinder(20, 100, Vector(0, 0, 0), Vector(0, 0, 1), 180).Faces[0]
 
 
+def profile(offset):
+    """Two legs with a bend between them, at a distance from their inner side: foot, bend, upright."""
+    inner, radius = 4, 4 + offset  # of the bend
+    centre, slant = Vector(0, 0, 0), radius * math.sqrt(0.5)
+    bend = Part.Arc(centre + Vector(0, 0, -radius), centre + Vector(0, -
+                    slant, -slant), centre + Vector(0, -radius, 0)).toShape()
+    return [Part.makeLine(Vector(0, 60 - inner, -radius), Vector(0, 0, -radius)), bend,
+            Part.makeLine(Vector(0, -radius, 0), Vector(0, -radius, 60 - inner))]
+
+
+def bracket(thickness):
+    """Of sheet metal, 40 mm wide, bent, with a hole in each leg: its middle surface, and the solid."""
+    width = Vector(40, 0, 0)
+    middle = Part.makeShell([edge.extrude(width) for edge in profile(thickness / 2)])
+    inner, outer = profile(0), profile(thickness)
+    ends = [Part.makeLine(inner[i].Vertexes[j].Point, outer[i].Vertexes[j].Point) for i, j in ((0, 0), (2, 1))]
+    solid = Part.Face(Part.Wire(Part.__sortEdges__([*inner, *outer, *ends]))).extrude(width)
+    holes = [Part.makeCylinder(6, 20, Vector(20, 30, -15)), Part.makeCylinder(6,
+                                                                              20, Vector(20, -15, 30), Vector(0, 1, 0))]
+    for hole in holes:
+        middle, solid = middle.cut(hole), solid.cut(hole)
+    return middle, solid
+
+
 class Decisions(unittest.TestCase):
     def setUp(self):
         self.document = FreeCAD.newDocument("test")
@@ -149,6 +173,21 @@ class Thin(unittest.TestCase):
 
     def test_bent_sheet(self):
         self.compare(angle_sheet(), (20, 30, 0), (20, 0, 60), 4, (0, 1, 0), 1)
+
+    def test_bracket_as_shell_and_as_solid(self):
+        thickness, force = 2, 30
+        displacements = []
+        for shape, kind in zip(bracket(thickness), ("Edge", "Face")):
+            analysis = Analysis(shape)
+            if kind == "Edge":
+                analysis.add(ObjectsFem.makeElementGeometry2D(analysis.document, thickness))
+            middle = 4 + thickness / 2
+            analysis.clamp(kind, (20, 56, -middle))
+            analysis.pull_at(kind, (20, -middle, 56), force, (0, 1, 0))
+            displacements.append(self.solve(analysis, 3)["displacement"])
+            analysis.close()
+        print(f"bracket as shell {displacements[0]:.6g} mm, as solid {displacements[1]:.6g} mm", flush=True)
+        self.assertAlmostEqual(displacements[0] / displacements[1], 1, delta=0.05)
 
     def test_a_wire_is_beams(self):
         """Two straight parts in line, a force across at the end."""
