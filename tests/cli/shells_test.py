@@ -139,6 +139,32 @@ class Shells(ProgramTest):
         self.assertEqual(self.run_program("check", "w.vtu", "--against", other).returncode, 7)
         self.expect(2, wire, "-o", "w.stl", "--dimension", "1", says=["no place for lines alone|with no place"])
 
+    def test_wrong_lines_are_found(self):
+        """What the certificate of lines says of a file that was changed."""
+        wire = self.write("wire.poly", WIRE)
+        self.run_program(wire, "-o", "w.mesh", "--dimension", "1", "--size", "2")
+        lines = (self.folder / "w.mesh").read_text().splitlines()
+        points, edges = lines.index("Vertices"), lines.index("Edges")
+        inner = next(i for i in range(points + 2, points + 2 +
+                     int(lines[points + 1])) if lines[i].split()[0] not in ("0", "10"))
+        x, y, z, *rest = lines[inner].split()
+
+        def changed(at, text):
+            return lines[:at] + [text] + lines[at + 1:]
+
+        count = int(lines[edges + 1])
+        first, second, third = (lines[edges + 2 + i].split() for i in range(3))
+        cases = {"curve_cover|curve_distance": changed(inner, " ".join([x, y, f"{float(z) + 1}", *rest])),
+                 "curve_cover": changed(edges + 1, str(count - 1))[:edges + 2] + lines[edges + 3:],
+                 "curve_tag": changed(edges + 2, " ".join([*first[:2], "77"])),
+                 "listed_edges|curve_cover": changed(edges + 2, " ".join([*second[:2], first[2]])),
+                 "referenced_points": changed(edges + 2, " ".join([*third[:2], first[2]]))}
+        for finding, text in cases.items():
+            bad = self.write("bad.mesh", "\n".join(text) + "\n")
+            run = self.run_program("check", bad, "--against", wire)
+            self.assertEqual(run.returncode, 7, finding + run.stdout + run.stderr)
+            self.assertRegex(run.stdout, finding)
+
     def test_lines_of_a_surface(self):
         self.expect(0, self.box, "-o", self.out, "--dimension", "1", "--size", "0.25", says=["48 lines"], writes=True)
 

@@ -114,6 +114,20 @@ class Decisions(unittest.TestCase):
                 nodes = {n for each in found[f"Edge{number}"] for n in fem_mesh.getElementNodes(each)}
                 self.assertEqual(set(fem_mesh.getNodesByEdge(edge)), nodes)
 
+    def test_nodes_of_lines_lie_on_curved_edges(self):
+        spline = Part.BSplineCurve()
+        spline.interpolate([Vector(0, 0, 0), Vector(10, 8, 3), Vector(25, -4, 6), Vector(40, 0, 0)])
+        arc = Part.Arc(Vector(40, 0, 0), Vector(47, 7, 0), Vector(40, 14, 0))
+        shape = Part.Wire([spline.toShape(), arc.toShape()])
+        for order in (1, 2):
+            fem_mesh = collarmesh_workbench.mesh(self.add(shape), size=3, order=order).FemMesh
+            found = groups(fem_mesh)
+            for number, edge in enumerate(shape.Edges, 1):
+                nodes = {n for each in found[f"Edge{number}"] for n in fem_mesh.getElementNodes(each)}
+                self.assertEqual(set(fem_mesh.getNodesByEdge(edge)), nodes)
+                self.assertGreater(len(nodes), edge.Length / 4)
+            self.assertEqual(elements.order(fem_mesh), order)
+
 
 class Thin(unittest.TestCase):
     """Analyses with results."""
