@@ -35,7 +35,8 @@ bool may_be_too_coarse(const PlcError& error) {
 PlcError with_names(const PlcError& error, const CadFiles& cad) {
   std::vector<PlcFault> faults = error.faults;
   for (PlcFault& fault : faults)
-    fault.message += fmt::format(" The nearest faces are {}.", cad.faces_near(fault.where));
+    if (const std::string near = cad.faces_near(fault.where); !near.starts_with("no face"))
+      fault.message += fmt::format(" The nearest faces are {}.", near);
   const std::string open = cad.open_edges(), invalid = cad.invalid_parts();
   return {
       fmt::format("{}{}{}", faults.empty() ? error.what() : faults.front().message,

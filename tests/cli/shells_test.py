@@ -206,6 +206,7 @@ class Shells(ProgramTest):
         self.expect(4, wire, "-o", self.out, "--dimension", "2",
                     says=["no faces to mesh with triangles", "--dimension 1"])
         self.expect(4, line, "-o", self.out, "--dimension", "1", says=["no"])
+        self.expect(4, wire, "-o", self.out, says=["has lines", COORDINATES, "--dimension 1"])
 
     def test_the_same_bytes(self):
         written = []

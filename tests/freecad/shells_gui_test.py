@@ -40,6 +40,7 @@ class Study:
         said = await w.run_mesher(size)
         w.require("Every guarantee holds" in said and word in said, said)
         w.require(elements.dimension(self.mesh.FemMesh) == expected, "another dimension")
+        w.require(not w.child("report").isVisible(), "the page is about tetrahedra")
         await w.screenshot(picture)
         await w.close_panel()
 

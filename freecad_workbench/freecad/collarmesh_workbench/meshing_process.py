@@ -72,7 +72,8 @@ class MeshingProcess(QtCore.QObject):
         part = compatibility.meshed_object(obj)
         self.label = part.Label if part else ""
         self.job = mesh_object.start(obj)
-        self.job.add_page()
+        if self.job.dimension == 3:  # the page is about tetrahedra
+            self.job.add_page()
         self.warnings = tuple(self.job.warnings())
         self.progress = None
         self.time_left = time_left or TimeLeft()
@@ -158,6 +159,8 @@ class MeshingProcess(QtCore.QObject):
         outcome.part_changed = not up_to_date.has_shape(part, self.job.state.shape)
         with _told_in_report_view():
             self.object.Document.recompute()
+        if self.job.dimension < 3:
+            return outcome
         page = os.path.join(self.object.Document.TransientDir, f"{self.object.Name}_report.html")
         with _told_in_report_view():
             self.job.move_page(page, self.label)
