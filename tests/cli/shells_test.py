@@ -165,6 +165,15 @@ class Shells(ProgramTest):
             self.assertEqual(run.returncode, 7, finding + run.stdout + run.stderr)
             self.assertRegex(run.stdout, finding)
 
+    def test_lines_that_cross_share_a_node(self):
+        cross = self.write(
+            "cross.poly", "4 3 0 0\n1 0 0 0\n2 9 9 0\n3 9 0 0\n4 0 9 0\n2 1\n1 0 1\n2 1 2\n1 0 2\n2 3 4\n0\n0\n")
+        self.expect(0, cross, "-o", self.out, "--dimension", "1", "--size", "2", says=[r"cut, the first at \(4.5, 4.5, 0\)"],
+                    writes=True)
+        self.run_program(cross, "-o", "w.inp", "--dimension", "1", "--size", "2")
+        ends = [n for edge in elements_of(self.folder / "w.inp")["B31"] for n in edge]
+        self.assertEqual(sorted(ends.count(n) for n in set(ends))[-1], 4)
+
     def test_lines_of_a_surface(self):
         self.expect(0, self.box, "-o", self.out, "--dimension", "1", "--size", "0.25", says=["48 lines"], writes=True)
 
