@@ -5,12 +5,26 @@
 #include <vector>
 
 #include "location/curve_paths.h"
+#include "refine/sizing.h"
 #include "shells/curve_division.h"
 #include "shells/surface_sizes.h"
 
 namespace collarmesh::shells {
 
 namespace {
+
+/// Edges of triangles and tets may be somewhat longer than the size, so that they have it in the mean: not
+/// lines.
+MeshOptions exact_sizes(const Plc& plc, MeshOptions options) {
+  constexpr double factor = 1 / Sizing::edge_per_size;
+  options.size = factor * default_size(plc, options);
+  options.size_min *= factor;
+  for (auto* const sizes : {&options.patch_size, &options.curve_size})
+    for (auto& [tag, size] : *sizes) size *= factor;
+  if (options.size_field)
+    options.size_field = [field = options.size_field](const Point& p) { return factor * field(p); };
+  return options;
+}
 
 class CurveMesher {
  public:
@@ -21,7 +35,8 @@ class CurveMesher {
         order_(order),
         exact_(exact),
         paths_(plc, plc.points),
-        sizes_(plc, paths_, options),
+        options_(exact_sizes(plc, options)),
+        sizes_(plc, paths_, options_),
         node_of_(plc.vertices.size(), none) {}
 
   CurveMesh run() {
@@ -107,6 +122,7 @@ class CurveMesher {
   const unsigned order_;
   const ExactGeometry& exact_;
   CurvePaths paths_;
+  MeshOptions options_;
   SurfaceSizes sizes_;
   std::vector<Index> node_of_;   // by vertex of the complex
   std::vector<double> middles_;  // parameters, by edge
