@@ -142,7 +142,7 @@ class Headless(unittest.TestCase):
             self.assertEqual(obj.FemMesh.VolumeCount, count)
             objects = len(self.document.Objects)
             with self.assertRaises(program.MesherError):
-                collarmesh_workbench.mesh(part)
+                collarmesh_workbench.mesh(part, dimension=3)
             self.assertEqual(len(self.document.Objects), objects)
 
     def test_what_solids_have_in_common_belongs_to_the_first(self):
