@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The twelve pictures of the gallery and that of a report, from input to PNG.
+"""The fifteen pictures of the gallery and that of a report, from input to PNG.
 
     xvfb-run -a resources/gallery.py [--only NAME...] [--into FOLDER]
 
@@ -508,7 +508,57 @@ def report(path):
     Image.open(path).convert("RGB").save(path, optimize=True)  # the legend has colours that hardly anything else has
 
 
-PICTURES = (bracket, names, curved, field, tiny, regions, collar, fan, thin, repair, wrap, analysis, report)
+def coil(path):
+    """A wire of five turns as edges of the tets around it."""
+    grid = mesh("coil_in_box.brep", "--size", 5, "--curve-size", "13=1", "--gradation", 0.5)
+    edges = kind(grid, vtk.VTK_LINE)
+    wire = extract(edges, np.isin(array(edges, "tag"), (13, 14, 15)).nonzero()[0])
+    picture(path, scene([*cut_open(grid, (0, -1, 0), 0.4), tubes(wire, 0.35)], FRONT, 1.12))
+
+
+def crack(path):
+    """The two sides of a sheet with nodes of their own, drawn apart."""
+    grid = mesh("cracked_box.poly", "--size", 0.2, "--patch-size", "7=0.04", "--name", "crack=7", "--split", "crack")
+    is_face = vtk_to_numpy(grid.GetCellTypesArray()) == vtk.VTK_TRIANGLE
+    on_sheet = is_face & (np.abs(centres(grid) - 0.5).max(axis=1) < 0.45)
+    tags = sorted(set(array(grid, "tag")[on_sheet]))
+    places = vtk_to_numpy(grid.GetPoints().GetData()).copy()
+    half, way = 0.2, 0.09
+    for tag, sign in zip(tags, (-1, 1)):
+        cells = (on_sheet & (array(grid, "tag") == tag)).nonzero()[0]
+        for v in {grid.GetCell(int(c)).GetPointId(k) for c in cells for k in range(3)}:
+            places[v, 2] += sign * way * (1 - ((places[v, :2] - 0.5) / half) ** 2).clip(0).prod() ** 0.5
+    grid.GetPoints().SetData(numpy_to_vtk(places, deep=True))
+    sides = [tinted(extract(grid, (on_sheet & (array(grid, "tag") == tag)).nonzero()[0]), colour, width=1.1)
+             for tag, colour in zip(tags, (HUES[1], HUES[0]))]
+    whole = tets(grid)
+    rest = tinted(extract(whole, behind(whole, (0, -1, 0), 0.36).nonzero()[0]), GREY, width=1.1)
+    picture(path, scene([rest, *sides], (0.4, -1.9, 0.06), 1.15))
+
+
+def cell(path):
+    """A cell with a square fibre and its images on three sides: nodes and triangles fit."""
+    square = ((0.25, 0.25), (0.75, 0.25), (0.75, 0.75), (0.25, 0.75))
+    points = [(x, y, z) for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
+    points += [(x, y, z) for z in (0, 1) for x, y in square]
+    sides = ["1 0 1\n4 0 3 7 4", "1 0 2\n4 1 2 6 5", "1 0 3\n4 0 1 5 4", "1 0 4\n4 2 3 7 6",
+             "2 0 5\n4 0 1 2 3\n4 8 9 10 11", "2 0 6\n4 4 5 6 7\n4 12 13 14 15"]
+    sides += [f"1 0 7\n4 {8 + k} {8 + (k + 1) % 4} {12 + (k + 1) % 4} {12 + k}" for k in range(4)]
+    pathlib.Path("cell.poly").write_text("\n".join(
+        [f"{len(points)} 3 0 0", *(f"{k} {x} {y} {z}" for k, (x, y, z) in enumerate(points)), f"{len(sides)} 1", *sides,
+         "0", "2", "0 0.5 0.5 0.5 1", "1 0.1 0.1 0.1 2"]) + "\n")
+    periodic = [word for axis in "xyz" for word in ("--periodic", axis)]
+    grid = tets(mesh("cell.poly", "--size", 0.2, *periodic))
+    actors = []
+    for place in ((0, 0, 0), (1.04, 0, 0), (0, 0, 1.04), (1.04, 0, 1.04)):
+        for actor in coloured(grid, array(grid, "tag")):
+            actor.SetPosition(*place)
+            actors.append(actor)
+    picture(path, scene(actors, FRONT, 1.0))
+
+
+PICTURES = (bracket, names, curved, field, tiny, regions, collar, fan,
+            thin, repair, wrap, analysis, report, coil, crack, cell)
 
 
 def main():

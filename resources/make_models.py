@@ -288,6 +288,19 @@ def write_wires_in_box(path):
     Part.makeCompound([Part.makeBox(20, 20, 20), loop, needle, Part.Vertex(4, 10, 14)]).exportBrep(path)
 
 
+def write_coil_in_box(path):
+    """A CAD shape: a box with a wire of five turns inside, whose ends are straight and reach the box; by FreeCAD."""
+    sys.path.append(FREECAD)
+    import FreeCAD
+    import Part
+
+    helix = Part.makeHelix(3, 15, 6)
+    helix.translate(FreeCAD.Vector(0, 0, -7.5))
+    ends = [Part.makeLine(FreeCAD.Vector(6, 0, side * 7.5), FreeCAD.Vector(20, 0, side * 7.5)) for side in (-1, 1)]
+    box = Part.makeBox(40, 40, 40, FreeCAD.Vector(-20, -20, -20))
+    Part.makeCompound([box, *helix.Edges, *ends]).exportBrep(path)
+
+
 def main():
     folder = sys.argv[1] if len(sys.argv) > 1 else os.path.join(os.path.dirname(os.path.abspath(__file__)), "models")
     os.makedirs(folder, exist_ok=True)
@@ -299,6 +312,7 @@ def main():
             out.write(text)
     write_flange(os.path.join(folder, "flange.step"))
     write_wires_in_box(os.path.join(folder, "wires_in_box.brep"))
+    write_coil_in_box(os.path.join(folder, "coil_in_box.brep"))
 
 
 if __name__ == "__main__":

@@ -16,6 +16,7 @@ import tempfile
 import numpy as np
 
 DIGITS = 12  # places of vertices are rounded to these, so that those of opposite faces are images of each other
+ROUNDING = 1e-14  # of places on faces of the unit cube
 
 
 def grain_polygons(seeds):
@@ -173,7 +174,7 @@ class Mesh:
 
     def images(self, axis):
         """Node numbers at the low end of an axis and those at the same places of the high end; fails if one has none."""
-        at = [np.flatnonzero(self.points[:, axis] == end) for end in (0.0, 1.0)]
+        at = [np.flatnonzero(np.abs(self.points[:, axis] - end) < ROUNDING) for end in (0.0, 1.0)]
         others = [k for k in range(3) if k != axis]
         keys = [{tuple(np.round(self.points[v, others], 11) + 0.0): v for v in nodes} for nodes in at]
         assert len(keys[0]) == len(at[0]) and len(keys[1]) == len(at[1]), "two nodes at one place"
@@ -189,7 +190,7 @@ def verify(mesh):
             if kind not in mesh.cells:
                 continue
             nodes, tags = mesh.cells[kind]
-            low, high = (np.all(mesh.points[nodes][:, :, axis] == end, axis=1) for end in (0.0, 1.0))
+            low, high = (np.all(np.abs(mesh.points[nodes][:, :, axis] - end) < ROUNDING, axis=1) for end in (0.0, 1.0))
             moved = {frozenset(image[v] for v in cell): tag for cell, tag in zip(nodes[low], tags[low])}
             there = {frozenset(cell.tolist()): tag for cell, tag in zip(nodes[high], tags[high])}
             assert set(moved) == set(there), f"axis {axis}: {len(set(moved) ^ set(there))} {kind}s have no image"

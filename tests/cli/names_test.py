@@ -349,6 +349,34 @@ class WiresOfCadFiles(ProgramTest):
         self.assertAlmostEqual(lengths["Edge14"], 8)
 
 
+@unittest.skipUnless(HAS_CAD, "no OpenCASCADE")
+class CoilOfACadFile(ProgramTest):
+    def test_it_is_one_chain_on_the_helix(self):
+        import meshio
+
+        run = self.run_program(MODELS / "coil_in_box.brep", "-o", "a.msh", "--size", "5", "--curve-size", "13=1.2")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn("every guarantee holds", run.stderr)
+        mesh = meshio.read(self.folder / "a.msh")
+        lines = {tag: [] for tag in (13, 14, 15)}
+        for block, tags in zip(mesh.cells, mesh.cell_data["gmsh:physical"]):
+            if block.type == "line":
+                for line, tag in zip(block.data.tolist(), tags.tolist()):
+                    lines.get(tag, []).append(line)
+        radius, pitch = 6, 3
+        for node in {node for line in lines[13] for node in line}:
+            x, y, z = mesh.points[node].tolist()
+            self.assertAlmostEqual(math.hypot(x, y), radius, places=5)
+            turn = (z + 7.5) / pitch
+            self.assertAlmostEqual(math.dist((x, y), (radius * math.cos(2 * math.pi * turn),
+                                                      radius * math.sin(2 * math.pi * turn))), 0, places=5)
+        uses = collections.Counter(node for of_tag in lines.values() for line in of_tag for node in line)
+        self.assertEqual(sorted(uses.values())[:2], [1, 1])
+        self.assertEqual(set(sorted(uses.values())[2:]), {2})
+        ends = sorted(mesh.points[[node for node, count in uses.items() if count == 1]].tolist())
+        self.assertEqual([[round(x, 9) for x in end] for end in ends], [[20, 0, -7.5], [20, 0, 7.5]])
+
+
 @unittest.skipUnless(HAS_MED, "no MED")
 class NamesInMed(ProgramTest):
     def test_families_end_at_a_character(self):

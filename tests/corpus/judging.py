@@ -2,14 +2,18 @@
 
 COLLARMESH_JUDGE may name one:
     JUDGE MESH --surface FILE [--exact | --distance D] [--rho BOUND]; exit code 0 when everything holds.
+It takes some milliseconds for a tet. Of meshes that are made in addition it sees the small ones, and all of them
+where COLLARMESH_LONG is set.
 """
 
+import math
 import os
 import subprocess
 import sys
 
 JUDGE = os.environ.get("COLLARMESH_JUDGE", "")
 TIME_LIMIT = 120  # seconds
+MOST_TETS = math.inf if os.environ.get("COLLARMESH_LONG") else 4000  # of meshes in addition
 
 
 class Failed(Exception):

@@ -226,9 +226,10 @@ class Headless(unittest.TestCase):
             "PlanarTolerance": 2e-6, "WeldTolerance": 2e-9,
             "RepairTolerance": 2e-5, "RadiusEdgeRatio": 1.9, "Coarsen": False, "ImproveLevel": 3,
             "MinDihedralAngle": 25, "Seed": 7, "TimeLimit": 60, "FillHoles": True,
-            "KeepApart": True,
+            "KeepApart": True, "SplitFaces": [], "PeriodicFaces": [], "InteriorNode": False,
         }
         self.assertEqual(set(values), {name for _, name, *_ in mesh_properties.PROPERTIES})
+        of_their_own = ("FillHoles", "SplitFaces", "PeriodicFaces", "InteriorNode")  # other tests have them
         for name, value in values.items():
             setattr(obj, name, value)
             self.assertNotEqual(obj.getDocumentationOfProperty(name), "")
@@ -236,8 +237,37 @@ class Headless(unittest.TestCase):
         options = mesh_object.remesh(obj)["options"]
         self.assertEqual(obj.FemMesh.VolumeCount > 0, True)
         for _, name, field, *_ in mesh_properties.PROPERTIES:
-            if name != "FillHoles":  # is asked for before the program runs
+            if name not in of_their_own:
                 self.assertEqual(options[field], values[name], name)
+
+    def test_sides_of_a_sheet_have_their_own_nodes(self):
+        sheet = Part.makePlane(4, 4, FreeCAD.Vector(3, 3, 5))
+        part = self.add(Part.makeCompound([Part.makeBox(10, 10, 10), sheet]))
+        inside = []
+        for split in ([], ["Face7"]):
+            nodes = collarmesh_workbench.mesh(part, size=2, order=1, split=split).FemMesh.Nodes.values()
+            on_sheet = [(round(p.x, 9), round(p.y, 9)) for p in nodes if abs(p.z - 5) < 1e-9]
+            inside.append([p for p in on_sheet if all(3.001 < x < 6.999 for x in p)])
+        for each in inside[1]:
+            self.assertEqual(inside[1].count(each), 2, each)
+        self.assertEqual(len(inside[1]), 2 * len(inside[0]))
+        self.assertGreater(len(inside[0]), 0)
+
+    def test_each_element_has_a_node_inside(self):
+        plate = self.add(Part.makeBox(10, 10, 1))
+        for asked in (False, True):
+            mesh = collarmesh_workbench.mesh(plate, size=4, order=1, interior_node=asked).FemMesh
+            inside = {n for n, p in mesh.Nodes.items() if 0 < p.x < 10 and 0 < p.y < 10 and 0 < p.z < 1}
+            self.assertEqual(all(inside & set(mesh.getElementNodes(v)) for v in mesh.Volumes), asked)
+
+    def test_opposite_faces_have_the_same_nodes(self):
+        obj = collarmesh_workbench.mesh(self.add(Part.makeBox(10, 10, 10)), size=4, periodic=["x", "Face3=Face4"])
+        self.assertEqual(obj.PeriodicFaces, ["x", "Face3=Face4"])
+        places = [tuple(round(c, 9) for c in (p.x, p.y, p.z)) for p in obj.FemMesh.Nodes.values()]
+        for axis in range(2):
+            low, high = ({p[:axis] + p[axis + 1:] for p in places if p[axis] == end} for end in (0, 10))
+            self.assertEqual(low, high)
+            self.assertGreater(len(low), 20)
 
     def test_kinds_of_repair_reach_the_program(self):
         obj = collarmesh_workbench.mesh(self.add(Part.makeBox(10, 10, 10)), size=4, repair="none")

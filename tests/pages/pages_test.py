@@ -284,7 +284,7 @@ def draw_gallery(sources, build):
                        env=environment)
         made = {path.name for path in pathlib.Path(folder).glob("*.png") if path.stat().st_size > SMALLEST_PICTURE}
     shown = re.findall(r"!\[[^\]]+\]\(images/(\w+\.png)\)", (sources / "mesher/doc/gallery.md").read_text())
-    if len(shown) != 12 or {*shown, "report.png"} != made:
+    if len(shown) != 15 or {*shown, "report.png"} != made:
         raise SystemExit(f"the page shows {sorted(shown)}, the script makes {sorted(made)}")
     return 0
 

@@ -29,6 +29,7 @@ def sections():
     any_number = translate("collarmesh", "any")
     any_growth = translate("collarmesh", "as the sizes ask for")
     no_limit, default = translate("collarmesh", "no limit"), translate("collarmesh", "default")
+    none = translate("collarmesh", "none")
     repair = {
         "Automatic": translate("collarmesh", "automatic"),
         "None": translate("collarmesh", "none, refuse"),
@@ -62,6 +63,12 @@ def sections():
             Row("RepairTolerance", translate("collarmesh", "Tolerance of repair"), zero=default),
             Row("FillHoles", translate("collarmesh", "Fill holes of open surfaces"),
                 tip=translate("collarmesh", "Make a volume of a surface that is open, by filling its holes")),
+            Row("SplitFaces", translate("collarmesh", "Faces to split"), zero=none,
+                tip=translate("collarmesh", "Faces inside whose two sides get nodes of their own, as those of cracks; "
+                                            "their names, with spaces between them")),
+            Row("PeriodicFaces", translate("collarmesh", "Periodic faces"), zero=none,
+                tip=translate("collarmesh", "Pairs of sides that get the same nodes and triangles, with spaces between "
+                                            "them: x y z, or Face1=Face2")),
         )),
         (translate("collarmesh", "Quality"), (
             Row("ImproveLevel", translate("collarmesh", "Improvement"), choices=preferences.improve_levels(),
@@ -70,13 +77,15 @@ def sections():
                 tip=translate("collarmesh", "Elements with smaller dihedral angles are improved; 0: 15, 20 or 30 "
                                             "degrees by the level of improvement")),
             Row("Coarsen", translate("collarmesh", "As few elements as the sizes ask for")),
+            Row("InteriorNode", translate("collarmesh", "A node inside of each element"),
+                tip=translate("collarmesh", "No element has all its corners on faces")),
             Row("RadiusEdgeRatio", translate("collarmesh", "Circumradius / shortest edge"),
                 tip=translate("collarmesh", "The bound that the elements keep; at least 2 always ends")),
         )),
         (translate("collarmesh", "Run"), (
             Row("Seed", translate("collarmesh", "Seed"),
                 tip=translate("collarmesh", "Another number gives another mesh of the same quality")),
-            Row("TimeLimit", translate("collarmesh", "Time limit in seconds"), zero=translate("collarmesh", "none"),
+            Row("TimeLimit", translate("collarmesh", "Time limit in seconds"), zero=none,
                 tip=translate("collarmesh", "Give up after so many seconds; 0: never")),
         )),
     )
@@ -169,6 +178,11 @@ class AdvancedSection(QtGui.QWidget):
             number.setValue(value)
             number.valueChanged.connect(self.changed)
             return number, number.value
+        if isinstance(value, (list, tuple)):
+            words = QtGui.QLineEdit(" ".join(value))
+            words.setPlaceholderText(row.zero)
+            words.textChanged.connect(self.changed)
+            return words, lambda: words.text().split()
         text = QtGui.QLineEdit("" if value == 0 and row.zero else f"{value:.12g}")
         text.setPlaceholderText(row.zero)
         text.textChanged.connect(self.changed)

@@ -57,7 +57,7 @@ def start(obj, program="", settings=None):
     settings = dataclasses.replace(settings, dimension=open_shape.dimension(part, asked, settings.fill_holes))
     open_shape.check(part, settings.dimension, settings.fill_holes)
     if settings.dimension < 3:
-        settings = dataclasses.replace(settings, keep_apart=False)
+        settings = dataclasses.replace(settings, keep_apart=False, split=[], periodic=[], interior_node=False)
     shape = inputs.shape_of(part)
     is_to_be_apart = settings.keep_apart
     settings = contacts.in_mesh_numbers(settings, shape)

@@ -109,6 +109,27 @@ PROPERTIES = (
         doc("Give each solid nodes of its own where solids touch, for contact; otherwise they are glued"),
     ),
     (
+        "App::PropertyStringList",
+        "SplitFaces",
+        "split",
+        FEATURES,
+        doc("Faces inside whose two sides get nodes of their own, as those of cracks: Face7"),
+    ),
+    (
+        "App::PropertyStringList",
+        "PeriodicFaces",
+        "periodic",
+        FEATURES,
+        doc("Pairs of sides that get the same nodes and triangles: x, y, z, Face1=Face2, Face1=Face2:rotation,z,60"),
+    ),
+    (
+        "App::PropertyBool",
+        "InteriorNode",
+        "interior_node",
+        QUALITY,
+        doc("Each element has a node that is on no face"),
+    ),
+    (
         "App::PropertyBool",
         "Coarsen",
         "coarsen",
@@ -213,7 +234,8 @@ def settings_of(obj):
     values = {}
     for _kind, name, field, _group, _text in PROPERTIES:
         value = getattr(obj, name)
-        values[field] = getattr(value, "Value", value)
+        value = getattr(value, "Value", value)
+        values[field] = list(value) if isinstance(value, (list, tuple)) else value
     settings = Settings(
         order=ORDERS.index(obj.ElementOrder) + 1,
         dimension=DIMENSIONS.index(obj.ElementDimension),

@@ -50,6 +50,9 @@ class Settings:
     repair: str = "auto"  # or "none", or "wrap"
     fill_holes: bool = False  # of surfaces that are open; else they are refused before the program runs
     keep_apart: bool = False  # solids that touch get nodes of their own there, for contact; else they share them
+    split: list = dataclasses.field(default_factory=list)  # faces inside whose sides get nodes of their own: "Face7"
+    periodic: list = dataclasses.field(default_factory=list)  # pairs of faces: "x", "Face1=Face2", ...
+    interior_node: bool = False  # each tetrahedron has a corner that is on no face
     solid_sizes: dict = dataclasses.field(default_factory=dict)
     face_sizes: dict = dataclasses.field(default_factory=dict)
     edge_sizes: dict = dataclasses.field(default_factory=dict)
@@ -73,6 +76,11 @@ class Settings:
             arguments += ["--repair", self.repair]
         if self.keep_apart:
             arguments.append("--keep-apart")
+        if self.interior_node:
+            arguments.append("--interior-node")
+        for option, words in (("split", self.split), ("periodic", self.periodic)):
+            for word in words:
+                arguments += [f"--{option}", word]
         for option, sizes in (("region", self.solid_sizes), ("patch", self.face_sizes), ("curve", self.edge_sizes)):
             for number, size in sorted(sizes.items()):
                 arguments += [f"--{option}-size", f"{number}={float(size)!r}"]

@@ -154,7 +154,9 @@ class Operations {
   bool keeps_lengths(Index vertex, Index onto) const;
   void fill(Index apex, Change& change) const;
 
-  bool untouchable(const TetComplex::Tet& tet) const { return tet.collar && !rule_.dissolves_collars(); }
+  bool untouchable(const TetComplex::Tet& tet) const {
+    return (tet.collar && !rule_.dissolves_collars()) || workpiece_.leaves(tet);
+  }
   double quality(Index tet) const { return rule_.quality(complex_.corners(tet), complex_[tet].corners); }
 
   static Index inserted_in(Index patch) { return patch == none ? none : inserted_on_surface; }

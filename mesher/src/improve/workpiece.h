@@ -1,5 +1,9 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "collarmesh/plc.h"
@@ -58,6 +62,13 @@ class Workpiece {
   }
   bool is_fixed(Index vertex) const { return vertex < fixed_.size() && fixed_[vertex]; }
 
+  /// Tets all of whose corners are among these vertices stay as they are.
+  void leave(std::vector<bool> vertices) { left_ = std::move(vertices); }
+  bool leaves(const TetComplex::Tet& tet) const {
+    return !left_.empty() &&
+           std::ranges::all_of(tet.corners, [&](Index v) { return v < left_.size() && left_[v]; });
+  }
+
   /// Returns whether this collapse is still allowed. Others on the same curve use up its spare edges.
   bool curve_can_spare(const Change& change) const {
     return complex.mesh().features[change.vertex].dimension != 1 || curves.may_skip(change.vertex);
@@ -82,8 +93,8 @@ class Workpiece {
  private:
   static std::vector<bool> patches_to_keep(const Plc& plc, const TetMesh& mesh);
 
-  std::vector<bool> kept_;   // by patch; empty: none
-  std::vector<bool> fixed_;  // by vertex, as far as some are
+  std::vector<bool> kept_;          // by patch; empty: none
+  std::vector<bool> fixed_, left_;  // by vertex, as far as some are
   std::vector<Index> changed_;
 };
 

@@ -7,6 +7,10 @@
 
 namespace collarmesh::periodicity {
 
+namespace {
+constexpr unsigned edges_between = 6;  // what is changed and what stays
+}
+
 void change_across(TetMesh& mesh, const Plc& plc, const PeriodicOptions& options, double distance,
                    const SurfaceTolerance& tolerance, Recut::Moved moved, double edges_per_hole,
                    const std::function<void(improvement::Workpiece&, const Recut&)>& change) {
@@ -19,6 +23,7 @@ void change_across(TetMesh& mesh, const Plc& plc, const PeriodicOptions& options
   improvement::Workpiece workpiece(recut.mesh(), recut.complex().plc, recut.complex().tolerance,
                                    edges_per_hole, false);
   workpiece.fix(recut.fixed());
+  workpiece.leave(recut.farther_than(edges_between));
   change(workpiece, recut);
   recut.note_vertices(workpiece.complex);
   workpiece.complex.store();

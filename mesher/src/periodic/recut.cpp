@@ -1,6 +1,9 @@
 #include "periodic/recut.h"
 
 #include <algorithm>
+#include <functional>
+#include <limits>
+#include <queue>
 
 #include "common/edge_key.h"
 #include "common/tet_sides.h"
@@ -9,8 +12,6 @@
 namespace collarmesh::periodicity {
 
 namespace {
-
-constexpr unsigned layers = 3;  // of tets that are moved, where the cell has so many
 
 std::uint64_t key_of(Index a, Index b) { return std::uint64_t{a} << 32U | b; }
 
@@ -28,6 +29,13 @@ struct HashOfTriangle {
 };
 template <class Value>
 using ByTriangle = std::unordered_map<std::array<Index, 3>, Value, HashOfTriangle>;
+
+std::vector<Index> keys_of(const std::unordered_map<Index, Index>& map) {
+  std::vector<Index> keys;
+  keys.reserve(map.size());
+  for (const auto& [key, value] : map) keys.push_back(key);
+  return keys;
+}
 
 constexpr std::array<std::array<unsigned, 2>, 6> edges_of_tet{
     {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
@@ -70,41 +78,72 @@ void Recut::find_seams(const std::vector<PatchPair>& pairs, const std::vector<Fe
   }
 }
 
-// Layer by layer, across the other seams as well.
+// What is nearer to the one group than to the other is moved, along edges and across the other seams. So the
+// mesh is cut open half way between the groups, where tets need nothing.
 void Recut::find_shifts() {
   shifts_.assign(mesh_.tets.size(), 0);
   for (std::size_t k = 0; k < seams_.size(); ++k) {
-    std::vector<bool> reached(mesh_.points.size(), false);
-    for (const auto& [v, image] : seams_[k].image_of) reached[v] = true;
-    for (unsigned layer = 0; layer < layers; ++layer) {
-      std::vector<Shift> shifts = shifts_;
-      if (!take_layer(k, reached, shifts)) break;
-      shifts_ = std::move(shifts);
+    const std::vector<Index> first = keys_of(seams_[k].image_of), second = keys_of(seams_[k].on_other);
+    const std::vector<double> to_first = distances(k, first), to_second = distances(k, second);
+    const auto is_on = [&](Index v, const auto& group) {
+      const auto found = group.find(v);
+      return found != group.end() && found->second != v;
+    };
+    std::vector<Shift> shifts = shifts_;
+    bool reaches_both = false;
+    for (std::size_t t = 0; t < mesh_.tets.size(); ++t) {
+      const auto& corners = mesh_.tets[t];
+      const bool on_first =
+          std::ranges::any_of(corners, [&](Index v) { return seams_[k].image_of.contains(v); });
+      const bool on_second =
+          std::ranges::any_of(corners, [&](Index v) { return is_on(v, seams_[k].on_other); });
+      reaches_both = reaches_both || (on_first && on_second);
+      double nearer = 0;
+      for (const Index v : corners) nearer += to_second[v] - to_first[v];
+      if (on_first || (!on_second && nearer > 0)) shifts[t] |= Shift{1} << k;
     }
+    if (!reaches_both) shifts_ = std::move(shifts);
   }
 }
 
-// False if it reaches the other group.
-bool Recut::take_layer(std::size_t k, std::vector<bool>& reached, std::vector<Shift>& shifts) const {
-  const Seam& seam = seams_[k];
-  std::vector<bool> further = reached;
-  for (std::size_t t = 0; t < mesh_.tets.size(); ++t) {
-    const auto& corners = mesh_.tets[t];
-    if (std::none_of(corners.begin(), corners.end(), [&](Index v) { return reached[v]; })) continue;
-    shifts[t] |= Shift{1} << k;
-    for (const Index v : corners) {
-      const auto other = seam.on_other.find(v);
-      if (other != seam.on_other.end() && other->second != v) return false;
-      further[v] = true;
-    }
+// Of all vertices from some.
+std::vector<double> Recut::distances(std::size_t k, const std::vector<Index>& from) const {
+  if (neighbours_.empty()) find_neighbours();
+  std::vector<double> distances(mesh_.points.size(), std::numeric_limits<double>::infinity());
+  using Next = std::pair<double, Index>;
+  std::priority_queue<Next, std::vector<Next>, std::greater<>> queue;
+  const auto reach = [&](Index v, double d) {
+    if (d >= distances[v]) return;
+    distances[v] = d;
+    queue.emplace(d, v);
+  };
+  for (const Index v : from) reach(v, 0);
+  while (!queue.empty()) {
+    const auto [d, v] = queue.top();
+    queue.pop();
+    if (d > distances[v]) continue;
+    for (const Index w : neighbours_[v]) reach(w, d + distance(mesh_.points[v], mesh_.points[w]));
+    for (std::size_t j = 0; j < seams_.size(); ++j)
+      if (j != k)
+        for (const auto* other : {&seams_[j].image_of, &seams_[j].on_other})
+          if (const auto found = other->find(v); found != other->end()) reach(found->second, d);
   }
-  for (std::size_t j = 0; j < seams_.size(); ++j)
-    if (j != k)
-      for (unsigned twice = 0; twice < 2; ++twice)
-        for (const auto& [v, image] : seams_[j].image_of)
-          if (further[v] || further[image]) further[v] = further[image] = true;
-  reached = std::move(further);
-  return true;
+  return distances;
+}
+
+void Recut::find_neighbours() const {
+  std::vector<std::uint64_t> edges;
+  edges.reserve(edges_of_tet.size() * mesh_.tets.size());
+  for (const auto& tet : mesh_.tets)
+    for (const auto& [i, j] : edges_of_tet) edges.push_back(edge_key(tet[i], tet[j]));
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  neighbours_.resize(mesh_.points.size());
+  for (const std::uint64_t edge : edges) {
+    const auto a = static_cast<Index>(edge >> 32U), b = static_cast<Index>(edge);
+    neighbours_[a].push_back(b);
+    neighbours_[b].push_back(a);
+  }
 }
 
 void Recut::number_copies() {
@@ -257,6 +296,21 @@ void Recut::fix_cuts() {
     if (cut.contains(sorted(made_.faces[f]))) made_.face_patch[f] = none;
   for (Index v = 0; v < is_fixed.size(); ++v)
     if (is_fixed[v]) fixed_.push_back(v);
+}
+
+std::vector<bool> Recut::farther_than(unsigned edges) const {
+  std::vector<bool> far(made_.points.size());
+  for (Index v = 0; v < far.size(); ++v)
+    far[v] = std::ranges::none_of(seams_, [&](const Seam& seam) {
+      return seam.image_of.contains(places_[v].vertex) || seam.on_other.contains(places_[v].vertex);
+    });
+  for (unsigned edge = 0; edge < edges; ++edge) {
+    const std::vector<bool> before = far;
+    for (const auto& tet : made_.tets)
+      if (!std::ranges::all_of(tet, [&](Index v) { return before[v]; }))
+        for (const Index v : tet) far[v] = false;
+  }
+  return far;
 }
 
 std::size_t Recut::count(unsigned dimension) const {

@@ -34,6 +34,8 @@ class Recut {
   const TiledComplex& complex() const { return *complex_; }
   /// Returns the vertices that have to stay.
   const std::vector<Index>& fixed() const { return fixed_; }
+  /// Returns for each vertex whether it takes more than so many edges to get there from the groups' patches.
+  std::vector<bool> farther_than(unsigned edges) const;
 
   /// Returns sizes of the mesh as sizes of the recut one.
   SizeField sizes(const SizeField& of_mesh) const;
@@ -58,7 +60,8 @@ class Recut {
   };
   void find_seams(const std::vector<PatchPair>& pairs, const std::vector<FeatureImages>& images, Moved moved);
   void find_shifts();
-  bool take_layer(std::size_t seam, std::vector<bool>& reached, std::vector<Shift>& shifts) const;
+  std::vector<double> distances(std::size_t seam, const std::vector<Index>& from) const;
+  void find_neighbours() const;
   void number_copies();
   Motion motion_of(Shift shift) const;
   Place on_seam(Place place) const;
@@ -73,6 +76,7 @@ class Recut {
 
   const TetMesh& mesh_;
   const Plc& plc_;
+  mutable std::vector<std::vector<Index>> neighbours_;  // by vertex; empty until they are asked for
   std::vector<Seam> seams_;
   std::vector<Shift> shifts_;       // by tet
   std::vector<Shift> copies_;       // shift of each

@@ -684,37 +684,35 @@ class Pipeline {
       improvement::complete_interior_nodes(workpiece, refined_with_.bounds, *made_.interior_nodes);
   }
 
-  /// Gives the refined mesh the nodes of the coarsened one on both sides of each pair, coarsens it with
-  /// these, and makes the triangles alike. Then the tets beside them are coarsened and improved together,
-  /// while the mesh is cut open elsewhere. If some stay poor, curves are divided there, and all is done again
-  /// with these nodes.
+  /// Gives the refined mesh the nodes of another one, the source, on both sides of each pair, coarsens it
+  /// with these, and makes the triangles alike. Then the tets beside them are coarsened and improved
+  /// together, while the mesh is cut open elsewhere. If some stay poor, curves are divided there, and all is
+  /// done again with these nodes. The source is the coarsened mesh, but first, if there are smooth patches,
+  /// the refined one: wedges that these make with the sides need their nodes on both sides.
   void make_faces_periodic() {
     if (!given_.periodic.any() || made_.result.status != MeshStatus::complete) return;
     constexpr unsigned most_tries = 4;
     begin("periodic faces", 0.75, 0.79);
     const ImproveReport improvement = made_.improvement;
-    const double distance = refined_with_.bounds.tolerance->largest();
+    const bool smooth = std::ranges::any_of(plc_->patches, [](const auto& patch) { return !patch.planar; });
     TetMesh best, source = std::move(made_.result.mesh);
     std::size_t least = SIZE_MAX;
     for (unsigned k = 0; k < most_tries && least > 0; ++k) {
-      TetMesh mesh = refined_;
-      const std::vector<Index> nodes =
-          periodicity::add_periodic_nodes(mesh, source, *plc_, options_.periodic, distance);
-      coarsen_and_improve(mesh, nodes);
-      PeriodicReport report = make_periodic(mesh, *plc_, options_.periodic, distance);
+      TetMesh mesh = refined_with_nodes_of(smooth && k == 0 ? refined_ : source);
+      const PeriodicReport report =
+          make_periodic(mesh, *plc_, options_.periodic, refined_with_.bounds.tolerance->largest());
       periodicity::map_corners(mesh);
-      const std::size_t poor = reshape_across(mesh, distance);
-      source = mesh;
-      if (poor < least) {
-        least = poor;
-        best = std::move(mesh);
-        made_.periodic = std::move(report);
+      for (std::size_t poor = 0, before = SIZE_MAX; before > 0; before = poor) {
+        poor = reshape_across(mesh);
+        if (poor < least) {
+          least = poor;
+          best = mesh;
+          made_.periodic = report;
+        }
+        if (poor == 0 || poor >= before) break;
+        divide_curves_at_poor_tets(mesh);
+        if (before == SIZE_MAX && !(smooth && k == 0)) source = mesh;
       }
-      if (poor > 0)
-        change_across(source, distance, Moved::beside_first,
-                      [&](improvement::Workpiece& workpiece, const auto&) {
-                        improvement::divide_curves_at_poor_tets(workpiece, refined_with_.bounds);
-                      });
     }
     refined_ = {};
     made_.improvement = improvement;
@@ -722,34 +720,59 @@ class Pipeline {
     trace("periodic faces", made_.result.mesh);
   }
 
+  TetMesh refined_with_nodes_of(const TetMesh& source) {
+    TetMesh mesh = refined_;
+    coarsen_and_improve(mesh, periodicity::add_periodic_nodes(mesh, source, *plc_, options_.periodic,
+                                                              refined_with_.bounds.tolerance->largest()));
+    return mesh;
+  }
+
+  void divide_curves_at_poor_tets(TetMesh& mesh) {
+    change_across(mesh, periodicity::Recut::Moved::beside_first,
+                  [&](improvement::Workpiece& workpiece, const auto&) {
+                    improvement::divide_curves_at_poor_tets(workpiece, refined_with_.bounds);
+                  });
+  }
+
   using Moved = periodicity::Recut::Moved;
 
   template <class Change>
-  void change_across(TetMesh& mesh, double distance, Moved moved, const Change& change) {
+  void change_across(TetMesh& mesh, Moved moved, const Change& change) {
+    const SurfaceTolerance& tolerance = *refined_with_.bounds.tolerance;
     ThreadLimit(options_.mesh.threads).run([&] {
-      periodicity::change_across(mesh, *plc_, options_.periodic, distance, *refined_with_.bounds.tolerance,
-                                 moved, refined_with_.edges_per_hole, change);
+      periodicity::change_across(mesh, *plc_, options_.periodic, tolerance.largest(), tolerance, moved,
+                                 refined_with_.edges_per_hole, change);
       improvement::mark_cells(mesh, *plc_, refined_with_.bounds);
     });
   }
 
   /// Coarsens and improves a periodic mesh while it is cut open at one place and then at another. Returns how
   /// often its tets miss their bounds.
-  std::size_t reshape_across(TetMesh& mesh, double distance) {
+  std::size_t reshape_across(TetMesh& mesh) {
     std::size_t poor = SIZE_MAX;
     for (const Moved moved : {Moved::beside_first, Moved::beside_second}) {
-      change_across(mesh, distance, moved,
-                    [&](improvement::Workpiece& workpiece, const periodicity::Recut& recut) {
-                      MeshOptions options = refined_with_;
-                      options.size_field = recut.sizes(options.size_field);
-                      if (coarsen(workpiece, options, inner_).cancelled) stop();
-                      if (options_.improve > 0) improve_elements(workpiece);
-                      complete_interior_nodes(workpiece);
-                    });
+      change_across(mesh, moved, [&](improvement::Workpiece& workpiece, const periodicity::Recut& recut) {
+        MeshOptions options = refined_with_;
+        options.size_field = recut.sizes(options.size_field);
+        if (coarsen(workpiece, options, inner_).cancelled) stop();
+        if (options_.improve > 0) improve_elements(workpiece);
+        insert_where_poor(workpiece);
+        complete_interior_nodes(workpiece);
+      });
       poor = misshapen(mesh);
       if (poor == 0) break;
     }
     return poor;
+  }
+
+  /// Where tets still miss their bounds, or nearly so, vertices may come and go.
+  void insert_where_poor(improvement::Workpiece& workpiece) {
+    constexpr double nearly = 1.25;
+    if (options_.improve == 0) return;
+    ImproveOptions options = options_of_improvement();
+    options.keep_vertices = false;
+    options.min_dihedral = std::min(options.min_dihedral, nearly * options.bounds.thin_angle);
+    if (improve(workpiece, options, inner_).cancelled) stop();
   }
 
   /// Fixed vertices stay where they are.
