@@ -20,6 +20,7 @@ PAGE = {  # by the test that makes them
     "preview_gui_test.py": ("freecad_size_colours",),
     "parts_gui_test.py": ("freecad_volumes",),
     "triangles_gui_test.py": ("freecad_groups",),
+    "shells_gui_test.py": ("freecad_shell",),
     "sizes_gui_test.py": ("freecad_size_handles", "freecad_sizes"),
     "document_gui_test.py": ("freecad_out_of_date", "freecad_menu", "freecad_statistics"),
 }

@@ -20,6 +20,10 @@
       <translation>Schranke für Diederwinkel in Kragen</translation>
     </message>
     <message>
+      <source>Dimension of the elements. 3D: tetrahedra in solids; 2D: triangles on faces, for shells; 1D: lines on edges, for beams; From Shape: by what the shape encloses</source>
+      <translation>Dimension der Elemente. 3D: Tetraeder in Volumenkörpern; 2D: Dreiecke auf Flächen, für Schalen; 1D: Linien auf Kanten, für Balken; From Shape: danach, was die Form umschließt</translation>
+    </message>
+    <message>
       <source>Edges and faces that meet below it get a collar</source>
       <translation>Kanten und Flächen, die sich unter einem kleineren Winkel treffen, bekommen einen Kragen</translation>
     </message>
@@ -195,12 +199,32 @@
       <translation>„{text}“ ist zu groß</translation>
     </message>
     <message>
+      <source>1D: lines, for beams</source>
+      <translation>1D: Linien, für Balken</translation>
+    </message>
+    <message>
+      <source>2D: triangles, for shells</source>
+      <translation>2D: Dreiecke, für Schalen</translation>
+    </message>
+    <message>
+      <source>3D: tetrahedra</source>
+      <translation>3D: Tetraeder</translation>
+    </message>
+    <message>
       <source>&lt; 1 s</source>
       <translation>&lt; 1 s</translation>
     </message>
     <message>
+      <source>&lt;b&gt;{lines}&lt;/b&gt; lines, &lt;b&gt;{nodes}&lt;/b&gt; nodes, in {time}</source>
+      <translation>&lt;b&gt;{lines}&lt;/b&gt; Linien, &lt;b&gt;{nodes}&lt;/b&gt; Knoten, in {time}</translation>
+    </message>
+    <message>
       <source>&lt;b&gt;{tets}&lt;/b&gt; tetrahedra, &lt;b&gt;{nodes}&lt;/b&gt; nodes, &lt;b&gt;{faces}&lt;/b&gt; faces</source>
       <translation>&lt;b&gt;{tets}&lt;/b&gt; Tetraeder, &lt;b&gt;{nodes}&lt;/b&gt; Knoten, &lt;b&gt;{faces}&lt;/b&gt; Flächen</translation>
+    </message>
+    <message>
+      <source>&lt;b&gt;{triangles}&lt;/b&gt; triangles, &lt;b&gt;{nodes}&lt;/b&gt; nodes</source>
+      <translation>&lt;b&gt;{triangles}&lt;/b&gt; Dreiecke, &lt;b&gt;{nodes}&lt;/b&gt; Knoten</translation>
     </message>
     <message>
       <source>A guarantee is missed</source>
@@ -303,6 +327,10 @@
       <translation>Eigene</translation>
     </message>
     <message>
+      <source>Dimension of the elements</source>
+      <translation>Dimension der Elemente</translation>
+    </message>
+    <message>
       <source>Drag the handles in the 3D view. To turn it, close this panel and choose Transform in its context menu.</source>
       <translation>Ziehen Sie an den Griffen in der 3D-Ansicht. Zum Drehen schließen Sie dieses Fenster und wählen Transformieren im Kontextmenü.</translation>
     </message>
@@ -329,6 +357,10 @@
     <message>
       <source>Elements across gaps</source>
       <translation>Elemente quer durch Dünnes</translation>
+    </message>
+    <message>
+      <source>Elements know their edges</source>
+      <translation>Elemente kennen ihre Kanten</translation>
     </message>
     <message>
       <source>Elements know their faces and edges</source>
@@ -405,6 +437,10 @@
     <message>
       <source>FreeCAD's Gmsh cannot mesh triangle meshes.</source>
       <translation>Gmsh kann in FreeCAD keine Dreiecksnetze vernetzen.</translation>
+    </message>
+    <message>
+      <source>From shape: tetrahedra in what encloses a volume, triangles on faces and open surfaces, lines on wires</source>
+      <translation>Nach der Form: Tetraeder in dem, was ein Volumen umschließt, Dreiecke auf einzelnen und offenen Flächen, Linien auf Drahtzügen</translation>
     </message>
     <message>
       <source>Give each solid nodes of its own where solids touch, for contact and tie constraints; otherwise they are glued</source>
@@ -499,8 +535,12 @@
       <translation>Länge, die die Kanten der Elemente haben sollen</translation>
     </message>
     <message>
-      <source>Make a tetrahedral mesh of the selected solid, certified, with groups for its faces, or open the one that is there</source>
-      <translation>Ein geprüftes Tetraedernetz des ausgewählten Körpers machen, mit Gruppen für seine Flächen, oder das vorhandene öffnen</translation>
+      <source>Lines</source>
+      <translation>Linien</translation>
+    </message>
+    <message>
+      <source>Make a mesh of the selected solid, surface or wire, certified, with groups for its faces, or open the one that is there</source>
+      <translation>Aus dem gewählten Volumenkörper, der Fläche oder dem Drahtzug ein geprüftes Netz mit Gruppen für die Flächen machen, oder das vorhandene öffnen</translation>
     </message>
     <message>
       <source>Make a volume of a surface that is open, by filling its holes</source>
@@ -735,12 +775,28 @@
       <translation>Das dauert etwa {time}.</translation>
     </message>
     <message>
+      <source>The analysis needs a beam cross section (FEM: Beam cross section).</source>
+      <translation>Die Analyse braucht einen Balkenquerschnitt (FEM: Balkenquerschnitt).</translation>
+    </message>
+    <message>
+      <source>The analysis needs a thickness (FEM: Shell plate thickness).</source>
+      <translation>Die Analyse braucht eine Dicke (FEM: Schalendicke).</translation>
+    </message>
+    <message>
       <source>The bound that the elements keep; at least 2 always ends</source>
       <translation>Die Schranke, die die Elemente einhalten; ab 2 endet der Lauf immer</translation>
     </message>
     <message>
+      <source>The mesh covers the surface: every face, edge and corner is kept</source>
+      <translation>Das Netz bedeckt die Fläche: Jede Fläche, Kante und Ecke ist erhalten</translation>
+    </message>
+    <message>
       <source>The mesh fills the shape: every face, edge and corner is kept</source>
       <translation>Das Netz füllt die Form: jede Fläche, Kante und Ecke ist erhalten</translation>
+    </message>
+    <message>
+      <source>The mesh follows every edge from end to end</source>
+      <translation>Das Netz folgt jeder Kante von Ende zu Ende</translation>
     </message>
     <message>
       <source>The mesh is sound</source>
@@ -839,6 +895,18 @@
       <translation>Toleranz der Reparatur</translation>
     </message>
     <message>
+      <source>Triangles</source>
+      <translation>Dreiecke</translation>
+    </message>
+    <message>
+      <source>Triangles have no small or large angle</source>
+      <translation>Kein Dreieck hat einen kleinen oder großen Winkel</translation>
+    </message>
+    <message>
+      <source>Triangles of a solid look outwards, those of a surface are turned alike</source>
+      <translation>Dreiecke eines Volumenkörpers zeigen nach außen, die einer Fläche sind gleich gerichtet</translation>
+    </message>
+    <message>
       <source>Triangles on faces</source>
       <translation>Dreiecke auf Flächen</translation>
     </message>
@@ -877,6 +945,10 @@
     <message>
       <source>and {count} more</source>
       <translation>und {count} weitere</translation>
+    </message>
+    <message>
+      <source>angles from {smallest}° to {largest}°, in {time}</source>
+      <translation>Winkel von {smallest}° bis {largest}°, in {time}</translation>
     </message>
     <message>
       <source>any</source>
@@ -923,16 +995,16 @@
       <translation>Flächen und Kanten</translation>
     </message>
     <message>
-      <source>filling with elements</source>
-      <translation>wird mit Elementen gefüllt</translation>
-    </message>
-    <message>
-      <source>first (straight, 4 nodes)</source>
-      <translation>erste (gerade, 4 Knoten)</translation>
+      <source>first (straight, {n} nodes)</source>
+      <translation>erste (gerade, {n} Knoten)</translation>
     </message>
     <message>
       <source>found by itself</source>
       <translation>wird von selbst gefunden</translation>
+    </message>
+    <message>
+      <source>from shape</source>
+      <translation>nach der Form</translation>
     </message>
     <message>
       <source>good</source>
@@ -967,6 +1039,10 @@
       <translation>Netz wird geladen</translation>
     </message>
     <message>
+      <source>making elements</source>
+      <translation>macht Elemente</translation>
+    </message>
+    <message>
       <source>more than a year</source>
       <translation>mehr als ein Jahr</translation>
     </message>
@@ -999,8 +1075,8 @@
       <translation>wird repariert</translation>
     </message>
     <message>
-      <source>second (curved, 10 nodes)</source>
-      <translation>zweite (gekrümmt, 10 Knoten)</translation>
+      <source>second (curved, {n} nodes)</source>
+      <translation>zweite (gekrümmt, {n} Knoten)</translation>
     </message>
     <message>
       <source>second order</source>
@@ -1051,8 +1127,24 @@
       <translation>{edge} bei {place} ist nur {length} mm lang, dort wird das Netz sehr fein: entfernen Sie die Kante, wenn sie nicht gewollt ist (Part: Formmerkmal entfernen)</translation>
     </message>
     <message>
-      <source>{label} has edges or points only. Meshes of volumes are made here, not of beams: make a solid of it (Part: Sweep), or mesh it by Gmsh.</source>
-      <translation>{label} hat nur Kanten oder Punkte. Hier entstehen Netze von Volumen, nicht von Balken: Machen Sie einen Körper daraus (Part: Sweep), oder vernetzen Sie es mit Gmsh.</translation>
+      <source>{label} encloses no volume: it is meshed with triangles, for shells.</source>
+      <translation>{label} umschließt kein Volumen und wird mit Dreiecken vernetzt, für Schalen.</translation>
+    </message>
+    <message>
+      <source>{label} has edges only: it is meshed with lines, for beams.</source>
+      <translation>{label} hat nur Kanten und wird mit Linien vernetzt, für Balken.</translation>
+    </message>
+    <message>
+      <source>{label} has edges or points only, and encloses no volume: choose 1D in “Dimension of the elements” for beams, or make a solid of it (Part: Sweep).</source>
+      <translation>{label} hat nur Kanten oder Punkte und umschließt kein Volumen: Wählen Sie 1D in „Dimension der Elemente“ für Balken, oder machen Sie einen Körper daraus (Part: Sweep).</translation>
+    </message>
+    <message>
+      <source>{label} has no edges to be meshed with lines.</source>
+      <translation>{label} hat keine Kanten, die mit Linien vernetzt werden könnten.</translation>
+    </message>
+    <message>
+      <source>{label} has no face to be meshed with triangles: choose 1D in “Dimension of the elements”, or make a face of it (Part: Face from wires).</source>
+      <translation>{label} hat keine Fläche, die mit Dreiecken vernetzt werden könnte: Wählen Sie 1D in „Dimension der Elemente“, oder machen Sie eine Fläche daraus (Part: Fläche aus Drahtzügen).</translation>
     </message>
     <message>
       <source>{label} has no faces and edges; choose some, or delete it.</source>
@@ -1075,12 +1167,12 @@
       <translation>{label} hat keine Dreiecke.</translation>
     </message>
     <message>
-      <source>{label} is a face, which encloses no volume. Meshes of volumes are made here, not of shells: make a solid of it (Part: Extrude), or mesh it by Gmsh.</source>
-      <translation>{label} ist eine Fläche, die kein Volumen umschließt. Hier entstehen Netze von Volumen, nicht von Schalen: Machen Sie einen Körper daraus (Part: Extrudieren), oder vernetzen Sie es mit Gmsh.</translation>
+      <source>{label} is a face, which encloses no volume: choose 2D in “Dimension of the elements” for shells, or make a solid of it (Part: Extrude).</source>
+      <translation>{label} ist eine Fläche, die kein Volumen umschließt: Wählen Sie 2D in „Dimension der Elemente“ für Schalen, oder machen Sie einen Körper daraus (Part: Extrudieren).</translation>
     </message>
     <message>
-      <source>{label} is a surface that is open at {count} edges, and encloses no volume. Close it and make a solid of it (Part: Shape builder), or mesh it as a shell by Gmsh.</source>
-      <translation>{label} ist eine Fläche, die an {count} Kanten offen ist und kein Volumen umschließt. Schließen Sie sie und machen Sie einen Körper daraus (Part: Formerstellung), oder vernetzen Sie sie als Schale mit Gmsh.</translation>
+      <source>{label} is a surface that is open at {count} edges, and encloses no volume. Choose 2D in “Dimension of the elements” for shells, or close it and make a solid of it (Part: Shape builder).</source>
+      <translation>{label} ist eine Fläche, die an {count} Kanten offen ist und kein Volumen umschließt. Wählen Sie 2D in „Dimension der Elemente“ für Schalen, oder schließen Sie sie und machen Sie einen Körper daraus (Part: Formerstellung).</translation>
     </message>
     <message>
       <source>{label} is no mesh of Gmsh or Netgen.</source>

@@ -300,6 +300,15 @@ void check_batch(const MeshArguments& a) {
   for (const std::string& input : a.inputs) check_mesh_arguments(part_of_batch(a, input));
 }
 
+void check_output_of_lines(const MeshArguments& a) {
+  if (!is_among(a.output, a.output_format, io::formats_of_surfaces()))
+    throw CLI::ValidationError(
+        "--output",
+        fmt::format("'{}' {} no place for lines alone; use {}", a.output,
+                    io::is_tet_mesh_format(a.output, a.output_format) ? "has" : "is a format with",
+                    list(io::formats_of_surfaces())));
+}
+
 void check_output_of_surfaces(const MeshArguments& a) {
   const bool is_surface = files::is_surface_format(a.output, a.output_format);
   if (!is_surface && !is_among(a.output, a.output_format, io::formats_of_surfaces()))
@@ -308,6 +317,10 @@ void check_output_of_surfaces(const MeshArguments& a) {
         fmt::format("'{}' {} no place for triangles alone; use {} or {}", a.output,
                     io::is_tet_mesh_format(a.output, a.output_format) ? "has" : "is a format with",
                     list(io::formats_of_surfaces()), list(files::surface_formats())));
+  if (a.triangle_elements != TriangleElements::shell &&
+      report::format_of(a.output, a.output_format) != ".inp")
+    throw CLI::ValidationError("--triangle-elements",
+                               fmt::format("'{}' does not tell elements apart; use .inp", a.output));
   if (is_surface && a.order == 2)
     throw CLI::ValidationError("--order", fmt::format("{} has no elements of second order; use --order 1",
                                                       report::format_of(a.output, a.output_format)));
@@ -324,7 +337,9 @@ void check_mesh_arguments(const MeshArguments& a) {
     throw CLI::ValidationError(
         "--output",
         "- is standard output, to which convert writes: collarmesh convert IN... -o - --format vtu");
-  if (a.dimension == 2) {
+  if (a.dimension == 1) {
+    check_output_of_lines(a);
+  } else if (a.dimension == 2) {
     check_output_of_surfaces(a);
   } else if (!io::is_tet_mesh_format(a.output, a.output_format)) {
     throw CLI::ValidationError("--output", fmt::format("'{}' {}; use {}", a.output, extension_list(a.output),

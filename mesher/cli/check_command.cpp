@@ -32,7 +32,7 @@ ExitCode check_command(const CheckArguments& arguments) {
       arguments.inputs,
       interruptible({{},
                      distance,
-                     mesh.is_surface() ? std::function<SurfaceTolerance(const Plc&)>() : tolerance,
+                     mesh.tets.empty() ? std::function<SurfaceTolerance(const Plc&)>() : tolerance,
                      arguments.overlap,
                      arguments.mesh.threads,
                      arguments.names,

@@ -166,7 +166,7 @@ RepairOptions mesh(const MeshArguments& arguments, files::ComplexInput& input, S
     throw process::Stopped(ExitCode::budget_hit, run.result.message + "; nothing was written");
   }
   if (input.has_cad()) run.result.mesh.group_names = GroupNames::cad;
-  run.notes = input.notes();
+  run.notes = input.notes(arguments.dimension);
   run.colours = input.colours();
   run.summary = summarize(run.plc, arguments.mesh.bounds.crease_angle);
   run.warnings = option_warnings(arguments, run.plc);
@@ -207,6 +207,7 @@ void write_files(const MeshArguments& arguments, Stages& stages, report::MeshRun
     shown->trace = report::shown_trace(run.trace, shown->mesh);
   }
   scale(run.result.mesh, arguments.scale);
+  run.result.mesh.triangle_elements = arguments.triangle_elements;
   process::StagedFile mesh(arguments.output);
   mesh.write([&](const std::string& path) {
     ThreadLimit(arguments.mesh.threads).run([&] {
@@ -276,7 +277,7 @@ std::unique_ptr<files::ComplexInput> read_inputs(const MeshArguments& arguments)
   return std::make_unique<files::ComplexInput>(
       arguments.inputs,
       interruptible({arguments.input_format, distance,
-                     arguments.dimension == 2 ? std::function<SurfaceTolerance(const Plc&)>() : tolerance,
+                     arguments.dimension < 3 ? std::function<SurfaceTolerance(const Plc&)>() : tolerance,
                      arguments.overlap, arguments.mesh.threads, arguments.names, arguments.given_names}));
 }
 

@@ -187,11 +187,14 @@ std::string CadFiles::open_edges() const {
   return text;
 }
 
-std::vector<std::string> CadFiles::notes() const {
+std::vector<std::string> CadFiles::notes(bool of_solids) const {
   std::vector<std::string> notes;
   for (const File& file : files_) {
-    const std::vector<std::string> own = file.model->notes();
-    notes.insert(notes.end(), own.begin(), own.end());
+    const std::string &open = file.model->open_edges_text(), prefix = file.model->name() + ": ";
+    for (const std::string& note : file.model->notes()) {
+      const std::string sentence = note.starts_with(prefix) ? note.substr(prefix.size()) : note;
+      if (of_solids || open.find(sentence) == std::string::npos) notes.push_back(note);
+    }
   }
   return notes;
 }

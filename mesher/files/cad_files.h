@@ -84,7 +84,8 @@ class CadFiles {
   bool fused() const;
   /// Which solids are open, at which edges and where; or empty.
   std::string open_edges() const;
-  std::vector<std::string> notes() const;
+  /// `of_solids`: with those on solids that are open.
+  std::vector<std::string> notes(bool of_solids) const;
 
  private:
   struct File;

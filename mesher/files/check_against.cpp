@@ -41,13 +41,15 @@ Plc build_surfaces(ComplexInput& input, const RunOptions& o, const RepairOptions
 
 CheckReport check_as_built(const TetMesh& mesh, ComplexInput& input, const RunOptions& o,
                            const RepairOptions& repair, const Execution& execution) {
-  const Plc plc = mesh.is_surface() ? build_surfaces(input, o, repair) : input.build(o.complex, repair);
+  const bool solid = !mesh.is_surface() && !mesh.is_curves();
+  const Plc plc = solid ? input.build(o.complex, repair) : build_surfaces(input, o, repair);
   const CheckOptions options{.bounds = o.mesh.bounds,
                              .exact = input.exact_measures(plc),
                              .findings_per_guarantee = o.findings,
                              .threads = o.mesh.threads};
-  CheckReport report =
-      mesh.is_surface() ? check_shells(mesh, plc, options, execution) : check(mesh, plc, options, execution);
+  CheckReport report = solid              ? check(mesh, plc, options, execution)
+                       : mesh.is_curves() ? check_lines(mesh, plc, options)
+                                          : check_shells(mesh, plc, options, execution);
   checks::check_periodic(mesh, report);
   if (const std::string note = note_on_scale(mesh, plc, o.scale); !report.passed() && !note.empty())
     report.notes.push_back(note);

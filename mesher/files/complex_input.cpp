@@ -35,7 +35,8 @@ bool may_be_too_coarse(const PlcError& error) {
 PlcError with_names(const PlcError& error, const CadFiles& cad) {
   std::vector<PlcFault> faults = error.faults;
   for (PlcFault& fault : faults)
-    fault.message += fmt::format(" The nearest faces are {}.", cad.faces_near(fault.where));
+    if (const std::string near = cad.faces_near(fault.where); !near.starts_with("no face"))
+      fault.message += fmt::format(" The nearest faces are {}.", near);
   const std::string open = cad.open_edges(), invalid = cad.invalid_parts();
   return {
       fmt::format("{}{}{}", faults.empty() ? error.what() : faults.front().message,
@@ -51,9 +52,14 @@ bool has_fault(const PlcError& error, std::initializer_list<PlcFault::Kind> kind
 }
 
 /// A sentence on what may help where the repair did not.
-std::string advice(const PlcError& error, const RepairOptions& options) {
+std::string advice(const PlcError& error, const RepairOptions& options, bool of_solids) {
   using Kind = PlcFault::Kind;
   if (has_fault(error, {Kind::bad_point})) return {};
+  if (!of_solids && options.mode == RepairMode::automatic)
+    return has_fault(error, {Kind::empty})
+               ? std::string()
+               : fmt::format(" It could not be repaired: try a larger --repair-tolerance than {:.3g}.",
+                             options.tolerance);
   const std::string wider = fmt::format("a larger --repair-tolerance than {:.3g}", options.tolerance);
   switch (options.mode) {
     case RepairMode::off: return " Without --repair none this would be repaired as far as possible.";
@@ -146,7 +152,7 @@ Plc ComplexInput::build_unnamed(const PlcOptions& options, const RepairOptions& 
     try {
       return build_repaired(options, repair);
     } catch (const PlcError& error) {
-      throw with_advice(error, repair);
+      throw with_advice(error, repair, options.require_solid);
     }
   }
   // Triangles of faces that nearly touch may meet where finer ones do not.
@@ -161,12 +167,12 @@ Plc ComplexInput::build_unnamed(const PlcOptions& options, const RepairOptions& 
       if (!cad_.fused() || !may_be_too_coarse(error)) break;
     }
   }
-  if (repair.mode == RepairMode::off) throw with_advice(*first, repair);
+  if (repair.mode == RepairMode::off) throw with_advice(*first, repair, options.require_solid);
   tessellate(may_be_too_coarse(*first) ? 2 : 1);  // of finer ones fewer meet, and there is less to cut
   try {
     return build_repaired(options, repair);
   } catch (const PlcError&) {
-    throw with_advice(*first, repair);
+    throw with_advice(*first, repair, options.require_solid);
   }
 }
 
@@ -227,10 +233,11 @@ double ComplexInput::volume_off(const Plc& plc) const {
   return most;
 }
 
-PlcError ComplexInput::with_advice(const PlcError& error, const RepairOptions& options) const {
+PlcError ComplexInput::with_advice(const PlcError& error, const RepairOptions& options,
+                                   bool of_solids) const {
   const bool has_facets = std::any_of(soups_.begin(), soups_.end(),
                                       [](const PolygonSoup& soup) { return soup.facet_count() > 0; });
-  return {error.what() + (has_facets ? advice(error, options) : std::string()), error.faults};
+  return {error.what() + (has_facets ? advice(error, options, of_solids) : std::string()), error.faults};
 }
 
 void ComplexInput::tessellate(double finer) {

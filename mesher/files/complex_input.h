@@ -53,8 +53,9 @@ class ComplexInput {
   const std::vector<PolygonSoup>& soups() const { return built_.soups.empty() ? soups_ : built_.soups; }
   bool has_cad() const { return !cad_.empty(); }
   std::string cad_names() const { return cad_.names(); }
-  /// What was done to CAD shapes, a line each.
-  std::vector<std::string> notes() const { return cad_.notes(); }
+  /// What was done to CAD shapes, a line each. `dimension` of the elements: meshes of surfaces and curves
+  /// need not know that solids are open.
+  std::vector<std::string> notes(unsigned dimension = 3) const { return cad_.notes(dimension == 3); }
 
   /// The complex, of repaired facets where that is needed. Where triangles of CAD faces meet that should not,
   /// finer ones are tried first.
@@ -80,7 +81,7 @@ class ComplexInput {
   Plc build_finer(const PlcOptions& options, const RepairOptions& repair, bool with_noise);
   Plc resolved(Plc plc, const PlcOptions& options, const RepairOptions& repair);
   Plc build_repaired(const PlcOptions& options, const RepairOptions& repair);
-  PlcError with_advice(const PlcError& error, const RepairOptions& options) const;
+  PlcError with_advice(const PlcError& error, const RepairOptions& options, bool of_solids) const;
   Plc take(RepairedPlc result);
   double volume_off(const Plc& plc) const;
   void tessellate(double finer);

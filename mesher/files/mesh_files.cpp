@@ -55,7 +55,7 @@ FilesResult mesh_files(const std::vector<std::string>& paths, const RunOptions& 
   FilesSource source(options, input);
   FilesResult result{run_pipeline(source, options, execution), {}};
   if (input.has_cad()) result.result.mesh.group_names = GroupNames::cad;
-  result.notes = input.notes();
+  result.notes = input.notes(options.dimension);
   return result;
 }
 

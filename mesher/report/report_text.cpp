@@ -200,6 +200,8 @@ std::string surface_text(const TetMesh& mesh, const CheckReport* judged) {
 
 std::string mesh_text(const TetMesh& mesh, const MeshMeasures& m, const CheckReport* judged) {
   if (mesh.is_surface()) return surface_text(mesh, judged);
+  if (mesh.is_curves())
+    return fmt::format("{} lines on curves, {} points\n", mesh.edges.size(), mesh.points.size());
   std::string text;
   fmt::format_to(Out(text), "{} tets, {} points, {} boundary and interface triangles, {} curve edges\n",
                  mesh.tets.size(), mesh.points.size(), mesh.faces.size(), mesh.edges.size());
@@ -238,6 +240,8 @@ std::string check_text(const CheckReport& r) {
   if (r.triangles)
     fmt::format_to(Out(text), "{} triangles, {} points, {} edges; {}\n", r.faces, r.points, r.edges,
                    angles_text(*r.triangles));
+  else if (r.tets == 0 && r.faces == 0)
+    fmt::format_to(Out(text), "{} lines on curves, {} points\n", r.edges, r.points);
   else
     fmt::format_to(Out(text), "{} tets, {} points, {} faces, {} edges; {}\n", r.tets, r.points, r.faces,
                    r.edges, shape_text(r.min_dihedral, r.max_dihedral, r.max_radius_edge));

@@ -156,14 +156,30 @@ TEST(CadFiles, ThatAreNoneAreReadErrors) {
 
 TEST(CadFaults, NullAndEmptyShapes) {
   expect_mentions(fault_of(TopoDS_Shape(), PlcFault::Kind::empty), {"part", "null"});
-  expect_mentions(
-      fault_of(BRepBuilderAPI_MakeEdge(gp_Pnt(0, 0, 0), gp_Pnt(1, 0, 0)).Shape(), PlcFault::Kind::empty),
-      {"part", "no solid"});
+  expect_mentions(fault_of(BRepBuilderAPI_MakeVertex(gp_Pnt(0, 0, 0)).Shape(), PlcFault::Kind::empty),
+                  {"part", "no solid"});
 }
 
 TopoDS_Shape line(const gp_Pnt& from, const gp_Pnt& to) { return BRepBuilderAPI_MakeEdge(from, to).Shape(); }
 TopoDS_Shape point(double x, double y, double z) {
   return BRepBuilderAPI_MakeVertex(gp_Pnt(x, y, z)).Shape();
+}
+
+// For meshes of lines: one soup of segments, with the edges' numbers.
+TEST(CadModel, EdgesAloneAreLines) {
+  CadModel model(compound({line(gp_Pnt(0, 0, 0), gp_Pnt(4, 0, 0)), line(gp_Pnt(4, 0, 0), gp_Pnt(4, 3, 0)),
+                           line(gp_Pnt(0, 3, 0), gp_Pnt(4, 1, 0))}),
+                 "part");
+  EXPECT_TRUE(model.notes().empty());
+  const std::vector<PolygonSoup> soups = model.tessellate({});
+  ASSERT_EQ(soups.size(), 1U);
+  EXPECT_EQ(soups[0].facet_count(), 0U);
+  std::set<Tag> tags;
+  for (const PolygonSoup::Segment& segment : soups[0].segments) tags.insert(segment.tag);
+  EXPECT_EQ(tags, (std::set<Tag>{1, 2, 3}));
+  const auto nearest = model.nearest(1, 2, {4.001, 2, 0});
+  ASSERT_TRUE(nearest);
+  EXPECT_NEAR(distance(*nearest, {4, 2, 0}), 0, 1e-12);
 }
 
 // Wires and points that belong to no face, and are not inside a solid, have no place in the mesh: that is

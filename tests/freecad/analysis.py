@@ -23,16 +23,16 @@ class Analysis:
         self.part.Shape = shape
         self.held = {}  # axes by constraint
         self.analysis = ObjectsFem.makeAnalysis(self.document, "Analysis")
-        self.solver = self._add(ObjectsFem.makeSolverCalculixCcxTools(self.document, "Solver"))
+        self.solver = self.add(ObjectsFem.makeSolverCalculixCcxTools(self.document, "Solver"))
         self.solver.AnalysisType = "static"
         self.solver.MatrixSolverType = "default"
         for number, modulus in enumerate(youngs_moduli, 1):
-            material = self._add(ObjectsFem.makeMaterialSolid(self.document, f"Material{number}"))
+            material = self.add(ObjectsFem.makeMaterialSolid(self.document, f"Material{number}"))
             material.Material = {"Name": "Test", "YoungsModulus": f"{modulus} MPa", "PoissonRatio": f"{poisson_ratio}"}
             if len(youngs_moduli) > 1:
                 material.References = [(self.part, f"Solid{number}")]
 
-    def _add(self, obj):
+    def add(self, obj):
         self.analysis.addObject(obj)
         return obj
 
@@ -41,19 +41,36 @@ class Analysis:
 
     def faces(self, *places):
         """The faces that hold these points, as FreeCAD's references have them."""
-        names = []
-        for place in places:
-            vertex = Part.Vertex(*place)
-            distances = [face.distToShape(vertex)[0] for face in self.part.Shape.Faces]
-            names.append(f"Face{distances.index(min(distances)) + 1}")
-        return [(self.part, names)]
+        return [(self.part, [self.nearest("Face", place) for place in places])]
+
+    def nearest(self, kind, place):
+        """The face, edge or vertex that holds a point."""
+        vertex = Part.Vertex(*place)
+        distances = [each.distToShape(vertex)[0] for each in getattr(
+            self.part.Shape, "Vertexes" if kind == "Vertex" else kind + "s")]
+        return f"{kind}{distances.index(min(distances)) + 1}"
+
+    def clamp(self, kind, place):
+        """Neither displacement nor rotation of an edge or a vertex."""
+        held = self.add(ObjectsFem.makeConstraintFixed(self.document, "Fixed"))
+        held.References = [(self.part, [self.nearest(kind, place)])]
+        self.held[held.Name.upper()] = "xyz"
+
+    def pull_at(self, kind, place, force, direction):
+        """A force (N) on an edge or a vertex, along any direction."""
+        guide = self.document.addObject("Part::Feature", "Guide")
+        guide.Shape = Part.makeLine(FreeCAD.Vector(0, 0, 0), FreeCAD.Vector(*direction))
+        load = self.add(ObjectsFem.makeConstraintForce(self.document, "Force"))
+        load.References = [(self.part, [self.nearest(kind, place)])]
+        load.Force = force
+        load.Direction = (guide, ["Edge1"])
 
     def hold(self, axes, *places):
         """No displacement along these axes ("x", "xyz") of the faces at these places."""
         if axes == "xyz":
-            held = self._add(ObjectsFem.makeConstraintFixed(self.document, "Fixed"))
+            held = self.add(ObjectsFem.makeConstraintFixed(self.document, "Fixed"))
         else:
-            held = self._add(ObjectsFem.makeConstraintDisplacement(self.document, "Held"))
+            held = self.add(ObjectsFem.makeConstraintDisplacement(self.document, "Held"))
             for axis in axes:
                 setattr(held, axis + "Free", False)
                 setattr(held, axis + "Fix", True)
@@ -62,7 +79,7 @@ class Analysis:
 
     def pull(self, place, force, direction):
         """A force (N) on the face at a place, along an axis that some straight edge of the part has."""
-        load = self._add(ObjectsFem.makeConstraintForce(self.document, "Force"))
+        load = self.add(ObjectsFem.makeConstraintForce(self.document, "Force"))
         load.References = self.faces(place)
         load.Force = force
         load.Direction = self.edge_along(direction)
@@ -83,20 +100,21 @@ class Analysis:
 
     def press(self, place, pressure):
         """A pressure (MPa) on the face at a place."""
-        load = self._add(ObjectsFem.makeConstraintPressure(self.document, "Pressure"))
+        load = self.add(ObjectsFem.makeConstraintPressure(self.document, "Pressure"))
         load.References = self.faces(place)
         load.Pressure = pressure
 
-    def mesh(self, order, size, fine_size=0, place=None):
+    def mesh(self, order, size, fine_size=0, place=None, dimension=0):
         """By collarmesh, finer on the face at a place; curved faces nearer than by default, for the stresses there."""
         finer = {int(name[4:]): fine_size for _, names in self.faces(place) for name in names} if place else {}
         self.mesh_object = collarmesh_workbench.mesh(
-            self.part, analysis=self.analysis, size=size, order=order, distance=size / 20, face_sizes=finer
+            self.part, analysis=self.analysis, size=size, order=order, distance=size / 20, face_sizes=finer,
+            dimension=dimension
         )
 
     def mesh_by_gmsh(self, order, size, fine_size=0, place=None):
         """The same by Gmsh."""
-        self.mesh_object = self._add(ObjectsFem.makeMeshGmsh(self.document, "Gmsh"))
+        self.mesh_object = self.add(ObjectsFem.makeMeshGmsh(self.document, "Gmsh"))
         self.mesh_object.Part = self.part
         self.mesh_object.CharacteristicLengthMax = size
         self.mesh_object.ElementOrder = ("1st", "2nd")[order - 1]
@@ -107,7 +125,7 @@ class Analysis:
         error = gmshtools.GmshTools(self.mesh_object).create_mesh()
         if region:
             self.document.removeObject(region.Name)
-        if self.mesh_object.FemMesh.VolumeCount == 0:
+        if self.mesh_object.FemMesh.NodeCount == 0:
             raise RuntimeError(f"Gmsh made no mesh: {error}")
 
     def remove_mesh(self):

@@ -158,7 +158,7 @@ class Solved(unittest.TestCase):
             self.analysis.part, analysis=self.analysis.analysis, size=5, order=1, keep_apart=True)
 
     def contact(self):
-        pair = self.analysis._add(ObjectsFem.makeConstraintContact(self.analysis.document, "Contact"))
+        pair = self.analysis.add(ObjectsFem.makeConstraintContact(self.analysis.document, "Contact"))
         pair.References = [(self.analysis.part, "Face2"), (self.analysis.part, "Face7")]
 
     def test_what_is_apart_feels_nothing_of_the_other(self):

@@ -279,6 +279,7 @@ async def cancel_removes_an_empty_new_mesh(document, part):
         await click_the_button()
         if fails:
             part.Shape = Part.Shell(Part.makeBox(1, 1, 1).Faces[:1])
+            w.child("ElementDimension").setCurrentIndex(3)
             w.require("No mesh is made" in await w.run_mesher("2 mm"), w.said())
         await w.close_panel(QtGui.QDialogButtonBox.Cancel)
         await w.pause(100)

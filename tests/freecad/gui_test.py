@@ -75,9 +75,10 @@ async def bad_shapes_are_told(obj, part):
     count, program = obj.FemMesh.VolumeCount, os.environ["COLLARMESH_PROGRAM"]
     box = Part.makeBox(10, 10, 10)
     shapes = (
-        ("a sheet", Part.Shell(box.Faces[:1]), ("Plate is a face", "no volume")),
+        ("a sheet", Part.Shell(box.Faces[:1]), ("Plate is a face", "no volume", "Dimension of the elements")),
         ("null", Part.Shape(), ("no shape", "Plate")),
     )
+    child("ElementDimension").setCurrentIndex(3)
     for name, shape, words in shapes:
         part.Shape = shape
         told = await run_mesher("2 mm")

@@ -126,6 +126,7 @@ class Headless(unittest.TestCase):
     def test_failures_keep_the_mesh_and_say_why(self):
         part = self.add(Part.makeBox(10, 10, 10))
         obj = collarmesh_workbench.mesh(part, size=4)
+        obj.ElementDimension = "3D"
         count = obj.FemMesh.VolumeCount
         sheet = Part.Shell(Part.makeBox(10, 10, 10).Faces[:1])
         for shape, words in (
@@ -141,7 +142,7 @@ class Headless(unittest.TestCase):
             self.assertEqual(obj.FemMesh.VolumeCount, count)
             objects = len(self.document.Objects)
             with self.assertRaises(program.MesherError):
-                collarmesh_workbench.mesh(part)
+                collarmesh_workbench.mesh(part, dimension=3)
             self.assertEqual(len(self.document.Objects), objects)
 
     def test_what_solids_have_in_common_belongs_to_the_first(self):

@@ -138,26 +138,27 @@ class Shapes(WithDocument):
 
 
 class WithoutVolume(WithDocument):
-    """What has no solids."""
+    """What has no solids, and is to be filled with tetrahedra (shells_test.py has the others)."""
 
     def refused(self, shape, words, **options):
         with self.assertRaisesRegex(MesherError, words):
-            collarmesh_workbench.mesh(self.add("Part::Feature", "Surface", Shape=shape), size=3, **options)
+            collarmesh_workbench.mesh(self.add("Part::Feature", "Surface", Shape=shape), size=3, dimension=3, **options)
 
     def test_faces_and_wires(self):
         box = Part.makeBox(10, 10, 10)
-        self.refused(box.Faces[0], "Surface[0-9]* is a face.*not of shells")
+        self.refused(box.Faces[0], "Surface[0-9]* is a face.*2D in .*for shells")
         self.refused(box.Faces[0], "is a face", fill_holes=True)
-        self.refused(Part.Wire(box.Faces[0].Edges), "edges or points only.*not of beams")
+        self.refused(Part.Wire(box.Faces[0].Edges), "edges or points only.*1D in .*for beams")
         self.refused(Part.Vertex(1, 2, 3), "edges or points only")
 
     def test_open_surfaces_are_filled_on_request(self):
         surface = Part.makeShell(Part.makeBox(10, 10, 10).Faces[:5])
         self.refused(surface, "open at 4 edges.*Fill holes of open surfaces")
         part = self.add("Part::Feature", "Surface", Shape=surface)
-        obj = collarmesh_workbench.mesh(part, size=3, fill_holes=True)
-        self.assertAlmostEqual(volume(obj.FemMesh), 1000, places=3)
-        self.assertTrue(obj.FillHoles)
+        for dimension in (0, 3):
+            obj = collarmesh_workbench.mesh(part, size=3, fill_holes=True, dimension=dimension)
+            self.assertAlmostEqual(volume(obj.FemMesh), 1000, places=3)
+            self.assertTrue(obj.FillHoles)
 
     def test_closed_surfaces_are_volumes(self):
         loose = Part.makeCompound([Part.Face(face.OuterWire) for face in Part.makeBox(10, 10, 10).Faces])

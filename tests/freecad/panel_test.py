@@ -477,6 +477,7 @@ async def the_part_hides_when_its_mesh_appears():
     document, part, obj = new_part(plate())
     document.UndoMode = 1
     obj.ViewObject.Visibility = False
+    obj.ElementDimension = "3D"
     await open_panel(obj)
     part.Shape = Part.Shell(part.Shape.Faces[:1])
     await run_mesher("4 mm")

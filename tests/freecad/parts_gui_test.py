@@ -115,6 +115,7 @@ async def open_surfaces_are_asked_about(document, part, obj):
     before = obj.FemMesh.NodeCount
     await w.open_panel(obj)
     w.child("CharacteristicLengthMax").setText("3 mm")
+    w.child("ElementDimension").setCurrentIndex(3)
     await w.click(w.child("run"))
     w.require("open at 4 edges" in w.child("question").text(), w.child("question").text())
     w.require(w.child("run").text() == "Fill the holes" and obj.FemMesh.NodeCount == before, "nothing is filled unasked")
@@ -130,10 +131,11 @@ async def open_surfaces_are_asked_about(document, part, obj):
 
 async def surfaces_and_wires_are_told_from_volumes(document, part, obj):
     box = Part.makeBox(10, 10, 10)
-    for shape, word in ((box.Faces[0], "not of shells"), (Part.Wire(box.Faces[0].Edges), "not of beams")):
+    for shape, word in ((box.Faces[0], "for shells"), (Part.Wire(box.Faces[0].Edges), "for beams")):
         part.Shape = shape
         document.recompute()
         await w.open_panel(obj)
+        w.child("ElementDimension").setCurrentIndex(3)
         await w.click(w.child("run"))
         await w.wait_until(lambda: w.child("message").isVisible(), "the message")
         w.require(word in w.said(), w.said())

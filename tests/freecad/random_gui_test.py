@@ -19,7 +19,7 @@ from PySide import QtCore, QtGui
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import window as w  # noqa: E402
 from freecad.collarmesh_workbench import (  # noqa: E402
-    commands, constraint_faces, constraint_faces_view, mesh_menu, mesh_properties, size_objects, take_over)
+    commands, constraint_faces, constraint_faces_view, elements, mesh_menu, mesh_properties, size_objects, take_over)
 
 SEQUENCES = int(os.environ.get("COLLARMESH_SEQUENCES", 8))
 SEED = int(os.environ.get("COLLARMESH_SEED", 1))
@@ -187,6 +187,11 @@ class Sequence:
         if box is not None:
             box.setCurrentIndex(self.random.randrange(box.count()))
 
+    async def choose_a_dimension(self):
+        box = w.find("ElementDimension")
+        if box is not None:
+            box.setCurrentIndex(self.random.randrange(box.count()))
+
     async def wait_for_the_run(self):
         button, clock = w.find("run"), QtCore.QElapsedTimer()
         clock.start()
@@ -224,7 +229,7 @@ class Sequence:
 
     async def statistics(self):
         obj = self._mesh()
-        if obj is not None and obj.FemMesh.VolumeCount:
+        if obj is not None and elements.is_there(obj.FemMesh):
             mesh_menu.statistics(obj)
         dialog = w.find("statistics")
         if dialog is not None and self.random.random() < 0.5:

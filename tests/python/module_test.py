@@ -76,6 +76,18 @@ class Module(unittest.TestCase):
         self.assertAlmostEqual(numpy.linalg.norm(numpy.cross(b - a, c - a), axis=1).sum() / 2, 1, 9)
         self.assertGreater(len(mesh.faces), 40)
 
+    def test_some_faces_and_lines(self):
+        surface = box((0, 0, 0), (1, 1, 1))
+        mesh = collarmesh.mesh(surface, size=0.25, dimension=2, faces=["2", "patch_3"])
+        self.assertEqual(set(mesh.face_tag), {2, 3})
+        with self.assertRaisesRegex(collarmesh.Error, "no patch is called 'lid'"):
+            collarmesh.mesh(surface, size=0.25, dimension=2, faces=["lid"])
+        lines = collarmesh.mesh(surface, size=0.25, dimension=1)
+        self.assertEqual((len(lines.tets), len(lines.faces), len(lines.edges)), (0, 0, 48))
+        ends = lines.points[lines.edges]
+        self.assertAlmostEqual(numpy.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).sum(), 12, 9)
+        self.assertEqual([collarmesh.mesh(surface, size=0.5, dimension=d, order=2).order for d in (1, 2)], [2, 2])
+
     def test_same_input_same_mesh(self):
         first, second = (collarmesh.mesh(box((0, 0, 0), (1, 1, 1)), size=0.2) for _ in range(2))
         numpy.testing.assert_array_equal(first.tets, second.tets)
@@ -250,7 +262,7 @@ class Signatures(unittest.TestCase):
             self.skipTest("the program was not built")
         said = subprocess.run([program, "--help"], check=True, capture_output=True, text=True).stdout
         others = {"help", "version", "against", "output", "format", "scale", "report", "verbose", "quiet", "ghost_cells",
-                  "cell_decomposition", "help_all", "name", "batch", "interaction", "cohesive", "trace"}
+                  "cell_decomposition", "help_all", "name", "batch", "interaction", "cohesive", "trace", "triangle_elements"}
         options = {name.replace("-", "_") for name in re.findall(r"--([a-z][a-z-]+)", said)} - others
         self.assertGreater(len(options), 30)
         self.assertLessEqual(options - set(inspect.signature(collarmesh.mesh).parameters), set())

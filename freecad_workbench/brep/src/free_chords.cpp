@@ -173,8 +173,11 @@ PolygonSoup cut_free_parts(const Topology& topology, const std::string& file,
   Cutter cutter(topology, file, options, result);
   CutEdges edges(options.deflection);
   LeftOut near_faces, near_edges;
+  const bool alone = topology.solids.empty();  // whoever makes a complex of them cuts what crosses
   for (const Topology::FreePart& part : topology.free_parts) {
-    if (part.clearance <= 2 * options.deflection) {
+    if (alone) {
+      cutter.add(part);
+    } else if (part.clearance <= 2 * options.deflection) {
       near_faces.add(part);
     } else if (!is_edge(part.shape)) {
       cutter.add(part);

@@ -266,7 +266,8 @@ class Tessellator {
   }
 
   void require_triangles() const {
-    if (std::any_of(face_triangles_.begin(), face_triangles_.end(), [](const auto& t) { return !t.empty(); }))
+    if (faces_.IsEmpty() ||
+        std::any_of(face_triangles_.begin(), face_triangles_.end(), [](const auto& t) { return !t.empty(); }))
       return;
     fail(PlcFault::Kind::degenerate_facet,
          fmt::format("{}: none of its faces can be cut into triangles; check and repair the shape.", file_),

@@ -21,6 +21,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 
 namespace collarmesh::brep {
@@ -195,15 +196,31 @@ std::string Topology::name(const TopoDS_Shape& shape) const {
   return n > 0 ? fmt::format("{}{}", kind_name(shape.ShapeType()), n) : kind_name(shape.ShapeType());
 }
 
+namespace {
+
+/// Edges alone, for meshes of lines.
+void take_wires(const TopoDS_Shape& shape, const std::string& file, Topology& topology) {
+  for (const TopoDS_Shape& edge : subshapes(shape, TopAbs_EDGE))
+    if (!BRep_Tool::Degenerated(TopoDS::Edge(edge)))
+      topology.free_parts.push_back({edge, topology.number(edge), std::numeric_limits<double>::infinity()});
+  if (topology.free_parts.empty())
+    fail(PlcFault::Kind::empty,
+         fmt::format("{} holds no solid, no face and no edge; there is nothing to mesh.", file),
+         place_of(shape));
+}
+
+}  // namespace
+
 Topology find_topology(const TopoDS_Shape& shape, const std::string& file, const CadOptions& options) {
   if (shape.IsNull())
     fail(PlcFault::Kind::empty, fmt::format("{}: the shape is null; there is nothing to mesh.", file));
   Topology topology;
   topology.all = shape;
   number_subshapes(shape, topology.numbers);
-  if (!TopExp_Explorer(shape, TopAbs_FACE).More())
-    fail(PlcFault::Kind::empty, fmt::format("{} holds no solid and no face; there is nothing to mesh.", file),
-         place_of(shape));
+  if (!TopExp_Explorer(shape, TopAbs_FACE).More()) {
+    take_wires(shape, file, topology);
+    return topology;
+  }
   const std::vector<TopoDS_Shape> free_parts = parts_of_no_face(shape);
   topology.keep_numbers(free_parts);
   for (const TopoDS_Shape& solid : subshapes(shape, TopAbs_SOLID))

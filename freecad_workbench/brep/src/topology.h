@@ -32,11 +32,11 @@ struct Topology {
     double clearance = 0;  ///< to the faces that it does not end on; of its middle, to curved ones
   };
 
-  std::vector<Solid> solids;                               ///< parts of one solid have the same number
-  std::vector<TopoDS_Shape> internal_faces;                ///< that belong to no solid, or lie inside one
-  std::vector<FreePart> free_parts;                        ///< that lie inside a solid
-  TopoDS_Shape all;                                        ///< what is tessellated
-  TopTools_DataMapOfShapeInteger numbers;                  ///< of solids, faces, edges and vertices
+  std::vector<Solid> solids;                 ///< parts of one solid have the same number
+  std::vector<TopoDS_Shape> internal_faces;  ///< that belong to no solid, or lie inside one
+  std::vector<FreePart> free_parts;          ///< that lie inside a solid, or all of a shape of edges alone
+  TopoDS_Shape all;                          ///< what is tessellated
+  TopTools_DataMapOfShapeInteger numbers;    ///< of solids, faces, edges and vertices
   std::vector<std::pair<TopoDS_Shape, int>> kept_numbers;  ///< of parts that no step changes
   std::vector<std::pair<Tag, Tag>> replaced_faces;         ///< number that is gone, number in its place
   std::vector<std::string> notes;
@@ -51,7 +51,7 @@ struct Topology {
 };
 
 /// Find the solids of a shape, sew where there is none or one is open, make those that touch share faces.
-/// Throws PlcError for a shape without faces.
+/// A shape of edges alone keeps these as free parts. Throws PlcError for a shape without faces and edges.
 Topology find_topology(const TopoDS_Shape& shape, const std::string& file, const CadOptions& options);
 
 /// The sub-shapes of one kind, each once, in the order that numbers them.

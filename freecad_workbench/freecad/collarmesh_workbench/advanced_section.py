@@ -206,7 +206,8 @@ def in_panel_words(text):
     words = {"--" + fields[name].replace("_", "-"): text for name, text in labels.items() if name in fields}
     words["--repair wrap"] = f"{labels['Repair']}: {translate('collarmesh', 'wrap where it fails')}"
     words["--repair"] = labels["Repair"]
-    text = text.replace(" (--dimension 2)", "")
+    dimension = translate("collarmesh", "Dimension of the elements")
+    words |= {"--dimension 2": f"{dimension}: 2D", "--dimension 1": f"{dimension}: 1D", "--dimension": dimension}
     for option in sorted(words, key=len, reverse=True):
         text = text.replace(option, f"“{words[option]}”")
     return text

@@ -1,4 +1,4 @@
-"""A chart of the dihedral angles of all tetrahedra, with the worst one marked."""
+"""A chart of the dihedral angles of all tetrahedra, or of the angles of all triangles, with the worst one marked."""
 
 from PySide import QtCore, QtGui
 
@@ -9,8 +9,8 @@ STRAIGHT = 180  # degrees
 
 
 class AngleChart(QtGui.QWidget):
-    """Bars by angle: of each tetrahedron its smallest and its largest one. A click on the mark of the worst
-    tetrahedron emits `worst_clicked`."""
+    """Bars by angle: of each element its smallest and its largest one. A click on the mark of the worst tetrahedron
+    emits `worst_clicked`."""
 
     worst_clicked = QtCore.Signal()
 
@@ -22,16 +22,23 @@ class AngleChart(QtGui.QWidget):
         self.series = []  # (colour, text, counts)
         self.bin_width = 10
         self.extremes = (0, STRAIGHT)
+        self.is_of_tetrahedra = True
 
-    def show_report(self, mesh):
-        """`mesh` is the report's part on the mesh."""
-        histograms = mesh["histograms"]
-        self.bin_width = histograms["min_dihedral"]["bin_width"]
-        self.series = [
-            (SMALLEST, translate("collarmesh", "smallest angle"), histograms["min_dihedral"]["tets"]),
-            (LARGEST, translate("collarmesh", "largest angle"), histograms["max_dihedral"]["tets"]),
-        ]
-        self.extremes = mesh["min_dihedral"], mesh["max_dihedral"]
+    def show_report(self, report):
+        """Of a run; lines have no angles."""
+        dimension = report["options"]["dimension"]
+        of_elements = report["check"]["triangles"] if dimension == 2 else report["mesh"]
+        names, counted = (("min_angle", "max_angle"), "triangles") if dimension == 2 else (
+            ("min_dihedral", "max_dihedral"), "tets")
+        self.series = []
+        self.is_of_tetrahedra = dimension == 3
+        if dimension == 1:
+            return
+        first, last = (of_elements["histograms"][name] for name in names)
+        self.bin_width = first["bin_width"]
+        self.series = [(SMALLEST, translate("collarmesh", "smallest angle"), first[counted]),
+                       (LARGEST, translate("collarmesh", "largest angle"), last[counted])]
+        self.extremes = tuple(of_elements[name] for name in names)
         self.update()
 
     def sizeHint(self):
@@ -97,7 +104,7 @@ class AngleChart(QtGui.QWidget):
             x += line * 1.6 + metrics.boundingRect(text).width()
 
     def _is_on_mark(self, place):
-        return self._mark().boundingRect().adjusted(-3, -3, 3, 3).contains(QtCore.QPointF(place))
+        return self.is_of_tetrahedra and self._mark().boundingRect().adjusted(-3, -3, 3, 3).contains(QtCore.QPointF(place))
 
     def mousePressEvent(self, event):
         if self._is_on_mark(event.pos()):

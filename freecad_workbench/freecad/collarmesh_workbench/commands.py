@@ -70,7 +70,7 @@ class MeshFromShape(Command):
     icon = ICON
     menu_text = new_mesh.CREATION
     tool_tip = mark(
-        "collarmesh", "Make a tetrahedral mesh of the selected solid, certified, with groups for its faces, or open "
+        "collarmesh", "Make a mesh of the selected solid, surface or wire, certified, with groups for its faces, or open "
         "the one that is there"
     )
 

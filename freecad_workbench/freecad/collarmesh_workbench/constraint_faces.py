@@ -7,7 +7,7 @@ import FreeCAD
 import numpy
 import Part
 
-from . import compatibility, inputs, planar_pieces, views
+from . import compatibility, elements, inputs, planar_pieces, views
 from .program import MesherError
 from .translations import doc, translate
 
@@ -37,7 +37,7 @@ def is_ours(obj):
 def can_be_made(mesh_object):
     """Is it a mesh of triangles, with elements?"""
     part = compatibility.meshed_object(mesh_object)
-    return part is not None and mesh_object.FemMesh.VolumeCount > 0 and inputs.triangles_of(part) is not None
+    return part is not None and elements.is_there(mesh_object.FemMesh) and inputs.triangles_of(part) is not None
 
 
 def of(mesh_object):

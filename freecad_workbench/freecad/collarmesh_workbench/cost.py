@@ -12,11 +12,21 @@ GIGABYTE = 1e9
 LOADING = {1: 5e-6, 2: 12e-6}  # seconds for an element, by order, until FreeCAD has read it
 
 
-def elements_by_volume(part, size):
-    """About how many elements of one size (mm) fill a part: regular tetrahedra."""
+def elements_by_extent(part, size, dimension=3):
+    """About how many elements of one size (mm) a part takes: regular tetrahedra, equilateral triangles, or lines."""
     mesh, shape = inputs.triangles_of(part), inputs.shape_of(part)
-    volume = mesh.Volume if mesh is not None else 0 if shape.isNull() else shape.Volume
-    return 6 * math.sqrt(2) * abs(volume) / size**3
+    if mesh is None and shape.isNull():
+        return 0
+    if dimension == 3:
+        return 6 * math.sqrt(2) * abs(shape.Volume if mesh is None else mesh.Volume) / size**3
+    if dimension == 2:
+        return 4 / math.sqrt(3) * (shape.Area if mesh is None else mesh.Area) / size**2
+    return 0 if mesh is not None else sum(edge.Length for edge in shape.Edges) / size
+
+
+def estimates(part, sizes, dimension):
+    """{size: (elements, None)} of meshes that the program does not predict, as curves and small faces are not counted."""
+    return {} if part is None else {size: (elements_by_extent(part, size, dimension), None) for size in sizes if size > 0}
 
 
 def loading_seconds(elements, order):

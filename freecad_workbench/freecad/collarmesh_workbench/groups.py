@@ -10,7 +10,7 @@ import re
 import FreeCAD
 from femmesh import meshtools
 
-from . import compatibility, contacts, inputs, mesh_properties
+from . import compatibility, contacts, elements, inputs, mesh_properties
 from .translations import translate
 
 KINDS = {"Solid": "Volume", "Face": "Face", "Edge": "Edge"}
@@ -167,7 +167,7 @@ class Observer:
 
 def meshes_among(objects):
     """Our mesh objects that have a mesh and a part."""
-    return [each for each in objects if mesh_properties.is_ours(each) and each.FemMesh.VolumeCount > 0
+    return [each for each in objects if mesh_properties.is_ours(each) and elements.is_there(each.FemMesh)
             and compatibility.meshed_object(each) is not None]
 
 

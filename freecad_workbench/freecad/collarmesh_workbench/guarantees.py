@@ -5,7 +5,7 @@ from .translations import translate
 
 def guarantees(report):
     """[(text, messages of what breaks it)], none of which is the good case."""
-    groups = _groups()
+    groups = {1: _groups_of_lines, 2: _groups_of_triangles, 3: _groups}[report["options"]["dimension"]]()
     if report["options"]["order"] != 2:
         groups = groups[:-1]
     if report["split"]:
@@ -24,6 +24,30 @@ def guarantees(report):
     if others:
         lines.append((translate("collarmesh", "The mesh is sound"), others))
     return lines
+
+
+def _groups_of_triangles():
+    return [
+        (translate("collarmesh", "The mesh covers the surface: every face, edge and corner is kept"),
+         ("conforming", "curve_cover", "curve_distance", "curve_present", "patch_area", "patch_border", "patch_distance",
+          "patch_manifold", "patch_plane", "patch_present", "vertex_feature", "vertex_present", "listed_edges")),
+        (translate("collarmesh", "Triangles of a solid look outwards, those of a surface are turned alike"),
+         ("patch_orientation", "shell_orientation")),
+        (translate("collarmesh", "Elements know their faces and edges"), ("curve_tag", "patch_tag")),
+        (translate("collarmesh", "Triangles have no small or large angle"), ("triangle_angles",)),
+        (translate("collarmesh", "Curved elements are not inverted"),
+         ("mid_nodes", "mid_node_distance", "positive_jacobian")),
+    ]
+
+
+def _groups_of_lines():
+    return [
+        (translate("collarmesh", "The mesh follows every edge from end to end"),
+         ("curve_cover", "curve_distance", "curve_present", "vertex_feature", "vertex_present", "listed_edges")),
+        (translate("collarmesh", "Elements know their edges"), ("curve_tag",)),
+        (translate("collarmesh", "Curved elements are not inverted"),
+         ("mid_nodes", "mid_node_distance", "positive_jacobian")),
+    ]
 
 
 def _groups():

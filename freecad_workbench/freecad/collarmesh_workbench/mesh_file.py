@@ -4,7 +4,7 @@ import json
 import os
 import subprocess
 
-from . import preferences
+from . import elements, preferences
 from .program import MesherError, find_program
 from .translations import translate
 from .work_folder import WorkFolder
@@ -29,7 +29,7 @@ def extension_in(text):
 
 def _run(mesh_object, arguments):
     """The program's standard output; `MESH` among the arguments is the object's mesh. Raises MesherError."""
-    if mesh_object.FemMesh.VolumeCount == 0:
+    if not elements.is_there(mesh_object.FemMesh):
         raise MesherError(translate("collarmesh", "{label} has no mesh yet.").format(label=mesh_object.Label))
     program = find_program(preferences.program())
     folder = WorkFolder()

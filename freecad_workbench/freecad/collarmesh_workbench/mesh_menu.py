@@ -3,7 +3,7 @@
 import FreeCADGui
 from PySide import QtCore, QtGui
 
-from . import compatibility, constraint_faces, constraint_faces_view, mesh_file, statistics_dialog, take_over
+from . import compatibility, constraint_faces, constraint_faces_view, elements, mesh_file, statistics_dialog, take_over
 from .later import later
 from .messages import say
 from .program import MesherError
@@ -12,7 +12,7 @@ from .translations import translate
 
 def fill(menu, obj):
     """Of one of our mesh objects."""
-    has_mesh = obj.FemMesh.VolumeCount > 0
+    has_mesh = elements.is_there(obj.FemMesh)
     for name, text, action, enabled in (
         ("edit", translate("collarmesh", "Edit mesh"), edit, True),  # as a double click does
         ("mesh_again", translate("collarmesh", "Mesh again"), mesh_again, True),

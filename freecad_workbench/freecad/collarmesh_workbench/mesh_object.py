@@ -1,10 +1,12 @@
 """The mesh object in the document, and how its mesh is made. Works without the GUI."""
 
+import dataclasses
+
 import Fem
 import FreeCAD
 
-from . import (compatibility, constraint_faces, contact_groups, contacts, groups, inputs, mesh_properties, mesh_undo, open_shape,
-               preferences, size_check, size_objects, up_to_date, views)
+from . import (compatibility, constraint_faces, contact_groups, contacts, elements, groups, inputs, mesh_properties, mesh_undo,
+               open_shape, preferences, size_check, size_objects, up_to_date, views)
 from .program import GUARANTEE_MISSED, Job, MesherError
 from .translations import translate
 
@@ -51,7 +53,11 @@ def start(obj, program="", settings=None):
     settings = settings or mesh_properties.settings_of(obj)
     sources = size_objects.sources_of(obj)
     size_check.check(settings, sources, part)
-    open_shape.check(part, settings.fill_holes)
+    asked = settings.dimension
+    settings = dataclasses.replace(settings, dimension=open_shape.dimension(part, asked, settings.fill_holes))
+    open_shape.check(part, settings.dimension, settings.fill_holes)
+    if settings.dimension < 3:
+        settings = dataclasses.replace(settings, keep_apart=False, split=[], periodic=[], interior_node=False)
     shape = inputs.shape_of(part)
     is_to_be_apart = settings.keep_apart
     settings = contacts.in_mesh_numbers(settings, shape)
@@ -62,6 +68,7 @@ def start(obj, program="", settings=None):
         job.__exit__()
         raise
     job.messages += tiny_edges(shape, settings.size)
+    job.dimension, job.word = settings.dimension, "" if asked else open_shape.word(part, settings.dimension)
     job.apart = settings.keep_apart
     if is_to_be_apart and not job.apart:
         job.messages.append("warning: " + translate("collarmesh",
@@ -103,7 +110,7 @@ def finish(obj, job, exit_code=0):
     """Put the mesh of a job that ended into the object. Raises MesherError; the object keeps its mesh then."""
     job.require_success(exit_code)
     fem_mesh = Fem.read(job.mesh)
-    if fem_mesh.VolumeCount == 0:
+    if elements.dimension(fem_mesh) != job.dimension:
         raise MesherError(
             translate(
                 "collarmesh", "The mesher wrote a mesh without elements; please report it with the shape."
@@ -112,7 +119,7 @@ def finish(obj, job, exit_code=0):
     contact_groups.add(job.meshed, fem_mesh, job.apart)
     groups.add_groups(obj, fem_mesh)
     report = job.report()
-    report["notes"] += groups.materials_elsewhere(obj)
+    report["notes"] += groups.materials_elsewhere(obj) + ([job.word] if job.word else [])
     with compatibility.transaction(obj.Document, translate("collarmesh", "Mesh by collarmesh")):
         mesh_undo.replace(obj, fem_mesh)
         up_to_date.remember(obj, job.state)

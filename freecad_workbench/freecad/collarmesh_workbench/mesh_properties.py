@@ -172,6 +172,7 @@ PROPERTIES = (
     ("App::PropertyFloat", "TimeLimit", "time_limit", RUN, doc("Give up after so many seconds; 0: never")),
 )
 ORDERS = ["1st", "2nd"]
+DIMENSIONS = ["From Shape", "1D", "2D", "3D"]  # as Gmsh's object has them
 REPAIRS = {"Automatic": "auto", "None": "none", "Wrap": "wrap"}  # the program's words
 REFINEMENTS = {"Solid": "solid_sizes", "Face": "face_sizes", "Edge": "edge_sizes"}
 
@@ -194,6 +195,18 @@ def add_properties(obj):
         obj.addProperty("App::PropertyEnumeration", "ElementOrder", QUALITY, doc("Order of the elements"))
         obj.ElementOrder = ORDERS
         obj.ElementOrder = ORDERS[preferences.second_order()]
+    if "ElementDimension" not in have:
+        obj.addProperty(
+            "App::PropertyEnumeration",
+            "ElementDimension",
+            QUALITY,
+            doc(
+                "Dimension of the elements. 3D: tetrahedra in solids; 2D: triangles on faces, for shells; 1D: lines on "
+                "edges, for beams; From Shape: by what the shape encloses"
+            ),
+        )
+        obj.ElementDimension = DIMENSIONS
+        obj.ElementDimension = DIMENSIONS[0]
     if "Repair" not in have:
         obj.addProperty(
             "App::PropertyEnumeration",
@@ -223,7 +236,12 @@ def settings_of(obj):
         value = getattr(obj, name)
         value = getattr(value, "Value", value)
         values[field] = list(value) if isinstance(value, (list, tuple)) else value
-    settings = Settings(order=ORDERS.index(obj.ElementOrder) + 1, repair=REPAIRS[obj.Repair], **values)
+    settings = Settings(
+        order=ORDERS.index(obj.ElementOrder) + 1,
+        dimension=DIMENSIONS.index(obj.ElementDimension),
+        repair=REPAIRS[obj.Repair],
+        **values,
+    )
     for region in obj.MeshRegionList:
         if compatibility.is_suppressed(region):
             continue
@@ -237,6 +255,7 @@ def apply_settings(obj, settings):
     for _kind, name, field, _group, _text in PROPERTIES:
         setattr(obj, name, getattr(settings, field))
     obj.ElementOrder = ORDERS[settings.order - 1]
+    obj.ElementDimension = DIMENSIONS[settings.dimension]
     obj.Repair = next(name for name, word in REPAIRS.items() if word == settings.repair)
 
 

@@ -9,7 +9,7 @@ import time
 
 import FreeCAD
 
-from . import groups, mesh_properties, up_to_date
+from . import elements, groups, mesh_properties, up_to_date
 from .translations import doc
 
 NUMBER = "MeshNumber"
@@ -93,7 +93,7 @@ def _put(obj, fem_mesh):
     if fem_mesh is None or same(fem_mesh, obj.FemMesh):
         return
     fem_mesh = fem_mesh.copy()
-    if fem_mesh.VolumeCount:
+    if elements.is_there(fem_mesh):
         groups.add_groups(obj, fem_mesh)
     obj.FemMesh = fem_mesh
 

@@ -12,7 +12,7 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtGui
 
-from . import compatibility, mesh_object, mesh_undo, processes, up_to_date
+from . import compatibility, elements, mesh_object, mesh_undo, processes, up_to_date
 from .later import later
 from .program import MesherError, Progress
 from .time_left import TimeLeft
@@ -51,7 +51,7 @@ def outcome_of(obj):
     outcome = _outcomes.get(_key(obj))
     if outcome is None or outcome.report is None:
         return outcome
-    is_there = obj.FemMesh.VolumeCount > 0 and getattr(obj, mesh_undo.NUMBER) == outcome.mesh_number
+    is_there = elements.is_there(obj.FemMesh) and getattr(obj, mesh_undo.NUMBER) == outcome.mesh_number
     return outcome if is_there else None
 
 
@@ -72,7 +72,8 @@ class MeshingProcess(QtCore.QObject):
         part = compatibility.meshed_object(obj)
         self.label = part.Label if part else ""
         self.job = mesh_object.start(obj)
-        self.job.add_page()
+        if self.job.dimension == 3:  # the page is about tetrahedra
+            self.job.add_page()
         self.warnings = tuple(self.job.warnings())
         self.progress = None
         self.time_left = time_left or TimeLeft()
@@ -158,6 +159,8 @@ class MeshingProcess(QtCore.QObject):
         outcome.part_changed = not up_to_date.has_shape(part, self.job.state.shape)
         with _told_in_report_view():
             self.object.Document.recompute()
+        if self.job.dimension < 3:
+            return outcome
         page = os.path.join(self.object.Document.TransientDir, f"{self.object.Name}_report.html")
         with _told_in_report_view():
             self.job.move_page(page, self.label)

@@ -1,34 +1,65 @@
-"""Shapes without a volume: what they are, and whether they may be closed. Works without the GUI."""
+"""Shapes without a volume: what they are, with what elements they are meshed, and whether they may be closed. Works without
+the GUI."""
+
+import collections
 
 from . import inputs
 from .program import MesherError
 from .translations import translate
 
 SEWN = 1e-5  # of the diagonal: faces as near as this meet, as in the program
+SHAPES = 5  # whose open edges are remembered
+
+_known = collections.deque(maxlen=SHAPES)  # (shape, number of its open edges)
 
 
-def check(part, fill_holes):
-    """Raises MesherError for wires, faces, and surfaces that are open, unless their holes may be filled."""
-    text = fault(part)
-    if not text and not fill_holes and question(part):
+def dimension(part, asked, fill_holes):
+    """That of the elements: what is asked for, or else, as 0 asks, from the shape: 3 for solids and what encloses a volume,
+    or will when its holes are filled; 2 for faces and open surfaces; 1 for wires."""
+    if asked:
+        return asked
+    shape = _without_volume(part)
+    if shape is None:
+        return 3
+    if not shape.Faces:
+        return 1 if shape.Edges else 3
+    return 3 if fill_holes or not open_edges(shape) else 2
+
+
+def check(part, dimension_of_elements, fill_holes):
+    """Raises MesherError for wires, faces, and surfaces that are open, where tetrahedra are asked for, unless their holes may
+    be filled; and where there are no faces for triangles, or no edges for lines."""
+    text = fault(part, dimension_of_elements)
+    if not text and dimension_of_elements == 3 and not fill_holes and question(part):
         text = question(part) + " " + translate("collarmesh", "Or set “Fill holes of open surfaces”.")
     if text:
         raise MesherError(text)
 
 
-def fault(part):
-    """Why no volume can be made of it; "" where one may be."""
-    shape = _without_volume(part)
+def fault(part, dimension_of_elements=3):
+    """Why no such elements can be made of it; "" where they may be."""
+    shape = inputs.shape_of(part)
+    text = ""
+    if dimension_of_elements == 2 and not shape.isNull() and not shape.Faces:
+        text = translate("collarmesh", "{label} has no face to be meshed with triangles: choose 1D in “Dimension of the elements”, "
+                                       "or make a face of it (Part: Face from wires).")
+    elif dimension_of_elements == 1 and (shape.isNull() or not shape.Edges):
+        text = translate("collarmesh", "{label} has no edges to be meshed with lines.")
+    elif dimension_of_elements == 3:
+        text = _fault_of_volume(_without_volume(part))
+    return text.format(label=part.Label)
+
+
+def _fault_of_volume(shape):
     if shape is None:
         return ""
-    text = ""
     if not shape.Faces:
-        text = translate("collarmesh", "{label} has edges or points only. Meshes of volumes are made here, not of beams: make a "
-                                       "solid of it (Part: Sweep), or mesh it by Gmsh.")
-    elif len(shape.Faces) == 1 and open_edges(shape):
-        text = translate("collarmesh", "{label} is a face, which encloses no volume. Meshes of volumes are made here, not of "
-                                       "shells: make a solid of it (Part: Extrude), or mesh it by Gmsh.")
-    return text.format(label=part.Label)
+        return translate("collarmesh", "{label} has edges or points only, and encloses no volume: choose 1D in “Dimension of the "
+                                       "elements” for beams, or make a solid of it (Part: Sweep).")
+    if len(shape.Faces) == 1 and open_edges(shape):
+        return translate("collarmesh", "{label} is a face, which encloses no volume: choose 2D in “Dimension of the elements” for "
+                                       "shells, or make a solid of it (Part: Extrude).")
+    return ""
 
 
 def question(part):
@@ -37,9 +68,16 @@ def question(part):
     count = open_edges(shape) if shape is not None and len(shape.Faces) > 1 else 0
     if not count:
         return ""
-    text = translate("collarmesh", "{label} is a surface that is open at {count} edges, and encloses no volume. Close it and make "
-                                   "a solid of it (Part: Shape builder), or mesh it as a shell by Gmsh.")
+    text = translate("collarmesh", "{label} is a surface that is open at {count} edges, and encloses no volume. Choose 2D in "
+                                   "“Dimension of the elements” for shells, or close it and make a solid of it (Part: Shape builder).")
     return text.format(label=part.Label, count=count)
+
+
+def word(part, chosen):
+    """What the panel says of a dimension that it chose from the shape; "" for solids."""
+    text = {1: translate("collarmesh", "{label} has edges only: it is meshed with lines, for beams."),
+            2: translate("collarmesh", "{label} encloses no volume: it is meshed with triangles, for shells.")}.get(chosen, "")
+    return text.format(label=part.Label)
 
 
 def _without_volume(part):
@@ -50,6 +88,14 @@ def _without_volume(part):
 
 def open_edges(shape):
     """How many edges of its faces border one face only, when faces that meet are sewn."""
+    found = next((count for known, count in _known if known.isSame(shape)), None)
+    if found is None:
+        found = _count_open_edges(shape)
+        _known.append((shape, found))
+    return found
+
+
+def _count_open_edges(shape):
     sewn = shape.copy()
     sewn.sewShape(SEWN * shape.BoundBox.DiagonalLength)
     borders = {}

@@ -5,6 +5,9 @@ from PySide import QtCore, QtGui
 from .translations import translate
 
 
+NODES = {1: (2, 3), 2: (3, 6), 3: (4, 10)}  # of elements, by dimension, of either order
+
+
 class OrderSection(QtGui.QWidget):
     """`changed` is emitted when another order is chosen."""
 
@@ -14,8 +17,7 @@ class OrderSection(QtGui.QWidget):
         super().__init__()
         self.combo = QtGui.QComboBox()
         self.combo.setObjectName("collarmesh_ElementOrder")
-        self.combo.addItems([translate("collarmesh", "first (straight, 4 nodes)"),
-                             translate("collarmesh", "second (curved, 10 nodes)")])
+        self.combo.addItems(["", ""])
         self.combo.setToolTip(translate("collarmesh", "Second order: nodes amid edges, on the exact faces"))
         self.note = QtGui.QLabel(translate(
             "collarmesh", "First order is too stiff for bending: displacements come out too small, and stresses far "
@@ -29,6 +31,7 @@ class OrderSection(QtGui.QWidget):
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addLayout(row)
         layout.addWidget(self.note)
+        self.show_dimension(3)
         self.combo.setCurrentIndex(order - 1)
         self._show_note()
         self.combo.currentIndexChanged.connect(self._choose)
@@ -36,6 +39,12 @@ class OrderSection(QtGui.QWidget):
     def order(self):
         """1 or 2."""
         return self.combo.currentIndex() + 1
+
+    def show_dimension(self, dimension):
+        """With the numbers of nodes of such elements."""
+        for i, text in enumerate((translate("collarmesh", "first (straight, {n} nodes)"),
+                                  translate("collarmesh", "second (curved, {n} nodes)"))):
+            self.combo.setItemText(i, text.format(n=NODES[dimension][i]))
 
     def _choose(self, _index):
         self._show_note()

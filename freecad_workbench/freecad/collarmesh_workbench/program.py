@@ -46,6 +46,7 @@ class Settings:
     improve: int = 2
     coarsen: bool = True
     order: int = 2
+    dimension: int = 0  # of the elements: 3 tetrahedra, 2 triangles, 1 lines; 0: from the shape
     repair: str = "auto"  # or "none", or "wrap"
     fill_holes: bool = False  # of surfaces that are open; else they are refused before the program runs
     keep_apart: bool = False  # solids that touch get nodes of their own there, for contact; else they share them
@@ -69,6 +70,8 @@ class Settings:
             arguments += ["--coarsen", "off"]
         if self.order != 1:
             arguments += ["--order", str(self.order)]
+        if self.dimension in (1, 2):
+            arguments += ["--dimension", str(self.dimension)]
         if self.repair != "auto":
             arguments += ["--repair", self.repair]
         if self.keep_apart:

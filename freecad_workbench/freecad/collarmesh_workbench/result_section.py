@@ -58,25 +58,35 @@ class ResultSection(QtGui.QWidget):
                 self.say(text, colours.CARE)
 
     def _show_report(self, report):
-        mesh = report["mesh"]
         self.counts.setText(counts_text(report))
         self.regions.show_report(report)
         if report["repair"]["filled"]:
             self.say(filled_text([each["area"] for each in report["repair"]["filled"]]), colours.CARE)
         self.guarantees.show_report(report)
-        self.chart.show_report(mesh)
+        self.chart.show_report(report)
         self.counts.show()
-        self.chart.show()
+        self.chart.setVisible(bool(self.chart.series))
 
 
 def counts_text(report):
     """What was made, for people."""
     mesh = report["mesh"]
+    dimension, time = report["options"]["dimension"], _time(report["seconds"]["total"])
+    if dimension == 1:
+        counts = translate("collarmesh", "<b>{lines}</b> lines, <b>{nodes}</b> nodes, in {time}")
+        return counts.format(lines=_exact(mesh["edges"]), nodes=_exact(mesh["points"]), time=time)
+    if dimension == 2:
+        triangles = report["check"]["triangles"]
+        counts = translate("collarmesh", "<b>{triangles}</b> triangles, <b>{nodes}</b> nodes")
+        angles = translate("collarmesh", "angles from {smallest}° to {largest}°, in {time}")
+        return (counts.format(triangles=_exact(mesh["faces"]), nodes=_exact(mesh["points"])) + "<br>"
+                + angles.format(smallest=shown(f"{triangles['min_angle']:.1f}"), largest=shown(f"{triangles['max_angle']:.1f}"),
+                                time=time))
     counts = translate("collarmesh", "<b>{tets}</b> tetrahedra, <b>{nodes}</b> nodes, <b>{faces}</b> faces")
     angles = translate("collarmesh", "dihedral angles from {smallest}° to {largest}°, in {time}")
     return (counts.format(tets=_exact(mesh["tets"]), nodes=_exact(mesh["points"]), faces=_exact(mesh["faces"])) + "<br>"
             + angles.format(smallest=shown(f"{mesh['min_dihedral']:.1f}"), largest=shown(f"{mesh['max_dihedral']:.1f}"),
-                            time=_time(report["seconds"]["total"])))
+                            time=time))
 
 
 def filled_text(areas):

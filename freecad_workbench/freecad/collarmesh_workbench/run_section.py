@@ -101,7 +101,7 @@ def phase_text(phase):
         "read": translate("collarmesh", "reading the shape"),
         "repair": translate("collarmesh", "repairing"),
         "complex": translate("collarmesh", "faces and edges"),
-        "refine": translate("collarmesh", "filling with elements"),
+        "refine": translate("collarmesh", "making elements"),
         "coarsen": translate("collarmesh", "coarsening"),
         "improve": translate("collarmesh", "improving"),
         "project": translate("collarmesh", "onto the exact faces"),

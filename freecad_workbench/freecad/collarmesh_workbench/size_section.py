@@ -49,7 +49,7 @@ class SizeSection(QtGui.QWidget):
         return [size for size in (self._size_or_zero(), *(size for _, size in self.presets)) if size > 0]
 
     def show_predictions(self, predictions, missing=""):
-        """{size: (tetrahedra, seconds)}; `missing` stands for what is not there."""
+        """{size: (elements, seconds)}, None for seconds that nobody knows; `missing` stands for what is not there."""
         sizes = [size for _, size in self.presets]
         sizes.append(self._size_or_zero() if self._size_or_zero() not in sizes else 0)
         for row, size in enumerate(sizes):
@@ -57,7 +57,7 @@ class SizeSection(QtGui.QWidget):
             tets, seconds = predictions.get(size, (0, 0))
             if tets > 0:
                 item.setText(ELEMENTS, size_presets.count_text(tets))
-                item.setText(TIME, size_presets.duration_text(seconds))
+                item.setText(TIME, "" if seconds is None else size_presets.duration_text(seconds))
             else:
                 item.setText(ELEMENTS, missing if size > 0 and size not in predictions else "")
                 item.setText(TIME, "")

@@ -4,7 +4,7 @@ import html
 
 from PySide import QtCore, QtGui
 
-from . import groups, mesh_file
+from . import elements, groups, mesh_file
 from .translations import translate
 
 BAR = 160  # width of the longest bar in pixels
@@ -13,11 +13,12 @@ BAR = 160  # width of the longest bar in pixels
 def page(mesh_object):
     """HTML. Raises MesherError."""
     fem_mesh = mesh_object.FemMesh
+    if elements.dimension(fem_mesh) < 3:
+        return _table(_rows_of_shell(fem_mesh)) + _groups(fem_mesh)
     mesh = mesh_file.statistics(mesh_object)
-    order = 2 if len(fem_mesh.getElementNodes(fem_mesh.Volumes[0])) == 10 else 1
     rows = [
         (translate("collarmesh", "Tetrahedra"), f"{mesh['tets']}"),
-        (translate("collarmesh", "Order of the elements"), f"{order}"),
+        (translate("collarmesh", "Order of the elements"), f"{elements.order(fem_mesh)}"),
         (translate("collarmesh", "Nodes"), f"{fem_mesh.NodeCount}"),
         (translate("collarmesh", "Triangles on faces"), f"{mesh['faces']}"),
         (translate("collarmesh", "Median edge length"), f"{mesh['median_edge']:.4g} mm"),
@@ -25,13 +26,29 @@ def page(mesh_object):
         (translate("collarmesh", "Smallest dihedral angle"), f"{mesh['min_dihedral']:.1f}°"),
         (translate("collarmesh", "Largest dihedral angle"), f"{mesh['max_dihedral']:.1f}°"),
     ]
-    text = "<table cellspacing='4'>" + "".join(
+    text = _table(rows)
+    text += f"<h4>{translate('collarmesh', 'Smallest dihedral angle of each tetrahedron')}</h4>"
+    return text + bars(mesh["histograms"]["min_dihedral"]) + _groups(fem_mesh)
+
+
+def _rows_of_shell(fem_mesh):
+    """Of triangles, or of lines."""
+    of_triangles = elements.dimension(fem_mesh) == 2
+    name = translate("collarmesh", "Triangles") if of_triangles else translate("collarmesh", "Lines")
+    return [(name, f"{len(elements.numbers(fem_mesh))}"),
+            (translate("collarmesh", "Order of the elements"), f"{elements.order(fem_mesh)}"),
+            (translate("collarmesh", "Nodes"), f"{fem_mesh.NodeCount}")]
+
+
+def _table(rows):
+    return "<table cellspacing='4'>" + "".join(
         f"<tr><td>{name}</td><td align='right'><b>{value}</b></td></tr>" for name, value in rows
-    )
-    text += f"</table><h4>{translate('collarmesh', 'Smallest dihedral angle of each tetrahedron')}</h4>"
-    text += bars(mesh["histograms"]["min_dihedral"])
+    ) + "</table>"
+
+
+def _groups(fem_mesh):
     names = sorted(groups.named(fem_mesh).items(), key=lambda group: group[1])
-    text += f"<h4>{translate('collarmesh', 'Groups')}</h4><table cellspacing='4'>"
+    text = f"<h4>{translate('collarmesh', 'Groups')}</h4><table cellspacing='4'>"
     for name, number in names:
         count = len(fem_mesh.getGroupElements(number))
         text += f"<tr><td>{html.escape(name)}</td><td align='right'>{count}</td></tr>"

@@ -17,7 +17,8 @@ FINENESS = {
     "Fine": (0.2, 3),
     "VeryFine": (0.1, 5),
 }
-COMMON = ("CharacteristicLengthMax", "CharacteristicLengthMin", "MeshSizeFromCurvature", "ElementOrder")
+COMMON = ("CharacteristicLengthMax", "CharacteristicLengthMin",
+          "MeshSizeFromCurvature", "ElementOrder", "ElementDimension")
 # Gmsh's settings without a counterpart of ours: the property, and the value that means it is not used.
 ONLY_GMSH = (
     ("RecombineAll", False),

@@ -6,10 +6,11 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtGui
 
-from . import (colours, compatibility, constraint_faces, constraint_faces_view, cost, dock, extent, mesh_properties,
+from . import (colours, compatibility, constraint_faces, constraint_faces_view, cost, dock, elements, extent, mesh_properties,
                meshing_process, new_mesh, open_shape, places, prediction, up_to_date, views, worst_elements)
 from .advanced_section import AdvancedSection, in_panel_words
 from .contacts_section import ContactsSection
+from .dimension_section import DimensionSection
 from .later import later
 from .order_section import OrderSection
 from .places_list import PlacesList
@@ -42,6 +43,7 @@ class MeshTaskPanel:
         self.size.changed.connect(self._ask)
         self.advanced.changed.connect(self._ask)
         self.order.changed.connect(self._ask)
+        self.dimension.changed.connect(self._ask)
         self.contacts.changed.connect(self._ask)
         if meshing_process.run_of(obj) is not None:
             self._follow(meshing_process.run_of(obj))
@@ -49,7 +51,7 @@ class MeshTaskPanel:
             self._show_outcome(meshing_process.outcome_of(obj))
         out_of_date = up_to_date.is_out_of_date(obj)
         self.result.show_out_of_date(out_of_date)
-        self._predict(None if obj.FemMesh.VolumeCount > 0 and not out_of_date else 0)  # it is only looked at
+        self._predict(None if elements.is_there(obj.FemMesh) and not out_of_date else 0)  # it is only looked at
         self.form.destroyed.connect(self.dismiss)
         self.changes = QtCore.QTimer(self.form, singleShot=True, interval=MOMENT)
         self.changes.timeout.connect(self._ask_anew)
@@ -63,6 +65,7 @@ class MeshTaskPanel:
         self.form.setWindowIcon(QtGui.QIcon(views.ICON))
         diagonal = extent.diagonal(compatibility.meshed_object(self.object))
         self.size = SizeSection(self.object, diagonal)
+        self.dimension = DimensionSection(self.object)
         self.order = OrderSection(mesh_properties.ORDERS.index(self.object.ElementOrder) + 1)
         self.advanced = AdvancedSection(self.object)
         self.preview = SizePreview(self.object, self._settings)
@@ -85,8 +88,8 @@ class MeshTaskPanel:
         self.faces_button.setToolTip(tip)
         self.faces_button.clicked.connect(self.show_constraint_faces)
         layout = QtGui.QVBoxLayout(self.form)
-        for widget in (self.size, self.preview, self.order, self.advanced, self.contacts, self.run_section, self.result, self.list,
-                       self.report_button, self.faces_button):
+        for widget in (self.size, self.preview, self.dimension, self.order, self.advanced, self.contacts, self.run_section,
+                       self.result, self.list, self.report_button, self.faces_button):
             layout.addWidget(widget)
         layout.addStretch()
         self.list.hide()
@@ -104,6 +107,7 @@ class MeshTaskPanel:
         order = mesh_properties.ORDERS[self.order.order() - 1]
         if order != self.object.ElementOrder:
             self.object.ElementOrder = order
+        self.dimension.store()
         self.contacts.store()
 
     def _ask(self, *_):
@@ -118,7 +122,14 @@ class MeshTaskPanel:
         settings = self._settings()
         if settings is None:
             return
-        if wait is None or self.run is not None or not settings.coarsen:
+        settings.dimension = self.dimension.chosen(settings.fill_holes)
+        self.order.show_dimension(settings.dimension)
+        self.dimension.show_note(settings.fill_holes)
+        if settings.dimension < 3:
+            self.predictions.pause()
+            part = compatibility.meshed_object(self.object)
+            self._show_predictions(cost.estimates(part, self.size.sizes(), settings.dimension))
+        elif wait is None or self.run is not None or not settings.coarsen:
             self._show_predictions(self.predictions.known(settings, self.size.sizes()))
         else:
             self._show_predictions(self.predictions.ask(settings, self.size.sizes(), wait), "…")
@@ -133,6 +144,7 @@ class MeshTaskPanel:
             settings.size = self.size.size()
         self.advanced.apply_to(settings)
         settings.order = self.order.order()
+        self.dimension.apply_to(settings)
         self.contacts.apply_to(settings)
         return settings
 
@@ -142,8 +154,8 @@ class MeshTaskPanel:
     def _show_predictions(self, known, missing=""):
         self.known = known
         order = self.order.order()
-        self.size.show_predictions({size: (elements, seconds + cost.loading_seconds(elements, order))
-                                    for size, (elements, seconds) in known.items()}, missing)
+        self.size.show_predictions({size: (count, None if seconds is None else seconds + cost.loading_seconds(count, order))
+                                    for size, (count, seconds) in known.items()}, missing)
 
     def start(self):
         if self.run is not None:
@@ -179,23 +191,23 @@ class MeshTaskPanel:
         return bool(holes or question)
 
     def _open_surface(self):
-        """What to ask of one; "" for other parts."""
+        """What to ask of one that is to be filled with tetrahedra; "" for other parts."""
         part = compatibility.meshed_object(self.object)
-        return "" if part is None else open_shape.question(part)
+        return open_shape.question(part) if part is not None and self.dimension.chosen(self.object.FillHoles) == 3 else ""
 
     def _question(self):
         """About a mesh that costs much; "" where there is none."""
         part, size = compatibility.meshed_object(self.object), self.object.CharacteristicLengthMax.Value
-        elements, seconds = self.known.get(size, (0, None))
-        if not elements and part is not None:
-            elements = cost.elements_by_volume(part, size)
+        count, seconds = self.known.get(size, (0, None))
+        if not count and part is not None:
+            count = cost.elements_by_extent(part, size, self.dimension.chosen(self.object.FillHoles))
         if seconds is not None:
-            seconds += cost.loading_seconds(elements, self.order.order())
-        return cost.question(elements, self.order.order(), seconds)
+            seconds += cost.loading_seconds(count, self.order.order())
+        return cost.question(count, self.order.order(), seconds)
 
     def _time_left(self):
-        elements, seconds = self.known.get(self.object.CharacteristicLengthMax.Value, (0, None))
-        return TimeLeft(seconds, cost.loading_seconds(elements, self.order.order()))
+        count, seconds = self.known.get(self.object.CharacteristicLengthMax.Value, (0, None))
+        return TimeLeft(seconds, cost.loading_seconds(count, self.order.order()))
 
     def cancel(self):
         if self.run is not None:

@@ -2,7 +2,7 @@
 
 import FreeCADGui
 
-from . import compatibility, mesh_menu, mesh_properties, other_panel, size_objects, up_to_date, views
+from . import compatibility, elements, mesh_menu, mesh_properties, other_panel, size_objects, up_to_date, views
 from .task_panel import MeshTaskPanel
 from .views import ICON, OUT_OF_DATE_ICON
 
@@ -40,6 +40,8 @@ class MeshViewProvider(compatibility.Stateless):
         """The mesh, which has appeared: a part at the same place would be seen through it."""
         part = compatibility.meshed_object(self.Object)
         self.is_new = False
+        if elements.dimension(self.Object.FemMesh) == 2:
+            self.ViewObject.BackfaceCulling = False  # shells are seen from both sides
         self.ViewObject.show()
         if part is not None and part.ViewObject.Visibility:
             part.ViewObject.Visibility = False

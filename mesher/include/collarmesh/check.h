@@ -92,4 +92,9 @@ inline constexpr double least_triangle_angle = 20, largest_triangle_angle = 120;
 CheckReport check_shells(const TetMesh& mesh, const Plc& plc, const CheckOptions& options = {},
                          const Execution& execution = {});
 
+/// The same for a mesh of curve edges alone: every vertex and curve is there, each curve as one chain of
+/// edges from end to end, near to it in both directions, edges listed once, tags, and no folded edge of
+/// second order. Cost: linear in the edges and in the complex, times a logarithm.
+CheckReport check_lines(const TetMesh& mesh, const Plc& plc, const CheckOptions& options = {});
+
 }  // namespace collarmesh

@@ -34,6 +34,7 @@ struct RunOptions : PipelineOptions {
   io::GhostCells ghost_cells = io::GhostCells::none;
   std::string cell_decomposition = {};  ///< OpenFOAM's list of partitions
   double scale = 1;                     ///< of the coordinates that are written
+  TriangleElements triangle_elements = TriangleElements::shell;
   std::vector<std::string> reports = {};
   std::string trace_folder = {};  ///< for the steps of the run
   ProgressStyle progress = ProgressStyle::automatic;

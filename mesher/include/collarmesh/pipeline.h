@@ -46,7 +46,10 @@ struct PipelineOptions {
   unsigned improve = 2;     ///< level, 1 to 3; 0: leave the slivers
   double min_dihedral = 0;  ///< degrees; 0: that of the level
   unsigned order = 1;       ///< order of the cells, 1 or 2
-  unsigned dimension = 3;   ///< 3: tetrahedra in the solids; 2: triangles on the patches (`mesh_shells`)
+  /// 3: tetrahedra in the solids; 2: triangles on the patches; 1: lines on the curves (`mesh_shells`).
+  unsigned dimension = 3;
+  std::vector<std::string> faces =
+      {};  ///< names or numbers of the patches to mesh with triangles; empty: all
   /// Number of seeds to try, from `mesh.seed` on, until every guarantee holds; at least 1. The first mesh is
   /// kept if no seed succeeds.
   unsigned seeds = 2;

@@ -11,9 +11,10 @@ namespace collarmesh {
 /// and curve edges and no tets; in it faces of a solid look outwards, those of an open surface are oriented
 /// alike as far as it is orientable. Curves are divided once, by size; patches are refined by circumcentres,
 /// coarsened and smoothed until all angles are within the bounds of `check_shells`, or as near to them as the
-/// budget of insertions allows. With exact geometry nodes lie on it. Of the options those of sizes, the
-/// distance, order and budgets count. Same input and options: same mesh. The status is `complete` even where
-/// the certificate
+/// budget of insertions allows. With exact geometry nodes lie on it. With `PipelineOptions::faces` these
+/// patches alone are meshed; with the dimension 1 all curves are, with edges alone, also where there are no
+/// patches (judged by `check_lines`). Of the options those of sizes, the distance, order and budgets count.
+/// Same input and options: same mesh. The status is `complete` even where the certificate
 /// (`PipelineResult::check`) has findings. Throws PlcError for a complex without patches, OptionError for
 /// sizes of tags that it does not have. Cost: near linear in the triangles of the complex and of the result.
 PipelineResult mesh_shells(const Plc& plc, const PipelineOptions& options = {},

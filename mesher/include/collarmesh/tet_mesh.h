@@ -15,9 +15,17 @@ enum class GroupNames {
   cad       ///< Solid1, Face7, Edge3: the sub-shapes of a CAD shape
 };
 
-/// A conforming tetrahedral mesh, or one of triangles alone (`mesh_shells`), with everything a solver's
-/// set-up needs to find its way back to the input: regions, tagged boundary and interface triangles, tagged
-/// curve edges. Every array of a group (tets, faces, edges, points) has the same length.
+/// What triangles without tets are in formats of solvers that tell elements apart.
+enum class TriangleElements {
+  shell,         ///< S3, S6
+  plane_stress,  ///< CPS3, CPS6: in the plane z = 0
+  plane_strain   ///< CPE3, CPE6: in the plane z = 0
+};
+
+/// A conforming tetrahedral mesh, or one of triangles or of curve edges alone (`mesh_shells`), with
+/// everything a solver's set-up needs to find its way back to the input: regions, tagged boundary and
+/// interface triangles, tagged curve edges. Every array of a group (tets, faces, edges, points) has the same
+/// length.
 struct TetMesh {
   /// The feature of the complex a mesh vertex lies on: the one of lowest dimension.
   struct VertexFeature {
@@ -59,6 +67,7 @@ struct TetMesh {
 
   GroupNames group_names = GroupNames::complex;
   TagNames names;  ///< names that replace those labels
+  TriangleElements triangle_elements = TriangleElements::shell;
 
   /// A rigid motion: p goes to (dot(rows[0], p), dot(rows[1], p), dot(rows[2], p)) + shift.
   struct Motion {
@@ -80,12 +89,15 @@ struct TetMesh {
   std::vector<PeriodicFaces> periodic;  ///< empty: none
 
   int order() const {
-    const bool second =
-        tets.empty() ? !tet_mid_nodes.empty() || !face_mid_nodes.empty() : !tet_mid_nodes.empty();
+    const bool second = tets.empty() ? !tet_mid_nodes.empty() || !face_mid_nodes.empty() ||
+                                           (faces.empty() && !edge_mid_nodes.empty())
+                                     : !tet_mid_nodes.empty();
     return second ? 2 : 1;
   }
   /// Returns whether it has triangles alone.
   bool is_surface() const { return tets.empty() && !faces.empty(); }
+  /// Returns whether it has curve edges alone.
+  bool is_curves() const { return tets.empty() && faces.empty() && !edges.empty(); }
 
   /// A ball of a collar: stars and books fill the union of the balls.
   struct CollarBall {

@@ -204,8 +204,8 @@ class Mesh:
 
     @property
     def order(self) -> int:
-        """1, or 2 for ten nodes to a tetrahedron."""
-        return 2 if len(self.tet_mid_nodes) else 1
+        """1, or 2 for elements with nodes in the middle of their edges."""
+        return 2 if any(len(nodes) for nodes in (self.tet_mid_nodes, self.face_mid_nodes, self.edge_mid_nodes)) else 1
 
     @property
     def report(self) -> Dict[str, Any]:

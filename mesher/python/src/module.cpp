@@ -141,7 +141,7 @@ py::dict mesh_of(const py::list& inputs, const py::dict& options, const py::obje
   arrays["check"] = parsed(report::check_json(call->run.check));
   arrays["repairs"] = describe(call->run.repair);
   if (call->run.split) arrays["split"] = parsed(report::split_json(*call->run.split));
-  arrays["notes"] = call->input->notes();
+  arrays["notes"] = call->input->notes(call->options.dimension);
   arrays["colours"] = colours_of(call->input->colours());
   std::vector<std::string> warnings;
   for (const Plc::Warning& warning : call->run.plc.warnings) warnings.push_back(warning.message);

@@ -159,11 +159,17 @@ void check_referenced(const TetMesh& mesh, Findings& findings) {
     refer(mesh.faces);
     refer(mesh.face_mid_nodes);
   }
+  if (mesh.is_curves()) {
+    refer(mesh.edges);
+    for (const Index p : mesh.edge_mid_nodes) referenced[p] = 1;
+  }
   for (Index i = 0; i < mesh.points.size(); ++i)
     if (referenced[i] == 0)
       findings.add(guarantee::referenced_points, mesh.points[i], {i},
                    "Point {} at {} is a node of no {}; leave it out of the mesh.", i, At{mesh.points[i]},
-                   mesh.is_surface() ? "triangle" : "tet");
+                   mesh.is_surface()  ? "triangle"
+                   : mesh.is_curves() ? "edge"
+                                      : "tet");
 }
 
 void check_collar_balls(const TetMesh& mesh, Findings& findings) {

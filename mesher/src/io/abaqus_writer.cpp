@@ -2,16 +2,20 @@
 // complex (VOLUME_1) and for each of their tags (REGION_7), a surface for each tag of patches (PATCH_7:
 // faces of the tets behind it), a node set for each tag of patches and curves (PATCH_7_NODES,
 // CURVE_7_NODES). Conditions for periodic faces are a file of their own beside it. EALL and NALL are
-// everything. Triangles alone are S3 or S6, an element set for each tag of patches (PATCH_7). Numbers take 20
-// characters at most, as both programs ask.
+// everything. Triangles alone are S3 or S6, or CPS3, CPE6, ... in the plane z = 0, an element set for each
+// tag of patches (PATCH_7); curve edges alone are B31 or B32, one for each tag of curves (CURVE_7). Numbers
+// take 20 characters at most, as both programs ask.
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "collarmesh/error.h"
 #include "io/abaqus_format.h"
 #include "io/abaqus_interfaces.h"
 #include "io/abaqus_periodic.h"
@@ -107,22 +111,66 @@ void write_elements(FileWriter& out, const TetMesh& mesh) {
   }
 }
 
-/// Triangles as elements of shells.
-void write_shell_elements(FileWriter& out, const TetMesh& mesh, const Names& names) {
-  std::map<Tag, std::vector<Index>> faces_of_tag;
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f)
-    faces_of_tag[mesh.face_tag[f]].push_back(static_cast<Index>(f));
-  for (const auto& [tag, faces_with_tag] : faces_of_tag) {
-    const std::vector<Index>& faces = faces_with_tag;  // as above
-    out << "*ELEMENT, TYPE=" << (mesh.order() == 2 ? "S6" : "S3") << ", ELSET=" << names.at(tag) << '\n';
-    write_each(out, faces.size(), [&](TextBuffer& text, std::size_t i) {
-      text << faces[i] + 1;
-      for (const Index v : nodes_of_face(mesh, faces[i])) text << ", " << v + 1;
+/// The elements of a mesh without tets, an element set for each tag. `nodes_of`: of the i-th one, in order.
+template <class NodesOf>
+void write_elements_by_tag(FileWriter& out, const std::vector<Tag>& tags, const std::string& type,
+                           const Names& names, const NodesOf& nodes_of) {
+  std::map<Tag, std::vector<Index>> members;
+  for (std::size_t i = 0; i < tags.size(); ++i) members[tags[i]].push_back(static_cast<Index>(i));
+  for (const auto& [tag, with_tag] : members) {
+    const std::vector<Index>& elements = with_tag;  // as above
+    out << "*ELEMENT, TYPE=" << type << ", ELSET=" << names.at(tag) << '\n';
+    write_each(out, elements.size(), [&](TextBuffer& text, std::size_t i) {
+      text << elements[i] + 1;
+      for (const Index v : nodes_of(elements[i])) text << ", " << v + 1;
       text << '\n';
     });
   }
   out << "*ELSET, ELSET=EALL\n";
-  for (const auto& each : faces_of_tag) out << names.at(each.first) << ",\n";
+  for (const auto& each : members) out << names.at(each.first) << ",\n";
+}
+
+/// Solvers take plane elements in the plane z = 0 alone.
+void require_plane(const std::string& path, const TetMesh& mesh) {
+  constexpr double flat = 1e-9;
+  Box box;
+  for (const Point& p : mesh.points) box.add(p);
+  for (const Point& p : mesh.points)
+    if (std::fabs(p.z) > flat * box.diagonal())
+      throw WriteError(fmt::format(
+          "{}: elements in a plane lie in the plane z = 0, but there is a node at ({:.6g}, {:.6g}, {:.6g}); "
+          "move or turn the domain there, or leave --triangle-elements out",
+          path, p.x, p.y, p.z));
+}
+
+/// Anticlockwise, seen from above.
+CellNodes nodes_of_plane_face(const TetMesh& mesh, std::size_t face) {
+  constexpr std::array<std::uint8_t, 3> turned{0, 2, 1};
+  constexpr std::array<std::uint8_t, 6> turned_curved{0, 2, 1, 5, 4, 3};
+  const CellNodes nodes = nodes_of_face(mesh, face);
+  const auto& [a, b, c] = mesh.faces[face];
+  if (cross(mesh.points[b] - mesh.points[a], mesh.points[c] - mesh.points[a]).z > 0) return nodes;
+  return nodes.size() == turned.size() ? nodes.in_order(turned) : nodes.in_order(turned_curved);
+}
+
+/// Triangles as elements of shells, or of a plane.
+void write_triangles(FileWriter& out, const TetMesh& mesh, const Names& names) {
+  const std::size_t nodes = mesh.order() == 2 ? 6 : 3;
+  if (mesh.triangle_elements == TriangleElements::shell) {
+    write_elements_by_tag(out, mesh.face_tag, fmt::format("S{}", nodes), names,
+                          [&](Index face) { return nodes_of_face(mesh, face); });
+    return;
+  }
+  const char* const kind = mesh.triangle_elements == TriangleElements::plane_stress ? "CPS" : "CPE";
+  write_elements_by_tag(out, mesh.face_tag, fmt::format("{}{}", kind, nodes), names,
+                        [&](Index face) { return nodes_of_plane_face(mesh, face); });
+}
+
+/// Edges as beams; the middle node is the second one.
+void write_beams(FileWriter& out, const TetMesh& mesh, const Names& names) {
+  constexpr std::array<std::uint8_t, 3> order{0, 2, 1};
+  write_elements_by_tag(out, mesh.edge_tag, mesh.order() == 2 ? "B32" : "B31", names,
+                        [&](Index edge) { return nodes_of_edge(mesh, edge).in_order(order); });
 }
 
 /// The element and its side that lie behind each face.
@@ -143,18 +191,22 @@ void write_surfaces(FileWriter& out, const TetMesh& mesh, const Names& names) {
 void write_abaqus(const std::string& path, const TetMesh& mesh) { write_abaqus(path, mesh, {}); }
 
 void write_abaqus(const std::string& path, const TetMesh& mesh, const Interfaces& interfaces) {
+  const bool without_tets = mesh.is_surface() || mesh.is_curves();
+  if (mesh.is_surface() && mesh.triangle_elements != TriangleElements::shell) require_plane(path, mesh);
   FileWriter out(path);
   out << "*HEADING\nWritten by collarmesh.\n";
   write_nodes(out, mesh);
   DistinctNames known(std::string::npos);
-  if (mesh.is_surface())
+  if (without_tets)
     known.add(capital_word(abaqus_everything));
   else
     write_elements(out, mesh);
   const Names patches = names_of(mesh, 2, mesh.face_tag, known),
               curves = names_of(mesh, 1, mesh.edge_tag, known);
-  if (mesh.is_surface())
-    write_shell_elements(out, mesh, patches);
+  if (mesh.is_curves())
+    write_beams(out, mesh, curves);
+  else if (mesh.is_surface())
+    write_triangles(out, mesh, patches);
   else
     write_surfaces(out, mesh, patches);
   write_node_sets(out, nodes_by_tag(mesh, nodes_of_face, mesh.face_tag), patches);

@@ -268,7 +268,7 @@ void write(const std::string& path, const TetMesh& mesh, bool with_ghosts) {
   write_elements(out, mesh, holders, groups);
   write_msh_links(out, find_msh_links(mesh, entities), 4);
   if (parts && with_ghosts) write_ghost_elements(out, mesh, *parts);
-  if (!mesh.is_surface()) {
+  if (!mesh.tets.empty()) {
     write_data(out, "collar", mesh.tet_collar, groups);
     write_data(out, "crease", mesh.tet_crease, groups);
   }

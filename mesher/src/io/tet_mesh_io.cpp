@@ -22,7 +22,7 @@ struct TetMeshFormat {
   bool partitions = false;                   ///< has a place for them
   void (*write_with_ghost_cells)(const std::string& path, const TetMesh& mesh) = nullptr;
   bool second_order = true;
-  bool surfaces = false;  ///< has a place for meshes of triangles alone
+  bool surfaces = false;  ///< has a place for meshes of triangles alone, and of curve edges alone
 };
 
 constexpr TetMeshFormat of_surfaces(TetMeshFormat format) {
@@ -82,9 +82,10 @@ void write_tet_mesh(const std::string& path, const TetMesh& mesh, std::string_vi
                     GhostCells ghost_cells) {
   const TetMeshFormat* found = find_format(path, format);
   if (found == nullptr) throw WriteError(unknown(path, format, written_tet_mesh_formats()));
-  if (mesh.is_surface() && !found->surfaces)
-    throw WriteError(fmt::format("{}: {} has no place for a mesh of triangles alone; write {}", path,
-                                 found->extension, fmt::join(formats_of_surfaces(), " ")));
+  if ((mesh.is_surface() || mesh.is_curves()) && !found->surfaces)
+    throw WriteError(fmt::format("{}: {} has no place for a mesh of {} alone; write {}", path,
+                                 found->extension, mesh.is_curves() ? "lines" : "triangles",
+                                 fmt::join(formats_of_surfaces(), " ")));
   const bool with_ghosts = ghost_cells == GhostCells::one_layer;
   if (with_ghosts && found->write_with_ghost_cells == nullptr)
     throw WriteError(

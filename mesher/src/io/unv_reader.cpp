@@ -37,7 +37,8 @@ class UnvReader {
       if (const std::string_view mark = scan_.word("-1"); mark != "-1")
         scan_.fail("-1, the end of a dataset", mark);
     }
-    if (mesh_.tets.empty()) scan_.fail("expected tetrahedra (111, 118), found none");
+    if (mesh_.tets.empty() && mesh_.faces.empty() && mesh_.edges.empty())
+      scan_.fail("expected tetrahedra (111, 118), found none");
     tag_cells();
     complete_mesh(path_, mesh_);
     return std::move(mesh_);

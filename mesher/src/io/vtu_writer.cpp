@@ -145,7 +145,8 @@ void write_vtu(const std::string& path, const TetMesh& mesh) {
   // Counting the threads that there can be keeps TBB to them.
   if (tbb::this_task_arena::max_concurrency() > 1) static_cast<void>(usable_threads());
   VtkGrid grid = make_vtk_grid(mesh);
-  const std::vector<VtkArray> boundary = mesh.is_surface() ? names_array(mesh) : take_boundary(mesh, grid);
+  const std::vector<VtkArray> boundary =
+      mesh.is_surface() || mesh.is_curves() ? names_array(mesh) : take_boundary(mesh, grid);
   write_vtu_grid(path, grid, boundary);
 }
 

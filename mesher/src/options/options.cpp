@@ -130,6 +130,10 @@ void require_consistent(const RunOptions& o) {
           "and periodic out");
   require(o.coarsen || !o.periodic.any(),
           "the elements beside periodic faces are coarsened anew; leave periodic out, or coarsen");
+  require(o.faces.empty() || o.dimension == 2,
+          "faces are for triangles alone; add dimension 2, or leave them out");
+  require(o.triangle_elements == TriangleElements::shell || o.dimension == 2,
+          "triangle-elements are for triangles alone; add dimension 2, or leave them out");
   const bool is_papers = o.mesh.profile == Profile::paper;
   require(o.start != Start::constrained || (o.coarsen && !is_papers),
           "start constrained is for meshes that are coarsened; leave it out, or coarsen");

@@ -76,7 +76,7 @@ constexpr Option::Place asked_dimension{Kind::count, at<&RunOptions::dimension>.
                                         [](const Option&, RunOptions& options, const OptionValue& value) {
                                           options.dimension =
                                               static_cast<unsigned>(std::get<std::uint64_t>(value));
-                                          if (options.dimension == 2) options.complex.require_solid = false;
+                                          if (options.dimension < 3) options.complex.require_solid = false;
                                         }};
 
 constexpr unsigned writing = Option::mesh | Option::convert | Option::remesh,
@@ -273,13 +273,24 @@ std::vector<Option> element_options() {
        .commands = sizing},
       {.name = "dimension D",
        .place = asked_dimension,
-       .low = 2,
+       .low = 1,
        .high = 3,
        .help =
            "Dimension of the elements: 3 tetrahedra in the solids; 2 triangles on the surfaces, which need "
-           "not be closed",
+           "not be closed; 1 lines on the curves, for beams",
        .details = "see [Shells](shells.md)",
        .commands = Option::mesh | Option::programs},
+      {.name = "faces NAME",
+       .place = at<&RunOptions::faces>,
+       .help = "Mesh only this patch (name or number) with triangles; for --dimension 2",
+       .details = "see [Shells](shells.md#some-faces-of-a-solid)",
+       .commands = Option::mesh | Option::programs},
+      {.name = "triangle-elements",
+       .words = {"shell", "plane-stress", "plane-strain"},
+       .place = choice_at<&RunOptions::triangle_elements>,
+       .help = "Elements of --dimension 2 in .inp: S3 and S6, CPS3 and CPS6, or CPE3 and CPE6, which lie in "
+               "the plane z = 0",
+       .commands = Option::mesh},
       {.name = "interior-node",
        .place = in_bounds<&Bounds::interior_node>,
        .help = "Leave no tetrahedron with all corners on boundaries, interfaces or internal patches; "

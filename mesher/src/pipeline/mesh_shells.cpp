@@ -5,7 +5,7 @@ namespace collarmesh {
 namespace {
 
 PipelineOptions of_surfaces(PipelineOptions options) {
-  options.dimension = 2;
+  if (options.dimension == 3) options.dimension = 2;
   options.complex.require_solid = false;
   return options;
 }

@@ -144,7 +144,7 @@ class Pipeline {
   }
 
   SoupPipelineResult run(ComplexSource& source) {
-    if (given_.dimension == 2) {
+    if (given_.dimension < 3) {
       to_ = 1;
       return told_of_time(shells::run(source, given_, inner_));
     }
@@ -163,7 +163,7 @@ class Pipeline {
   }
 
   PipelineResult run(const Plc& plc) {
-    if (given_.dimension == 2) {
+    if (given_.dimension < 3) {
       to_ = 1;
       return told_of_time(shells::run(plc, given_, inner_));
     }

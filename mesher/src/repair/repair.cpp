@@ -77,9 +77,13 @@ struct LostVolume : PlcError {
 
 class Repairer {
  public:
+  /// Solids: holes are filled, and what encloses nothing is dropped. Sheets: all stays, open as it is; it is
+  /// cut where it intersects.
+  enum class Of { solids, sheets };
+
   Repairer(std::span<const PolygonSoup> soups, const RepairOptions& options, const PlcOptions& complex,
-           const Execution& execution)
-      : soups_(soups), options_(options), complex_(complex), work_(options.max_work, execution) {}
+           const Execution& execution, Of of = Of::solids)
+      : soups_(soups), options_(options), complex_(complex), of_(of), work_(options.max_work, execution) {}
 
   RepairResult run() {
     try {
@@ -127,8 +131,13 @@ class Repairer {
   RepairResult repaired() {
     collect();
     tidy();
-    close();
-    make_valid();
+    if (of_ == Of::sheets) {
+      first_new_point_ = static_cast<Index>(draft_.points.size());
+      report_.gave_up = !cut_what_nearly_coincides();
+    } else {
+      close();
+      make_valid();
+    }
     work_.spend(0);
     RepairResult result{to_soups(soups_, draft_, first_new_point_), std::move(report_)};
     result.report.repaired = true;
@@ -334,6 +343,10 @@ class Repairer {
     const ArrangementReport arranged = arrange(draft_, grain * tolerance_, &work_, !two_sided);
     if (report_.cut.count == 0) add_places(report_.cut, arranged.intersecting_pairs, 0, arranged.places);
     if (!arranged.clean) return false;
+    if (of_ == Of::sheets) {  // of those that cover each other one stays
+      drop_repeated(draft_);
+      return true;
+    }
     if (two_sided) report_.second_sides += keep_one_side(draft_);
     encloses_nothing_ = arranged.intersecting_pairs == 0 && peels_away(draft_);
     if (encloses_nothing_) return true;
@@ -369,6 +382,7 @@ class Repairer {
   std::span<const PolygonSoup> soups_;  // as they came in
   const RepairOptions& options_;
   const PlcOptions& complex_;
+  Of of_;
   Draft draft_;
   std::vector<CornerPoints> input_triangles_;
   double tolerance_ = 0;  // absolute
@@ -446,6 +460,20 @@ RepairedPlc judged(const Repairer& repairer, RepairResult result, const PlcOptio
     judge_volume(repairer.kept_volume(complex.report), complex.plc);
   }
   return with_lost_regions(std::move(complex), repairer.input());
+}
+
+/// Sheets that intersect, cut there. Throws PlcError where they cannot be.
+RepairedPlc build_cut_sheets(std::span<const PolygonSoup> soups, const PlcOptions& options,
+                             const RepairOptions& repair_options, const Execution& execution,
+                             const PlcError& fault) {
+  Repairer repairer(soups, repair_options, options, execution, Repairer::Of::sheets);
+  RepairResult result = repairer.run();
+  if (result.report.cancelled) return {Plc(), std::move(result.report), {}};
+  if (result.report.gave_up) throw PlcError(fault);
+  RepairedPlc complex{build_plc(result.soups, options), std::move(result.report), std::move(result.soups)};
+  number_untagged(repairer.input(), complex.plc);
+  repairer.measure(complex.report);
+  return complex;
 }
 
 // Tells which regions of a valid complex its repair took away.
@@ -544,6 +572,7 @@ RepairedPlc build_repaired_plc(std::span<const PolygonSoup> soups, const PlcOpti
     first = error;
   }
   std::optional<std::string> lost_volume;
+  bool are_sheets = false;
   for (const double factor : {1.0, 10.0, 0.1}) {
     if (factor < 1 && !lost_volume) break;  // a finer one may keep more
     const RepairOptions other = for_try(repair_options, factor);
@@ -554,7 +583,11 @@ RepairedPlc build_repaired_plc(std::span<const PolygonSoup> soups, const PlcOpti
       first = given_up(*first, other);
       break;
     }
-    if (repairer.encloses_nothing() && options.require_solid) continue;
+    if (repairer.encloses_nothing()) {
+      are_sheets = !options.require_solid;
+      if (are_sheets) break;
+      continue;
+    }
     try {
       return judged(repairer, std::move(result), options);
     } catch (const LostVolume& error) {
@@ -563,6 +596,7 @@ RepairedPlc build_repaired_plc(std::span<const PolygonSoup> soups, const PlcOpti
       continue;  // another tolerance may help
     }
   }
+  if (are_sheets) return build_cut_sheets(soups, options, repair_options, execution, *first);
   // The last resort, on request.
   if (repair_options.mode == RepairMode::wrap)
     if (auto wrapped = build_wrapped_plc(soups, options, repair_options)) return *std::move(wrapped);

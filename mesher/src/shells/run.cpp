@@ -11,6 +11,8 @@
 #include "common/flat_features.h"
 #include "common/thread_limit.h"
 #include "repair/noise.h"
+#include "shells/chosen_patches.h"
+#include "shells/curve_mesher.h"
 #include "shells/curved_triangles.h"
 #include "shells/surface_mesher.h"
 #include "shells/turn_patches.h"
@@ -62,9 +64,15 @@ class Run {
   }
 
   void mesh(const Plc& plc, const PipelineOptions& options, PipelineResult& made) {
+    if (options.dimension == 1) return mesh_lines(plc, options, made);
     if (plc.patches.empty())
-      throw PlcError("The input has no faces to mesh with triangles; add some, or leave --dimension 2 out.",
-                     {});
+      throw PlcError(
+          plc.curves.empty()
+              ? "The input has no faces to mesh with triangles; add some, or leave --dimension 2 out."
+              : "The input has no faces to mesh with triangles, but curves; add faces, or mesh its curves "
+                "with "
+                "lines (--dimension 1).",
+          {});
     require_known_tags(options.mesh, plc);
     Bounds bounds = options.mesh.bounds;
     bounds.tolerance = surface_tolerance(plc, options);
@@ -92,6 +100,28 @@ class Run {
         mesh, plc, {.bounds = bounds, .exact = options.exact_measures, .threads = options.mesh.threads},
         execution_);
     stop_if_asked();
+  }
+
+  /// Curves alone, for beams.
+  void mesh_lines(const Plc& plc, const PipelineOptions& options, PipelineResult& made) {
+    if (plc.curves.empty())
+      throw PlcError(
+          "The input has no edges or curves to mesh with lines; add some, or leave --dimension 1 out.", {});
+    require_known_tags(options.mesh, plc);
+    Bounds bounds = options.mesh.bounds;
+    bounds.tolerance = tolerance_of(plc, bounds, options.mesh.size, static_cast<int>(options.order));
+    const FlatFeatures flat(plc);
+    const ExactGeometry exact = options.exact ? flat.limit(options.exact) : ExactGeometry();
+    begin("refine", 0.1);
+    CurveMesh lines = mesh_curves(plc, options.mesh, *bounds.tolerance, options.order, exact);
+    made.result.mesh = std::move(lines.mesh);
+    if (exact) made.projection = std::move(lines.projection);
+    made.second_order = std::move(lines.second_order);
+    made.result.status = MeshStatus::complete;
+    begin("check", 0.9);
+    made.check =
+        check_lines(made.result.mesh, plc,
+                    {.bounds = bounds, .exact = options.exact_measures, .threads = options.mesh.threads});
   }
 
   /// Calls the stages; a result of one that was stopped has no mesh.
@@ -127,11 +157,20 @@ class Run {
 
 SoupPipelineResult run(ComplexSource& source, const PipelineOptions& options, const Execution& execution) {
   SoupPipelineResult all;
+  Plc whole;
   Run stages(options, execution);
   stages.until_ended(all, [&] {
     stages.build(source, all);
     PipelineOptions adapted = stages.options();
-    source.adapt(all.plc, adapted);
+    if (!adapted.faces.empty()) {
+      whole = std::move(all.plc);  // what adapts the options may refer to it
+      source.adapt(whole, adapted);
+      ChosenPatches chosen = choose_patches(whole, adapted.faces);
+      chosen.adapt(adapted);
+      all.plc = std::move(chosen.plc);
+    } else {
+      source.adapt(all.plc, adapted);
+    }
     stages.mesh(all.plc, adapted, all);
   });
   return all;
@@ -140,7 +179,16 @@ SoupPipelineResult run(ComplexSource& source, const PipelineOptions& options, co
 PipelineResult run(const Plc& plc, const PipelineOptions& options, const Execution& execution) {
   PipelineResult made;
   Run stages(options, execution);
-  stages.until_ended(made, [&] { stages.mesh(plc, stages.options(), made); });
+  stages.until_ended(made, [&] {
+    if (options.faces.empty()) {
+      stages.mesh(plc, stages.options(), made);
+      return;
+    }
+    const ChosenPatches chosen = choose_patches(plc, options.faces);
+    PipelineOptions adapted = stages.options();
+    chosen.adapt(adapted);
+    stages.mesh(chosen.plc, adapted, made);
+  });
   return made;
 }
 

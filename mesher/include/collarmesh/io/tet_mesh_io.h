@@ -36,7 +36,7 @@ std::vector<std::string> formats_with_ghost_cells();
 /// Those that have no elements of second order.
 std::vector<std::string> formats_of_first_order();
 
-/// Those that hold meshes of triangles alone.
+/// Those that hold meshes of triangles alone, and of curve edges alone.
 std::vector<std::string> formats_of_surfaces();
 
 /// What to do about a format that this program was built without, as a sentence that names the library; empty

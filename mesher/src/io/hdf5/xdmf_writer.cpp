@@ -96,8 +96,8 @@ std::vector<std::int64_t> nodes_of_all(const TetMesh& mesh, std::size_t count, N
 std::array<Cells, 3> cells_by_dimension(const TetMesh& mesh) {
   const bool second = mesh.order() == 2;
   const std::size_t tets = mesh.tets.size(), faces = mesh.faces.size(), edges = mesh.edges.size();
-  const bool surface = mesh.is_surface();
-  return {Cells{surface ? "tets" : "mesh",
+  const bool surface = mesh.is_surface(), curves = mesh.is_curves();
+  return {Cells{surface || curves ? "tets" : "mesh",
                 second ? "Tetrahedron_10" : "Tetrahedron",
                 0,
                 tets,
@@ -110,7 +110,7 @@ std::array<Cells, 3> cells_by_dimension(const TetMesh& mesh) {
                 faces,
                 nodes_of_all(mesh, faces, nodes_of_face),
                 {"tag", "region_back", "region_front", "feature", "partition"}},
-          Cells{"edges",
+          Cells{curves ? "mesh" : "edges",
                 second ? "Edge_3" : "Polyline",
                 tets + faces,
                 edges,

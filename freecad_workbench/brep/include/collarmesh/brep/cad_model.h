@@ -69,8 +69,8 @@ struct CadMeasures {
 /// (module.cpp).
 class CadModel {
  public:
-  /// `labels`: of the shape's sub-shapes. Throws PlcError for a shape without solids and faces. The result
-  /// does not depend on the number of cores.
+  /// `labels`: of the shape's sub-shapes. Throws PlcError for a shape without solids, faces and edges. The
+  /// result does not depend on the number of cores.
   CadModel(const TopoDS_Shape& shape, std::string name, const CadOptions& options = {},
            CadLabels labels = {});
   virtual ~CadModel();
