@@ -24,6 +24,10 @@
       <translation>Dimension der Elemente. 3D: Tetraeder in Volumenkörpern; 2D: Dreiecke auf Flächen, für Schalen; 1D: Linien auf Kanten, für Balken; From Shape: danach, was die Form umschließt</translation>
     </message>
     <message>
+      <source>Each element has a node that is on no face</source>
+      <translation>Jedes Element hat einen Knoten, der auf keiner Fläche liegt</translation>
+    </message>
+    <message>
       <source>Edges and faces that meet below it get a collar</source>
       <translation>Kanten und Flächen, die sich unter einem kleineren Winkel treffen, bekommen einen Kragen</translation>
     </message>
@@ -38,6 +42,10 @@
     <message>
       <source>Faces and edges near which the size holds</source>
       <translation>Flächen und Kanten, in deren Nähe die Größe gilt</translation>
+    </message>
+    <message>
+      <source>Faces inside whose two sides get nodes of their own, as those of cracks: Face7</source>
+      <translation>Flächen im Innern, deren beide Seiten eigene Knoten bekommen, wie bei Rissen: Face7</translation>
     </message>
     <message>
       <source>Faces this near to a plane are planar, relative to the diagonal; 0: 1e-6</source>
@@ -98,6 +106,10 @@
     <message>
       <source>Order of the elements</source>
       <translation>Elementordnung</translation>
+    </message>
+    <message>
+      <source>Pairs of sides that get the same nodes and triangles: x, y, z, Face1=Face2, Face1=Face2:rotation,z,60</source>
+      <translation>Paare von Seiten, die dieselben Knoten und Dreiecke bekommen: x, y, z, Face1=Face2, Face1=Face2:rotation,z,60</translation>
     </message>
     <message>
       <source>Points closer than this are one, relative to the diagonal; 0: 1e-9</source>
@@ -237,6 +249,10 @@
     <message>
       <source>A hole of the shape is filled, with {area} mm²; the list has its place.</source>
       <translation>Ein Loch der Form ist mit {area} mm² gefüllt; die Liste sagt, wo.</translation>
+    </message>
+    <message>
+      <source>A node inside of each element</source>
+      <translation>Ein Knoten im Innern jedes Elements</translation>
     </message>
     <message>
       <source>Add the selected</source>
@@ -407,12 +423,20 @@
       <translation>Flächen für Randbedingungen</translation>
     </message>
     <message>
+      <source>Faces inside whose two sides get nodes of their own, as those of cracks; their names, with spaces between them</source>
+      <translation>Flächen im Innern, deren beide Seiten eigene Knoten bekommen, wie bei Rissen; ihre Namen, durch Leerzeichen getrennt</translation>
+    </message>
+    <message>
       <source>Faces of {part}</source>
       <translation>Flächen von {part}</translation>
     </message>
     <message>
       <source>Faces this near to a plane are planar, relative to the diagonal; 0: 1e-6</source>
       <translation>So nah an einer Ebene gilt eine Fläche als eben, relativ zur Diagonale; 0: 1e-6</translation>
+    </message>
+    <message>
+      <source>Faces to split</source>
+      <translation>Aufzutrennende Flächen</translation>
     </message>
     <message>
       <source>Fill holes of open surfaces</source>
@@ -583,6 +607,10 @@
       <translation>Nie kleinere Elemente verlangen; 0: keine Grenze</translation>
     </message>
     <message>
+      <source>No element has all its corners on faces</source>
+      <translation>Kein Element hat alle Ecken auf Flächen</translation>
+    </message>
+    <message>
       <source>No mesh is made; the list says why.</source>
       <translation>Es ist kein Netz entstanden; die Liste sagt, warum.</translation>
     </message>
@@ -613,6 +641,14 @@
     <message>
       <source>Order of the elements</source>
       <translation>Elementordnung</translation>
+    </message>
+    <message>
+      <source>Pairs of sides that get the same nodes and triangles, with spaces between them: x y z, or Face1=Face2</source>
+      <translation>Paare von Seiten, die dieselben Knoten und Dreiecke bekommen, durch Leerzeichen getrennt: x y z oder Face1=Face2</translation>
+    </message>
+    <message>
+      <source>Periodic faces</source>
+      <translation>Periodische Flächen</translation>
     </message>
     <message>
       <source>Periodic faces have the same nodes, edges and triangles</source>
