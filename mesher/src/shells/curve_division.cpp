@@ -9,9 +9,6 @@ namespace collarmesh::shells {
 
 namespace {
 
-// A number of edges that is so much too small is not rounded up: edges are longer by a third at most.
-constexpr double rounding = 0.3;
-
 /// The number of target edge lengths between two places, by place.
 class EdgesAlong {
  public:
@@ -89,7 +86,7 @@ double sag_between(const Plc& plc, const CurvePaths& paths, const SagLimit& limi
 }
 
 std::vector<double> divide_by_size(const std::function<double(double)>& size, double from, double to,
-                                   double least_count) {
+                                   double least_count, double rounding) {
   const EdgesAlong along(size, from, to);
   const double count = std::max(least_count, std::ceil(along.total() - rounding));
   std::vector<double> places{from};
@@ -101,12 +98,13 @@ std::vector<double> divide_by_size(const std::function<double(double)>& size, do
 std::vector<double> divide_curve(const Plc& plc, const CurvePaths& paths, const SagLimit& limit,
                                  const SurfaceSizes& sizes, Index curve, const std::array<double, 2>& tips) {
   const double length = paths.length(curve), shortest = 1e-6 * length;
+  constexpr double rounding = 0.3;  // edges are longer by a third at most
   const double from = tips[0], to = length - tips[1];
   const double of_tips = (tips[0] > 0 ? 1 : 0) + (tips[1] > 0 ? 1 : 0);
   std::vector<double> at;
   if (to - from > shortest)
     at = divide_by_size([&](double place) { return sizes.on_curve(curve, place); }, from, to,
-                        std::max(1.0, least_edge_count(plc, curve) - of_tips));
+                        std::max(1.0, least_edge_count(plc, curve) - of_tips), rounding);
   else
     at = {from};
   if (tips[0] > 0) at.insert(at.begin(), 0);

@@ -23,9 +23,10 @@ double sag_between(const Plc& plc, const CurvePaths& paths, const SurfaceToleran
 double least_edge_count(const Plc& plc, Index curve);
 
 /// Returns places from one to another, both included, whose distances are as the target edge length asks,
-/// which is a function of the place; there are so many distances at least.
+/// which is a function of the place; there are so many distances at least. A number of them that is too small
+/// by less than `rounding` is not rounded up.
 std::vector<double> divide_by_size(const std::function<double(double)>& size, double from, double to,
-                                   double least_count);
+                                   double least_count, double rounding);
 
 /// Returns the arc lengths at which the edges of a curve begin and end, the last one its length: as many as
 /// the sizes ask for, so short that they are within the limit of it. A closed curve has at least three,

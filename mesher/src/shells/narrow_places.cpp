@@ -8,12 +8,12 @@ namespace collarmesh::shells {
 
 namespace {
 
-// Edges on both sides of a narrow place, relative to its width: angles are 26 degrees where ends of edges
-// face each other, and 45 where they face middles.
-constexpr double length_per_width = 2.6;
+// Edges on both sides of a narrow place, relative to its width: angles are 22 degrees where ends of edges
+// face each other, and 39 where they face middles.
+constexpr double length_per_width = 2.5;
 // Edges in narrow places are not much more than this many: where places are narrower, they are longer than
 // the angles ask for.
-constexpr double most_edges = 20'000;
+constexpr double most_edges = 32'000;
 
 }  // namespace
 
@@ -86,12 +86,12 @@ bool NarrowPlaces::divide_at(Index edge, const std::vector<double>& places) {
 }
 
 bool NarrowPlaces::divide_edge(Index edge) {
-  constexpr double much_longer = 4;
+  constexpr double much_longer = 4, rounding = 0.1;
   const auto [from, to] = complex_.edges[edge].at;
   const auto& [a, b] = complex_.edges[edge].ends;
   if (editor_.length(a, b) > much_longer * widths_[edge])
     return divide_at(edge, {from, 0.5 * (from + to), to});
-  return divide_at(edge, divide_by_size([&](double at) { return size_on(edge, at); }, from, to, 1));
+  return divide_at(edge, divide_by_size([&](double at) { return size_on(edge, at); }, from, to, 1, rounding));
 }
 
 /// Keeps the tips at a vertex equally long.

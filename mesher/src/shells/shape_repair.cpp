@@ -174,12 +174,18 @@ void ShapeRepair::improve(double wanted) {
 
 /// Divides an edge of a curve beside the triangle that a vertex at p would encroach upon.
 bool ShapeRepair::divide_curve_beside(Index triangle, const Point& p) {
+  constexpr double least_cosine = -0.45;  // of 117 degrees
   const std::array<Index, 3> c = complex_.triangles[triangle].corners;
   for (unsigned i = 0; i < 3; ++i) {
     const Index edge = complex_.edge_at(c[i], c[(i + 1) % 3]);
-    if (edge == none || complex_.edges[edge].tip != none) continue;
+    if (edge == none) continue;
     const auto [a, b] = complex_.edges[edge].ends;
-    if (dot(complex_.vertices[a].point - p, complex_.vertices[b].point - p) >= 0) continue;
+    const Vector to_a = complex_.vertices[a].point - p, to_b = complex_.vertices[b].point - p;
+    if (complex_.edges[edge].tip != none) {  // not divided: a vertex may be so near that angles are good
+      if (dot(to_a, to_b) < least_cosine * norm(to_a) * norm(to_b)) return true;
+      continue;
+    }
+    if (dot(to_a, to_b) >= 0) continue;
     if (editor_.length(a, b) < 2 * shortest * editor_.size_of_edge(a, b)) return true;
     const Index v = editor_.divide_curve_edge(edge);
     if (v == none) return true;
@@ -239,29 +245,8 @@ bool ShapeRepair::too_narrow(Index triangle) const {
   return height < narrowest_ * size;
 }
 
-/// Divides the longest side of a triangle that is no needle, unless that makes edges much shorter than the
-/// target edge length.
-bool ShapeRepair::divide_longest(Index triangle) {
-  const std::array<Index, 3> c = complex_.triangles[triangle].corners;
-  unsigned longest = 0;
-  for (unsigned i = 1; i < 3; ++i)
-    if (editor_.length(c[i], c[(i + 1) % 3]) > editor_.length(c[longest], c[(longest + 1) % 3])) longest = i;
-  const Index a = c[longest], b = c[(longest + 1) % 3], edge = complex_.edge_at(a, b);
-  constexpr double least_length = 0.7, needle = 0.5 * least_angle;
-  if (editor_.shape(triangle) < needle || editor_.length(a, b) < least_length * editor_.size_of_edge(a, b))
-    return false;
-  if (edge != none && complex_.edges[edge].tip != none) return false;
-  const Index v = edge == none ? editor_.divide(a, b) : editor_.divide_curve_edge(edge);
-  if (v != none) editor_.flip_around(v);
-  return v != none;
-}
-
 bool ShapeRepair::refine(Index triangle) {
   if (too_narrow(triangle)) return false;
-  return insert_at_centre(triangle) || divide_longest(triangle);
-}
-
-bool ShapeRepair::insert_at_centre(Index triangle) {
   const auto corners = complex_.corners(triangle);
   unsigned opposite = 0;  // to the shortest side
   double shortest_side = INFINITY;

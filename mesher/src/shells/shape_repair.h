@@ -47,8 +47,6 @@ class ShapeRepair {
   bool move_within(Index vertex);
   bool too_narrow(Index triangle) const;
   bool refine(Index triangle);
-  bool insert_at_centre(Index triangle);
-  bool divide_longest(Index triangle);
   bool divide_curve_beside(Index triangle, const Point& p);
   bool insert_towards(Index triangle, const Point& p);
 

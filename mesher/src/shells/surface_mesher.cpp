@@ -75,7 +75,7 @@ void SurfaceMesher::take_complex() {
 /// For points of the complex, the tolerance or, where curves are near to each other, so much less that their
 /// edges do not cross.
 std::vector<double> SurfaceMesher::sag_limits() const {
-  constexpr double share = 0.25, least = 1e-3;  // of the width, of the tolerance
+  constexpr double share = 0.1, least = 1e-3;  // of the width, of the tolerance
   std::vector<double> limits(plc_.points.size());
   for (Index p = 0; p < limits.size(); ++p) limits[p] = tolerance_.at_point(p);
   for_narrow_triangles(complex_, [&](const NarrowTriangle& narrow) {
@@ -276,6 +276,21 @@ void SurfaceMesher::run() {
   for (unsigned round = 0; round < last_rounds && repair_.approach(rest()); ++round) repair_.run(rest());
 }
 
+/// Unless an angle falls below its bound, or below what it was if that is less.
+bool SurfaceMesher::project_vertex(Index vertex, const Point& target) {
+  const Point before = complex_.vertices[vertex].point;
+  std::vector<double> least;
+  for (const Index t : complex_.vertices[vertex].triangles)
+    least.push_back(std::min(editor_.shape(t), repair_.bound(t)));
+  if (!editor_.put(vertex, target, *std::min_element(least.begin(), least.end()))) return false;
+  for (std::size_t i = 0; i < least.size(); ++i) {
+    if (editor_.shape(complex_.vertices[vertex].triangles[i]) >= least[i]) continue;
+    complex_.vertices[vertex].point = before;
+    return false;
+  }
+  return true;
+}
+
 ProjectReport SurfaceMesher::project(const ExactGeometry& exact, double most_excess) {
   ProjectReport report;
   editor_.set_most_excess(most_excess);
@@ -288,9 +303,7 @@ ProjectReport SurfaceMesher::project(const ExactGeometry& exact, double most_exc
     ++report.vertices;
     const double way = distance(before, *target);
     if (way == 0) continue;
-    double least = editor_.least_shape_at(v);
-    for (const Index t : complex_.vertices[v].triangles) least = std::min(least, repair_.bound(t));
-    if (way <= tolerance_.largest() && editor_.put(v, *target, least)) {
+    if (way <= tolerance_.largest() && project_vertex(v, *target)) {
       report.largest_move = std::max(report.largest_move, way);
       continue;
     }

@@ -50,6 +50,7 @@ class SurfaceMesher {
   void contract_short(double least_shape);
   void flip_all();
   void smooth();
+  bool project_vertex(Index vertex, const Point& target);
 
   const Plc& plc_;
   const Execution& execution_;
