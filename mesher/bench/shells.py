@@ -115,7 +115,9 @@ def measures_of(path, reference, size):
 
 
 def distance_between(points, reference, size):
-    """The largest distance of the points from the triangles of an STL file, by the size; None without vtk."""
+    """The largest distance of the points from the triangles of an STL file, by the size; None without it or vtk."""
+    if not pathlib.Path(reference).exists():
+        return None
     try:
         import vtk
     except ImportError:
@@ -167,7 +169,8 @@ def summary(name, rows):
     done = [row for row in rows if row.get("measures")]
     if not done:
         return f"| {name} | 0 of {len(rows)} |"
-    column = lambda key: statistics.median(row["measures"][key] or 0 for row in done)
+    values = lambda key: [row["measures"][key] for row in done if row["measures"][key] is not None]
+    column = lambda key: statistics.median(values(key) or [0])
     share = lambda key, bound: 100 * sum(row["measures"][key] >= bound for row in done) / len(rows)
     seconds = sorted(row["seconds"] for row in rows)
     at = lambda p: seconds[min(len(seconds) - 1, math.ceil(p * len(seconds)) - 1)]
@@ -197,6 +200,7 @@ def main():
                     print(f"{path.name}: not read")
                     mine.append({"code": 3, "seconds": 0})
                     continue
+                pathlib.Path(f"{folder}/reference.stl").unlink(missing_ok=True)
                 run([arguments.program, "repair", str(path), "-o", f"{folder}/reference.stl"])
                 mine.append(ours(arguments.program, str(path), diagonal / share, folder))
                 line = f"1/{share:g} {path.name[:50]:50s} {text_of(mine[-1])} findings {mine[-1].get('findings')}"
