@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <set>
 #include <utility>
 #include <vector>
@@ -20,19 +21,26 @@ namespace {
 
 using namespace testing;
 
-PipelineResult shells_of(const PolygonSoup& soup, double size, unsigned order = 1) {
+/// A complex that need not be solid.
+Plc complex_of(const PolygonSoup& soup) {
   PlcOptions any;
   any.require_solid = false;
+  const std::vector<PolygonSoup> soups{soup};
+  return build_plc(soups, any);
+}
+
+PipelineResult shells_of(const PolygonSoup& soup, double size, unsigned order = 1) {
   PipelineOptions options;
   options.mesh.size = size;
   options.order = order;
-  const std::vector<PolygonSoup> soups{soup};
-  return mesh_shells(build_plc(soups, any), options);
+  return mesh_shells(complex_of(soup), options);
 }
 
-std::pair<double, double> angles_of(const TetMesh& mesh) {
+/// The smallest and the largest angle, without triangles at some point.
+std::pair<double, double> angles_of(const TetMesh& mesh, const Point& without = {INFINITY, 0, 0}) {
   double least = 180, most = 0;
-  for (const auto& f : mesh.faces)
+  for (const auto& f : mesh.faces) {
+    if (std::any_of(f.begin(), f.end(), [&](Index v) { return mesh.points[v] == without; })) continue;
     for (unsigned i = 0; i < 3; ++i) {
       const Vector u = mesh.points[f[(i + 1) % 3]] - mesh.points[f[i]],
                    v = mesh.points[f[(i + 2) % 3]] - mesh.points[f[i]];
@@ -40,6 +48,7 @@ std::pair<double, double> angles_of(const TetMesh& mesh) {
       least = std::min(least, angle);
       most = std::max(most, angle);
     }
+  }
   return {least, most};
 }
 
@@ -122,10 +131,7 @@ TEST(Shells, OpenSurfacesAndJunctions) {
 }
 
 TEST(Shells, SizesOfPatchesHold) {
-  PlcOptions any;
-  any.require_solid = false;
-  const std::vector<PolygonSoup> soups{box()};
-  const Plc plc = build_plc(soups, any);
+  const Plc plc = complex_of(box());
   PipelineOptions options;
   options.mesh.size = 0.3;
   options.mesh.patch_size = {{6, 0.05}};
@@ -160,10 +166,7 @@ TEST(Shells, TheSecondOrderFollowsCurves) {
 }
 
 TEST(Shells, TheCertificateFindsFaults) {
-  PlcOptions any;
-  any.require_solid = false;
-  const std::vector<PolygonSoup> soups{box()};
-  const Plc plc = build_plc(soups, any);
+  const Plc plc = complex_of(box());
   PipelineOptions options;
   options.mesh.size = 0.3;
   const PipelineResult made = mesh_shells(plc, options);
@@ -207,6 +210,70 @@ TEST(Shells, SharpCornersAreTold) {
   ASSERT_TRUE(made.check.triangles);
   EXPECT_GT(made.check.triangles->at_sharp_corners, 0U);
   EXPECT_LT(made.check.triangles->at_sharp_corners, 6U);
+}
+
+/// Triangles of a strip of a length and a width that have the largest bases permitted, and angles of 30
+/// degrees.
+double fewest_in_strip(double length, double width) { return 2 * length / (2 * std::sqrt(3) * width); }
+
+TEST(Shells, NarrowFacesHaveGoodAngles) {
+  constexpr double length = 2;
+  for (const double width : {0.1, 0.02, 0.004}) {
+    PolygonSoup plates;
+    for (const double y : {0.0, 1.0, 1 + width, 2 + width})
+      for (const double x : {0.0, length}) plates.points.push_back({x, y, 0});
+    for (const Index i : {0U, 2U, 4U})
+      plates.add_facet(std::vector<Index>{i, i + 1, i + 3, i + 2}, 1 + static_cast<Tag>(i));
+    const PipelineResult made = shells_of(plates, 0.4);
+    expect_good(made);
+    EXPECT_NEAR(area_of(made.result.mesh), length * (2 + width), 1e-9);
+    EXPECT_LT(static_cast<double>(made.result.mesh.faces.size()), 8 * fewest_in_strip(length, width) + 200);
+  }
+}
+
+TEST(Shells, CurvesNearToEachOtherDoNotCross) {
+  constexpr double width = 0.006;
+  constexpr unsigned segments = 180;
+  PolygonSoup ring;
+  ring.begin_facet(1);
+  for (const double radius : {1.0, 1 - width}) {
+    std::vector<Index> circle;
+    for (unsigned i = 0; i < segments; ++i) {
+      const double angle = 2 * std::numbers::pi * i / segments;
+      circle.push_back(static_cast<Index>(ring.points.size()));
+      ring.points.push_back({radius * std::cos(angle), radius * std::sin(angle), 0});
+    }
+    ring.add_polygon(circle);
+  }
+  ring.facet_holes.push_back({0, {0, 0, 0}});
+  const PipelineResult made = shells_of(ring, 0.5);
+  expect_good(made);
+  EXPECT_EQ(sides_of(made.result.mesh).count(0), 0U);
+  EXPECT_LT(static_cast<double>(made.result.mesh.faces.size()),
+            4 * fewest_in_strip(2 * std::numbers::pi, width));
+}
+
+TEST(Shells, OneTriangleClosesACuspOfALineAndAnArc) {
+  constexpr double radius = 2, end = 0.5;
+  constexpr unsigned segments = 40;
+  PolygonSoup cusp;
+  for (unsigned i = 0; i <= segments; ++i) {
+    const double angle = end * i / segments;
+    cusp.points.push_back({radius * std::sin(angle), radius * (1 - std::cos(angle)), 0});
+  }
+  cusp.points.push_back({1, 0, 0});
+  std::vector<Index> corners(cusp.points.size());
+  std::iota(corners.begin(), corners.end(), Index{0});
+  std::reverse(corners.begin(), corners.end());
+  cusp.add_facet(corners, 1);
+  const PipelineResult made = shells_of(cusp, 0.3);
+  EXPECT_TRUE(made.guarantees_hold()) << made.missed();
+  ASSERT_TRUE(made.check.triangles);
+  EXPECT_LE(made.check.triangles->at_sharp_corners, 1U);
+  const auto [least, most] = angles_of(made.result.mesh, {0, 0, 0});
+  EXPECT_GE(least, 20);
+  EXPECT_LE(most, 120);
+  EXPECT_LT(made.result.mesh.faces.size(), 150U);
 }
 
 }  // namespace

@@ -9,43 +9,40 @@ namespace collarmesh::shells {
 
 namespace {
 
-// A number of edges that is so much too small is not rounded up: edges are longer by a third at most.
-constexpr double rounding = 0.3;
-
-/// The number of target edge lengths along a curve, by arc length.
+/// The number of target edge lengths between two places, by place.
 class EdgesAlong {
  public:
-  EdgesAlong(const CurvePaths& paths, const SurfaceSizes& sizes, Index curve) {
+  EdgesAlong(const std::function<double(double)>& size_at, double from, double to) {
     constexpr double least_step = 1e-4, steps_per_size = 8;  // of the length
-    const double length = paths.length(curve);
-    double at = 0, count = 0, size = sizes.on_curve(curve, 0);
-    lengths_.push_back(0);
+    const double length = to - from;
+    double at = from, count = 0, size = size_at(from);
+    places_.push_back(from);
     counts_.push_back(0);
-    while (at < length) {
-      const double step = std::clamp(size / steps_per_size, least_step * length, length - at);
-      const double next = step < least_step * length || at + step >= length ? length : at + step;
-      const double next_size = sizes.on_curve(curve, next);
+    while (at < to) {
+      const double step = std::max(size / steps_per_size, least_step * length);
+      const double next = at + step >= to ? to : at + step;
+      const double next_size = size_at(next);
       count += 0.5 * (next - at) * (1 / size + 1 / next_size);
       at = next;
       size = next_size;
-      lengths_.push_back(at);
+      places_.push_back(at);
       counts_.push_back(count);
     }
   }
 
   double total() const { return counts_.back(); }
-  /// The arc length before which there are so many.
+  /// The place before which there are so many.
   double at(double count) const {
     const auto after =
         static_cast<std::size_t>(std::lower_bound(counts_.begin(), counts_.end(), count) - counts_.begin());
-    if (after == 0) return 0;
-    if (after == counts_.size()) return lengths_.back();
+    if (after == 0) return places_.front();
+    if (after == counts_.size()) return places_.back();
     const double share = (count - counts_[after - 1]) / (counts_[after] - counts_[after - 1]);
-    return lengths_[after - 1] + share * (lengths_[after] - lengths_[after - 1]);
+    return places_[after - 1] + share * (places_[after] - places_[after - 1]);
   }
 
  private:
-  std::vector<double> lengths_, counts_;
+  std::vector<double> places_, counts_;
 };
 
 bool shares_both_ends(const Plc& plc, Index curve) {
@@ -56,16 +53,22 @@ bool shares_both_ends(const Plc& plc, Index curve) {
   });
 }
 
-double least_count(const Plc& plc, Index curve) {
+}  // namespace
+
+double least_edge_count(const Plc& plc, Index curve) {
   const Plc::Curve& c = plc.curves[curve];
   if (c.closed || c.ends[0] == c.ends[1]) return 3;
   return !c.straight && shares_both_ends(plc, curve) ? 2 : 1;
 }
 
-}  // namespace
-
 double sag_between(const Plc& plc, const CurvePaths& paths, const SurfaceTolerance& tolerance, Index curve,
                    double from, double to) {
+  return sag_between(
+      plc, paths, [&](Index point) { return tolerance.at_point(point); }, curve, from, to);
+}
+
+double sag_between(const Plc& plc, const CurvePaths& paths, const SagLimit& limit, Index curve, double from,
+                   double to) {
   const Plc::Curve& c = plc.curves[curve];
   const std::vector<double>& lengths = paths.lengths(curve);
   const double length = lengths.back();
@@ -75,27 +78,45 @@ double sag_between(const Plc& plc, const CurvePaths& paths, const SurfaceToleran
     auto at = std::upper_bound(lengths.begin(), lengths.end(), from - shift);
     for (; at != lengths.end() && *at + shift < to; ++at) {
       const Index point = c.points[static_cast<std::size_t>(at - lengths.begin()) % c.points.size()];
-      most = std::max(most, distance_to_segment(plc.points[point], a, b) / tolerance.at_point(point));
+      most = std::max(most, distance_to_segment(plc.points[point], a, b) / limit(point));
     }
     if (!c.closed) break;
   }
   return most;
 }
 
-std::vector<double> divide_curve(const Plc& plc, const CurvePaths& paths, const SurfaceTolerance& tolerance,
-                                 const SurfaceSizes& sizes, Index curve) {
-  const EdgesAlong along(paths, sizes, curve);
-  const double least = least_count(plc, curve), count = std::max(least, std::ceil(along.total() - rounding));
+std::vector<double> divide_by_size(const std::function<double(double)>& size, double from, double to,
+                                   double least_count, double rounding) {
+  const EdgesAlong along(size, from, to);
+  const double count = std::max(least_count, std::ceil(along.total() - rounding));
+  std::vector<double> places{from};
+  for (double i = 1; i < count; ++i) places.push_back(along.at(along.total() * i / count));
+  places.push_back(to);
+  return places;
+}
+
+std::vector<double> divide_curve(const Plc& plc, const CurvePaths& paths, const SagLimit& limit,
+                                 const SurfaceSizes& sizes, Index curve, const std::array<double, 2>& tips) {
+  const double length = paths.length(curve), shortest = 1e-6 * length;
+  constexpr double rounding = 0.3;  // edges are longer by a third at most
+  const double from = tips[0], to = length - tips[1];
+  const double of_tips = (tips[0] > 0 ? 1 : 0) + (tips[1] > 0 ? 1 : 0);
   std::vector<double> at;
-  for (double i = count; i >= 0; --i) at.push_back(along.at(along.total() * i / count));
-  at.front() = paths.length(curve);
-  at.back() = 0;
+  if (to - from > shortest)
+    at = divide_by_size([&](double place) { return sizes.on_curve(curve, place); }, from, to,
+                        std::max(1.0, least_edge_count(plc, curve) - of_tips), rounding);
+  else
+    at = {from};
+  if (tips[0] > 0) at.insert(at.begin(), 0);
+  if (tips[1] > 0) at.push_back(length);
+  at.back() = length;
+  std::reverse(at.begin(), at.end());
   std::vector<double> divided;
-  const double shortest = 1e-6 * paths.length(curve);
   while (!at.empty()) {  // from the first to the last, halved where they are too far from the curve
     const double next = at.back();
-    if (!divided.empty() && next - divided.back() > shortest &&
-        sag_between(plc, paths, tolerance, curve, divided.back(), next) > 1) {
+    const bool tip = (tips[0] > 0 && divided.size() == 1) || (tips[1] > 0 && at.size() == 1);
+    if (!divided.empty() && !tip && next - divided.back() > shortest &&
+        sag_between(plc, paths, limit, curve, divided.back(), next) > 1) {
       at.push_back(0.5 * (divided.back() + next));
       continue;
     }

@@ -23,7 +23,8 @@ PatchSurfaces::PatchSurfaces(const Plc& plc, SurfaceTolerance tolerance)
       tolerance_(std::move(tolerance)),
       normals_(plc.patches.size()),
       at_corners_(plc.triangles.size()),
-      hierarchies_(plc.patches.size()) {
+      hierarchies_(plc.patches.size()),
+      last_found_(plc.patches.size(), 0) {
   for (Index patch = 0; patch < plc.patches.size(); ++patch) find_normals(patch);
 }
 
@@ -62,9 +63,11 @@ Vector PatchSurfaces::normal_at(Index patch, Index triangle, const Point& p) con
 }
 
 PatchSurfaces::Foot PatchSurfaces::nearest(Index patch, const Point& p) const {
-  Index found = none;
-  hierarchy(patch).squared_distance_to(p, INFINITY, &found);
-  const Index triangle = plc_.patches[patch].first_triangle + (found == none ? 0 : found);
+  const TriangleHierarchy& tree = hierarchy(patch);
+  Index& found = last_found_[patch];
+  const auto hint = tree.corners(found);
+  tree.squared_distance_to(p, squared_distance_to_triangle(p, hint[0], hint[1], hint[2]), &found);
+  const Index triangle = plc_.patches[patch].first_triangle + found;
   const auto& [a, b, c] = plc_.triangles[triangle].points;
   const Point foot = nearest_point_on_triangle(p, plc_.points[a], plc_.points[b], plc_.points[c]);
   return {foot, normal_at(patch, triangle, foot), triangle, distance(p, foot),

@@ -31,6 +31,12 @@ class PatchSurfaces {
   /// Of a planar patch.
   const Vector& plane_normal(Index patch) const { return normals_[patch]; }
 
+  /// Returns the place of a planar patch's plane that is nearest to p.
+  Point onto_plane(Index patch, const Point& p) const {
+    const Point& origin = plc_.points[plc_.triangles[plc_.patches[patch].first_triangle].points[0]];
+    return p - dot(p - origin, normals_[patch]) * normals_[patch];
+  }
+
   /// Returns the cosine of the angle between the triangle and the patch; -1 for a flat one.
   double agreement(const Corners& t, Index patch) const;
   /// How well a triangle fits a patch.
@@ -56,6 +62,7 @@ class PatchSurfaces {
   std::vector<Vector> normals_;                    // of patches, unit
   std::vector<std::array<Vector, 3>> at_corners_;  // of triangles
   mutable std::vector<std::unique_ptr<TriangleHierarchy>> hierarchies_;
+  mutable std::vector<Index> last_found_;  // by patch; the next place is probably near
 };
 
 }  // namespace collarmesh::shells

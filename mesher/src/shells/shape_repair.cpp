@@ -11,8 +11,6 @@ namespace {
 constexpr double margin = 1.5;
 // Edges that are not divided further, relative to the target edge length.
 constexpr double shortest = 0.015;
-// Gaps between curves that are left as they are, relative to it.
-constexpr double narrowest = 0.003;
 // Vertices with more triangles, as a tessellation has them, are not moved or removed: others around them are.
 constexpr std::size_t most_triangles = 24;
 
@@ -75,10 +73,23 @@ std::vector<Index> ShapeRepair::poor_triangles(double wanted, std::span<const In
 }
 
 bool ShapeRepair::move_best(Index vertex) {
+  if (vertex >= not_movable_.size()) not_movable_.resize(complex_.vertices.size(), 0);
+  if (not_movable_[vertex] == complex_.vertices[vertex].changes + 1) return false;
+  if (move_within(vertex)) return true;
+  not_movable_[vertex] = complex_.vertices[vertex].changes + 1;
+  return false;
+}
+
+bool ShapeRepair::move_within(Index vertex) {
   const unsigned dimension = complex_.vertices[vertex].feature.dimension;
   if (dimension == 0 || complex_.vertices[vertex].triangles.size() > most_triangles) return false;
   const double before = editor_.least_shape_at(vertex);
+  double now = before;
   constexpr double gain = 0.1;
+  const auto note = [&](bool better) {
+    if (better) now = editor_.least_shape_at(vertex);
+    return better;
+  };
   bool moved = false;
   if (dimension == 1) {
     const auto around = editor_.edges_around(vertex);
@@ -87,10 +98,10 @@ bool ShapeRepair::move_best(Index vertex) {
       for (const double sign : {-1.0, 1.0}) {
         const auto& edge = complex_.edges[(*around)[sign < 0 ? 0 : 1]];
         const double at = complex_.edges[(*around)[0]].at[1] + sign * share * (edge.at[1] - edge.at[0]);
-        moved |= editor_.slide(vertex, at, editor_.least_shape_at(vertex) + gain);
+        moved |= note(editor_.slide(vertex, at, now + gain));
       }
     }
-    return moved && editor_.least_shape_at(vertex) > before;
+    return moved && now > before;
   }
   const std::vector<Index> around = complex_.neighbours(vertex);
   Point centre{};
@@ -99,7 +110,7 @@ bool ShapeRepair::move_best(Index vertex) {
     centre = centre + complex_.vertices[n].point / static_cast<double>(around.size());
     reach = std::max(reach, editor_.length(vertex, n));
   }
-  moved |= editor_.move(vertex, centre, before + gain);
+  moved |= note(editor_.move(vertex, centre, before + gain));
   Vector normal{};
   for (const Index t : complex_.vertices[vertex].triangles)
     normal = normal + area_vector(complex_.corners(t));
@@ -117,7 +128,7 @@ bool ShapeRepair::move_best(Index vertex) {
       const double angle = 2 * std::numbers::pi * i / directions;
       const Point to =
           complex_.vertices[vertex].point + share * reach * (std::cos(angle) * u + std::sin(angle) * v);
-      moved |= editor_.move(vertex, to, editor_.least_shape_at(vertex) + gain);
+      moved |= note(editor_.move(vertex, to, now + gain));
     }
   return moved;
 }
@@ -163,12 +174,18 @@ void ShapeRepair::improve(double wanted) {
 
 /// Divides an edge of a curve beside the triangle that a vertex at p would encroach upon.
 bool ShapeRepair::divide_curve_beside(Index triangle, const Point& p) {
+  constexpr double least_cosine = -0.45;  // of 117 degrees
   const std::array<Index, 3> c = complex_.triangles[triangle].corners;
   for (unsigned i = 0; i < 3; ++i) {
     const Index edge = complex_.edge_at(c[i], c[(i + 1) % 3]);
     if (edge == none) continue;
     const auto [a, b] = complex_.edges[edge].ends;
-    if (dot(complex_.vertices[a].point - p, complex_.vertices[b].point - p) >= 0) continue;
+    const Vector to_a = complex_.vertices[a].point - p, to_b = complex_.vertices[b].point - p;
+    if (complex_.edges[edge].tip != none) {  // not divided: a vertex may be so near that angles are good
+      if (dot(to_a, to_b) < least_cosine * norm(to_a) * norm(to_b)) return true;
+      continue;
+    }
+    if (dot(to_a, to_b) >= 0) continue;
     if (editor_.length(a, b) < 2 * shortest * editor_.size_of_edge(a, b)) return true;
     const Index v = editor_.divide_curve_edge(edge);
     if (v == none) return true;
@@ -191,7 +208,9 @@ bool ShapeRepair::insert_towards(Index triangle, const Point& p) {
     const auto& c = complex_.triangles[at].corners;
     const Index a = c[(least + 1) % 3], b = c[(least + 2) % 3];
     if (const Index edge = complex_.edge_at(a, b); edge != none) {
-      if (editor_.length(a, b) < 2 * shortest * editor_.size_of_edge(a, b)) return false;
+      if (complex_.edges[edge].tip != none ||
+          editor_.length(a, b) < 2 * shortest * editor_.size_of_edge(a, b))
+        return false;
       const Index v = editor_.divide_curve_edge(edge);
       if (v != none) editor_.flip_around(v);
       return v != none;
@@ -223,10 +242,11 @@ bool ShapeRepair::too_narrow(Index triangle) const {
     longest = std::max(longest, editor_.length(c[i], c[(i + 1) % 3]));
   }
   const double height = 2 * norm(area_vector(complex_.corners(triangle))) / longest;
-  return height < narrowest * size;
+  return height < narrowest_ * size;
 }
 
 bool ShapeRepair::refine(Index triangle) {
+  if (too_narrow(triangle)) return false;
   const auto corners = complex_.corners(triangle);
   unsigned opposite = 0;  // to the shortest side
   double shortest_side = INFINITY;
@@ -237,7 +257,6 @@ bool ShapeRepair::refine(Index triangle) {
       opposite = i;
     }
   }
-  if (too_narrow(triangle)) return false;
   const Point middle = 0.5 * (corners[(opposite + 1) % 3] + corners[(opposite + 2) % 3]);
   Point p = circumcentre(corners);
   // So high above the shortest side its angle is 28 degrees.

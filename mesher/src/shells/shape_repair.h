@@ -28,6 +28,9 @@ class ShapeRepair {
   /// Contracts edges where the shapes stay good.
   void coarsen();
 
+  /// Triangles between curves are not refined that are lower than this, relative to the target edge length.
+  void set_narrowest(double share) { narrowest_ = share; }
+
   /// The bound on a triangle's shape: less at a sharp corner of the input.
   double bound(Index triangle) const;
 
@@ -41,6 +44,7 @@ class ShapeRepair {
   bool improve_connections(Index triangle, double wanted, bool may_contract);
   bool improve_by_moves(Index triangle);
   bool move_best(Index vertex);
+  bool move_within(Index vertex);
   bool too_narrow(Index triangle) const;
   bool refine(Index triangle);
   bool divide_curve_beside(Index triangle, const Point& p);
@@ -49,11 +53,13 @@ class ShapeRepair {
   SurfaceComplex& complex_;
   SurfaceEditor& editor_;
   const Execution& execution_;
+  double narrowest_ = 0;
   struct Tried {
     std::size_t changes = 0;  // of its corners
     double wanted = 0;
   };
-  std::vector<Tried> tried_;  // by triangle, the last time in vain
+  std::vector<Tried> tried_;        // by triangle, the last time in vain
+  std::vector<Index> not_movable_;  // changes of each vertex, and 1, when it was moved in vain
 };
 
 }  // namespace collarmesh::shells

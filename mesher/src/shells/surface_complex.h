@@ -29,6 +29,7 @@ class SurfaceComplex {
     std::array<Index, 2> ends{none, none};  ///< none: removed
     Index curve = none;
     std::array<double, 2> at{};  ///< arc lengths of the ends on the curve, ascending; may exceed its length
+    Index tip = none;            ///< the end at a sharp corner; all edges that begin there are equally long
 
     bool alive() const { return ends[0] != none; }
     Index other(Index v) const { return ends[0] == v ? ends[1] : ends[0]; }

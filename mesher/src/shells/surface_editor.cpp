@@ -26,9 +26,10 @@ SurfaceEditor::SurfaceEditor(SurfaceComplex& complex, const Plc& plc, const Curv
       tolerance_(std::move(tolerance)),
       most_excess_(most_excess) {}
 
-double SurfaceEditor::least_shape_at(Index vertex) const {
+double SurfaceEditor::least_shape_at(Index vertex, double bound) const {
   double least = INFINITY;
-  for (const Index t : complex_.vertices[vertex].triangles) least = std::min(least, shape(t));
+  for (const Index t : complex_.vertices[vertex].triangles)
+    if ((least = std::min(least, shape(t))) < bound) break;
   return least;
 }
 
@@ -116,9 +117,9 @@ bool SurfaceEditor::flip(Index a, Index b) {
   if (c == d) return false;
   const std::array<Created, 2> created{{{{a, d, c}, patch}, {{d, b, c}, patch}}};
   const double before = std::min(shape(two[0]), shape(two[1]));
-  constexpr double least_gain = 1e-6;
+  constexpr double least_gain = 1e-6;  // relative: in needles between curves angles are tiny
   for (const Created& n : created)
-    if (!(shape_of(complex_.corners(n.corners)) > before + least_gain)) return false;
+    if (!(shape_of(complex_.corners(n.corners)) > (1 + least_gain) * before)) return false;
   if (complex_.edge_at(c, d) != none || !complex_.triangles_at(c, d).empty()) return false;
   if (!fit(created, two, c)) return false;
   for (const Index old : two) complex_.remove_triangle(old);
@@ -180,7 +181,7 @@ void SurfaceEditor::merge_edges(Index from, Index to) {
 
 bool SurfaceEditor::contract(Index from, Index to, const Contraction& rule) {
   const unsigned dimension = complex_.vertices[from].feature.dimension;
-  if (dimension == 0) return false;
+  if (dimension == 0 || ends_tip(from)) return false;
   const std::vector<Index> between = complex_.triangles_at(from, to);
   const std::vector<Index> all = complex_.vertices[from].triangles;
   std::vector<Created> created;
@@ -219,9 +220,11 @@ double SurfaceEditor::size_near(const Point& p, std::span<const Index> around, d
 }
 
 Index SurfaceEditor::new_vertex(const Point& p, Index patch, std::span<const Index> around) {
-  Point place = p;
+  Point place;
   Index triangle = plc_.patches[patch].first_triangle;
-  if (!surfaces_.planar(patch)) {
+  if (surfaces_.planar(patch)) {
+    place = surfaces_.onto_plane(patch, p);
+  } else {
     const PatchSurfaces::Foot foot = surfaces_.nearest(patch, p);
     place = foot.point;
     triangle = foot.triangle;
@@ -282,8 +285,10 @@ Index SurfaceEditor::divide_curve_edge(Index edge, double at) {
     }
   for (const Index t : triangles) complex_.remove_triangle(t);
   complex_.remove_edge(edge);
-  complex_.add_edge({a, v}, old.curve, {old.at[0], at});
-  complex_.add_edge({v, b}, old.curve, {at, old.at[1]});
+  for (const Index e : {complex_.add_edge({a, v}, old.curve, {old.at[0], at}),
+                        complex_.add_edge({v, b}, old.curve, {at, old.at[1]})}) {
+    complex_.edges[e].tip = complex_.edges[e].other(v) == old.tip ? old.tip : none;
+  }
   for (const Created& n : created) complex_.add_triangle(n.corners, n.patch);
   return v;
 }
@@ -295,7 +300,8 @@ Index SurfaceEditor::insert(Index triangle, const Point& p) {
   const auto least = static_cast<unsigned>(std::min_element(shares.begin(), shares.end()) - shares.begin());
   if (shares[least] < on_side) {
     const Index a = old.corners[(least + 1) % 3], b = old.corners[(least + 2) % 3];
-    if (const Index edge = complex_.edge_at(a, b); edge != none) return divide_curve_edge(edge);
+    if (const Index edge = complex_.edge_at(a, b); edge != none)
+      return complex_.edges[edge].tip != none ? none : divide_curve_edge(edge);
     return divide_at(a, b, complex_.triangles_at(a, b), p);
   }
   const Index v = new_vertex(p, old.patch, old.corners);
@@ -337,7 +343,7 @@ bool SurfaceEditor::put_if(Index vertex, const Point& p, double least, std::span
     same.push_back({complex_.triangles[t].corners, complex_.triangles[t].patch});
   const Point before = complex_.vertices[vertex].point;
   complex_.vertices[vertex].point = p;
-  bool good = least_shape_at(vertex) >= least;
+  bool good = least_shape_at(vertex, least) >= least;
   if (good && !fit(same, {}, vertex)) {
     const auto worst = [&] { return worst_fit(triangles); };
     const PatchSurfaces::Fit after = worst();
@@ -360,12 +366,14 @@ bool SurfaceEditor::put(Index vertex, const Point& p, double least) {
 
 bool SurfaceEditor::move(Index vertex, const Point& p, double least) {
   const Index patch = complex_.vertices[vertex].feature.feature;
-  return put(vertex, surfaces_.planar(patch) ? p : surfaces_.nearest(patch, p).point, least);
+  return put(vertex,
+             surfaces_.planar(patch) ? surfaces_.onto_plane(patch, p) : surfaces_.nearest(patch, p).point,
+             least);
 }
 
 bool SurfaceEditor::slide(Index vertex, double at, double least) {
   const auto around = edges_around(vertex);
-  if (!around) return false;
+  if (!around || ends_tip(vertex)) return false;
   auto& before = complex_.edges[(*around)[0]];
   auto& behind = complex_.edges[(*around)[1]];
   const double shift = behind.at[0] - before.at[1];  // by the length of a closed curve

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <utility>
@@ -54,7 +55,8 @@ class SurfaceEditor {
   void set_most_excess(double share) { most_excess_ = share; }
 
   double shape(Index triangle) const { return shape_of(complex_.corners(triangle)); }
-  double least_shape_at(Index vertex) const;
+  /// Of its triangles; ends early where one is below a bound.
+  double least_shape_at(Index vertex, double bound = 0) const;
   /// Returns the side of a triangle, by its first corner's place, to divide where the triangle is farther
   /// from its patch than it may be; 3 where it is not.
   unsigned side_too_far(Index triangle) const;
@@ -68,6 +70,12 @@ class SurfaceEditor {
   }
   /// The edges of a vertex's curve, before and behind it. Precondition: it is on one curve alone.
   std::optional<std::array<Index, 2>> edges_around(Index vertex) const;
+  /// Is the vertex the end of a tip? Such vertices stay where they are.
+  bool ends_tip(Index vertex) const {
+    const auto& v = complex_.vertices[vertex];
+    return v.feature.dimension == 1 && std::any_of(v.edges.begin(), v.edges.end(),
+                                                   [&](Index e) { return complex_.edges[e].tip != none; });
+  }
 
  private:
   struct Created {

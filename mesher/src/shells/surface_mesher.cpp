@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "shells/curve_division.h"
+#include "shells/sharp_corners.h"
 
 namespace collarmesh::shells {
 
@@ -35,6 +36,7 @@ void SurfaceMesher::take_complex() {
     for (const Index p : t.points) {
       if (number[p] != none) continue;
       number[p] = complex_.add_vertex(plc_.points[p], {2, t.patch}, INFINITY);
+      point_of_.push_back(p);
     }
   std::vector<std::pair<Index, double>> place_on_curve(complex_.vertices.size(), {none, 0});
   const auto add_edges = [&](Index curve) {
@@ -70,10 +72,28 @@ void SurfaceMesher::take_complex() {
   grade(complex_, sizes_.gradation());
 }
 
+/// For points of the complex, the tolerance or, where curves are near to each other, so much less that their
+/// edges do not cross.
+std::vector<double> SurfaceMesher::sag_limits() const {
+  constexpr double share = 0.1, least = 1e-3;  // of the width, of the tolerance
+  std::vector<double> limits(plc_.points.size());
+  for (Index p = 0; p < limits.size(); ++p) limits[p] = tolerance_.at_point(p);
+  for_narrow_triangles(complex_, [&](const NarrowTriangle& narrow) {
+    for (const Index v : complex_.triangles[narrow.triangle].corners) {
+      const Index p = point_of_[v];
+      const double limit = std::max(share * narrow.width, least * tolerance_.at_point(p));
+      limits[p] = std::min(limits[p], limit);
+    }
+  });
+  return limits;
+}
+
 /// Puts vertices where the curve is divided. `edges` are those of the curve, in order.
-void SurfaceMesher::divide_curve_at(Index curve, std::vector<Index>& edges) {
+void SurfaceMesher::divide_curve_at(Index curve, std::vector<Index>& edges, const std::array<double, 2>& tips,
+                                    const std::vector<double>& limits) {
   constexpr double same = 1e-6;
-  std::vector<double> places = divide_curve(plc_, paths_, tolerance_, sizes_, curve);
+  const std::vector<double> places = divide_curve(
+      plc_, paths_, [&](Index p) { return limits[p]; }, sizes_, curve, tips);
   std::size_t next = 0;
   for (const Index first : edges) {
     Index edge = first;
@@ -96,12 +116,13 @@ void SurfaceMesher::divide_curve_at(Index curve, std::vector<Index>& edges) {
   }
 }
 
-void SurfaceMesher::divide_curves() {
+void SurfaceMesher::divide_curves(const SharpCorners& corners) {
   kept_.assign(complex_.vertices.size(), false);
+  const std::vector<double> limits = sag_limits();
   std::vector<std::vector<Index>> edges(plc_.curves.size());
   for (Index e = 0; e < complex_.edges.size(); ++e) edges[complex_.edges[e].curve].push_back(e);
   for (Index curve = 0; curve < plc_.curves.size(); ++curve)
-    if (!edges[curve].empty()) divide_curve_at(curve, edges[curve]);
+    if (!edges[curve].empty()) divide_curve_at(curve, edges[curve], corners.tips(curve), limits);
 }
 
 /// Removes the vertices of curves where these are not divided.
@@ -192,6 +213,7 @@ void SurfaceMesher::flip_all() {
 }
 
 void SurfaceMesher::smooth() {
+  constexpr double least_way = 0.03;  // of the target edge length
   for (Index v = 0; v < complex_.vertices.size(); ++v) {
     if (complex_.vertices[v].triangles.empty() || complex_.vertices[v].feature.dimension != 2) continue;
     Point sum{};
@@ -204,7 +226,9 @@ void SurfaceMesher::smooth() {
       sum = sum + share / 3 * (c[0] + c[1] + c[2]);
       weight += share;
     }
-    if (!(weight > 0)) continue;
+    if (!(weight > 0) ||
+        distance(sum / weight, complex_.vertices[v].point) < least_way * complex_.vertices[v].size)
+      continue;
     const double least = std::min(editor_.least_shape_at(v), wanted_shape);
     if (editor_.move(v, sum / weight, least)) continue;
     editor_.move(v, 0.5 * (sum / weight + complex_.vertices[v].point), least);
@@ -215,9 +239,17 @@ void SurfaceMesher::run() {
   constexpr unsigned rounds = 4;
   constexpr double any_shape = 2;
   take_complex();
-  divide_curves();
+  const SharpCorners corners(complex_, plc_, paths_, sizes_, tolerance_);
+  flip_all();
+  divide_curves(corners);
   contract_on_curves();
   contract_short(any_shape);
+  flip_all();
+  corners.mark(complex_);
+  constexpr std::size_t most_in_narrow_places = 100'000;
+  constexpr double left_narrow = 0.12;
+  if (NarrowPlaces(complex_, editor_, sizes_, execution_).run(most_in_narrow_places))
+    repair_.set_narrowest(left_narrow);
   flip_all();
   for (unsigned round = 0; round < rounds && !execution_.cancelled(); ++round) {
     divide_long();
@@ -244,6 +276,21 @@ void SurfaceMesher::run() {
   for (unsigned round = 0; round < last_rounds && repair_.approach(rest()); ++round) repair_.run(rest());
 }
 
+/// Unless an angle falls below its bound, or below what it was if that is less.
+bool SurfaceMesher::project_vertex(Index vertex, const Point& target) {
+  const Point before = complex_.vertices[vertex].point;
+  std::vector<double> least;
+  for (const Index t : complex_.vertices[vertex].triangles)
+    least.push_back(std::min(editor_.shape(t), repair_.bound(t)));
+  if (!editor_.put(vertex, target, *std::min_element(least.begin(), least.end()))) return false;
+  for (std::size_t i = 0; i < least.size(); ++i) {
+    if (editor_.shape(complex_.vertices[vertex].triangles[i]) >= least[i]) continue;
+    complex_.vertices[vertex].point = before;
+    return false;
+  }
+  return true;
+}
+
 ProjectReport SurfaceMesher::project(const ExactGeometry& exact, double most_excess) {
   ProjectReport report;
   editor_.set_most_excess(most_excess);
@@ -256,9 +303,7 @@ ProjectReport SurfaceMesher::project(const ExactGeometry& exact, double most_exc
     ++report.vertices;
     const double way = distance(before, *target);
     if (way == 0) continue;
-    double least = editor_.least_shape_at(v);
-    for (const Index t : complex_.vertices[v].triangles) least = std::min(least, repair_.bound(t));
-    if (way <= tolerance_.largest() && editor_.put(v, *target, least)) {
+    if (way <= tolerance_.largest() && project_vertex(v, *target)) {
       report.largest_move = std::max(report.largest_move, way);
       continue;
     }
@@ -298,11 +343,11 @@ TetMesh SurfaceMesher::mesh() {
     return std::tie(s.curve, s.at[0], a) < std::tie(t.curve, t.at[0], b);
   });
   for (const Index e : order) {
-    const auto& [ends, curve, at] = complex_.edges[e];
-    mesh.edges.push_back({number[ends[0]], number[ends[1]]});
-    mesh.edge_curve.push_back(curve);
-    mesh.edge_tag.push_back(plc_.curves[curve].tag);
-    middles_.push_back(paths_.point(curve, 0.5 * (at[0] + at[1])));
+    const auto& edge = complex_.edges[e];
+    mesh.edges.push_back({number[edge.ends[0]], number[edge.ends[1]]});
+    mesh.edge_curve.push_back(edge.curve);
+    mesh.edge_tag.push_back(plc_.curves[edge.curve].tag);
+    middles_.push_back(paths_.point(edge.curve, 0.5 * (edge.at[0] + edge.at[1])));
   }
   mesh.names = plc_.names;
   return mesh;

@@ -8,10 +8,13 @@
 #include "collarmesh/project_boundary.h"
 #include "collarmesh/tet_mesh.h"
 #include "location/curve_paths.h"
+#include "shells/narrow_places.h"
 #include "shells/shape_repair.h"
 #include "shells/surface_editor.h"
 
 namespace collarmesh::shells {
+
+class SharpCorners;
 
 /// Meshes the patches of a complex, in steps: the triangles of the complex become editable; curves are
 /// divided by size; long edges are divided and short ones contracted; triangles with poor angles are refined
@@ -38,13 +41,16 @@ class SurfaceMesher {
 
  private:
   void take_complex();
-  void divide_curves();
-  void divide_curve_at(Index curve, std::vector<Index>& edges);
+  void divide_curves(const SharpCorners& corners);
+  std::vector<double> sag_limits() const;
+  void divide_curve_at(Index curve, std::vector<Index>& edges, const std::array<double, 2>& tips,
+                       const std::vector<double>& limits);
   void contract_on_curves();
   void divide_long();
   void contract_short(double least_shape);
   void flip_all();
   void smooth();
+  bool project_vertex(Index vertex, const Point& target);
 
   const Plc& plc_;
   const Execution& execution_;
@@ -55,8 +61,9 @@ class SurfaceMesher {
   SurfaceComplex complex_;
   SurfaceEditor editor_;
   ShapeRepair repair_;
-  std::vector<Point> middles_;  // of the edges of mesh()
-  std::vector<bool> kept_;      // vertices on curves, where these are divided
+  std::vector<Point> middles_;   // of the edges of mesh()
+  std::vector<Index> point_of_;  // of the complex, of the first vertices
+  std::vector<bool> kept_;       // vertices on curves, where these are divided
 };
 
 }  // namespace collarmesh::shells

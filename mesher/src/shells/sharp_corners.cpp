@@ -1,0 +1,118 @@
+#include "shells/sharp_corners.h"
+
+#include <algorithm>
+
+#include "shells/curve_division.h"
+#include "shells/triangle_shape.h"
+
+namespace collarmesh::shells {
+
+namespace {
+
+// Degrees. A triangle in a corner that is not as sharp may be divided in two good ones.
+constexpr double sharp = 2 * least_angle;
+
+unsigned end_of(const SurfaceComplex::Edge& edge, Index vertex) {
+  return edge.ends[0] == vertex && edge.at[0] == 0 ? 0 : 1;
+}
+
+/// The triangles of a patch around a vertex between two edges of curves.
+struct Fan {
+  double angle = 0;
+  std::vector<Index> edges;
+};
+
+Fan fan_from(const SurfaceComplex& complex, Index vertex, Index first, std::vector<Index>& seen) {
+  Fan fan;
+  std::vector<Index> stack{first};
+  seen.push_back(first);
+  while (!stack.empty()) {
+    const Index t = stack.back();
+    stack.pop_back();
+    const auto& c = complex.triangles[t].corners;
+    std::array<Vector, 2> sides;
+    unsigned count = 0;
+    for (const Index other : c) {
+      if (other == vertex) continue;
+      sides[count++] = complex.vertices[other].point - complex.vertices[vertex].point;
+      if (const Index edge = complex.edge_at(vertex, other); edge != none) {
+        fan.edges.push_back(edge);
+        continue;
+      }
+      const Index next = complex.across(t, vertex, other);
+      if (next == none || std::find(seen.begin(), seen.end(), next) != seen.end()) continue;
+      seen.push_back(next);
+      stack.push_back(next);
+    }
+    fan.angle += angle_of(dot(sides[0], sides[1]), norm(cross(sides[0], sides[1])));
+  }
+  return fan;
+}
+
+}  // namespace
+
+SharpCorners::SharpCorners(const SurfaceComplex& complex, const Plc& plc, const CurvePaths& paths,
+                           const SurfaceSizes& sizes, const SurfaceTolerance& tolerance)
+    : tips_(plc.curves.size(), {0, 0}) {
+  std::vector<std::pair<Index, std::vector<End>>> corners;  // vertices of the complex, their curves
+  for (Index v = 0; v < complex.vertices.size(); ++v) {
+    if (complex.vertices[v].feature.dimension != 0) continue;
+    std::vector<End> ends;
+    find(complex, v, ends);
+    for (const auto& [curve, end] : ends) tips_[curve][end] = 1;
+    if (!ends.empty()) corners.emplace_back(complex.vertices[v].feature.feature, std::move(ends));
+  }
+  std::vector<double> lengths;
+  lengths.reserve(corners.size());
+  for (const auto& [vertex, ends] : corners)
+    lengths.push_back(tip_length(plc, paths, sizes, tolerance, vertex, ends));
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    for (const auto& [curve, end] : corners[i].second) tips_[curve][end] = lengths[i];
+}
+
+void SharpCorners::find(const SurfaceComplex& complex, Index vertex, std::vector<End>& ends) const {
+  std::vector<Index> seen;
+  for (const Index t : complex.vertices[vertex].triangles) {
+    if (std::find(seen.begin(), seen.end(), t) != seen.end()) continue;
+    const Fan fan = fan_from(complex, vertex, t, seen);
+    if (fan.angle >= sharp || fan.edges.size() != 2 || fan.edges[0] == fan.edges[1]) continue;
+    for (const Index edge : fan.edges)
+      ends.push_back({complex.edges[edge].curve, end_of(complex.edges[edge], vertex)});
+  }
+}
+
+/// As long as the sizes permit, and so that no much shorter edge remains behind it.
+double SharpCorners::tip_length(const Plc& plc, const CurvePaths& paths, const SurfaceSizes& sizes,
+                                const SurfaceTolerance& tolerance, Index vertex,
+                                const std::vector<End>& ends) const {
+  constexpr unsigned most_steps = 40;
+  constexpr double least_rest = 0.4, same = 1e-6;
+  double tip = sizes.at_vertex(vertex);
+  const auto divide = [&](const End& end) {
+    const double length = paths.length(end.curve), rest = length - tip;
+    const double most = tips_[end.curve][0] > 0 && tips_[end.curve][1] > 0
+                            ? length / 3
+                            : length / least_edge_count(plc, end.curve);
+    if (tip > most * (1 + same)) return tip = most, true;
+    if (rest > same * length && rest < least_rest * tip) return tip = length / 2, true;
+    const double from = end.end == 0 ? 0 : rest;
+    if (sag_between(plc, paths, tolerance, end.curve, from, from + tip) > 1) return tip /= 2, true;
+    return false;
+  };
+  for (unsigned step = 0; step < most_steps; ++step)
+    if (std::none_of(ends.begin(), ends.end(), divide)) break;
+  return tip;
+}
+
+void SharpCorners::mark(SurfaceComplex& complex) const {
+  for (auto& edge : complex.edges) {
+    if (!edge.alive()) continue;
+    for (const Index v : edge.ends)
+      if (complex.vertices[v].feature.dimension == 0 && tips_[edge.curve][end_of(edge, v)] > 0) edge.tip = v;
+    if (edge.tip == none) continue;
+    for (const Index v : edge.ends)
+      complex.vertices[v].size = std::min(complex.vertices[v].size, edge.at[1] - edge.at[0]);
+  }
+}
+
+}  // namespace collarmesh::shells

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "collarmesh/surface_tolerance.h"
+#include "shells/surface_complex.h"
+#include "shells/surface_sizes.h"
+
+namespace collarmesh::shells {
+
+/// Corners of patches between two curves that are sharper than the angles of good triangles. All curves that
+/// begin there at a sharp angle have a first edge of the same length, its tip, so that a triangle between
+/// two tips closes the corner; what is behind it has no sharp corner.
+class SharpCorners {
+ public:
+  /// `complex`: triangles that lie on the patches of `plc`. Cost: linear.
+  SharpCorners(const SurfaceComplex& complex, const Plc& plc, const CurvePaths& paths,
+               const SurfaceSizes& sizes, const SurfaceTolerance& tolerance);
+
+  /// The lengths of the first and of the last edge of a curve; 0 where that is not at a sharp corner.
+  const std::array<double, 2>& tips(Index curve) const { return tips_[curve]; }
+  /// Notes which edges are tips.
+  void mark(SurfaceComplex& complex) const;
+
+ private:
+  struct End {
+    Index curve;
+    unsigned end;  // 0: the beginning
+  };
+  void find(const SurfaceComplex& complex, Index vertex, std::vector<End>& ends) const;
+  double tip_length(const Plc& plc, const CurvePaths& paths, const SurfaceSizes& sizes,
+                    const SurfaceTolerance& tolerance, Index vertex, const std::vector<End>& ends) const;
+
+  std::vector<std::array<double, 2>> tips_;
+};
+
+}  // namespace collarmesh::shells
