@@ -81,7 +81,8 @@ class CurveMesher {
 
   void add_edges(Index curve) {
     const Plc::Curve& c = plc_.curves[curve];
-    const std::vector<double> at = divide_curve(plc_, paths_, tolerance_, sizes_, curve);
+    const std::vector<double> at = divide_curve(
+        plc_, paths_, [&](Index point) { return tolerance_.at_point(point); }, sizes_, curve, {0, 0});
     const Index first = c.closed ? node_on_curve(curve, 0) : node_at_vertex(c.ends[0]);
     Index before = first;
     for (std::size_t i = 1; i < at.size(); ++i) {
