@@ -1,5 +1,7 @@
 #include "common/named_tags.h"
 
+#include <fmt/format.h>
+
 #include <charconv>
 #include <optional>
 #include <string_view>
@@ -29,6 +31,20 @@ std::set<Tag> tags_named(const std::string& text, std::size_t dimension, const T
   if (tags.empty())
     if (const std::optional<Tag> number = number_in(text, dimension)) tags.insert(*number);
   return tags;
+}
+
+std::string list_of_patches(const Plc& plc) {
+  constexpr std::size_t longest = 100;
+  std::set<Tag> tags;
+  for (const Plc::Patch& patch : plc.patches) tags.insert(patch.tag);
+  std::string list;
+  for (const Tag tag : tags) {
+    if (list.size() > longest) return list + ", ...";
+    const std::string* const name = plc.names.find(2, tag);
+    list += fmt::format("{}{}{}", list.empty() ? "" : ", ", tag,
+                        name == nullptr ? "" : fmt::format(" ({})", *name));
+  }
+  return list;
 }
 
 }  // namespace collarmesh

@@ -36,20 +36,6 @@ std::vector<std::string> divided(std::string_view text, char separator) {
   return parts;
 }
 
-std::string list_of_patches(const Plc& plc) {
-  constexpr std::size_t longest = 100;
-  std::set<Tag> tags;
-  for (const Plc::Patch& patch : plc.patches) tags.insert(patch.tag);
-  std::string list;
-  for (const Tag tag : tags) {
-    if (list.size() > longest) return list + ", ...";
-    const std::string* const name = plc.names.find(2, tag);
-    list += fmt::format("{}{}{}", list.empty() ? "" : ", ", tag,
-                        name == nullptr ? "" : fmt::format(" ({})", *name));
-  }
-  return list;
-}
-
 class PairReader {
  public:
   PairReader(const std::string& text, const Plc& plc) : text_(text), plc_(plc) {}

@@ -13,20 +13,6 @@ namespace collarmesh::shells {
 
 namespace {
 
-std::string known_patches(const Plc& plc) {
-  constexpr std::size_t longest = 100;
-  std::set<Tag> tags;
-  for (const Plc::Patch& patch : plc.patches) tags.insert(patch.tag);
-  std::string list;
-  for (const Tag tag : tags) {
-    if (list.size() > longest) return list + ", ...";
-    const std::string* const name = plc.names.find(2, tag);
-    list += fmt::format("{}{}{}", list.empty() ? "" : ", ", tag,
-                        name == nullptr ? "" : fmt::format(" ({})", *name));
-  }
-  return list;
-}
-
 std::set<Tag> tags_of(const Plc& plc, const std::vector<std::string>& names) {
   std::set<Tag> chosen;
   for (const std::string& name : names) {
@@ -34,7 +20,7 @@ std::set<Tag> tags_of(const Plc& plc, const std::vector<std::string>& names) {
     if (std::none_of(plc.patches.begin(), plc.patches.end(),
                      [&](const Plc::Patch& patch) { return tags.contains(patch.tag); }))
       throw OptionError(
-          fmt::format("faces: no patch is called '{}'; the patches are {}", name, known_patches(plc)));
+          fmt::format("faces: no patch is called '{}'; the patches are {}", name, list_of_patches(plc)));
     chosen.insert(tags.begin(), tags.end());
   }
   return chosen;
