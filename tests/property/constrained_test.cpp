@@ -170,9 +170,9 @@ TEST(ConstrainedStart, LeavesCurvesOutsideOut) {
   EXPECT_TRUE(made.guarantees_hold()) << made.missed();
   const TetMesh& mesh = made.result.mesh;
   EXPECT_FALSE(mesh.edges.empty());
-  for (const auto& [a, b] : mesh.edges)
-    EXPECT_TRUE(std::ranges::any_of(mesh.tets, [&](const auto& tet) {
-      return std::ranges::find(tet, a) != tet.end() && std::ranges::find(tet, b) != tet.end();
+  for (const auto& edge : mesh.edges)
+    EXPECT_TRUE(std::ranges::any_of(mesh.tets, [&edge](const auto& tet) {
+      return std::ranges::find(tet, edge[0]) != tet.end() && std::ranges::find(tet, edge[1]) != tet.end();
     }));
 }
 
