@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "collarmesh/periodic.h"
+#include "common/distance_tree.h"
 #include "periodic/cavity.h"
 #include "periodic/chains.h"
 #include "periodic/feature_images.h"
@@ -42,6 +43,23 @@ std::vector<Point> moved(std::vector<Point> places, const Motion& motion) {
   return places;
 }
 
+/// The place of a node, and the length of the shortest edge from there along its curve or in its patch.
+struct SpacedPlace {
+  Point place;
+  double spacing;
+};
+
+/// Adds places, moved, that are not nearer to those before than half of their own spacing.
+void add_places(std::vector<Point>& places, const std::vector<SpacedPlace>& others, const Motion& motion) {
+  constexpr double nearest = 0.5;  // in spacings
+  std::vector<DistanceTree::Triangle> before;
+  before.reserve(places.size());
+  for (const Point& place : places) before.push_back({place, place, place});
+  const DistanceTree tree(std::move(before));
+  for (const auto& [place, spacing] : others)
+    if (const Point at = motion(place); tree.nearest(at).distance > nearest * spacing) places.push_back(at);
+}
+
 /// A mesh with the chains of its curves and the faces of its patches.
 struct Surface {
   Surface(const TetMesh& mesh, const Plc& plc) : chains(chains_of(mesh, plc)), faces(plc.patches.size()) {
@@ -69,6 +87,40 @@ struct Surface {
     inside.erase(std::unique(inside.begin(), inside.end()), inside.end());
     return inside;
   }
+  std::vector<SpacedPlace> spaced_on_curve(const TetMesh& mesh, Index curve) const {
+    const Chain& chain = chains[curve];
+    std::vector<SpacedPlace> places;
+    for (std::size_t i = 0; i < chain.nodes.size(); ++i) {
+      const Index node = chain.nodes[i];
+      if (mesh.features[node].dimension != 1) continue;
+      const Index before = chain.nodes[(i + chain.nodes.size() - 1) % chain.nodes.size()];
+      const auto to = [&](Index other) { return distance(mesh.points[node], mesh.points[other]); };
+      places.push_back({mesh.points[node], std::min(to(before), to(chain.end(i)))});
+    }
+    return places;
+  }
+  std::vector<SpacedPlace> spaced_inside(const TetMesh& mesh, Index patch) const {
+    std::map<Index, double> spacing;
+    for (const Index face : faces[patch])
+      for (unsigned i = 0; i < 3; ++i) {
+        const Index a = mesh.faces[face][i], b = mesh.faces[face][(i + 1) % 3];
+        const double length = distance(mesh.points[a], mesh.points[b]);
+        for (const Index v : {a, b})
+          if (const auto [found, is_new] = spacing.try_emplace(v, length); !is_new)
+            found->second = std::min(found->second, length);
+      }
+    std::vector<SpacedPlace> places;
+    for (const auto& [v, length] : spacing)
+      if (mesh.features[v].dimension == 2) places.push_back({mesh.points[v], length});
+    return places;
+  }
+  std::vector<Point> places_on_border(const TetMesh& mesh, Index patch) const {
+    std::vector<Point> places;
+    for (const Index face : faces[patch])
+      for (const Index v : mesh.faces[face])
+        if (mesh.features[v].dimension < 2) places.push_back(mesh.points[v]);
+    return places;
+  }
   std::vector<Point> places_inside(const TetMesh& mesh, Index patch) const {
     std::vector<Point> places;
     for (const Index v : nodes_inside(mesh, patch)) places.push_back(mesh.points[v]);
@@ -88,19 +140,28 @@ class Maker {
   std::vector<Index> add_nodes(const TetMesh& source) {
     const Surface of_source(source, plc_);
     std::vector<Index> nodes;
-    for (const CurveClass& of : classes())
+    for (const CurveClass& of : classes()) {
+      std::vector<Point> places;
       for (const auto& [curve, motion] : with_original(of))
-        periodicity::add_nodes(editor_, curve, surface_.chains[curve],
-                               moved(of_source.places_on_curve(source, of.original), motion), nodes);
+        add_places(places, of_source.spaced_on_curve(source, curve), inverse(motion));
+      for (const auto& [curve, motion] : with_original(of))
+        periodicity::add_nodes(editor_, curve, surface_.chains[curve], moved(places, motion), nodes);
+    }
     surface_.find_faces(mesh_);
     for (std::size_t k = 0; k < periodicity_.pairs.size(); ++k)
-      for (const auto& [patch, image] : periodicity_.images[k].patches)
-        for (const auto& [at, motion] :
-             {std::pair{patch, Motion()}, std::pair{image, periodicity_.pairs[k].motion}}) {
+      for (const auto& [patch, image] : periodicity_.images[k].patches) {
+        const Motion& to_image = periodicity_.pairs[k].motion;
+        const std::vector<Point> border = surface_.places_on_border(mesh_, patch);
+        std::vector<Point> places = border;
+        add_places(places, of_source.spaced_inside(source, patch), {});
+        add_places(places, of_source.spaced_inside(source, image), inverse(to_image));
+        places.erase(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(border.size()));
+        for (const auto& [at, motion] : {std::pair{patch, Motion()}, std::pair{image, to_image}}) {
           PatchEditor editor(editor_, plc_, at, surface_.faces[at]);
-          for (const Index v : editor.add_nodes(moved(of_source.places_inside(source, patch), motion)))
+          for (const Index v : editor.add_nodes(moved(places, motion)))
             if (v != none) nodes.push_back(v);
         }
+      }
     editor_.store();
     return nodes;
   }

@@ -81,10 +81,12 @@ void Recut::find_seams(const std::vector<PatchPair>& pairs, const std::vector<Fe
   }
 }
 
-// What is nearer to the one group than to the other is moved, along edges and across the other seams. So the
-// mesh is cut open half way between the groups, where tets need nothing.
+// Moves what is much nearer to the one group than to the other, along edges and across the other seams. So
+// the mesh is cut open in between, where tets need nothing, and elsewhere when the other groups' tets are
+// moved: near other pairs, both places need changes.
 void Recut::find_shifts() {
   shifts_.assign(mesh_.tets.size(), 0);
+  constexpr double much = 1.7;
   for (std::size_t k = 0; k < std::min(most_moved, seams_.size()); ++k) {
     const std::vector<Index> first = keys_of(seams_[k].image_of), second = keys_of(seams_[k].on_other);
     const std::vector<double> to_first = distances(k, first), to_second = distances(k, second);
@@ -102,7 +104,7 @@ void Recut::find_shifts() {
           std::ranges::any_of(corners, [&](Index v) { return is_on(v, seams_[k].on_other); });
       reaches_both = reaches_both || (on_first && on_second);
       double nearer = 0;
-      for (const Index v : corners) nearer += to_second[v] - to_first[v];
+      for (const Index v : corners) nearer += to_second[v] - much * to_first[v];
       if (on_first || (!on_second && nearer > 0)) shifts[t] |= Shift{1} << k;
     }
     if (!reaches_both) shifts_ = std::move(shifts);
