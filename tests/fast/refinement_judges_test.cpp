@@ -202,25 +202,28 @@ TEST(RefineTriangleQuality, InBlocksIsAskedWhereNothingIsFacedAndACellIsBeside) 
 
 TEST(RefineTriangleQuality, InBlocksQueuesWhatTheLoopWould) {
   const Plc plc = box();
-  Judges judges(plc, with_size(0.3));
-  judges.insert_random(60);
-  const FaceId face = judges.surface.marked_faces()[5];
-  const Feature patch{2, judges.surface.patch(face)};
-  const Index vertex = judges.insert(judges.surface.triangle(face).x, patch);
-  judges.sizes.cells_made(judges.zone, vertex);
+  const auto insert = [](Judges& judges) {  // and judge nothing of it yet
+    judges.insert_random(60);
+    const FaceId face = judges.surface.marked_faces()[5];
+    const Feature patch{2, judges.surface.patch(face)};
+    const Index vertex = judges.insert(judges.surface.triangle(face).x, patch);
+    judges.sizes.cells_made(judges.zone, vertex);
+    judges.due();
+  };
   const auto entries_of = [](WorkQueue& queue) {
     std::vector<std::array<Index, 3>> entries;
     for (WorkQueue::Item item; queue.pop(item);)
       entries.push_back({item.priority, item.entry.id, item.entry.stamp});
     return entries;
   };
-  judges.due();
+  Judges in_block(plc, with_size(0.3)), in_loop(plc, with_size(0.3));
+  insert(in_block);
+  insert(in_loop);
   WorkQueue of_block{100};
-  judges.triangles.cells_made(judges.zone, of_block);
-  EXPECT_TRUE(entries_of(judges.queue).empty());
-  for (const FaceId marked : judges.surface.marked_faces()) judges.surface.notes(marked).judged = false;
-  judges.triangles.cells_made(judges.zone);
-  const auto expected = entries_of(judges.queue);
+  in_block.triangles.cells_made(in_block.zone, of_block);
+  EXPECT_TRUE(entries_of(in_block.queue).empty());
+  in_loop.triangles.cells_made(in_loop.zone);
+  const auto expected = entries_of(in_loop.queue);
   EXPECT_GT(expected.size(), 3U);
   EXPECT_EQ(entries_of(of_block), expected);
 }

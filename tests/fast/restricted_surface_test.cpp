@@ -126,7 +126,12 @@ TEST(RestrictedSurface, NotesLastAsLongAsTheirTriangle) {
   KnownMesh known(plc);
   RandomPoints random(4);
   for (int k = 0; k < 60; ++k) known.insert(random.next(known.domain.box));
-  for (const FaceId face : known.surface.marked_faces()) known.surface.notes(face) = {true, true, true, true};
+  for (const FaceId face : known.surface.marked_faces()) {
+    known.surface.note_judged(face);
+    known.surface.note_given_up(face);
+    known.surface.note_needed(face);
+    known.surface.note_known_near(face);
+  }
   // Into the middle of a marked face's gap ball: it goes, others stay as they are.
   const FaceId face = known.surface.marked_faces()[0];
   known.insert(known.surface.triangle(face).x, {2, known.surface.patch(face)});

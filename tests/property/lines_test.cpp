@@ -10,19 +10,13 @@
 #include "collarmesh/error.h"
 #include "collarmesh/plc_builder.h"
 #include "collarmesh/shells.h"
+#include "support/any_complex.h"
 #include "support/shapes.h"
 
 namespace collarmesh {
 namespace {
 
 using namespace testing;
-
-Plc complex_of(const PolygonSoup& soup) {
-  PlcOptions any;
-  any.require_solid = false;
-  const std::vector<PolygonSoup> soups{soup};
-  return build_plc(soups, any);
-}
 
 PipelineOptions lines(double size, unsigned order = 1) {
   PipelineOptions options;

@@ -11,11 +11,11 @@
 
 #include "angles.h"
 #include "calls.h"
+#include "check/predicates.h"
 #include "check/subject.h"
 #include "collarmesh/curved_tet.h"
 #include "collarmesh/distributed.h"
 #include "common/split_mix.h"
-#include "delaunay/predicates.h"
 #include "local_mesh.h"
 #include "mid_nodes.h"
 #include "on_shape.h"
@@ -26,68 +26,6 @@ namespace collarmesh::distributed {
 namespace {
 
 using checks::At;
-
-/// Quadrature of the tetrahedron, exact for cubic polynomials, as the Jacobian is one: barycentric
-/// coordinates and weights that sum to 1.
-struct QuadraturePoint {
-  std::array<double, 4> at;
-  double weight;
-};
-constexpr double sixth = 1.0 / 6;
-constexpr std::array<QuadraturePoint, 5> cubic_rule{{{{0.25, 0.25, 0.25, 0.25}, -0.8},
-                                                     {{0.5, sixth, sixth, sixth}, 0.45},
-                                                     {{sixth, 0.5, sixth, sixth}, 0.45},
-                                                     {{sixth, sixth, 0.5, sixth}, 0.45},
-                                                     {{sixth, sixth, sixth, 0.5}, 0.45}}};
-
-double volume_of(const CurvedTet& nodes) {
-  double volume = 0;
-  for (const auto& [at, weight] : cubic_rule) {
-    std::array<Vector, 3> derivatives{};  // by the last three coordinates, the first is 1 minus these
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto derivative = [&](std::size_t k) {  // of the basis function k
-        const auto by = [&](std::size_t i) { return i == 0 ? -1.0 : i == axis + 1 ? 1.0 : 0.0; };
-        if (k < 4) return (4 * at[k] - 1) * by(k);
-        const auto [i, j] = tet_edges[k - 4];
-        return 4 * (by(i) * at[j] + at[i] * by(j));
-      };
-      for (std::size_t k = 0; k < 10; ++k) derivatives[axis] = derivatives[axis] + derivative(k) * nodes[k];
-    }
-    volume += weight * dot(cross(derivatives[0], derivatives[1]), derivatives[2]) / 6;
-  }
-  return volume;
-}
-
-/// At the middle of each side of a face of second order, with nodes amid ab, bc, ca: the cross product of the
-/// derivatives of its map, over 6. Their sum is the integral of the normal, that of their lengths about the
-/// area.
-std::array<Vector, 3> normals_of(const std::array<Point, 3>& corners, const std::array<Point, 3>& mid) {
-  std::array<Vector, 3> normals;
-  for (std::size_t side = 0; side < 3; ++side) {
-    std::array<double, 3> at{0.5, 0.5, 0.5};
-    at[(side + 2) % 3] = 0;
-    std::array<Vector, 2> derivatives{};
-    for (std::size_t axis = 0; axis < 2; ++axis) {
-      const auto by = [&](std::size_t i) { return i == 0 ? -1.0 : i == axis + 1 ? 1.0 : 0.0; };
-      for (std::size_t k = 0; k < 3; ++k) {
-        const std::size_t next = (k + 1) % 3;
-        derivatives[axis] = derivatives[axis] + (4 * at[k] - 1) * by(k) * corners[k] +
-                            4 * (by(k) * at[next] + at[k] * by(next)) * mid[k];
-      }
-    }
-    normals[side] = cross(derivatives[0], derivatives[1]) / 6;
-  }
-  return normals;
-}
-
-/// Of an edge of second order, by Gauss' rule of three points.
-double length_of(const Point& a, const Point& b, const Point& mid) {
-  const double x = std::sqrt(0.6);
-  const auto speed = [&](double at) {  // at from -1 to 1
-    return norm((at - 0.5) * a + (at + 0.5) * b - 2 * at * mid);
-  };
-  return (5 * speed(-x) + 8 * speed(0) + 5 * speed(x)) / 9;
-}
 
 /// Two sums of numbers that are made of cells.
 class Fingerprint {
@@ -113,92 +51,71 @@ class Fingerprint {
   std::array<std::uint64_t, 2> sums_{};
 };
 
+/// Returns the subject of the checks without a mesh: the complex, and how far a mesh may be off it.
+checks::Subject subject_of(const Shape& shape, const TetMesh& nothing) {
+  CheckOptions options;
+  options.bounds.tolerance = SurfaceTolerance(shape.distance);
+  return checks::make_subject(nothing, shape.plc, options);
+}
+
 /// What the complex says about its features, and how far the mesh may be off.
 struct Expected {
-  Expected(const Plc& plc, double distance) {
-    const TetMesh nothing;
-    constexpr double epsilon = 0x1p-52;
-    double largest = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      largest = std::max({largest, std::fabs(plc.bounds.min[axis]), std::fabs(plc.bounds.max[axis])});
-    const double rounding = 1e-12 * plc.bounds.diagonal() + 8 * epsilon * largest;
-    const checks::Subject subject{nothing, plc, {}, SurfaceTolerance(distance), rounding, {}, {},
-                                  nullptr, {},  {}};
-    curve_off = checks::curve_allowances(subject);
-    patch_off = checks::patch_allowances(subject);
-    measure_curves(plc);
-    measure_patches(plc);
-    measure_regions(plc);
+  explicit Expected(const Shape& shape) : subject(subject_of(shape, nothing)), sizes(measures_of(shape.plc)) {
+    const Plc& plc = shape.plc;
+    for (Index c = 0; c < plc.curves.size(); ++c) measure_turn(plc, c);
+    for (const Plc::Patch& patch : plc.patches) area_room.push_back(room_of(plc, patch));
+    const checks::RegionVolumes of_regions = checks::expected_volumes(subject);
+    for (Index r = 1; r < plc.regions.size(); ++r) {
+      volumes[plc.regions[r].tag] += of_regions.enclosed[r];
+      volume_room[plc.regions[r].tag] += of_regions.allowed[r];
+    }
+    for (auto& [tag, room] : volume_room) room += 1e-9 * std::fabs(volumes[tag]);
   }
+  Expected(const Expected&) = delete;
+  Expected& operator=(const Expected&) = delete;
 
-  std::vector<double> curve_off, patch_off;  ///< absolute
-  std::vector<double> lengths, length_room;  ///< by curve
-  std::vector<double> areas, area_room;      ///< by patch; of planar ones in their planes
+  TetMesh nothing;
+  checks::Subject subject;
+  ShapeMeasures sizes;
+  std::vector<double> length_room, area_room;  ///< by curve and by patch
   std::map<Tag, double> volumes, volume_room;
 
  private:
   // What is moved by d becomes longer or larger by no more than d times what it turns by (Steiner's formula),
   // to first order, and by what its ends move. Turned polygons turn as much as what they approximate.
-  void measure_curves(const Plc& plc) {
-    for (Index c = 0; c < plc.curves.size(); ++c) {
-      const Plc::Curve& curve = plc.curves[c];
-      const std::vector<Index>& chain = curve.points;
-      double length = 0, turn = 0;
-      const std::size_t segments = chain.size() - (curve.closed ? 0 : 1);
-      const auto segment = [&](std::size_t i) {
-        return plc.points[chain[(i + 1) % chain.size()]] - plc.points[chain[i % chain.size()]];
-      };
-      for (std::size_t i = 0; i < segments; ++i) {
-        length += norm(segment(i));
-        if (i + 1 < segments || curve.closed) turn += angle(segment(i), segment((i + 1) % segments));
-      }
-      lengths.push_back(length);
-      length_room.push_back(1e-9 * length + curve_off[c] * ((curve.straight ? 0 : 2 * turn) + 2));
-    }
+  void measure_turn(const Plc& plc, Index c) {
+    const Plc::Curve& curve = plc.curves[c];
+    const std::vector<Index>& chain = curve.points;
+    double turn = 0;
+    const std::size_t segments = chain.size() - (curve.closed ? 0 : 1);
+    const auto segment = [&](std::size_t i) {
+      return plc.points[chain[(i + 1) % chain.size()]] - plc.points[chain[i % chain.size()]];
+    };
+    for (std::size_t i = 0; i < segments; ++i)
+      if (i + 1 < segments || curve.closed) turn += angle(segment(i), segment((i + 1) % segments));
+    length_room.push_back(1e-9 * sizes.lengths[c] +
+                          subject.curve_allowance[c] * ((curve.straight ? 0 : 2 * turn) + 2));
   }
 
-  void measure_patches(const Plc& plc) {
-    areas.assign(plc.patches.size(), 0);
-    area_room.assign(plc.patches.size(), 0);
-    std::map<std::array<Index, 2>, std::pair<double, Vector>>
-        sides;  // of one patch: length, normal of the first
-    for (Index p = 0; p < plc.patches.size(); ++p) {
-      const Plc::Patch& patch = plc.patches[p];
-      double turn = 0;
-      sides.clear();
-      for (Index t = patch.first_triangle; t < patch.first_triangle + patch.triangle_count; ++t) {
-        const auto& q = plc.triangles[t].points;
-        const Point &a = plc.points[q[0]], &b = plc.points[q[1]], &c = plc.points[q[2]];
-        const Vector normal = 0.5 * cross(b - a, c - a);
-        areas[p] += patch.planar ? dot(normal, patch.normal) : norm(normal);
-        if (patch.planar) continue;
-        for (std::size_t k = 0; k < 3; ++k) {
-          const auto [side, is_new] =
-              sides.try_emplace(checks::sorted(q[k], q[(k + 1) % 3]),
-                                distance(plc.points[q[k]], plc.points[q[(k + 1) % 3]]), normal);
-          if (!is_new) turn += side->second.first * angle(side->second.second, normal);
-        }
-      }
-      areas[p] = std::fabs(areas[p]);
-      area_room[p] = 1e-9 * areas[p] + 2 * patch_off[p] * turn;
-      for (const Index c : patch.curves) area_room[p] += curve_off[c] * lengths[c];
-    }
-  }
-
-  void measure_regions(const Plc& plc) {
-    for (const Plc::Triangle& t : plc.triangles) {
-      const Plc::Patch& patch = plc.patches[t.patch];
-      if (patch.regions[0] == patch.regions[1]) continue;
-      const Point &a = plc.points[t.points[0]], &b = plc.points[t.points[1]], &c = plc.points[t.points[2]];
-      const double cone = six_volume(plc.bounds.centre(), a, b, c) / 6;
-      for (unsigned side = 0; side < 2; ++side) {
-        if (patch.regions[side] == 0) continue;
-        const Tag tag = plc.regions[patch.regions[side]].tag;
-        volumes[tag] += side == 0 ? cone : -cone;
-        volume_room[tag] += patch_off[t.patch] * 0.5 * norm(cross(b - a, c - a));
+  double room_of(const Plc& plc, const Plc::Patch& patch) const {
+    const std::size_t p = area_room.size();
+    double turn = 0;
+    std::map<std::array<Index, 2>, std::pair<double, Vector>> sides;  // length, normal of the first
+    for (Index t = patch.first_triangle; !patch.planar && t < patch.first_triangle + patch.triangle_count;
+         ++t) {
+      const auto& q = plc.triangles[t].points;
+      const Point &a = plc.points[q[0]], &b = plc.points[q[1]], &c = plc.points[q[2]];
+      const Vector normal = cross(b - a, c - a);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto [side, is_new] =
+            sides.try_emplace(checks::sorted(q[k], q[(k + 1) % 3]),
+                              distance(plc.points[q[k]], plc.points[q[(k + 1) % 3]]), normal);
+        if (!is_new) turn += side->second.first * angle(side->second.second, normal);
       }
     }
-    for (auto& [tag, room] : volume_room) room += 1e-9 * std::fabs(volumes[tag]);
+    double room = 1e-9 * sizes.areas[p] + 2 * subject.patch_allowance[p] * turn;
+    for (const Index c : patch.curves) room += subject.curve_allowance[c] * sizes.lengths[c];
+    return room;
   }
 
   static double angle(const Vector& u, const Vector& v) { return std::atan2(norm(cross(u, v)), dot(u, v)); }
@@ -221,7 +138,7 @@ class Certification {
   Certificate run() {
     agree(communicator_, [&] {
       read();
-      expected_.emplace(plc_, shape_.distance);
+      expected_.emplace(shape_);
     });
     check_shared_places();
     agree(communicator_, [&] { check_tets(); });
@@ -240,11 +157,9 @@ class Certification {
 
  private:
   template <class... Arguments>
-  void find(std::string_view guarantee, fmt::format_string<Arguments...> message, Arguments&&... arguments) {
-    ++certificate_.findings_total;
-    if (++counts_[std::string(guarantee)] <= Certificate::listed)
-      certificate_.findings.push_back(
-          {std::string(guarantee), fmt::format(message, std::forward<Arguments>(arguments)...)});
+  void find(std::string_view guarantee, const Point& where, fmt::format_string<Arguments...> message,
+            Arguments&&... arguments) {
+    findings_.add(guarantee, where, {}, message, std::forward<Arguments>(arguments)...);
   }
 
   void read() {
@@ -273,8 +188,8 @@ class Certification {
       points.combine_shared(owners, MPI_REPLACE, 3);
       for (std::size_t k = 0; k < shared.size(); ++k)
         if (!std::equal(&values[3 * k], &values[3 * k] + 3, &owners[3 * k]))
-          find("shared_places", "A {} at {} has another place on the rank that owns it.", what,
-               At{places[shared[k]]});
+          find("shared_places", places[shared[k]], "A {} at {} has another place on the rank that owns it.",
+               what, At{places[shared[k]]});
     };
     check(vertices_, mesh_->points, "vertex");
     if (order_ == 2) check(shared_edges_, nodes_, "mid-side node");
@@ -287,23 +202,18 @@ class Certification {
       const Point centre = 0.25 * (p[0] + p[1] + p[2] + p[3]);
       const auto tag = static_cast<Tag>(regions_[t]);
       if (regions_[t] < 0 || !expected_->volumes.contains(tag)) {
-        find("region_tag", "A tet at {} has the label {} for its region, which the complex does not have.",
-             At{centre}, regions_[t]);
-        continue;
-      }
-      if (predicates::orientation(p[0], p[1], p[2], p[3]) <= 0) {
-        find("positive_volume", "A tet at {} has the volume {:.6g}, which is not positive.", At{centre},
-             six_volume(p[0], p[1], p[2], p[3]) / 6);
+        find(guarantee::region_tag, centre,
+             "A tet at {} has the label {} for its region, which the complex does not have.", At{centre},
+             regions_[t]);
         continue;
       }
       double volume = six_volume(p[0], p[1], p[2], p[3]) / 6;
+      if (!checks::check_orientation({"Tet"}, p, volume, findings_)) continue;
       if (order_ == 2) {
         const CurvedTet nodes =
             curved(p, edges_->of_tet(first_tet_ + static_cast<PetscInt>(t), mesh_->tets[t]), nodes_);
-        volume = volume_of(nodes);
-        if (!jacobian_exceeds(nodes))
-          find("positive_jacobian", "A tet at {} has a Jacobian that is not positive everywhere in it.",
-               At{centre});
+        volume = collarmesh::volume(nodes);
+        checks::check_jacobian({"Tet"}, nodes, tag, findings_);
       }
       certificate_.region_volumes[tag] += volume;
       check_angles(t, p, centre);
@@ -321,7 +231,7 @@ class Certification {
     all.least[kind] = std::min(all.least[kind], angles.least);
     all.most[kind] = std::max(all.most[kind], angles.most);
     if (angles.least < allowed_.least[kind] || angles.most > allowed_.most[kind])
-      find("dihedral_angles",
+      find("dihedral_angles", centre,
            "A tet at {}{} has dihedral angles from {:.4g} to {:.4g} degrees, allowed are {:.4g} to {:.4g}.",
            At{centre}, kind == 1 ? " in a collar" : "", angles.least, angles.most, allowed_.least[kind],
            allowed_.most[kind]);
@@ -365,9 +275,10 @@ class Certification {
                                    mesh_->points[corners[2]]};
       const Point centre = (p[0] + p[1] + p[2]) / 3;
       if (tets_of_[f] != 1 && tets_of_[f] != 2)
-        find("conforming", "A face at {} has {} tets; it may have one or two.", At{centre}, tets_of_[f]);
+        find(guarantee::conforming, centre, "A face at {} has {} tets; it may have one or two.", At{centre},
+             tets_of_[f]);
       if (!on_patch) {
-        find("watertight", "A face at {} {} but lies on no patch.", At{centre},
+        find(guarantee::watertight, centre, "A face at {} {} but lies on no patch.", At{centre},
              tets_of_[f] == 1 ? "has one tet only" : "lies between two regions");
         continue;
       }
@@ -384,26 +295,21 @@ class Certification {
     const std::pair<PetscInt, PetscInt> wanted = std::minmax(tag_of(back), tag_of(front));
     const PetscInt least = tets_of_[f] == 1 ? -1 : least_region_[f];
     if (least == wanted.first && most_region_[f] == wanted.second) return;
-    find("face_regions",
+    find(guarantee::face_regions, centre,
          "A face at {} on patch {} (tag {}) lies between the regions {} and {}, the patch between {} and {} "
-         "(-1 "
-         "is outside).",
+         "(-1 is outside).",
          At{centre}, patch, plc_.patches[patch].tag, least, most_region_[f], wanted.first, wanted.second);
   }
 
   void measure_face(PetscInt face, const std::array<Index, 3>& corners, const std::array<Point, 3>& p,
                     Index patch) {
-    const Plc::Patch& on = plc_.patches[patch];
-    const auto size = [&](const Vector& normal) {
-      return on.planar ? std::fabs(dot(normal, on.normal)) : norm(normal);
-    };
     if (order_ == 1) {
-      areas_[patch] += size(0.5 * cross(p[1] - p[0], p[2] - p[0]));
+      areas_[patch] += checks::area(p[0], p[1], p[2]);
       return;
     }
     const std::array<Index, 3> edges = edges_->of_face(face, corners);
-    for (const Vector& normal : normals_of(p, {nodes_[edges[0]], nodes_[edges[1]], nodes_[edges[2]]}))
-      areas_[patch] += size(normal);
+    areas_[patch] += collarmesh::area(
+        CurvedTriangle{p[0], p[1], p[2], nodes_[edges[0]], nodes_[edges[1]], nodes_[edges[2]]});
   }
 
   void check_edges() {
@@ -417,39 +323,39 @@ class Certification {
       ++certificate_.edges;
       fingerprint_.add(ends, curve);
       lengths_[curve] += order_ == 1 ? distance(mesh_->points[a], mesh_->points[b])
-                                     : length_of(mesh_->points[a], mesh_->points[b], nodes_[e]);
+                                     : length(CurvedEdge{mesh_->points[a], mesh_->points[b], nodes_[e]});
     }
   }
 
   void check_vertices() {
     OnShape on_shape(shape_);
+    const checks::Subject& subject = expected_->subject;
     const auto check = [&](PetscInt code, const Point& p, const char* what) {
       const TetMesh::VertexFeature feature = decoded(code);
+      const Index i = feature.feature;
       if (feature.dimension != 1 && feature.dimension != 2) return;
       const bool on_curve = feature.dimension == 1;
-      const double allowed =
-          on_curve ? expected_->curve_off[feature.feature] : expected_->patch_off[feature.feature];
-      const bool planar = !on_curve && plc_.patches[feature.feature].planar;
-      const double off =
-          planar
-              ? std::fabs(dot(p - plc_.patches[feature.feature].origin, plc_.patches[feature.feature].normal))
-              : on_shape.distance_to_complex(feature, p);
+      const bool planar = !on_curve && plc_.patches[i].planar;
+      const double off = planar ? std::fabs(dot(p - plc_.patches[i].origin, plc_.patches[i].normal))
+                                : on_shape.distance_to_complex(feature, p);
       if (on_shape.is_smooth(feature))
         certificate_.largest_distance = std::max(certificate_.largest_distance, off);
-      if (!(off <= allowed))
-        find(on_curve ? "curve_distance" : "patch_distance",
-             "A {} at {} is {:.6g} off its {} {}, allowed is {:.6g}.", what, At{p}, off,
-             on_curve ? "curve" : "patch", feature.feature, allowed);
+      if (on_curve)
+        checks::check_off_feature(guarantee::curve_distance, {what}, p, off, subject.curve_allowance[i],
+                                  {"curve", i, plc_.curves[i].tag}, findings_);
+      else
+        checks::check_off_feature(guarantee::patch_distance, {what}, p, off, subject.patch_allowance[i],
+                                  {"patch", i, plc_.patches[i].tag}, findings_);
     };
     for (std::size_t v = 0; v < mesh_->points.size(); ++v) {
       if (!vertices_.owned(v)) continue;
       ++certificate_.vertices;
-      check(vertex_codes_[v], mesh_->points[v], "vertex");
+      check(vertex_codes_[v], mesh_->points[v], "The vertex");
       if (vertex_codes_[v] == 0) corners_.push_back(mesh_->points[v]);
     }
     if (order_ == 2)
       for (std::size_t e = 0; e < edges_->size(); ++e)
-        if (shared_edges_.owned(e)) check(edge_codes_[e], nodes_[e], "mid-side node");
+        if (shared_edges_.owned(e)) check(edge_codes_[e], nodes_[e], "The mid-side node");
   }
 
   /// Every vertex within a curve has two edges on it.
@@ -463,7 +369,8 @@ class Certification {
     vertices_.combine(edges_of, MPI_SUM);
     for (std::size_t v = 0; v < edges_of.size(); ++v)
       if (vertices_.owned(v) && decoded(vertex_codes_[v]).dimension == 1 && edges_of[v] != 2)
-        find("curve_cover", "A vertex at {} on curve {} has {} edges on it, not 2.", At{mesh_->points[v]},
+        find(guarantee::curve_cover, mesh_->points[v],
+             "A vertex at {} on curve {} has {} edges on it, not 2.", At{mesh_->points[v]},
              decoded(vertex_codes_[v]).feature, edges_of[v]);
   }
 
@@ -508,20 +415,21 @@ class Certification {
     const auto compare = [&](std::string_view guarantee, std::string_view what, Tag tag, double found,
                              double wanted, double room) {
       if (!(std::fabs(found - wanted) <= room))
-        find(guarantee, "The {} tagged {} measures {:.15g}, that of the complex {:.15g}; allowed is {:.6g}.",
-             what, tag, found, wanted, room);
+        find(guarantee, plc_.bounds.centre(),
+             "The {} tagged {} measures {:.15g}, that of the complex {:.15g}; allowed is {:.6g}.", what, tag,
+             found, wanted, room);
     };
     for (const auto& [tag, wanted] : expected_->volumes)
-      compare("region_volume", "region", tag, certificate_.region_volumes[tag], wanted,
+      compare(guarantee::region_volume, "region", tag, certificate_.region_volumes[tag], wanted,
               expected_->volume_room[tag]);
     for (Index p = 0; p < areas_.size(); ++p)
       if (in_regions(p))
-        compare("patch_area", "patch", plc_.patches[p].tag, areas_[p], expected_->areas[p],
+        compare(guarantee::patch_area, "patch", plc_.patches[p].tag, areas_[p], expected_->sizes.areas[p],
                 expected_->area_room[p]);
     for (Index k = 0; k < lengths_.size(); ++k) {
       const auto& patches = plc_.curves[k].patches;
       if (std::any_of(patches.begin(), patches.end(), [&](Index p) { return in_regions(p); }))
-        compare("curve_length", "curve", plc_.curves[k].tag, lengths_[k], expected_->lengths[k],
+        compare("curve_length", "curve", plc_.curves[k].tag, lengths_[k], expected_->sizes.lengths[k],
                 expected_->length_room[k]);
     }
     check_vertices_of_complex();
@@ -534,7 +442,7 @@ class Certification {
     std::vector<int> sizes(static_cast<std::size_t>(ranks_.count)), begins(sizes.size());
     MPI_Gather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, 0, communicator_);
     std::exclusive_scan(sizes.begin(), sizes.end(), begins.begin(), 0);
-    all.resize(static_cast<std::size_t>(begins.back() + sizes.back()));
+    all.resize(static_cast<std::size_t>(begins.back()) + static_cast<std::size_t>(sizes.back()));
     MPI_Gatherv(own.data(), size, MPI_DOUBLE, all.data(), sizes.data(), begins.data(), MPI_DOUBLE, 0,
                 communicator_);
     if (ranks_.rank != 0) return;
@@ -547,25 +455,25 @@ class Certification {
       return std::array{a.x, a.y, a.z} < std::array{b.x, b.y, b.z};
     };
     std::sort(corners_.begin(), corners_.end(), less);
+    std::vector<Index>& found = expected_->subject.match.vertex_point;
+    found.clear();
     for (const Plc::Vertex& vertex : plc_.vertices) {
-      const Point& p = plc_.points[vertex.point];
-      const bool needed = std::any_of(vertex.patches.begin(), vertex.patches.end(),
-                                      [&](Index patch) { return in_regions(patch); });
-      if (needed && !std::binary_search(corners_.begin(), corners_.end(), p, less))
-        find("vertex_present", "The vertex of the complex at {} is none of the mesh.", At{p});
+      const auto at = std::lower_bound(corners_.begin(), corners_.end(), plc_.points[vertex.point], less);
+      const bool there = at != corners_.end() && *at == plc_.points[vertex.point];
+      found.push_back(there ? static_cast<Index>(at - corners_.begin()) : none);
     }
+    checks::check_vertices_present(expected_->subject, findings_);
   }
 
   /// All findings, on all ranks.
   void gather() {
     std::string own;
-    for (const Finding& finding : certificate_.findings)
-      own += finding.guarantee + '\t' + finding.message + '\n';
+    for (const auto& finding : found_.findings) own += finding.guarantee + '\t' + finding.message + '\n';
     const int size = static_cast<int>(own.size());
     std::vector<int> sizes(static_cast<std::size_t>(ranks_.count)), begins(sizes.size());
     MPI_Allgather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, communicator_);
     std::exclusive_scan(sizes.begin(), sizes.end(), begins.begin(), 0);
-    std::string all(static_cast<std::size_t>(begins.back() + sizes.back()), ' ');
+    std::string all(static_cast<std::size_t>(begins.back()) + static_cast<std::size_t>(sizes.back()), ' ');
     MPI_Allgatherv(own.data(), size, MPI_CHAR, all.data(), sizes.data(), begins.data(), MPI_CHAR,
                    communicator_);
     certificate_.findings.clear();
@@ -576,7 +484,8 @@ class Certification {
     }
     std::stable_sort(certificate_.findings.begin(), certificate_.findings.end(),
                      [](const Finding& a, const Finding& b) { return a.guarantee < b.guarantee; });
-    certificate_.findings_total = all_reduce(communicator_, certificate_.findings_total, MPI_SUM);
+    certificate_.findings_total =
+        all_reduce(communicator_, static_cast<std::int64_t>(found_.findings_total), MPI_SUM);
   }
 
   DM dm_;
@@ -596,7 +505,8 @@ class Certification {
   std::vector<PetscInt> tets_of_, least_region_, most_region_;  // by face
   std::vector<double> areas_, lengths_;                         // by patch and by curve
   std::vector<Point> corners_;                                  // vertices on those of the complex
-  std::map<std::string, std::size_t> counts_;
+  CheckReport found_;                                           // on this rank
+  checks::Findings findings_{found_, Certificate::listed};
   Fingerprint fingerprint_;
   Certificate certificate_;
 };

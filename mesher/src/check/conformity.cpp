@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "check/subject.h"
+#include "common/edge_key.h"
 #include "common/median.h"
 #include "common/simplices_at_vertex.h"
 
@@ -133,7 +134,8 @@ struct BoundaryEdge {
 
   bool same_edge(const BoundaryEdge& other) const { return region == other.region && ends == other.ends; }
   friend bool operator<(const BoundaryEdge& a, const BoundaryEdge& b) {
-    return a.region != b.region ? a.region < b.region : number_of(a.ends) < number_of(b.ends);
+    return a.region != b.region ? a.region < b.region
+                                : edge_key(a.ends[0], a.ends[1]) < edge_key(b.ends[0], b.ends[1]);
   }
 };
 

@@ -1,10 +1,9 @@
 // The certificate of a mesh of curve edges alone.
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
+#include "check/feature_sizes.h"
 #include "check/subject.h"
-#include "collarmesh/curved_tet.h"
 #include "common/thread_limit.h"
 
 namespace collarmesh {
@@ -12,25 +11,6 @@ namespace collarmesh {
 namespace checks {
 
 namespace {
-
-void check_all_present(const Subject& subject, Findings& findings) {
-  const Plc& plc = subject.plc;
-  const Grouping by_curve(subject.match.edge_curve, plc.curves.size());
-  for (Index c = 0; c < plc.curves.size(); ++c) {
-    if (by_curve.size(c) > 0) continue;
-    const Point& where = plc.points[plc.curves[c].points.front()];
-    findings.add(
-        guarantee::curve_present, where, {c},
-        "Curve {} (tag {}) at {} has no edges; it was lost, or its edges are tagged with another curve.", c,
-        plc.curves[c].tag, At{where});
-  }
-  for (Index v = 0; v < plc.vertices.size(); ++v) {
-    if (subject.match.vertex_point[v] != none || plc.vertices[v].curves.empty()) continue;
-    const Point& where = plc.points[plc.vertices[v].point];
-    findings.add(guarantee::vertex_present, where, {v}, "Vertex {} (tag {}) at {} is no point of the mesh.",
-                 v, plc.vertices[v].tag, At{where});
-  }
-}
 
 void check_listed_once(const Subject& subject, Findings& findings) {
   std::vector<std::array<Index, 2>> listed;
@@ -62,35 +42,6 @@ void check_edge_jacobians(const Subject& subject, Findings& findings) {
   }
 }
 
-void measure_lines(const Subject& subject, CheckReport& report) {
-  const TetMesh& mesh = subject.mesh;
-  ShapeMeasures input = measures_of(subject.plc);
-  input.volumes.clear();
-  input.shells.clear();
-  input.areas.clear();
-  const std::vector<double>& exact = subject.options.exact.lengths;
-  for (std::size_t i = 0; i < std::min(exact.size(), input.lengths.size()); ++i)
-    if (std::isfinite(exact[i])) input.lengths[i] = exact[i];
-  ShapeMeasures made{{}, {}, std::vector<double>(input.lengths.size(), 0), {}};
-  std::vector<double> lengths;
-  for (Index e = 0; e < mesh.edges.size(); ++e) {
-    const auto& [a, b] = mesh.edges[e];
-    lengths.push_back(distance(mesh.points[a], mesh.points[b]));
-    if (const Index curve = subject.match.edge_curve[e]; curve != none)
-      made.lengths[curve] +=
-          mesh.order() == 1
-              ? lengths.back()
-              : length(CurvedEdge{mesh.points[a], mesh.points[b], mesh.points[mesh.edge_mid_nodes[e]]});
-  }
-  if (!lengths.empty()) {
-    const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-    std::nth_element(lengths.begin(), middle, lengths.end());
-    report.median_edge = *middle;
-  }
-  report.of_input = std::move(input);
-  report.of_mesh = std::move(made);
-}
-
 void judge_lines(const TetMesh& mesh, const Plc& given, const CheckOptions& options, CheckReport& report) {
   Findings findings(report, options.findings_per_guarantee);
   if (!check_arrays(mesh, findings)) return;
@@ -101,13 +52,13 @@ void judge_lines(const TetMesh& mesh, const Plc& given, const CheckOptions& opti
   Subject subject = make_subject(mesh, plc, own);
   if (!check_points(subject, findings) || !check_labels(mesh, plc, findings)) return;
   subject.match = match_features(mesh, plc, subject.rounding);
-  check_all_present(subject, findings);
+  check_present(subject, 1, findings);
   check_vertices(subject, findings);
   check_listed_once(subject, findings);
   check_curves(subject, report, findings);
   check_second_order(subject, report, findings);
   check_edge_jacobians(subject, findings);
-  measure_lines(subject, report);
+  measure_without_tets(subject, 1, report);
 }
 
 }  // namespace

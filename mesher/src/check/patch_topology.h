@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "check/subject.h"
+#include "common/edge_key.h"
 
 namespace collarmesh::checks {
 
@@ -14,7 +15,7 @@ struct PatchEdge {
   bool ascending;  ///< runs from the smaller to the larger point, with the face turned as its patch
 
   friend bool operator<(const PatchEdge& a, const PatchEdge& b) {
-    const auto i = number_of(a.ends), j = number_of(b.ends);
+    const auto i = edge_key(a.ends[0], a.ends[1]), j = edge_key(b.ends[0], b.ends[1]);
     return i != j ? i < j : a.face < b.face;
   }
 };

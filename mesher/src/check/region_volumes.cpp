@@ -6,12 +6,11 @@
 
 namespace collarmesh::checks {
 
-namespace {
-
-/// Returns the difference of volumes that the surface distance allows.
-std::vector<double> allowed_by_distance(const Subject& subject) {
+// A surface moved by no more than d encloses a volume changed by no more than d times its area, to
+// first order.
+RegionVolumes expected_volumes(const Subject& subject) {
   const Plc& plc = subject.plc;
-  std::vector<double> allowed(plc.regions.size(), 0);
+  RegionVolumes volumes{collarmesh::measures_of(plc).volumes, std::vector<double>(plc.regions.size(), 0)};
   for (Index i = 0; i < plc.triangles.size(); ++i) {
     const Plc::Triangle& t = plc.triangles[i];
     const Plc::Patch& patch = plc.patches[t.patch];
@@ -19,23 +18,18 @@ std::vector<double> allowed_by_distance(const Subject& subject) {
     const double allowance =
         patch.planar ? subject.patch_allowance[t.patch] : subject.tolerance.at_triangle(i) + subject.rounding;
     for (const Index region : patch.regions)
-      allowed[region] +=
+      volumes.allowed[region] +=
           allowance * area(subject.plc_corner(t, 0), subject.plc_corner(t, 1), subject.plc_corner(t, 2));
   }
-  return allowed;
+  return volumes;
 }
 
-}  // namespace
-
-// A surface moved by no more than d encloses a volume changed by no more than d times its area, to
-// first order.
 void check_region_volumes(const Subject& subject, const CheckReport& report, Findings& findings) {
   const Plc& plc = subject.plc;
-  const std::vector<double> enclosed = collarmesh::measures_of(plc).volumes,
-                            by_distance = allowed_by_distance(subject);
+  const RegionVolumes volumes = expected_volumes(subject);
   for (Index r = 1; r < plc.regions.size(); ++r) {
-    const double expected = enclosed[r], found = report.region_volumes[r];
-    const double allowed = 1e-12 * std::fabs(expected) + by_distance[r];
+    const double expected = volumes.enclosed[r], found = report.region_volumes[r];
+    const double allowed = 1e-12 * std::fabs(expected) + volumes.allowed[r];
     if (std::fabs(found - expected) <= allowed) continue;
     findings.add(
         guarantee::region_volume, plc.bounds.centre(), {r},

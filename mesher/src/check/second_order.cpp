@@ -1,6 +1,7 @@
 // Checks of cells of second order: mid-edge nodes and the Jacobian.
 #include <algorithm>
 
+#include "check/predicates.h"
 #include "check/subject.h"
 #include "collarmesh/curved_tet.h"
 #include "common/distance_tree.h"
@@ -95,27 +96,15 @@ void check_shared(const Subject& subject, Findings& findings) {
 
 void check_jacobians(const Subject& subject, Findings& findings) {
   const TetMesh& mesh = subject.mesh;
-  for (Index t = 0; t < mesh.tets.size(); ++t) {
-    const CurvedTet nodes = curved_tet(mesh, t);
-    if (jacobian_exceeds(nodes)) continue;
-    const Point centre = 0.25 * ((nodes[0] + nodes[1]) + (nodes[2] + nodes[3]));
-    findings.add(
-        guarantee::positive_jacobian, centre, {t},
-        "Tet {} of tag {} at {} is of second order and its Jacobian determinant is not positive everywhere "
-        "in it; a solver cannot use it: put its mid-side nodes nearer to the middles of its edges.",
-        t, mesh.tet_tag[t], At{centre});
-  }
+  for (Index t = 0; t < mesh.tets.size(); ++t)
+    check_jacobian({"Tet", t}, curved_tet(mesh, t), mesh.tet_tag[t], findings);
 }
 
-void check_off_feature(const Subject& subject, Index node, double distance, double allowed, const char* kind,
-                       Index feature, Tag tag, CheckReport& report, bool smooth, Findings& findings) {
+void check_node(const Subject& subject, Index node, double distance, double allowed,
+                const NamedFeature& feature, CheckReport& report, bool smooth, Findings& findings) {
   if (smooth) report.max_surface_distance = std::max(report.max_surface_distance, distance);
-  if (distance <= allowed) return;
-  findings.add(
-      guarantee::mid_node_distance, subject.point(node), {node, feature},
-      "The mid-side node {} at {} is {:.6g} away from its {} {} (tag {}), allowed is {:.6g}; move it "
-      "onto it.",
-      node, At{subject.point(node)}, distance, kind, feature, tag, allowed);
+  check_off_feature(guarantee::mid_node_distance, {"The mid-side node", node}, subject.point(node), distance,
+                    allowed, feature, findings);
 }
 
 void check_on_curves(const Subject& subject, CheckReport& report, Findings& findings) {
@@ -133,8 +122,8 @@ void check_on_curves(const Subject& subject, CheckReport& report, Findings& find
     const DistanceTree tree(std::move(segments));
     for (const Index* e = by_curve.begin(c); e != by_curve.end(c); ++e) {
       const Index node = subject.mesh.edge_mid_nodes[*e];
-      check_off_feature(subject, node, tree.nearest(subject.point(node)).distance, subject.curve_allowance[c],
-                        "curve", c, curve.tag, report, !curve.straight, findings);
+      check_node(subject, node, tree.nearest(subject.point(node)).distance, subject.curve_allowance[c],
+                 {"curve", c, curve.tag}, report, !curve.straight, findings);
     }
   }
 }
@@ -156,8 +145,8 @@ void check_on_patches(const Subject& subject, CheckReport& report, Findings& fin
         const Point& at = subject.point(node);
         const double distance =
             patch.planar ? std::fabs(dot(at - patch.origin, patch.normal)) : tree.nearest(at).distance;
-        check_off_feature(subject, node, distance, subject.patch_allowance[p], "patch", p, patch.tag, report,
-                          !patch.planar, findings);
+        check_node(subject, node, distance, subject.patch_allowance[p], {"patch", p, patch.tag}, report,
+                   !patch.planar, findings);
       }
   }
 }

@@ -2,29 +2,12 @@
 #include <cmath>
 #include <string>
 
+#include "check/feature_sizes.h"
 #include "check/subject.h"
 
 namespace collarmesh::checks {
 
 namespace {
-
-double length_of_edge(const TetMesh& mesh, Index edge) {
-  const auto& [a, b] = mesh.edges[edge];
-  if (mesh.order() == 1) return distance(mesh.points[a], mesh.points[b]);
-  return length(CurvedEdge{mesh.points[a], mesh.points[b], mesh.points[mesh.edge_mid_nodes[edge]]});
-}
-
-CurvedTriangle curved_face(const TetMesh& mesh, Index face) {
-  const auto& [a, b, c] = mesh.faces[face];
-  const auto& [ab, bc, ca] = mesh.face_mid_nodes[face];
-  return {mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[ab], mesh.points[bc], mesh.points[ca]};
-}
-
-double area_of_face(const TetMesh& mesh, Index face) {
-  const auto& [a, b, c] = mesh.faces[face];
-  return mesh.order() == 1 ? area(mesh.points[a], mesh.points[b], mesh.points[c])
-                           : area(curved_face(mesh, face));
-}
 
 double volume_below_face(const TetMesh& mesh, const Point& apex, Index face) {
   const auto& [a, b, c] = mesh.faces[face];
@@ -51,26 +34,6 @@ std::vector<double> enclosed_by(const std::vector<Shell>& shells, const Subject&
     volumes.push_back(std::fabs(volume));
   }
   return volumes;
-}
-
-ShapeMeasures measures_of(const Subject& subject, const std::vector<double>& volumes,
-                          const std::vector<Shell>& shells) {
-  const TetMesh& mesh = subject.mesh;
-  ShapeMeasures measures{volumes, std::vector<double>(subject.plc.patches.size(), 0),
-                         std::vector<double>(subject.plc.curves.size(), 0), enclosed_by(shells, subject)};
-  for (Index face = 0; face < mesh.faces.size(); ++face)
-    if (const Index patch = subject.match.face_patch[face]; patch != none)
-      measures.areas[patch] += area_of_face(mesh, face);
-  for (Index edge = 0; edge < mesh.edges.size(); ++edge)
-    if (const Index curve = subject.match.edge_curve[edge]; curve != none)
-      measures.lengths[curve] += length_of_edge(mesh, edge);
-  return measures;
-}
-
-/// Replaces values of the complex by exact ones where these are known.
-void take_exact(const std::vector<double>& exact, std::vector<double>& values) {
-  for (std::size_t i = 0; i < std::min(exact.size(), values.size()); ++i)
-    if (std::isfinite(exact[i])) values[i] = exact[i];
 }
 
 /// Judges a volume beside that of the input.
@@ -106,12 +69,11 @@ std::string name_of(const Plc& plc, const Shell& shell) {
 
 void check_shape_kept(const Subject& subject, CheckReport& report, Findings& findings) {
   const Plc& plc = subject.plc;
-  report.of_input = collarmesh::measures_of(plc);
-  take_exact(subject.options.exact.volumes, report.of_input.volumes);
-  take_exact(subject.options.exact.areas, report.of_input.areas);
-  take_exact(subject.options.exact.lengths, report.of_input.lengths);
+  report.of_input = input_sizes(subject);
   const std::vector<Shell> shells = shells_of(plc);
-  report.of_mesh = measures_of(subject, report.region_volumes, shells);
+  report.of_mesh = feature_sizes(subject);
+  report.of_mesh.volumes = report.region_volumes;
+  report.of_mesh.shells = enclosed_by(shells, subject);
   for (Index r = 1; r < plc.regions.size(); ++r)
     judge_volume(subject, fmt::format("Region {} (tag {})", r, plc.regions[r].tag), report.of_mesh.volumes[r],
                  report.of_input.volumes[r], plc.bounds.centre(), r, report, findings);

@@ -5,8 +5,10 @@
 #include <numbers>
 #include <vector>
 
+#include "check/feature_sizes.h"
 #include "check/subject.h"
 #include "common/distance_tree.h"
+#include "common/edge_key.h"
 #include "common/thread_limit.h"
 
 namespace collarmesh {
@@ -41,12 +43,12 @@ class GivenCorners {
   explicit GivenCorners(const Subject& subject) : is_vertex_(subject.mesh.points.size(), false) {
     for (const Index p : subject.match.vertex_point)
       if (p != none) is_vertex_[p] = true;
-    for (const auto& [a, b] : subject.mesh.edges) edges_.push_back(number_of(sorted(a, b)));
+    for (const auto& [a, b] : subject.mesh.edges) edges_.push_back(edge_key(a, b));
     std::sort(edges_.begin(), edges_.end());
   }
 
   bool is_edge(Index a, Index b) const {
-    return std::binary_search(edges_.begin(), edges_.end(), number_of(sorted(a, b)));
+    return std::binary_search(edges_.begin(), edges_.end(), edge_key(a, b));
   }
   /// Does the corner lie on a vertex of the complex, between two curves?
   bool is_corner(const std::array<Index, 3>& face, unsigned i) const {
@@ -93,45 +95,17 @@ void check_angles(const Subject& subject, CheckReport& report, Findings& finding
   report.triangles = measures;
 }
 
-void check_present(const Subject& subject, Findings& findings) {
-  const Plc& plc = subject.plc;
-  const Grouping by_patch(subject.match.face_patch, plc.patches.size()),
-      by_curve(subject.match.edge_curve, plc.curves.size());
-  for (Index p = 0; p < plc.patches.size(); ++p) {
-    if (by_patch.size(p) > 0) continue;
-    const Point& where = subject.plc_corner(plc.triangles[plc.patches[p].first_triangle], 0);
-    findings.add(
-        guarantee::patch_present, where, {p},
-        "Patch {} (tag {}) at {} has no faces; it was lost, or its faces are tagged with another patch.", p,
-        plc.patches[p].tag, At{where});
-  }
-  for (Index c = 0; c < plc.curves.size(); ++c) {
-    if (by_curve.size(c) > 0 || plc.curves[c].patches.empty()) continue;
-    const Point& where = plc.points[plc.curves[c].points.front()];
-    findings.add(
-        guarantee::curve_present, where, {c},
-        "Curve {} (tag {}) at {} has no edges; it was lost, or its edges are tagged with another curve.", c,
-        plc.curves[c].tag, At{where});
-  }
-  for (Index v = 0; v < plc.vertices.size(); ++v) {
-    if (subject.match.vertex_point[v] != none || plc.vertices[v].patches.empty()) continue;
-    const Point& where = plc.points[plc.vertices[v].point];
-    findings.add(guarantee::vertex_present, where, {v}, "Vertex {} (tag {}) at {} is no point of the mesh.",
-                 v, plc.vertices[v].tag, At{where});
-  }
-}
-
 /// Edges are sides of faces, listed once.
 void check_edges(const Subject& subject, Findings& findings) {
   std::vector<std::uint64_t> sides;
   for (const auto& f : subject.mesh.faces)
-    for (unsigned i = 0; i < 3; ++i) sides.push_back(number_of(sorted(f[i], f[(i + 1) % 3])));
+    for (unsigned i = 0; i < 3; ++i) sides.push_back(edge_key(f[i], f[(i + 1) % 3]));
   std::sort(sides.begin(), sides.end());
   std::vector<std::uint64_t> listed;
-  for (const auto& [a, b] : subject.mesh.edges) listed.push_back(number_of(sorted(a, b)));
+  for (const auto& [a, b] : subject.mesh.edges) listed.push_back(edge_key(a, b));
   std::sort(listed.begin(), listed.end());
   for (Index e = 0; e < subject.mesh.edges.size(); ++e) {
-    const std::uint64_t number = number_of(sorted(subject.mesh.edges[e][0], subject.mesh.edges[e][1]));
+    const std::uint64_t number = edge_key(subject.mesh.edges[e][0], subject.mesh.edges[e][1]);
     const Point where = subject.midpoint(subject.mesh.edges[e]);
     if (!std::binary_search(sides.begin(), sides.end(), number))
       findings.add(guarantee::listed_edges, where, {e}, "Edge {} at {} is a side of no triangle.", e,
@@ -173,12 +147,6 @@ void check_outward(const Subject& subject, const Plc& plc, Findings& findings) {
   }
 }
 
-CurvedTriangle curved_face(const TetMesh& mesh, Index face) {
-  const auto& [a, b, c] = mesh.faces[face];
-  const auto& [ab, bc, ca] = mesh.face_mid_nodes[face];
-  return {mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[ab], mesh.points[bc], mesh.points[ca]};
-}
-
 /// The normal of a curved triangle, times the Jacobian, at parameters (s, t).
 Vector jacobian_at(const CurvedTriangle& n, double s, double t) {
   const double r = 1 - s - t;
@@ -216,53 +184,6 @@ void check_triangle_jacobians(const Subject& subject, Findings& findings) {
   }
 }
 
-void measure(const Subject& subject, CheckReport& report) {
-  const TetMesh& mesh = subject.mesh;
-  ShapeMeasures input = measures_of(subject.plc);
-  input.volumes.clear();
-  input.shells.clear();
-  const auto take_exact = [](const std::vector<double>& exact, std::vector<double>& values) {
-    for (std::size_t i = 0; i < std::min(exact.size(), values.size()); ++i)
-      if (std::isfinite(exact[i])) values[i] = exact[i];
-  };
-  take_exact(subject.options.exact.areas, input.areas);
-  take_exact(subject.options.exact.lengths, input.lengths);
-  ShapeMeasures made{
-      {}, std::vector<double>(input.areas.size(), 0), std::vector<double>(input.lengths.size(), 0), {}};
-  for (Index f = 0; f < mesh.faces.size(); ++f) {
-    const Index patch = subject.match.face_patch[f];
-    if (patch == none) continue;
-    const auto& [a, b, c] = mesh.faces[f];
-    made.areas[patch] += mesh.order() == 1 ? area(mesh.points[a], mesh.points[b], mesh.points[c])
-                                           : collarmesh::area(curved_face(mesh, f));
-  }
-  std::vector<double> lengths;
-  for (Index e = 0; e < mesh.edges.size(); ++e) {
-    const Index curve = subject.match.edge_curve[e];
-    if (curve == none) continue;
-    const auto& [a, b] = mesh.edges[e];
-    made.lengths[curve] +=
-        mesh.order() == 1
-            ? distance(mesh.points[a], mesh.points[b])
-            : length(CurvedEdge{mesh.points[a], mesh.points[b], mesh.points[mesh.edge_mid_nodes[e]]});
-  }
-  std::vector<std::uint64_t> sides;
-  for (const auto& f : mesh.faces)
-    for (unsigned i = 0; i < 3; ++i) sides.push_back(number_of(sorted(f[i], f[(i + 1) % 3])));
-  std::sort(sides.begin(), sides.end());
-  sides.erase(std::unique(sides.begin(), sides.end()), sides.end());
-  lengths.reserve(sides.size());
-  for (const std::uint64_t side : sides)
-    lengths.push_back(distance(mesh.points[side >> 32U], mesh.points[side & 0xffffffffU]));
-  if (!lengths.empty()) {
-    const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-    std::nth_element(lengths.begin(), middle, lengths.end());
-    report.median_edge = *middle;
-  }
-  report.of_input = std::move(input);
-  report.of_mesh = std::move(made);
-}
-
 /// Regions play no part in how faces lie on patches.
 void forget_regions(TetMesh& mesh, Plc& plc) {
   for (Plc::Patch& patch : plc.patches) patch.regions = {0, 0};
@@ -282,7 +203,7 @@ void judge_shells(const TetMesh& given, const Plc& given_plc, const CheckOptions
   Subject subject = make_subject(mesh, plc, own);
   if (!check_points(subject, findings) || !check_labels(mesh, plc, findings)) return;
   subject.match = match_features(mesh, plc, subject.rounding);
-  check_present(subject, findings);
+  check_present(subject, 2, findings);
   check_vertices(subject, findings);
   check_edges(subject, findings);
   check_angles(subject, report, findings);
@@ -293,7 +214,7 @@ void judge_shells(const TetMesh& given, const Plc& given_plc, const CheckOptions
   check_outward(subject, given_plc, findings);
   check_second_order(subject, report, findings);
   check_triangle_jacobians(subject, findings);
-  measure(subject, report);
+  measure_without_tets(subject, 2, report);
 }
 
 }  // namespace

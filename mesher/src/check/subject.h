@@ -105,10 +105,6 @@ class Grouping {
 };
 
 inline std::array<Index, 2> sorted(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
-/// Both ends in one number, which is compared at once.
-inline std::uint64_t number_of(const std::array<Index, 2>& ends) {
-  return std::uint64_t{ends[0]} << 32U | ends[1];
-}
 
 inline double area(const Point& a, const Point& b, const Point& c) { return 0.5 * norm(cross(b - a, c - a)); }
 
@@ -147,6 +143,13 @@ void check_conformity(const Subject& subject, CheckReport& report, Findings& fin
 
 void check_watertight(const Subject& subject, Findings& findings);
 
+/// The volumes that the complex encloses, by region, and how far the mesh's may be off because its surface
+/// may: to first order by the allowed distance times the area.
+struct RegionVolumes {
+  std::vector<double> enclosed, allowed;
+};
+RegionVolumes expected_volumes(const Subject& subject);
+
 /// Precondition: report.region_volumes is filled in.
 void check_region_volumes(const Subject& subject, const CheckReport& report, Findings& findings);
 
@@ -175,6 +178,8 @@ std::vector<Index> match_vertices(const TetMesh& mesh, const Plc& plc, double ro
 /// The patches of the faces that name none: by position, and by tag if the tags are the complex'.
 std::vector<Index> match_faces(const TetMesh& mesh, const Plc& plc, bool by_tag);
 
+/// Precondition of these: subject.match is filled in, of the first its vertices alone.
+void check_vertices_present(const Subject& subject, Findings& findings);
 void check_vertices(const Subject& subject, Findings& findings);
 void check_listed_edges(const Subject& subject, Findings& findings);
 void check_curves(const Subject& subject, CheckReport& report, Findings& findings);

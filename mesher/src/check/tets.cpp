@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "check/orientation.h"
+#include "check/predicates.h"
 #include "check/subject.h"
 #include "common/parallel_for.h"
 
@@ -18,16 +18,6 @@ struct Corners {
   const Point &a, &b, &c, &d;
   Point centre() const { return 0.25 * ((a + b) + (c + d)); }
 };
-
-void check_orientation(Index tet, const Corners& p, const TetQuality& quality, Findings& findings) {
-  const int sign = exact_orientation(p.a, p.b, p.c, p.d);
-  if (sign > 0) return;
-  findings.add(
-      guarantee::positive_volume, p.centre(), {tet},
-      "Tet {} with corners {}, {}, {}, {} {} (volume {:.6g}); a solver cannot use it. If the mesher made "
-      "this mesh, report it with the input and the options.",
-      tet, At{p.a}, At{p.b}, At{p.c}, At{p.d}, sign == 0 ? "is flat" : "is inverted", quality.volume);
-}
 
 void check_shape(Index tet, const Corners& p, const TetQuality& quality, const Subject& subject,
                  const ThinCells& thin, CheckReport& report, Findings& findings) {
@@ -115,7 +105,7 @@ void check_tets(const Subject& subject, CheckReport& report, Findings& findings)
                         subject.collar[tet] != 0 ? MeshMeasures::Kind::collar
                         : is_thin                ? MeshMeasures::Kind::thin
                                                  : MeshMeasures::Kind::plain);
-    check_orientation(tet, p, quality, findings);
+    check_orientation({"Tet", tet}, {p.a, p.b, p.c, p.d}, quality.volume, findings);
     check_shape(tet, p, quality, subject, thin, report, findings);
     check_region_tag(tet, p, subject, findings);
     volumes[mesh.tet_region[tet]] += quality.volume;

@@ -5,17 +5,6 @@ namespace collarmesh::checks {
 
 namespace {
 
-void check_presence(const Subject& subject, Findings& findings) {
-  const Plc& plc = subject.plc;
-  for (Index v = 0; v < plc.vertices.size(); ++v) {
-    const Point& where = plc.points[plc.vertices[v].point];
-    if (subject.match.vertex_point[v] != none || vertex_is_outside(subject, v)) continue;
-    findings.add(guarantee::vertex_present, where, {v},
-                 "Vertex {} of the complex at {} is not a point of the mesh; a feature was lost there.", v,
-                 At{where});
-  }
-}
-
 // For each mesh point the feature of one dimension that lists it, if there is just one.
 class FeatureOfPoint {
  public:
@@ -35,8 +24,19 @@ class FeatureOfPoint {
 
 }  // namespace
 
+void check_vertices_present(const Subject& subject, Findings& findings) {
+  const Plc& plc = subject.plc;
+  for (Index v = 0; v < plc.vertices.size(); ++v) {
+    const Point& where = plc.points[plc.vertices[v].point];
+    if (subject.match.vertex_point[v] != none || vertex_is_outside(subject, v)) continue;
+    findings.add(guarantee::vertex_present, where, {v},
+                 "Vertex {} of the complex at {} is not a point of the mesh; a feature was lost there.", v,
+                 At{where});
+  }
+}
+
 void check_vertices(const Subject& subject, Findings& findings) {
-  check_presence(subject, findings);
+  check_vertices_present(subject, findings);
   const TetMesh& mesh = subject.mesh;
   if (mesh.features.empty()) return;
   FeatureOfPoint vertices(mesh.points.size()), curves(mesh.points.size()), patches(mesh.points.size());

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "collarmesh/geometry.h"
+#include "common/flat_table.h"
 
 namespace collarmesh {
 
@@ -19,33 +20,23 @@ class IndexSet {
   /// Adds a number; returns false if it is there already.
   bool insert(Index i) {
     if (2 * (size_ + 1) > table_.size()) grow();
-    if (!insert_into(table_, i)) return false;
+    Index& slot = slot_of(table_, i);
+    if (slot == i) return false;
+    slot = i;
     ++size_;
     return true;
   }
-  bool contains(Index i) const {
-    const std::size_t last = table_.size() - 1;
-    std::size_t slot = first_slot(i) & last;
-    while (table_[slot] != i && table_[slot] != none) slot = (slot + 1) & last;
-    return table_[slot] == i;
-  }
+  bool contains(Index i) const { return slot_of(table_, i) == i; }
 
  private:
-  static std::size_t first_slot(Index i) { return i * 0x9e3779b97f4a7c15U >> 32U; }
-  static bool insert_into(std::span<Index> table, Index i) {
-    const std::size_t last = table.size() - 1;
-    for (std::size_t slot = first_slot(i) & last;; slot = (slot + 1) & last) {
-      if (table[slot] == i) return false;
-      if (table[slot] != none) continue;
-      table[slot] = i;
-      return true;
-    }
+  static Index& slot_of(std::span<Index> table, Index i) {
+    return find_slot(table, spread(i), [&](Index other) { return other == i; });
   }
 
   void grow() {
     std::vector<Index> larger(2 * table_.size(), none);
     for (const Index i : table_)
-      if (i != none) insert_into(larger, i);
+      if (i != none) slot_of(larger, i) = i;
     many_.swap(larger);
     table_ = many_;
   }

@@ -12,6 +12,8 @@
 #include "collarmesh/surface_tolerance.h"
 #include "collarmesh/tet_mesh.h"
 #include "common/distance_tree.h"
+#include "common/edge_key.h"
+#include "common/flat_table.h"
 
 namespace collarmesh {
 
@@ -54,8 +56,7 @@ class PatchDistance {
     /// Records a side; returns false if it was seen.
     bool add(Index a, Index b) {
       const std::array<Index, 2> side{std::min(a, b), std::max(a, b)};
-      const std::uint64_t number = std::uint64_t{side[0]} << 32 | side[1];
-      auto& place = places_[(number * 0x9e3779b97f4a7c15 >> 32U) & (places_.size() - 1)];
+      auto& place = places_[spread(edge_key(a, b)) & (places_.size() - 1)];
       return std::exchange(place, side) != side;
     }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "collarmesh/tet_mesh.h"
+#include "common/flat_table.h"
 #include "common/groups.h"
 #include "common/tet_sides.h"
 
@@ -60,15 +61,12 @@ class EdgesAtVertex {
 
   /// Among the ends; of a new one the next number.
   Index number_of(Index end) {
-    for (std::size_t slot = end * 0x9e3779b1U >> 8U;; ++slot) {
-      Index& number = table_[slot & (table_.size() - 1)];
-      if (number == none) {
-        number = static_cast<Index>(ends_.size());
-        ends_.push_back(end);
-        return number;
-      }
-      if (ends_[number] == end) return number;
+    Index& number = find_slot(table_, end * 0x9e3779b1U >> 8U, [&](Index n) { return ends_[n] == end; });
+    if (number == none) {
+      number = static_cast<Index>(ends_.size());
+      ends_.push_back(end);
     }
+    return number;
   }
 
  private:
@@ -222,19 +220,17 @@ class TrianglesAtVertex {
   void add(const TriangleUse& use) {
     const auto added = static_cast<Index>(uses_.size());
     uses_.push_back({use, none});
-    for (std::size_t slot = use.larger_corners * 0x9e3779b97f4a7c15U >> 32U;; ++slot) {
-      Index& number = table_[slot & (table_.size() - 1)];
-      if (number == none) {
-        number = static_cast<Index>(lists_.size());
-        lists_.push_back({added, added});
-        return;
-      }
-      Listed& list = lists_[number];
-      if (uses_[list.first].use.larger_corners != use.larger_corners) continue;
-      uses_[list.last].next = added;
-      list.last = added;
+    Index& number = find_slot(table_, spread(use.larger_corners), [&](Index n) {
+      return uses_[lists_[n].first].use.larger_corners == use.larger_corners;
+    });
+    if (number == none) {
+      number = static_cast<Index>(lists_.size());
+      lists_.push_back({added, added});
       return;
     }
+    Listed& list = lists_[number];
+    uses_[list.last].next = added;
+    list.last = added;
   }
 
   std::vector<Linked> uses_;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "collarmesh/tet_mesh.h"
+#include "common/edge_key.h"
 #include "common/known_neighbours.h"
 #include "common/large_pages.h"
 #include "common/tet_sides.h"
@@ -133,9 +134,6 @@ class TetComplex {
     std::array<Index, 2> kept_ends, other_ends;
   };
 
-  static std::uint64_t edge_key(Index a, Index b) {
-    return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
-  }
   void link(bool some_are_known);
   void find_pinched_vertices();
   void make_faces(const Replacement& replacement);

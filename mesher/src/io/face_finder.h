@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "collarmesh/geometry.h"
+#include "common/flat_table.h"
 
 namespace collarmesh::io {
 
@@ -38,14 +39,11 @@ class FaceFinder {
     return t;
   }
   Index& slot(const Triangle& key) {
-    const std::size_t mask = slots_.size() - 1;
     std::uint64_t h = key[0];
     h = (h * 0x9e3779b97f4a7c15ULL) ^ key[1];
     h = (h * 0x9e3779b97f4a7c15ULL) ^ key[2];
     h *= 0x9e3779b97f4a7c15ULL;
-    std::size_t i = (h ^ (h >> 31)) & mask;
-    while (slots_[i] != none && keys_[slots_[i]] != key) i = (i + 1) & mask;
-    return slots_[i];
+    return find_slot(slots_, h ^ (h >> 31), [&](Index face) { return keys_[face] == key; });
   }
 
   std::vector<Triangle> keys_;

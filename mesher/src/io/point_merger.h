@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "collarmesh/geometry.h"
+#include "common/flat_table.h"
 
 namespace collarmesh::io {
 
@@ -37,10 +38,7 @@ class PointMerger {
   }
   /// The slot that holds the point, or the free one where it belongs.
   Index& find(const Point& p) {
-    const std::size_t mask = slots_.size() - 1;
-    std::size_t i = hash(p) & mask;
-    while (slots_[i] != none && !(points_[slots_[i]] == p)) i = (i + 1) & mask;
-    return slots_[i];
+    return find_slot(slots_, hash(p), [&](Index i) { return points_[i] == p; });
   }
   void grow() {
     slots_.assign(2 * slots_.size(), none);

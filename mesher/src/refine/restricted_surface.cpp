@@ -200,7 +200,7 @@ void RestrictedSurface::mark_border_faces(const ConflictZone& zone, Index vertex
     const FaceId face = face_id(created, corner_of(zone.border[i]));
     if (was_marked && crosses_as_before(outer, face, vertex, w)) {
       mark(face, record_of(outer));
-      notes(face).judged = false;  // it may have been queued as the destroyed cell's face
+      own_notes(face).judged = false;  // it may have been queued as the destroyed cell's face
       continue;
     }
     const bool known = was_marked && crosses_no_more(outer, face);

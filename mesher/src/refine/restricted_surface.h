@@ -38,7 +38,7 @@ struct TriangleNotes {
 /// Invariants, between insertions and until `give_outside`: a cell has the region that its circumcentre lies
 /// in, as far as its coordinates are not rounded across the surface; a face is marked, from both of its
 /// cells, when its dual edge crosses a patch, and then it has a record. The loop tells of insertions,
-/// BlockRefinement of those into blocks; the parts that judge triangles read records and write notes;
+/// BlockRefinement of those into blocks; the parts that judge triangles read records and say what it notes;
 /// CollarCreator tells of new balls; at the very end SurfaceCheck gives flat cells to the outside.
 class RestrictedSurface {
  public:
@@ -63,7 +63,11 @@ class RestrictedSurface {
   const RestrictedTriangle& triangle(FaceId face) const { return record(face).triangle; }
   Index patch(FaceId face) const { return patch_of(triangle(face)); }
   const TriangleNotes& notes(FaceId face) const { return record(face).notes; }
-  TriangleNotes& notes(FaceId face) { return records_[record_of(face)].notes; }
+  // Notes of those who judge them:
+  void note_judged(FaceId face) { own_notes(face).judged = true; }
+  void note_given_up(FaceId face) { own_notes(face).given_up = true; }
+  void note_needed(FaceId face) { own_notes(face).surface_needs_it = true; }
+  void note_known_near(FaceId face) { own_notes(face).known_near = true; }
 
   /// The circumcentre of a face's triangle; of a degenerate one, which must be marked, where its dual edge
   /// crosses the patch.
@@ -127,6 +131,7 @@ class RestrictedSurface {
   };
   Index record_of(FaceId face) const { return marks_[cell_of(face)][corner_of(face)]; }
   const Record& record(FaceId face) const { return records_[record_of(face)]; }
+  TriangleNotes& own_notes(FaceId face) { return records_[record_of(face)].notes; }
   Index patch_of(const RestrictedTriangle& t) const { return domain_.plc.triangles[t.triangle].patch; }
 
   void fit_mesh();

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "common/edge_key.h"
+#include "common/flat_table.h"
 #include "common/found_in_ranges.h"
 #include "tolerance/triangle_within_tolerance.h"
 
@@ -177,22 +178,25 @@ bool SurfaceCheck::refine_distant_triangles(const std::vector<FaceId>& faces) {
   bool found = false;
   for (const FaceId face : faces) {
     const RestrictedTriangle& t = surface_.triangle(face);
-    TriangleNotes& notes = surface_.notes(face);
+    const TriangleNotes& notes = surface_.notes(face);
     const Index patch = surface_.patch(face);
     if (domain_.plc.patches[patch].planar || t.in_collar || notes.given_up || notes.known_near) continue;
     Index near = t.triangle;  // the next sample is often near the same triangle
     const auto is_near = [&](const Point& p) { return is_near_patch(p, patch, near); };
     const auto v = mesh_.face_vertices(face);
-    notes.known_near = is_near((mesh_.point(v[0]) + mesh_.point(v[1]) + mesh_.point(v[2])) / 3);
-    for (unsigned k = 0; k < 3 && notes.known_near; ++k) {
+    bool near_there = is_near((mesh_.point(v[0]) + mesh_.point(v[1]) + mesh_.point(v[2])) / 3);
+    for (unsigned k = 0; k < 3 && near_there; ++k) {
       const std::uint64_t edge = edge_key(v[k], v[(k + 1) % 3]);
-      NearEdge& known = near_edges[edge * 0x9e3779b97f4a7c15 >> 32 & (near_edges.size() - 1)];
+      NearEdge& known = near_edges[spread(edge) & (near_edges.size() - 1)];
       if (known.edge == edge && known.patch == patch) continue;
       const Point &a = mesh_.point(v[k]), &b = mesh_.point(v[(k + 1) % 3]);
-      notes.known_near = is_near((2 * a + b) / 3) && is_near(0.5 * (a + b)) && is_near((a + 2 * b) / 3);
-      if (notes.known_near) known = {edge, patch};
+      near_there = is_near((2 * a + b) / 3) && is_near(0.5 * (a + b)) && is_near((a + 2 * b) / 3);
+      if (near_there) known = {edge, patch};
     }
-    if (notes.known_near) continue;
+    if (near_there) {
+      surface_.note_known_near(face);
+      continue;
+    }
     triangles_.split(face);
     found = true;
   }

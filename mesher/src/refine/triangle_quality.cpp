@@ -117,9 +117,8 @@ void TriangleQuality::judge_all() {
 }
 
 void TriangleQuality::split(FaceId face) {
-  TriangleNotes& notes = surface_.notes(face);
-  if (notes.given_up) return;
-  notes.surface_needs_it = true;
+  if (surface_.notes(face).given_up) return;
+  surface_.note_needed(face);
   queue_.push(WorkQueue::unresolved_triangles, surface_.triangle(face).squared_radius, entry(face));
 }
 
@@ -129,7 +128,7 @@ void TriangleQuality::judge(FaceId face) {
 
 template <class TargetSize>
 void TriangleQuality::judge(FaceId face, WorkQueue& queue, const TargetSize& target_size) const {
-  surface_.notes(face).judged = true;
+  surface_.note_judged(face);
   const RestrictedTriangle& t = surface_.triangle(face);
   if (t.in_collar) return;
   if (!t.resolved_vertices || t.several_sheets || too_far(face, t)) {

@@ -48,7 +48,7 @@ class TriangleQuality {
   /// Queue a triangle again that is still there after something else was inserted in its place.
   void queue_again(const WorkQueue::Item& item, double squared_radius);
   /// Nothing could be inserted to destroy a triangle: nothing more is tried.
-  void give_up(FaceId face) { surface_.notes(face).given_up = true; }
+  void give_up(FaceId face) { surface_.note_given_up(face); }
 
   /// Precondition: surface and sizes know the new cells and the vertex.
   void cells_made(const ConflictZone& zone);

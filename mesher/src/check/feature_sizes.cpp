@@ -1,0 +1,124 @@
+#include "check/feature_sizes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/edge_key.h"
+#include "common/median.h"
+
+namespace collarmesh::checks {
+
+namespace {
+
+/// Replaces values of the complex by exact ones where these are known.
+void take_exact(const std::vector<double>& exact, std::vector<double>& values) {
+  for (std::size_t i = 0; i < std::min(exact.size(), values.size()); ++i)
+    if (std::isfinite(exact[i])) values[i] = exact[i];
+}
+
+/// Returns the lengths of the straight sides of the faces, or of the edges, each once.
+std::vector<double> lengths_of_sides(const TetMesh& mesh, int dimension) {
+  std::vector<double> lengths;
+  const auto add = [&](Index a, Index b) { lengths.push_back(distance(mesh.points[a], mesh.points[b])); };
+  if (dimension == 1) {
+    for (const auto& [a, b] : mesh.edges) add(a, b);
+    return lengths;
+  }
+  std::vector<std::uint64_t> sides;
+  for (const auto& f : mesh.faces)
+    for (unsigned i = 0; i < 3; ++i) sides.push_back(edge_key(f[i], f[(i + 1) % 3]));
+  std::sort(sides.begin(), sides.end());
+  sides.erase(std::unique(sides.begin(), sides.end()), sides.end());
+  lengths.reserve(sides.size());
+  for (const std::uint64_t side : sides)
+    add(static_cast<Index>(side >> 32U), static_cast<Index>(side & 0xffffffffU));
+  return lengths;
+}
+
+}  // namespace
+
+CurvedTriangle curved_face(const TetMesh& mesh, Index face) {
+  const auto& [a, b, c] = mesh.faces[face];
+  const auto& [ab, bc, ca] = mesh.face_mid_nodes[face];
+  return {mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[ab], mesh.points[bc], mesh.points[ca]};
+}
+
+double length_of_edge(const TetMesh& mesh, Index edge) {
+  const auto& [a, b] = mesh.edges[edge];
+  if (mesh.order() == 1) return distance(mesh.points[a], mesh.points[b]);
+  return length(CurvedEdge{mesh.points[a], mesh.points[b], mesh.points[mesh.edge_mid_nodes[edge]]});
+}
+
+double area_of_face(const TetMesh& mesh, Index face) {
+  const auto& [a, b, c] = mesh.faces[face];
+  return mesh.order() == 1 ? area(mesh.points[a], mesh.points[b], mesh.points[c])
+                           : collarmesh::area(curved_face(mesh, face));
+}
+
+ShapeMeasures feature_sizes(const Subject& subject) {
+  const TetMesh& mesh = subject.mesh;
+  ShapeMeasures sizes{{},
+                      std::vector<double>(subject.plc.patches.size(), 0),
+                      std::vector<double>(subject.plc.curves.size(), 0),
+                      {}};
+  for (Index face = 0; face < mesh.faces.size(); ++face)
+    if (const Index patch = subject.match.face_patch[face]; patch != none)
+      sizes.areas[patch] += area_of_face(mesh, face);
+  for (Index edge = 0; edge < mesh.edges.size(); ++edge)
+    if (const Index curve = subject.match.edge_curve[edge]; curve != none)
+      sizes.lengths[curve] += length_of_edge(mesh, edge);
+  return sizes;
+}
+
+ShapeMeasures input_sizes(const Subject& subject) {
+  ShapeMeasures sizes = measures_of(subject.plc);
+  const ShapeMeasures& exact = subject.options.exact;
+  take_exact(exact.volumes, sizes.volumes);
+  take_exact(exact.areas, sizes.areas);
+  take_exact(exact.lengths, sizes.lengths);
+  return sizes;
+}
+
+void measure_without_tets(const Subject& subject, int dimension, CheckReport& report) {
+  report.of_input = input_sizes(subject);
+  report.of_mesh = feature_sizes(subject);
+  for (ShapeMeasures* sizes : {&report.of_input, &report.of_mesh}) {
+    sizes->volumes.clear();
+    sizes->shells.clear();
+    if (dimension == 1) sizes->areas.clear();
+  }
+  std::vector<double> lengths = lengths_of_sides(subject.mesh, dimension);
+  report.median_edge = median(lengths);
+}
+
+void check_present(const Subject& subject, int dimension, Findings& findings) {
+  const Plc& plc = subject.plc;
+  const Grouping by_patch(subject.match.face_patch, plc.patches.size()),
+      by_curve(subject.match.edge_curve, plc.curves.size());
+  for (Index p = 0; dimension == 2 && p < plc.patches.size(); ++p) {
+    if (by_patch.size(p) > 0) continue;
+    const Point& where = subject.plc_corner(plc.triangles[plc.patches[p].first_triangle], 0);
+    findings.add(
+        guarantee::patch_present, where, {p},
+        "Patch {} (tag {}) at {} has no faces; it was lost, or its faces are tagged with another patch.", p,
+        plc.patches[p].tag, At{where});
+  }
+  for (Index c = 0; c < plc.curves.size(); ++c) {
+    if (by_curve.size(c) > 0 || (dimension == 2 && plc.curves[c].patches.empty())) continue;
+    const Point& where = plc.points[plc.curves[c].points.front()];
+    findings.add(
+        guarantee::curve_present, where, {c},
+        "Curve {} (tag {}) at {} has no edges; it was lost, or its edges are tagged with another curve.", c,
+        plc.curves[c].tag, At{where});
+  }
+  for (Index v = 0; v < plc.vertices.size(); ++v) {
+    const Plc::Vertex& vertex = plc.vertices[v];
+    if (subject.match.vertex_point[v] != none) continue;
+    if (dimension == 2 ? vertex.patches.empty() : vertex.curves.empty()) continue;
+    const Point& where = plc.points[vertex.point];
+    findings.add(guarantee::vertex_present, where, {v}, "Vertex {} (tag {}) at {} is no point of the mesh.",
+                 v, vertex.tag, At{where});
+  }
+}
+
+}  // namespace collarmesh::checks

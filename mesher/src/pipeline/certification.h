@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstddef>
+
+#include "pipeline/mesh_job.h"
+
+namespace collarmesh::pipeline {
+
+/// Returns whether a finding says that a tet misses the bounds on its shape.
+bool is_about_shape(const Finding& finding);
+
+/// Returns how often tets miss the bounds on their shapes, or sides of pairs their images, which counts far
+/// more. Precondition: the map has the corners.
+std::size_t count_misshapen(const MeshJob& job, const TetMesh& mesh);
+
+/// Checks the mesh against the bounds that were promised of it, and within the tolerance of its complex.
+void certify(MeshJob& job, const SurfaceTolerance& tolerance);
+
+}  // namespace collarmesh::pipeline

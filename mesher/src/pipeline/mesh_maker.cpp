@@ -1,0 +1,159 @@
+#include "pipeline/mesh_maker.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "collarmesh/error.h"
+#include "common/thread_limit.h"
+#include "periodic/make_periodic.h"
+#include "periodic/tolerance_across.h"
+#include "pipeline/certification.h"
+#include "pipeline/exact_shape.h"
+#include "pipeline/explosion.h"
+#include "pipeline/periodic_faces.h"
+#include "pipeline/refinement.h"
+#include "pipeline/reshaping.h"
+#include "predict/vertex_counts.h"
+
+namespace collarmesh::pipeline {
+
+void MeshMaker::make(const Plc& plc, std::uint64_t seed) {
+  set_up(plc, seed);
+  if (job_.start == Start::constrained)
+    tetrahedralize(job_);
+  else
+    refine(job_);
+  if (is_far_too_fine() && replace_refined()) return;
+  reshape(job_);
+  if (job_.start == Start::constrained) settle(job_, hope_);
+  make_faces_periodic(job_);
+  project(job_);
+  raise_order(job_);
+  certify(job_, tolerance(plc));
+}
+
+void MeshMaker::set_up(const Plc& plc, std::uint64_t seed) {
+  job_.plc = &plc;
+  PipelineOptions& options = job_.options;
+  options = job_.given;
+  if (source_ != nullptr) source_->adapt(plc, options);
+  require_known_tags(options.mesh, plc);
+  require_known_patches(options.split, plc);
+  options.mesh.bounds.tolerance = nearer_ ? *nearer_ : tolerance(plc);
+  const double distance = options.mesh.bounds.tolerance->largest();
+  require_periodic_patches(options.periodic, plc, distance);
+  if (options.periodic.any())
+    options.mesh.bounds.tolerance =
+        periodicity::tolerance_across(*options.mesh.bounds.tolerance, plc, options.periodic, distance);
+  job_.budget.find(plc, options);
+  if (job_.budget.most() > 0) options.mesh.max_vertices = job_.budget.most();
+  options.mesh.seed = seed;
+  job_.refined_with = options_of_refinement(job_, narrow_cells_);
+}
+
+/// Returns whether a refinement made many times the tets that are to be left, as thin parts make it do. To
+/// coarsen those away takes far longer than to begin with constrained tetrahedra.
+bool MeshMaker::is_far_too_fine() const {
+  constexpr double times = 5, least = 200'000;
+  const auto tets = static_cast<double>(job_.made.result.mesh.tets.size());
+  return job_.start == Start::automatic && job_.options.coarsen &&
+         job_.made.result.status == MeshStatus::complete && tets > least &&
+         tets > times * prediction::count_tets(prediction::Shape(*job_.plc), job_.options.mesh);
+}
+
+/// Takes the mesh from the constrained tetrahedra in place of the refined one if it keeps every guarantee.
+bool MeshMaker::replace_refined() {
+  KnownNeighbours neighbours = std::move(job_.neighbours);
+  const MeshOptions refined_with = job_.refined_with;
+  if (take_constrained(*job_.plc,
+                       fmt::format("the refinement makes {} tets", job_.made.result.mesh.tets.size())))
+    return true;
+  job_.neighbours = std::move(neighbours);
+  job_.refined_with = refined_with;
+  return false;
+}
+
+void MeshMaker::make_refined_or_constrained(const Plc& plc) { make_or_take_constrained(plc, nullptr); }
+
+void MeshMaker::make_anyhow(const Plc& plc, const std::string& why) {
+  if (!take_constrained(plc, why)) make_or_take_constrained(plc, &why);
+}
+
+/// `why`: the reason for constrained tetrahedra, or null: that of the refinement that fails.
+void MeshMaker::make_or_take_constrained(const Plc& plc, const std::string* why) {
+  try {
+    return make(plc, job_.given.mesh.seed);
+  } catch (const Ended&) {
+    if (!job_.hit_bound()) throw;
+    const std::string reason =
+        why != nullptr ? *why : describe_explosion(plc, job_.budget.most(), job_.made.result.where);
+    std::optional<PipelineResult> constrained = from_constrained(plc, reason, Hope::any);
+    if (!constrained) throw;
+    is_constrained_ = true;
+    job_.made = std::move(*constrained);
+  }
+}
+
+/// Takes the mesh from the constrained tetrahedra if it keeps every guarantee.
+bool MeshMaker::take_constrained(const Plc& plc, const std::string& why) {
+  constexpr std::size_t most_triangles = 12'000;  // else it takes longer than other ways
+  if (plc.triangles.size() > most_triangles || hopeless_ == &plc) return false;
+  std::optional<PipelineResult> constrained = from_constrained(plc, why, Hope::good);
+  is_constrained_ = constrained && constrained->guarantees_hold();
+  hopeless_ = is_constrained_ ? nullptr : &plc;
+  if (is_constrained_) job_.made = std::move(*constrained);
+  return is_constrained_;
+}
+
+std::optional<PipelineResult> MeshMaker::from_constrained(const Plc& plc, const std::string& why, Hope hope) {
+  const PipelineOptions& given = job_.given;
+  if (given.start != Start::automatic || !given.coarsen || given.periodic.any()) return {};
+  PipelineResult& made = job_.made;
+  PipelineResult before = std::exchange(made, {});
+  std::optional<PipelineResult> found;
+  job_.start = Start::constrained;
+  hope_ = hope;
+  const std::unique_ptr<MeshMaker, void (*)(MeshMaker*)> restore(this, [](MeshMaker* maker) {
+    maker->job_.start = Start::automatic;
+    maker->hope_ = Hope::any;
+  });
+  try {
+    make(plc, given.mesh.seed);
+    made.check.notes.push_back(fmt::format("begun with constrained tetrahedra, as {}", why));
+    if (std::ranges::all_of(made.check.findings, is_about_shape)) found = std::move(made);
+  } catch (const Hopeless&) {
+    found.reset();
+  } catch (const PlcError&) {
+    found.reset();
+  } catch (const Ended&) {
+    if (!job_.hit_bound()) throw;
+  }
+  made = std::move(before);
+  return found;
+}
+
+void MeshMaker::take_new_complex() {
+  tolerance_.reset();
+  nearer_.reset();
+  hopeless_ = nullptr;
+}
+
+void MeshMaker::come_nearer(const Plc& plc, double share) { nearer_ = tolerance(plc, 1).scaled(share); }
+
+const SurfaceTolerance& MeshMaker::tolerance(const Plc& plc) {
+  if (!tolerance_) tolerance_ = tolerance(plc, static_cast<int>(job_.given.order));
+  return *tolerance_;
+}
+
+SurfaceTolerance MeshMaker::tolerance(const Plc& plc, int order) const {
+  std::optional<SurfaceTolerance> found;
+  ThreadLimit(job_.given.mesh.threads).run([&] {
+    found = tolerance_of(plc, job_.given.mesh.bounds, job_.given.mesh.size, order);
+  });
+  return *found;
+}
+
+}  // namespace collarmesh::pipeline

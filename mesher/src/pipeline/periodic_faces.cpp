@@ -1,0 +1,99 @@
+#include "pipeline/periodic_faces.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+#include "common/thread_limit.h"
+#include "improve/cell_bounds.h"
+#include "improve/divide_curves.h"
+#include "periodic/change_across.h"
+#include "periodic/make_periodic.h"
+#include "periodic/node_map.h"
+#include "pipeline/certification.h"
+#include "pipeline/reshaping.h"
+
+namespace collarmesh::pipeline {
+
+namespace {
+
+using periodicity::Recut;
+
+TetMesh refined_with_nodes_of(MeshJob& job, const TetMesh& source) {
+  TetMesh mesh = job.refined;
+  coarsen_and_improve(job, mesh,
+                      periodicity::add_periodic_nodes(mesh, source, *job.plc, job.options.periodic,
+                                                      job.refined_with.bounds.tolerance->largest()));
+  return mesh;
+}
+
+template <class Change>
+void change_across(MeshJob& job, TetMesh& mesh, Recut::Moved moved, const Change& change) {
+  const SurfaceTolerance& tolerance = *job.refined_with.bounds.tolerance;
+  ThreadLimit(job.options.mesh.threads).run([&] {
+    periodicity::change_across(mesh, *job.plc, job.options.periodic, tolerance.largest(), tolerance, moved,
+                               job.refined_with.edges_per_hole, change);
+    improvement::mark_cells(mesh, *job.plc, job.refined_with.bounds);
+  });
+}
+
+void divide_curves_at_poor_tets(MeshJob& job, TetMesh& mesh) {
+  change_across(job, mesh, Recut::Moved::beside_first, [&](improvement::Workpiece& workpiece, const auto&) {
+    improvement::divide_curves_at_poor_tets(workpiece, job.refined_with.bounds);
+  });
+}
+
+/// Coarsens and improves a periodic mesh while it is cut open at one place and then at another; vertices
+/// are inserted if asked for. Returns how often its tets miss their bounds.
+std::size_t reshape_across(MeshJob& job, TetMesh& mesh, bool insert) {
+  std::size_t poor = SIZE_MAX;
+  for (const Recut::Moved moved : {Recut::Moved::beside_first, Recut::Moved::beside_second}) {
+    change_across(job, mesh, moved, [&](improvement::Workpiece& workpiece, const Recut& recut) {
+      MeshOptions options = job.refined_with;
+      options.size_field = recut.sizes(options.size_field);
+      reshape(job, workpiece, options, insert);
+    });
+    poor = count_misshapen(job, mesh);
+    if (poor == 0) break;
+  }
+  return poor;
+}
+
+}  // namespace
+
+void make_faces_periodic(MeshJob& job) {
+  PipelineResult& made = job.made;
+  if (!job.given.periodic.any() || made.result.status != MeshStatus::complete) return;
+  constexpr unsigned most_tries = 4, most_rounds = 3;
+  job.control.begin("periodic faces", 0.75, 0.79);
+  const ImproveReport improvement = made.improvement;
+  const bool smooth = std::ranges::any_of(job.plc->patches, [](const auto& patch) { return !patch.planar; });
+  TetMesh best, source = std::move(made.result.mesh);
+  std::size_t least = SIZE_MAX;
+  for (unsigned k = 0; k < most_tries && least > 0; ++k) {
+    TetMesh mesh = refined_with_nodes_of(job, smooth && k == 0 ? job.refined : source);
+    const PeriodicReport report =
+        make_periodic(mesh, *job.plc, job.options.periodic, job.refined_with.bounds.tolerance->largest());
+    periodicity::map_corners(mesh);
+    std::size_t before = SIZE_MAX;
+    for (unsigned round = 0; round < most_rounds; ++round) {
+      const std::size_t poor = reshape_across(job, mesh, k > 0 || round > 0);
+      if (poor < least) {
+        least = poor;
+        best = mesh;
+        made.periodic = report;
+      }
+      if (poor == 0 || poor >= before) break;
+      divide_curves_at_poor_tets(job, mesh);
+      if (before == SIZE_MAX && !(smooth && k == 0)) source = mesh;
+      before = poor;
+    }
+  }
+  job.refined = {};
+  made.improvement = improvement;
+  made.result.mesh = std::move(best);
+  job.trace("periodic faces", made.result.mesh);
+}
+
+}  // namespace collarmesh::pipeline

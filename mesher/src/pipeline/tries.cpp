@@ -1,0 +1,227 @@
+#include "pipeline/tries.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <new>
+#include <optional>
+
+#include "check/guarantees.h"
+#include "pipeline/explosion.h"
+#include "pipeline/lost_parts.h"
+#include "pipeline/vertex_bound.h"
+
+namespace collarmesh::pipeline {
+
+namespace {
+
+/// Throws PlcError unless a coarser repair changes something and loses no part.
+void require_kept(const SoupPipelineResult& finer, const SoupPipelineResult& coarser) {
+  const bool same =
+      finer.plc.triangles.size() == coarser.plc.triangles.size() && finer.plc.points == coarser.plc.points;
+  const std::string lost =
+      same ? "nothing would change" : lost_parts(finer.plc, finer.repair, coarser.plc, coarser.repair);
+  if (!lost.empty()) throw PlcError(lost, {});
+}
+
+}  // namespace
+
+void Tries::mesh(const Plc& plc) {
+  job_.budget.bound(Ways::none);
+  maker_.make_refined_or_constrained(plc);
+  try_seeds(plc);
+}
+
+void Tries::mesh_repaired(SoupPipelineResult& all) {
+  const PipelineOptions& given = job_.given;
+  PipelineResult& made = job_.made;
+  build(given.repair, all);
+  if (job_.start == Start::constrained) {
+    job_.budget.bound(Ways::none);
+    return maker_.make(all.plc, given.mesh.seed);
+  }
+  job_.budget.bound(Ways::others);
+  std::exception_ptr error;
+  const auto tried = attempt(all.plc, error);
+  const End end = tried.first;
+  const std::string& why = tried.second;
+  if (end == End::holds) return;
+  RepairOptions current = given.repair;
+  bool has_mesh = end == End::missed, built_last = true;
+  for (const RepairOptions& repair : repairs_after(end, all)) {
+    SoupPipelineResult other;
+    const bool better = find_better(has_mesh, [&] {
+      build(repair, other);
+      if (repair.wrap_at_once) job_.budget.bound(Ways::none);
+      if (end == End::exploded && !repair.wrap_at_once) require_kept(all, other);
+      maker_.make(other.plc, given.mesh.seed);
+    });
+    built_last = better;
+    if (!better) continue;
+    current = repair;
+    all.plc = std::move(other.plc);
+    all.repair = std::move(other.repair);
+    has_mesh = true;
+    made.check.notes.push_back(all.repair.wrapped
+                                   ? fmt::format("wrapped, as of the complex before {}", why)
+                                   : fmt::format("repaired with a tolerance of {:.3g}, as with {:.3g} {}",
+                                                 repair.tolerance, given.repair.tolerance, why));
+    if (made.guarantees_hold() || end == End::exploded) break;
+  }
+  if (has_mesh && made.guarantees_hold()) return;
+  if (!built_last) {
+    try {
+      build(current, all);  // its source is to know it again
+    } catch (const PlcError&) {
+      if (!has_mesh) throw;
+      return;
+    }
+  }
+  if (!has_mesh) {
+    job_.budget.bound(Ways::none);
+    if (error) {
+      std::optional<PipelineResult> constrained = maker_.from_constrained(all.plc, why, Hope::any);
+      if (!constrained) std::rethrow_exception(error);
+      made = std::move(*constrained);
+      return;
+    }
+    maker_.make_anyhow(all.plc, why);
+  }
+  try_seeds(all.plc);
+}
+
+void Tries::build(const RepairOptions& repair, SoupPipelineResult& all) {
+  job_.control.begin("complex", 0, 0.06);
+  RepairedPlc built = source_->build(repair, job_.execution());
+  all.repair = std::move(built.report);
+  if (all.repair.cancelled) job_.control.stop();
+  all.plc = std::move(built.plc);
+  maker_.take_new_complex();
+}
+
+/// Meshes a complex within the bound on vertices. Also returns the reason for a missed guarantee.
+std::pair<Tries::End, std::string> Tries::attempt(const Plc& plc, std::exception_ptr& error) {
+  try {
+    maker_.make(plc, job_.given.mesh.seed);
+    return {job_.made.guarantees_hold() ? End::holds : End::missed, job_.made.missed()};
+  } catch (const Ended&) {
+    if (!job_.hit_bound()) throw;
+    return {End::exploded, describe_explosion(plc, job_.budget.most(), job_.made.result.where)};
+  } catch (const PlcError& e) {
+    error = std::current_exception();
+    return {End::refused, e.what()};
+  }
+}
+
+std::vector<RepairOptions> Tries::repairs_after(End end, const SoupPipelineResult& all) const {
+  const PipelineOptions& given = job_.given;
+  if (end == End::missed && misses_collar_angle_only()) return {};
+  std::vector<RepairOptions> repairs = further_repairs(given.repair, all.repair);
+  if (end != End::exploded) return repairs;
+  std::erase_if(repairs, [](const RepairOptions& repair) { return !repair.wrap_at_once; });
+  const double diagonal = all.plc.bounds.diagonal();
+  std::vector<RepairOptions> coarser =
+      coarser_repairs(given.repair, smallest_size(given.mesh, diagonal), diagonal);
+  repairs.insert(repairs.begin(), coarser.begin(), coarser.end());
+  return repairs;
+}
+
+/// The angles in collars are those of creases, which repair leaves as they are.
+bool Tries::misses_collar_angle_only() const {
+  return job_.made.result.status == MeshStatus::complete &&
+         std::ranges::all_of(job_.made.check.findings, [](const Finding& finding) {
+           return finding.guarantee == guarantee::collar_dihedral;
+         });
+}
+
+bool Tries::missed(const char* guarantee) const {
+  return std::ranges::any_of(job_.made.check.findings,
+                             [&](const Finding& finding) { return finding.guarantee == guarantee; });
+}
+
+/// Refinement that does not end at one place with the samples of one seed may well end with those of
+/// another. Where regions do not keep their volumes the surface distance shrinks, too.
+void Tries::try_seeds(const Plc& plc) {
+  if (!maker_.depends_on_seed()) return;
+  PipelineResult& made = job_.made;
+  const std::uint64_t first = job_.given.mesh.seed;
+  for (std::uint64_t seed = first + 1; seed < first + job_.given.seeds && !made.guarantees_hold(); ++seed) {
+    const std::string missed = made.missed();
+    if (const double share = share_for_volumes(); share < 1) maker_.come_nearer(plc, share);
+    if (find_better(true, [&] { maker_.make(plc, seed); }))
+      made.check.notes.push_back(fmt::format("made with seed {}, as with {} {}", seed, first, missed));
+  }
+  try_narrow_places_otherwise(plc);
+}
+
+/// Cells that were left in narrow places may keep large angles. Then the ratio is bounded there, too, if
+/// that takes not many times the vertices. Where it was bounded, they are left.
+void Tries::try_narrow_places_otherwise(const Plc& plc) {
+  constexpr std::size_t times = 10, more = 100'000;
+  if (!job_.given.coarsen || !missed(guarantee::thin_angles)) return;
+  PipelineResult& made = job_.made;
+  const std::string missed = made.missed();
+  const bool were_left = made.result.has_narrow_cells;
+  const std::size_t before = job_.budget.most();
+  if (were_left) {
+    std::size_t most = times * made.result.statistics.vertices_inserted + more;
+    for (const std::size_t bound : {before, job_.given.mesh.max_vertices})
+      if (bound > 0) most = std::min(most, bound);
+    job_.budget.set_most(most);
+  }
+  maker_.set_narrow_cells(were_left ? NarrowCells::bounded : NarrowCells::left);
+  if (find_better(true, [&] { maker_.make(plc, job_.given.mesh.seed); }))
+    made.check.notes.push_back(fmt::format("made with {} narrow places, as otherwise {}",
+                                           were_left ? "a bounded ratio in" : "any ratio in", missed));
+  job_.budget.set_most(before);
+  maker_.set_narrow_cells(NarrowCells::bounded_if_cheap);
+}
+
+/// Returns the share of the surface distance of first order with which regions keep their volumes and thin
+/// places their thickness: the loss is about proportional to the distance.
+double Tries::share_for_volumes() const {
+  constexpr double aim = 0.7, least = 0.25;
+  const PipelineOptions& given = job_.given;
+  const double allowed = volume_allowance(static_cast<int>(given.order));
+  double share = 1;
+  if (given.mesh.bounds.distance > 0 || given.mesh.bounds.tolerance) return share;  // as asked for
+  const ShapeMeasures &input = job_.made.check.of_input, &mesh = job_.made.check.of_mesh;
+  const auto keep = [&](double wanted, double found) {
+    if (const double off = std::fabs(found - wanted); off > allowed * wanted)
+      share = std::min(share, std::max(least, aim * allowed * wanted / off));
+  };
+  for (std::size_t r = 1; r < std::min(input.volumes.size(), mesh.volumes.size()); ++r)
+    keep(input.volumes[r], mesh.volumes[r]);
+  for (std::size_t i = 0; i < std::min(input.shells.size(), mesh.shells.size()); ++i)
+    keep(input.shells[i], mesh.shells[i]);
+  if (missed(guarantee::thickness_kept)) share = least;
+  return share;
+}
+
+template <class Way>
+bool Tries::find_better(bool has_mesh, const Way& way) {
+  PipelineResult& made = job_.made;
+  PipelineResult kept = std::exchange(made, {});
+  bool better = false;
+  const auto fails = [&] {
+    if ((!has_mesh && !job_.hit_bound()) || made.result.status == MeshStatus::cancelled) throw;
+  };
+  try {
+    way();
+    better = !has_mesh || made.guarantees_hold();
+  } catch (const PlcError&) {
+    better = false;
+  } catch (const OptionError&) {  // the tags of sizes may be gone
+    better = false;
+  } catch (const Ended&) {
+    fails();
+  } catch (const std::bad_alloc&) {
+    fails();
+  }
+  if (!better) made = std::move(kept);
+  return better;
+}
+
+}  // namespace collarmesh::pipeline

@@ -1,0 +1,35 @@
+#include "pipeline/vertex_budget.h"
+
+#include <algorithm>
+
+#include "pipeline/vertex_bound.h"
+
+namespace collarmesh::pipeline {
+
+void VertexBudget::bound(Ways ways) {
+  ways_ = given_.repair.mode == RepairMode::off || given_.repair.wrap_at_once ? Ways::none : ways;
+  is_known_ = false;
+}
+
+// A budget that was given takes the place of the last one, and of any that is larger.
+void VertexBudget::find(const Plc& plc, const PipelineOptions& options) {
+  // Bodies far thinner than the size take many vertices rightly; so many take ten seconds.
+  constexpr std::size_t times_without_other_ways = 2, least_without_other_ways = 300'000;
+  if (is_known_) return;
+  const std::size_t given = given_.mesh.max_vertices;
+  is_known_ = true;
+  most_ = 0;
+  if (given_.mesh.profile == Profile::paper) return;  // it has no sizes to expect vertices of
+  if (ways_ == Ways::none && given > 0) return;
+  std::size_t most = most_vertices_expected(plc, options);
+  if (ways_ == Ways::none) most = std::max(times_without_other_ways * most, least_without_other_ways);
+  if (given == 0 || given > most) most_ = most;
+}
+
+bool VertexBudget::hit(const MeshResult& result, bool out_of_time) const {
+  const std::size_t memory = given_.mesh.max_memory;
+  return most_ > 0 && result.status == MeshStatus::budget_hit && !out_of_time &&
+         (memory == 0 || result.statistics.peak_bytes <= memory);
+}
+
+}  // namespace collarmesh::pipeline

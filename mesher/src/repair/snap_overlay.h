@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstddef>
+#include <set>
+#include <utility>
+
+#include "repair/point_grid.h"
+#include "repair/snap_cuts.h"
+#include "repair/snap_state.h"
+
+namespace collarmesh::repairing {
+
+/// Triangles that run along each other get each other's corners and edges.
+class Overlay {
+ public:
+  /// Keeps both by reference.
+  Overlay(SnapState& state, SnapCuts& cuts)
+      : state_(state), cuts_(cuts), crossing_points_(state.draft().points, state.limit()) {}
+
+  /// Looks at triangles that were not looked at. Returns whether any were cut.
+  bool run();
+
+  /// How many crossings of edges and triangles with new points the last run made.
+  std::size_t count() const { return count_; }
+
+ private:
+  void find_near_corners(Index s, Index t);
+  void find_crossings(Index s, Index t);
+  void find_crossings_inside();
+  bool beyond(const Edge& edge, Index t) const;
+  bool consider_crossing(const Edge& e, const Edge& f);
+  Index crossing_at(const Point& on_e, const Point& on_f);
+  const Point& at(Index p) const { return state_.at(p); }
+
+  SnapState& state_;
+  SnapCuts& cuts_;
+  PointGrid crossing_points_;
+  Index first_ = 0;  // of the points that it makes
+  std::size_t count_ = 0;
+  std::set<std::pair<Edge, Edge>> crossing_, crossed_before_;
+};
+
+}  // namespace collarmesh::repairing
