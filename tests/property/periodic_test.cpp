@@ -123,6 +123,54 @@ TEST(PeriodicFaces, MayHavePairsInOppositeDirections) {
     }
 }
 
+/// A quarter of a ring or of a disk about the z axis; patch 1 lies in y = 0 and patch 2 in x = 0.
+PolygonSoup sector(double inner) {
+  constexpr unsigned steps = 6;
+  std::vector<std::array<double, 2>> outline;
+  for (unsigned i = 0; i <= steps; ++i) {
+    const double angle = std::acos(0.0) * i / steps;
+    outline.push_back({i == steps ? 0 : std::cos(angle), i == 0 ? 0 : std::sin(angle)});
+  }
+  if (inner == 0)
+    outline.push_back({0, 0});
+  else
+    for (unsigned i = 0; i <= steps; ++i) {
+      const auto [x, y] = outline[steps - i];
+      outline.push_back({inner * x, inner * y});
+    }
+  PolygonSoup soup;
+  std::vector<Index> bottom, top;
+  for (const auto& [x, y] : outline)
+    for (const double z : {0.0, 0.4}) soup.points.push_back({x, y, z});
+  const auto n = static_cast<Index>(outline.size());
+  for (Index i = 0; i < n; ++i) bottom.insert(bottom.begin(), 2 * i), top.push_back(2 * i + 1);
+  soup.add_facet(bottom, 3), soup.add_facet(top, 4);
+  for (Index i = 0; i < n; ++i) {
+    const Index j = (i + 1) % n;
+    const auto is_zero = [&](unsigned axis) { return outline[i][axis] == 0 && outline[j][axis] == 0; };
+    const std::vector<Index> side{2 * i, 2 * j, 2 * j + 1, 2 * i + 1};
+    soup.add_facet(side, is_zero(1) ? 1 : is_zero(0) ? 2 : 5);
+  }
+  return soup;
+}
+
+// With nodes on the axis, which are their own images, and without.
+TEST(PeriodicFaces, OfASectorAreTurned) {
+  for (const double inner : {0.0, 0.5})
+    for (const unsigned order : {1U, 2U}) {
+      const PipelineResult made = mesh_of_soups({sector(inner)}, {"1=2:rotation,z,90"}, 0.12, order);
+      ASSERT_TRUE(made.guarantees_hold()) << made.missed();
+      const TetMesh& mesh = made.result.mesh;
+      const Side first = side_of(mesh, 1, 0), second = side_of(mesh, 0, 0);
+      // In y = 0 the coordinates are z and x, in x = 0 y and z; a node at (x, 0, z) is turned to (0, x, z).
+      std::set<std::array<double, 2>> turned;
+      for (const auto& [z, x] : first.nodes) turned.insert({x, z});
+      EXPECT_GT(turned.size(), 10U);
+      EXPECT_EQ(turned, std::set(second.nodes.begin(), second.nodes.end()));
+      EXPECT_EQ(first.triangles.size(), second.triangles.size());
+    }
+}
+
 TEST(PeriodicFaces, DoNotDependOnThreads) {
   PipelineOptions options;
   options.mesh.size = 0.15;

@@ -129,7 +129,7 @@ void require_consistent(const RunOptions& o) {
           "split and keep-apart would give nodes on periodic faces copies without images; leave one of them "
           "and periodic out");
   require(o.coarsen || !o.periodic.any(),
-          "the elements beside periodic faces are coarsened anew; leave periodic out, or coarsen");
+          "periodic coarsens the elements beside its faces anew; leave it out, or coarsen");
   require(o.faces.empty() || o.dimension == 2,
           "faces are for triangles alone; add dimension 2, or leave them out");
   require(o.triangle_elements == TriangleElements::shell || o.dimension == 2,

@@ -49,7 +49,7 @@ Recut::Recut(const TetMesh& mesh, const Plc& plc, const SurfaceTolerance& tolera
              const std::vector<PatchPair>& pairs, const std::vector<FeatureImages>& images, Moved moved)
     : mesh_(mesh), plc_(plc) {
   find_seams(pairs, images, moved);
-  find_shifts();
+  find_shifts(moved);
   number_copies();
   complex_ = std::make_unique<const TiledComplex>(plc, tolerance, motions_);
   add_vertices();
@@ -60,7 +60,7 @@ Recut::Recut(const TetMesh& mesh, const Plc& plc, const SurfaceTolerance& tolera
 
 void Recut::find_seams(const std::vector<PatchPair>& pairs, const std::vector<FeatureImages>& images,
                        Moved moved) {
-  const bool forth = moved == Moved::beside_first;
+  const bool forth = moved != Moved::beside_second;
   seams_.resize(pairs.size());
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     Seam& seam = seams_[k];
@@ -81,12 +81,11 @@ void Recut::find_seams(const std::vector<PatchPair>& pairs, const std::vector<Fe
   }
 }
 
-// Moves what is much nearer to the one group than to the other, along edges and across the other seams. So
-// the mesh is cut open in between, where tets need nothing, and elsewhere when the other groups' tets are
-// moved: near other pairs, both places need changes.
-void Recut::find_shifts() {
+// Distances are along edges and across the other seams. So the mesh is cut open in between, where tets need
+// nothing but near other pairs.
+void Recut::find_shifts(Moved moved) {
   shifts_.assign(mesh_.tets.size(), 0);
-  constexpr double much = 1.7;
+  const double much = moved == Moved::first_half ? 1 : 1.7;
   for (std::size_t k = 0; k < std::min(most_moved, seams_.size()); ++k) {
     const std::vector<Index> first = keys_of(seams_[k].image_of), second = keys_of(seams_[k].on_other);
     const std::vector<double> to_first = distances(k, first), to_second = distances(k, second);

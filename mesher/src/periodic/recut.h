@@ -22,7 +22,9 @@ namespace collarmesh::periodicity {
 /// there fits both sides. The vertices where it is cut open now stay where they are.
 class Recut {
  public:
-  enum class Moved { beside_first, beside_second };
+  /// What is much nearer to the group is moved, or all that is nearer: the cuts lie elsewhere. Those of two
+  /// pairs may meet the faces of a third one at the same places in two of the three, but not in all.
+  enum class Moved { beside_first, beside_second, first_half };
 
   /// Keeps all by reference but `moved`. Preconditions: the mesh is of first order, and its map has the
   /// corners.
@@ -59,7 +61,7 @@ class Recut {
     friend bool operator==(const Place&, const Place&) = default;
   };
   void find_seams(const std::vector<PatchPair>& pairs, const std::vector<FeatureImages>& images, Moved moved);
-  void find_shifts();
+  void find_shifts(Moved moved);
   std::vector<double> distances(std::size_t seam, const std::vector<Index>& from) const;
   void find_neighbours() const;
   void number_copies();

@@ -28,6 +28,10 @@ TetMesh refined_with_nodes_of(MeshJob& job, const TetMesh& source) {
   return mesh;
 }
 
+bool has_smooth_patches(const Plc& plc) {
+  return std::ranges::any_of(plc.patches, [](const Plc::Patch& patch) { return !patch.planar; });
+}
+
 template <class Change>
 void change_across(MeshJob& job, TetMesh& mesh, Recut::Moved moved, const Change& change) {
   const SurfaceTolerance& tolerance = *job.refined_with.bounds.tolerance;
@@ -44,11 +48,12 @@ void divide_curves_at_poor_tets(MeshJob& job, TetMesh& mesh) {
   });
 }
 
-/// Coarsens and improves a periodic mesh while it is cut open at one place and then at another; vertices
-/// are inserted if asked for. Returns how often its tets miss their bounds.
+/// Coarsens and improves a periodic mesh while it is cut open at one place and then at others, until all
+/// tets fit; vertices are inserted if asked for. Returns how often its tets miss their bounds.
 std::size_t reshape_across(MeshJob& job, TetMesh& mesh, bool insert) {
   std::size_t poor = SIZE_MAX;
-  for (const Recut::Moved moved : {Recut::Moved::beside_first, Recut::Moved::beside_second}) {
+  using Moved = Recut::Moved;
+  for (const Moved moved : {Moved::beside_first, Moved::beside_second, Moved::first_half}) {
     change_across(job, mesh, moved, [&](improvement::Workpiece& workpiece, const Recut& recut) {
       MeshOptions options = job.refined_with;
       options.size_field = recut.sizes(options.size_field);
@@ -62,17 +67,22 @@ std::size_t reshape_across(MeshJob& job, TetMesh& mesh, bool insert) {
 
 }  // namespace
 
+bool begins_with_refined(const MeshJob& job) {
+  return job.given.periodic.any() && has_smooth_patches(*job.plc);
+}
+
 void make_faces_periodic(MeshJob& job) {
   PipelineResult& made = job.made;
   if (!job.given.periodic.any() || made.result.status != MeshStatus::complete) return;
   constexpr unsigned most_tries = 4, most_rounds = 3;
   job.control.begin("periodic faces", 0.75, 0.79);
   const ImproveReport improvement = made.improvement;
-  const bool smooth = std::ranges::any_of(job.plc->patches, [](const auto& patch) { return !patch.planar; });
+  const bool from_refined = begins_with_refined(job);
   TetMesh best, source = std::move(made.result.mesh);
   std::size_t least = SIZE_MAX;
   for (unsigned k = 0; k < most_tries && least > 0; ++k) {
-    TetMesh mesh = refined_with_nodes_of(job, smooth && k == 0 ? job.refined : source);
+    if (from_refined && k == 1) coarsen_and_improve(job, source = job.refined, {});
+    TetMesh mesh = refined_with_nodes_of(job, from_refined && k == 0 ? job.refined : source);
     const PeriodicReport report =
         make_periodic(mesh, *job.plc, job.options.periodic, job.refined_with.bounds.tolerance->largest());
     periodicity::map_corners(mesh);
@@ -86,7 +96,7 @@ void make_faces_periodic(MeshJob& job) {
       }
       if (poor == 0 || poor >= before) break;
       divide_curves_at_poor_tets(job, mesh);
-      if (before == SIZE_MAX && !(smooth && k == 0)) source = mesh;
+      if (before == SIZE_MAX && !(from_refined && k == 0)) source = mesh;
       before = poor;
     }
   }

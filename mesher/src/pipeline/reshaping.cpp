@@ -7,6 +7,7 @@
 #include "improve/cell_bounds.h"
 #include "improve/improve_workpiece.h"
 #include "improve/interior_nodes.h"
+#include "pipeline/periodic_faces.h"
 #include "pipeline/refinement.h"
 
 namespace collarmesh::pipeline {
@@ -90,6 +91,10 @@ void reshape(MeshJob& job) {
   TetMesh& mesh = job.made.result.mesh;
   insert_interior_nodes(job);
   if (job.given.periodic.any()) job.refined = mesh;
+  if (begins_with_refined(job)) {
+    job.neighbours = KnownNeighbours();
+    return;
+  }
   ThreadLimit(job.options.mesh.threads).run([&] {
     improvement::Workpiece workpiece(mesh, *job.plc, *job.refined_with.bounds.tolerance,
                                      job.options.coarsen ? job.refined_with.edges_per_hole : 0,
@@ -110,7 +115,9 @@ void coarsen_and_improve(MeshJob& job, TetMesh& mesh, const std::vector<Index>& 
     improvement::Workpiece workpiece(mesh, *job.plc, *bounds.tolerance, job.refined_with.edges_per_hole,
                                      bounds.lower_where_forced);
     workpiece.fix(fixed);
-    if (coarsen(workpiece, job.refined_with, job.execution()).cancelled) job.control.stop();
+    const CoarsenReport coarsening = coarsen(workpiece, job.refined_with, job.execution());
+    if (coarsening.cancelled) job.control.stop();
+    if (!job.made.coarsening) job.made.coarsening = coarsening;
     improve_elements(job, workpiece);
     workpiece.complex.store();
     improvement::mark_cells(mesh, *job.plc, bounds);

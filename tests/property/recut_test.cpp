@@ -1,0 +1,150 @@
+// A periodic mesh that is cut open elsewhere: nothing is lost on the way there and back.
+#include "periodic/recut.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "collarmesh/pipeline.h"
+#include "common/tet_sides.h"
+#include "periodic/node_map.h"
+#include "periodic/pair_choice.h"
+#include "support/plc_shapes.h"
+
+namespace collarmesh::periodicity {
+namespace {
+
+using namespace testing;
+using Moved = Recut::Moved;
+constexpr std::array all{Moved::beside_first, Moved::beside_second, Moved::first_half};
+
+/// A cell of 27 boxes that its faces cut, with its pairs.
+struct Cell {
+  Cell() {
+    const std::array<double, 4> cuts{0, 0.2, 0.7, 1};
+    std::vector<PolygonSoup> boxes;
+    for (unsigned i = 0; i < 3; ++i)
+      for (unsigned j = 0; j < 3; ++j)
+        for (unsigned k = 0; k < 3; ++k)
+          boxes.push_back(box({cuts[i], cuts[j], cuts[k]}, {cuts[i + 1], cuts[j + 1], cuts[k + 1]}));
+    PipelineOptions options;
+    options.mesh.size = 0.07;
+    options.periodic.pairs = {"x", "y", "z"};
+    SoupPipelineResult made = run_pipeline(std::vector{joined(boxes)}, options);
+    plc = std::move(made.plc);
+    mesh = std::move(made.result.mesh);
+    map_corners(mesh);
+    pairs = choose_pairs(options.periodic, plc);
+    for (const PatchPair& pair : pairs) images.push_back(find_images(pair, plc, 1e-9));
+  }
+
+  Recut recut(Moved moved) const { return {mesh, plc, SurfaceTolerance(1e-9), pairs, images, moved}; }
+
+  Plc plc;
+  TetMesh mesh;
+  std::vector<PatchPair> pairs;
+  std::vector<FeatureImages> images;
+};
+
+using Place = std::array<double, 3>;
+
+Place place_of(const TetMesh& mesh, Index v) {
+  const Point& p = mesh.points[v];
+  return {p.x, p.y, p.z};
+}
+
+/// The simplices with what they carry, by places: the numbers of vertices may differ.
+template <std::size_t n>
+std::multiset<std::pair<std::array<Place, n>, Index>> by_places(
+    const TetMesh& mesh, const std::vector<std::array<Index, n>>& simplices, const std::vector<Index>& of) {
+  std::multiset<std::pair<std::array<Place, n>, Index>> places;
+  for (std::size_t i = 0; i < simplices.size(); ++i) {
+    std::array<Place, n> corners;
+    for (std::size_t k = 0; k < n; ++k) corners[k] = place_of(mesh, simplices[i][k]);
+    std::sort(corners.begin(), corners.end());
+    places.emplace(corners, of[i]);
+  }
+  return places;
+}
+
+double volume(const TetMesh& mesh) {
+  double sum = 0;
+  for (const auto& [a, b, c, d] : mesh.tets)
+    sum += six_volume(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]) / 6;
+  return sum;
+}
+
+TEST(Recut, AndBackIsTheSameMesh) {
+  const Cell cell;
+  for (const Moved moved : all) {
+    const TetMesh back = cell.recut(moved).back();
+    EXPECT_EQ(by_places(back, back.tets, back.tet_region),
+              by_places(cell.mesh, cell.mesh.tets, cell.mesh.tet_region));
+    EXPECT_EQ(by_places(back, back.faces, back.face_patch),
+              by_places(cell.mesh, cell.mesh.faces, cell.mesh.face_patch));
+    EXPECT_EQ(by_places(back, back.edges, back.edge_curve),
+              by_places(cell.mesh, cell.mesh.edges, cell.mesh.edge_curve));
+    EXPECT_EQ(back.points.size(), cell.mesh.points.size());
+  }
+}
+
+// All tets are moved as they are, and the triangles of the second group have tets on both sides, but where
+// the cut of another pair meets them.
+TEST(Recut, HasThePairsFacesInside) {
+  const Cell cell;
+  for (const Moved moved : all) {
+    Recut recut = cell.recut(moved);
+    const TetMesh& mesh = recut.mesh();
+    const std::set<Index> fixed(recut.fixed().begin(), recut.fixed().end());
+    EXPECT_NEAR(volume(mesh), 1, 1e-9);
+    std::map<std::array<Index, 3>, unsigned> uses;
+    for (const auto& tet : mesh.tets)
+      for (unsigned i = 0; i < 4; ++i) {
+        std::array<Index, 3> side = side_corners(tet, i);
+        std::sort(side.begin(), side.end());
+        ++uses[side];
+      }
+    const double place = moved == Moved::beside_second ? 0 : 1;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      double area = 0;
+      for (std::array<Index, 3> face : mesh.faces) {
+        if (std::ranges::any_of(face,
+                                [&](Index v) { return std::fabs(mesh.points[v][axis] - place) > 1e-9; }))
+          continue;
+        const double twice = norm(
+            cross(mesh.points[face[1]] - mesh.points[face[0]], mesh.points[face[2]] - mesh.points[face[0]]));
+        std::sort(face.begin(), face.end());
+        area += 0.25 * uses[face] * twice;
+        EXPECT_TRUE(uses[face] == 2 || std::ranges::all_of(face, [&](Index v) { return fixed.contains(v); }));
+      }
+      EXPECT_NEAR(area, 1, 1e-9);
+    }
+  }
+}
+
+// The cuts of pairs meet the faces of others; no vertex there is on a cut each time.
+TEST(Recut, LeavesEachVertexOfThePairsFreeOnce) {
+  const Cell cell;
+  std::map<Place, unsigned> fixed;
+  for (const Moved moved : all) {
+    Recut recut = cell.recut(moved);
+    EXPECT_FALSE(recut.fixed().empty());
+    std::set<Place> places;
+    for (const Index v : recut.fixed()) {
+      Place place = place_of(recut.mesh(), v);
+      for (double& x : place) x = std::round(1e9 * (x - std::floor(x + 1e-9)));  // in the cell
+      if (std::ranges::any_of(place, [](double x) { return x == 0; })) places.insert(place);
+    }
+    for (const Place& place : places) ++fixed[place];
+  }
+  for (const auto& [place, times] : fixed) EXPECT_LT(times, all.size());
+}
+
+}  // namespace
+}  // namespace collarmesh::periodicity
