@@ -55,8 +55,8 @@ struct RemeshArguments : MeshArguments {};
 using Arguments = std::variant<MeshArguments, CheckArguments, InfoArguments, ConvertArguments,
                                RepairArguments, RemeshArguments>;
 
-/// Add the options of meshing, all but the files, for another program that meshes; and check what one of them
-/// alone cannot tell, which throws CLI::ValidationError.
+/// Adds the options of meshing, all but the files, for another program that meshes; and check what one of
+/// them alone cannot tell, which throws CLI::ValidationError.
 void add_run_options(CLI::App& app, MeshArguments& arguments);
 void check_run_arguments(const MeshArguments& arguments);
 

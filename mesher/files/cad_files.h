@@ -45,8 +45,7 @@ class CadFiles {
   /// Is it a CAD file by its extension, or as `format` says?
   static bool knows(const std::string& path, std::string_view format);
 
-  /// Read a file and append its soups.
-  /// Throws ReadError and PlcError.
+  /// Reads a file and append its soups. Throws ReadError and PlcError.
   void read(const std::string& path, std::string_view format, const CadReading& reading,
             std::vector<PolygonSoup>& soups);
   bool empty() const;
@@ -56,7 +55,7 @@ class CadFiles {
   /// several files are the same.
   const brep::CadLabels* labels(std::size_t soups) const;
 
-  /// Make triangles that are finer than the first ones by a factor, in the places of the former soups.
+  /// Makes triangles that are finer than the first ones by a factor, in the places of the former soups.
   void tessellate(double finer, std::vector<PolygonSoup>& soups);
   /// Of some faces alone: by the number of their soup and their own.
   void tessellate(double finer, const std::set<std::pair<Index, Tag>>& faces,

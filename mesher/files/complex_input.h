@@ -42,8 +42,8 @@ struct InputReading {
 /// The files of one complex: surfaces, complexes and CAD shapes, which are cut into triangles here.
 class ComplexInput {
  public:
-  /// Read them; "-" is standard input.
-  /// Throws ReadError, for a file that does not exist with the most similar name, and PlcError.
+  /// Reads them; "-" is standard input. Throws ReadError, for a file that does not exist with the most
+  /// similar name, and PlcError.
   explicit ComplexInput(const std::vector<std::string>& paths, InputReading reading = {});
 
   /// Surfaces that are no files.

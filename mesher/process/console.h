@@ -8,8 +8,8 @@
 /// Standard output and standard error, which may be full, closed, or pipes that nobody reads.
 namespace collarmesh::process {
 
-/// Give every standard stream that is closed a device in its place, so that no file that is opened later gets
-/// its number: messages would be written into it. Reading from and writing to the stream still fail.
+/// Gives every standard stream that is closed a device in its place, so that no file that is opened later
+/// gets its number: messages would be written into it. Reading from and writing to the stream still fail.
 void replace_closed_streams();
 
 /// From now on this process says nothing: of several that do the same work another one does.

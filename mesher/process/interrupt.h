@@ -45,8 +45,8 @@ StageReached stage_reached();
 /// Throws Stopped when the user asked to stop or the time is up.
 void stop_if_interrupted();
 
-/// Run a command so that an interrupt ends the program within a second whatever it is doing: stages
-/// that watch the flag return by themselves, others are abandoned, with their unfinished files.
+/// Runs a command so that an interrupt ends the program within a second whatever it is doing: stages that
+/// watch the flag return by themselves, others are abandoned, with their unfinished files.
 ExitCode run_interruptible(const std::function<ExitCode()>& command);
 
 }  // namespace collarmesh::process

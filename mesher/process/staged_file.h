@@ -22,7 +22,7 @@ class StagedFile {
   StagedFile(const StagedFile&) = delete;
   StagedFile& operator=(const StagedFile&) = delete;
 
-  /// Make the file: `write` gets the path to write to. Errors name the target instead of it.
+  /// Makes the file: `write` gets the path to write to. Errors name the target instead of it.
   void write(const std::function<void(const std::string& path)>& write);
 
   /// Flush files to the disk and move them to their places: all of them, or none, with what was there before
@@ -47,13 +47,13 @@ class StagedFile {
 void require_writable(const std::filesystem::path& target,
                       const std::vector<std::filesystem::path>& beside = {});
 
-/// Remove the temporary folder of a process that has ended. Where it ended in a commit, between taking a file
-/// away and putting another one in its place, the former is put back.
+/// Removes the temporary folder of a process that has ended. Where it ended in a commit, between taking a
+/// file away and putting another one in its place, the former is put back.
 void remove_dead_folder(const std::filesystem::path& folder);
 
-/// Remove what is not committed and block later commits: the program is about to end while another
-/// thread writes. A commit that has begun is taken back when this thread was at it, else waited for. False
-/// when the commit has taken place, the command is then about to succeed.
+/// Removes what is not committed and block later commits: the program is about to end while another thread
+/// writes. A commit that has begun is taken back when this thread was at it, else waited for. False when the
+/// commit has taken place, the command is then about to succeed.
 bool abandon_staged_files();
 
 }  // namespace collarmesh::process

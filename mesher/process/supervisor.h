@@ -8,7 +8,7 @@
 
 namespace collarmesh::process {
 
-/// Run a command in a child of this process, which only watches it. CAD files make OpenCASCADE crash, or go
+/// Runs a command in a child of this process, which only watches it. CAD files make OpenCASCADE crash, or go
 /// on without an end; then the child dies, and this process says in what file and at what, removes what is
 /// unfinished and has the exit code for it. Signals that ask to stop are passed on; the child dies with this
 /// process. Where no child can be made the command runs here. Precondition: there is one thread. Cost: a

@@ -63,7 +63,7 @@ class Watch {
 /// Python raised.
 void run_watched(std::function<void(Watch&)> work, const pybind11::object& progress, double time_limit);
 
-/// Wait a while for work that was left behind; for the end of the interpreter.
+/// Waits a while for work that was left behind; for the end of the interpreter.
 void wait_for_abandoned();
 
 }  // namespace collarmesh::python

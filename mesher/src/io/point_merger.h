@@ -35,7 +35,7 @@ class PointMerger {
       h = mixed(h + std::bit_cast<std::uint64_t>(c + 0.0));  // -0 + 0 is 0
     return h;
   }
-  /// The slot that holds the point, or the free one where it belongs.
+  /// Returns the slot that holds the point, or the free one where it belongs.
   Index& find(const Point& p) {
     const std::size_t mask = slots_.size() - 1;
     std::size_t i = hash(p) & mask;

@@ -57,7 +57,7 @@ class Relaxation {
 
   void commit();
   void roll_back();
-  /// Return the number of commits, and whether commits after that number changed a tet at the vertex.
+  /// Returns the number of commits, and whether commits after that number changed a tet at the vertex.
   std::size_t commits() const { return commits_; }
   bool changed_around(Index vertex, std::size_t since) const;
 

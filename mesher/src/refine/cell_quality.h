@@ -38,12 +38,12 @@ class CellQuality {
            (!collar_cells_.inside(item.entry.id) ||
             (domain_.is_papers() && item.priority == WorkQueue::skinny_cells));
   }
-  /// Queue a cell again that is still there after something else was inserted in its place.
+  /// Queues a cell again that is still there after something else was inserted in its place.
   void queue_again(const WorkQueue::Item& item, double squared_radius);
 
   /// Precondition: surface, collar cells and sizes know the new cells.
   void cells_made(const ConflictZone& zone, Index vertex);
-  /// Queue a cell that is to be destroyed. Several threads may ask at once, each with a queue of its own, as
+  /// Queues a cell that is to be destroyed. Several threads may ask at once, each with a queue of its own, as
   /// long as no size is asked of the caller or kept at vertices and there is no vertex ratio.
   void judge(Index cell, WorkQueue& queue) const { judge(cell, queue, leaves_narrow_cells_); }
   /// At the start, and when sizes have changed everywhere.

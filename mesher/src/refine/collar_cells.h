@@ -39,7 +39,7 @@ class CollarCells {
   /// New balls: this vertex, or the circumcentre of this cell, may lie in one.
   void note_near(Index vertex);
   void note_inside(Index cell);
-  /// Find out anew which of the near vertices still are.
+  /// Finds out anew which of the near vertices still are.
   void forget_far_vertices();
 
   /// A cell that lies outside all balls is given to the collar of one.

@@ -60,7 +60,7 @@ class CurveChains {
         outcome_(outcome),
         queue_(queue) {}
 
-  /// Start the chains of all curves that no balls cover. Precondition: the vertices of the complex are the
+  /// Starts the chains of all curves that no balls cover. Precondition: the vertices of the complex are the
   /// first unresolved points, in their order.
   void start();
 
@@ -83,13 +83,13 @@ class CurveChains {
   std::optional<Split> split_of(Index subsegment);
   /// Does the mesh vertex at the place split the subsegment? Not if it is one of its ends.
   bool can_join(const Split& split) const;
-  /// Split a subsegment by an unresolved point. Precondition: no mesh vertex is at the place.
+  /// Splits a subsegment by an unresolved point. Precondition: no mesh vertex is at the place.
   void split_ahead(const Split& split);
   /// The vertex that splits a subsegment is about to come, and may lie in its ball.
   void drop_ball(const Split& split);
-  /// Split a subsegment by a mesh vertex at the place. Precondition: sizes know it.
+  /// Splits a subsegment by a mesh vertex at the place. Precondition: sizes know it.
   void split_at(const Split& split, Index vertex);
-  /// Queue a subsegment that is too coarse again, if it is still there after something else was inserted.
+  /// Queues a subsegment that is too coarse again, if it is still there after something else was inserted.
   void queue_again(const Split& split);
 
   /// An unresolved point has become a mesh vertex: what ends there knows it.
@@ -99,16 +99,16 @@ class CurveChains {
   void cells_made(const ConflictZone& zone, Index vertex);
   /// Sizes have changed everywhere.
   void judge_all();
-  /// Split a subsegment when its turn comes, before skinny cells.
+  /// Splits a subsegment when its turn comes, before skinny cells.
   void encroach(Index subsegment);
 
-  /// Visit all subsegments: their numbers and what they are.
+  /// Visits all subsegments: their numbers and what they are.
   template <class Visit>
   void visit(const Visit& visit) const {
     for (Index s = 0; s < subsegments_.size(); ++s)
       if (subsegments_[s].alive) visit(s, subsegments_[s].piece);
   }
-  /// Visit what all subsegments are, with the places of their ends.
+  /// Visits what all subsegments are, with the places of their ends.
   template <class Visit>
   void visit_places(const Visit& visit) const {
     for (Index i = 0; i < subsegments_.size(); ++i)

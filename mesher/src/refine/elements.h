@@ -7,7 +7,7 @@
 
 namespace collarmesh {
 
-/// Visit the two points of each segment of a curve's polyline.
+/// Visits the two points of each segment of a curve's polyline.
 template <class Visit>
 void visit_segments(const Plc::Curve& curve, const Visit& visit) {
   for (std::size_t i = 0; i + 1 < curve.points.size(); ++i) visit(curve.points[i], curve.points[i + 1]);

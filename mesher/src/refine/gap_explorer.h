@@ -70,7 +70,7 @@ class GapExplorer final : public GapSize {
   /// Does a witness reach into this cell, whose neighbours are adjacent_, with more than lies in one of these
   /// balls?
   bool reaches_into(Index cell, const std::array<Index, 3>& points, std::span<const CollarBall> except);
-  /// Put what a triangle has in the cell of this vertex, whose neighbours are adjacent_, into polygon_.
+  /// Puts what a triangle has in the cell of this vertex, whose neighbours are adjacent_, into polygon_.
   void cut_to_cell(Index vertex, const Point& a, const Point& b, const Point& c);
 
   const Plc& plc_;

@@ -40,7 +40,7 @@ class GradedSizes {
   /// Precondition: the surface knows the regions of the new cells.
   void cells_made(const ConflictZone& zone, Index vertex);
 
-  /// Spread sizes over the whole mesh: Dijkstra's algorithm. False without gradation, and after too many
+  /// Spreads sizes over the whole mesh: Dijkstra's algorithm. False without gradation, and after too many
   /// times.
   bool spread();
 

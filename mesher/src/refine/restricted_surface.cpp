@@ -299,7 +299,7 @@ void RestrictedSurface::mark(FaceId face, Index record) {
   marks_[cell_of(face)][corner_of(face)] = record;
 }
 
-// Drop the mark on this side; the record goes with it.
+// Drops the mark on this side; the record goes with it.
 void RestrictedSurface::unmark(FaceId face, Workspace& w) {
   labels_[cell_of(face)].marked &= static_cast<std::uint8_t>(~(1U << corner_of(face)));
   w.free_records_.push_back(record_of(face));

@@ -52,7 +52,7 @@ class RestrictedSurface {
   bool is_marked(FaceId face) const { return labels_[cell_of(face)].marked >> corner_of(face) & 1U; }
   /// All marked faces, each from the cell with the smaller number, in their order; by all threads.
   std::vector<FaceId> marked_faces() const;
-  /// Visit the marked faces of a cell, seen from it.
+  /// Visits the marked faces of a cell, seen from it.
   template <class Visit>
   void visit_marked(Index cell, const Visit& visit) const {
     for (unsigned corner = 0, marked = labels_[cell].marked; marked != 0; ++corner, marked >>= 1)

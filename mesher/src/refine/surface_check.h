@@ -42,7 +42,7 @@ class SurfaceCheck {
   void seed_closed_patches();
   /// A round. False when nothing is wrong.
   bool check();
-  /// Count a round in which something was found. False, and given up, after too many.
+  /// Counts a round in which something was found. False, and given up, after too many.
   bool another_round();
   /// Flat cells at the boundary of the domain go outside. Not before the end: refinement is over. False when
   /// there are none.

@@ -28,9 +28,9 @@ class SurfaceNodes {
   bool any_at(Index vertex) const { return lists_[vertex].count > 0; }
   /// Of the vertices of a face those of the one with the fewest: they cover what the face's dual edge meets.
   std::span<const Index> fewest(FaceId face) const;
-  /// Replace `found` by the triangles that the dual edge of a face crosses, seen from the face's cell.
+  /// Replaces `found` by the triangles that the dual edge of a face crosses, seen from the face's cell.
   void crossings_of_dual_edge(FaceId face, std::vector<TriangleHierarchy::Crossing>& found) const;
-  /// Replace `found` by all triangles that a segment crosses.
+  /// Replaces `found` by all triangles that a segment crosses.
   void crossings(const Point& p, const Point& q, std::vector<TriangleHierarchy::Crossing>& found) const {
     const Index root = hierarchy_.root();
     hierarchy_.crossings(p, q, {&root, 1}, found);

@@ -45,7 +45,7 @@ class TriangleQuality {
   std::optional<Candidate> candidate_beside(FaceId face, RandomOffsets& random) const;
   /// Is the entry of the queue that of a triangle that is to be destroyed?
   bool due(const WorkQueue::Entry& entry) const;
-  /// Queue a triangle again that is still there after something else was inserted in its place.
+  /// Queues a triangle again that is still there after something else was inserted in its place.
   void queue_again(const WorkQueue::Item& item, double squared_radius);
   /// Nothing could be inserted to destroy a triangle: nothing more is tried.
   void give_up(FaceId face) { surface_.notes(face).given_up = true; }
@@ -57,7 +57,7 @@ class TriangleQuality {
   void cells_made(const ConflictZone& zone, WorkQueue& queue) const;
   /// Sizes have changed everywhere.
   void judge_all();
-  /// Queue a triangle that is to be split for the sake of its patch, unless it was given up: even one in a
+  /// Queues a triangle that is to be split for the sake of its patch, unless it was given up: even one in a
   /// collar.
   void split(FaceId face);
 

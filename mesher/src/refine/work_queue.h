@@ -56,7 +56,7 @@ class WorkQueue {
     ++pushed_;
   }
 
-  /// Take the next entry: largest ball of the first priority that has any. False when empty.
+  /// Takes the next entry: largest ball of the first priority that has any. False when empty.
   bool pop(Item& item) {
     for (unsigned priority = 0; priority < priority_count; ++priority)
       if (const unsigned bucket = first_bucket(static_cast<Priority>(priority)); bucket < bucket_count) {
@@ -92,7 +92,7 @@ class WorkQueue {
     return false;
   }
   std::size_t count(Priority priority, unsigned bucket) const { return buckets_[priority][bucket].size(); }
-  /// Take all entries of a bucket.
+  /// Takes all entries of a bucket.
   std::vector<Entry> take(Priority priority, unsigned bucket) {
     return std::exchange(buckets_[priority][bucket], {});
   }
