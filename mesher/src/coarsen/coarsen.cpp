@@ -104,7 +104,7 @@ class Coarsening {
         proposers_([this] { return Proposer(workpiece_, thin_, cells_, radius_edge_, sizes_, changes_); }),
         execution_(execution) {}
 
-  // Returns the options without a size that keeps holes round: coarsening keeps them round in another way.
+  // Returns the options without `edges_per_hole`: coarsening keeps holes round without it.
   static MeshOptions sizes_asked_for(MeshOptions options) {
     options.edges_per_hole = 0;
     return options;

@@ -220,7 +220,7 @@ class ThinShape {
   // The sine of 1.7 degrees. Where forced edges permit less, trying for more gains nothing. Where they permit
   // more, tets are made as if their edges were not forced, but need not be.
   static constexpr double deep = 0.03;
-  // Squared margin up to which a tet with forced edges is improved.
+  // Largest squared margin that forced edges can give a tet.
   static constexpr double good_enough = 2;
   // Tets with a larger smallest angle are good anyway.
   static constexpr double largest_forced_sine = 0.35;

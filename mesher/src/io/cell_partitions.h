@@ -4,8 +4,8 @@
 
 #include "collarmesh/tet_mesh.h"
 
-/// Return the partition of each face or edge of a partitioned mesh: the lowest one of the tets that it is a
-/// side of, or the lowest of all without such a tet. Cost: linear.
+/// The partitions of faces, edges and points of a partitioned mesh: each belongs to the lowest partition of
+/// the tets around it, or to the lowest of all without such a tet. Cost: linear.
 namespace collarmesh::io {
 
 /// Partition numbers that are read must be below this: formats have 32 bits for them, and some count from 1.
