@@ -4,8 +4,8 @@
 
 namespace collarmesh::cli {
 
-/// Converts files and say what was merged, welded and dropped. Meshing a surface may end with the exit codes
-/// of `mesh_command`.
+/// Converts files and reports what was merged, welded and dropped. Meshing a surface may end with the exit
+/// codes of `mesh_command`.
 ExitCode convert_command(const ConvertArguments& arguments);
 
 }  // namespace collarmesh::cli

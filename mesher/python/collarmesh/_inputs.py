@@ -8,7 +8,7 @@ import numpy
 
 from ._core import OptionError
 
-if TYPE_CHECKING:  # importing numpy.typing takes as long as all the rest
+if TYPE_CHECKING:  # importing numpy.typing takes as long as everything else
     import numpy.typing
 
     Array = numpy.typing.NDArray[Any]
@@ -206,7 +206,8 @@ def sampled_sizes(
     numbers = numpy.arange(len(points)).reshape(counts)
     cell = numbers[:-1, :-1, :-1].reshape(-1, 1)
     step = (counts[1] * counts[2], counts[2], 1)
-    paths = [(0, 1, 2), (1, 2, 0), (2, 0, 1), (0, 2, 1), (2, 1, 0), (1, 0, 2)]  # along the axes, six tets to a cell
+    paths = [(0, 1, 2), (1, 2, 0), (2, 0, 1), (0, 2, 1), (2, 1, 0), (1, 0, 2)]  # along the axes, six tets per
+    # cell
     tets = []
     for number, path in enumerate(paths):
         ends = numpy.cumsum([0, *(step[axis] for axis in path)])
@@ -218,7 +219,7 @@ def takes_arrays(function: Callable[..., Any]) -> bool:
     """Does a size field take one argument, places of shape (n, 3), rather than x, y and z?"""
     try:
         parameters = inspect.signature(function).parameters.values()
-    except (TypeError, ValueError):  # of a function that is compiled
+    except (TypeError, ValueError):  # compiled functions have no signature
         return False
     needed = [each for each in parameters if each.kind in (each.POSITIONAL_ONLY, each.POSITIONAL_OR_KEYWORD)
               and each.default is each.empty]

@@ -32,8 +32,8 @@ _ARRAYS = {
     "feature_dimension": (numpy.uint8, 1),
     "feature": (numpy.int64, 1),
 }
-# The places of our nodes amid edges in meshio's and VTK's cells of second order: corners, then ab, bc, ca,
-# ad, bd, cd.
+# The places of our mid-edge nodes in meshio's and VTK's cells of second order: corners, then ab, bc, ca, ad,
+# bd, cd.
 _MESHIO_CELLS = {1: ("tetra", "triangle", "line"), 2: ("tetra10", "triangle6", "line3")}
 _VTK_CELLS = {1: 10, 2: 24}
 
@@ -41,7 +41,7 @@ _VTK_CELLS = {1: 10, 2: 24}
 # The same nodes in the order of dolfinx.
 _DOLFINX_TETS = {1: [0, 1, 2, 3], 2: [0, 1, 2, 3, 9, 8, 5, 7, 6, 4]}
 _DOLFINX_TRIANGLES = {1: [0, 1, 2], 2: [0, 1, 2, 4, 5, 3]}
-# The triangles of a tetrahedron, seen from outside, with its nodes amid their edges.
+# The triangles of a tetrahedron as seen from outside, with their mid-edge nodes.
 _SIDES = [[1, 2, 3, 5, 9, 8], [0, 3, 2, 7, 9, 6], [0, 1, 3, 4, 8, 7], [0, 2, 1, 6, 5, 4]]
 
 
@@ -184,10 +184,11 @@ class Mesh:
         return {**self._arrays(), "check": self._check, "colours": self.colours, **self._said}
 
     def __setstate__(self, state: Dict[str, Any]) -> None:
-        arrays = {"tet_partition": numpy.empty(0, dtype=numpy.int64), **state}  # earlier versions had none
+        arrays = {"tet_partition": numpy.empty(0, dtype=numpy.int64), **state}  # earlier versions did not
+        # have it
         for name in _ARRAYS:
             array = arrays[name]
-            array.setflags(write=False)  # pickle gives arrays that can be written to
+            array.setflags(write=False)  # pickle makes arrays writable
             setattr(self, name, array)
         self.names = state["names"]
         self.colours = state.get("colours", {})

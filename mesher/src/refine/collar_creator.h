@@ -43,7 +43,7 @@ class CollarCreator {
   BallReason reason(Index ball) const { return reasons_[ball]; }
 
   // In the pass:
-  /// Is an unresolved point a vertex of the complex that is to get a ball?
+  /// Returns whether an unresolved point is a vertex of the complex that will get a ball.
   bool waits_for_ball(Index point) const {
     return placement_ && collars_.is_crease_vertex(point) && collars_.ball_at_vertex(point) == none;
   }
