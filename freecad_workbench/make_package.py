@@ -22,7 +22,7 @@ import project  # noqa: E402
 PARTS = ("freecad", "translations", "macros")
 KINDS = {".py", ".svg", ".qm"}
 SITE, MAINTAINER, EMAIL = "https://example.org/collarmesh", "The collarmesh maintainers", "collarmesh@example.org"
-FIRST_DATE = (1980, 1, 1, 0, 0, 0)  # the earliest that a .zip knows
+FIRST_DATE = (1980, 1, 1, 0, 0, 0)  # the earliest date that a .zip can hold
 
 
 def metadata(site=SITE, maintainer=MAINTAINER, email=EMAIL, day=""):

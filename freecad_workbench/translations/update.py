@@ -16,7 +16,7 @@ import xml.etree.ElementTree as ElementTree
 HERE = pathlib.Path(__file__).resolve().parent
 SOURCES = HERE.parent / "freecad" / "collarmesh_workbench"
 MARKED_ELSEWHERE = (ast.Name, ast.Attribute, ast.Subscript, ast.Call)
-OF_PROPERTIES = "App::Property"  # where FreeCAD looks up what it shows of properties
+OF_PROPERTIES = "App::Property"  # the context in which FreeCAD looks up texts of properties
 
 
 def texts(folder=SOURCES):

@@ -16,10 +16,10 @@ MOST = 1000000
 class Row:
     """A property of the mesh object, and how it is asked for."""
 
-    name: str  # of the property
+    name: str  # name of the property
     text: str
     unit: str = ""  # "mm" or "deg"
-    zero: str = ""  # what 0 stands for
+    zero: str = ""  # text for 0
     choices: tuple = ()  # texts by value: numbers from 0, or the property's own words
     tip: str = ""  # empty: the property's text
 

@@ -70,7 +70,7 @@ class AngleChart(QtGui.QWidget):
             for bin_number, count in enumerate(counts):
                 if count == 0:
                     continue
-                height = max(2, frame.height() * count / most)  # a single element is seen, too
+                height = max(2, frame.height() * count / most)  # even a single element is visible
                 left = frame.left() + bin_number * width + i * width / 2
                 bar = QtCore.QRectF(left, frame.bottom() - height, width / 2 - 0.5, height)
                 painter.fillRect(bar, QtGui.QColor(colour))

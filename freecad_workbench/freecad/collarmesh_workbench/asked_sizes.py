@@ -9,12 +9,12 @@ import numpy
 
 from . import inputs, size_presets
 
-FINE = 1 / 60  # of the diagonal: how long edges of the triangles are at most
+FINE = 1 / 60  # of the diagonal: largest length of the triangles' edges
 DEFLECTION = 1 / 200  # of the diagonal
 MOST = 20000  # triangles that are divided further
-SAMPLES = 6  # of the curvature, along each parameter of a face
-POINTS = 500  # of a face or an edge, from which distances are measured, at most
-GROWTH = 1  # of sizes away from finer faces and edges, where none is asked for
+SAMPLES = 6  # samples of the curvature along each parameter of a face
+POINTS = 500  # largest number of points of a face or an edge for measuring distances
+GROWTH = 1  # growth of sizes away from finer faces and edges, unless another one is asked for
 
 
 @dataclasses.dataclass

@@ -4,7 +4,7 @@ import FreeCADGui
 from PySide import QtGui
 
 GOOD, BAD, CARE, FAINT = range(4)
-# Ink and paper.
+# Pairs of text and background.
 _LIGHT = (("#1e7b47", "#e6f4ec"), ("#b82c2c", "#fbe9e9"), ("#8a5500", "#fdf2e0"), ("#606060", "#eeeeee"))
 _DARK = (("#7fd8a0", "#17352a"), ("#ff8f8f", "#3c1d1d"), ("#f0b860", "#3a2c12"), ("#b4b4b4", "#2c2c2c"))
 

@@ -31,7 +31,7 @@ class Command:
     """A button; `create` makes an object for what is selected, which is then edited in its panel."""
 
     icon, menu_text, tool_tip = "", "", ""
-    # Creation and first edit are one step of undo, which "Cancel" of the panel takes back.
+    # Creation and first edit are one undo step, which "Cancel" of the panel undoes.
     panel_commits = False
 
     def GetResources(self):
@@ -50,7 +50,7 @@ class Command:
 
     def Activated(self):
         target = self.target()
-        if target is None or other_panel.is_in_the_way():  # it may have gone since the click
+        if target is None or other_panel.is_in_the_way():  # it may have been deleted since the click
             return
         document = target.Document
         document.openTransaction(self.text())
@@ -140,7 +140,7 @@ class Size(Command):
     panel_commits = True
 
     def Activated(self):
-        # FreeCAD ends its transactions with the command, so this waits until that has ended.
+        # FreeCAD ends its transactions with the command, so this waits until the command has ended.
         later(super().Activated)
 
     def target(self):

@@ -203,7 +203,7 @@ class Manipulator:
         return [{"insert": command, "toolItem": place} for command, place in self.places.items()]
 
     def modifyMenuBar(self):
-        # Each one goes right after its place, so the last one comes first.
+        # Each command goes directly after its place, so the last one comes first.
         return [{"insert": command, "menuItem": place, "after": ""} for command, place in reversed(self.places.items())]
 
 

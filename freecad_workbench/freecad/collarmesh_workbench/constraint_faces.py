@@ -24,7 +24,7 @@ class Proxy(compatibility.Stateless):
         for kind, name, text in (("App::PropertyLink", MESH, doc("The mesh whose groups these faces stand for")),
                                  ("App::PropertyStringList", GROUPS, doc("The group of each face"))):
             obj.addProperty(kind, name, "Base", text)
-            obj.setEditorMode(name, 1)  # to look at only
+            obj.setEditorMode(name, 1)  # read-only
 
     def execute(self, _obj):
         """Nothing: the faces change with the mesh only."""

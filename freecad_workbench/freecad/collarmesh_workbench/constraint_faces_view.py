@@ -6,7 +6,7 @@ import os
 from . import compatibility, constraint_faces, views
 
 ICON = os.path.join(views.ICONS, "group.svg")
-STEP = 0.381966  # of the circle of colours: of any few in a row none are alike
+STEP = 0.381966  # share of the colour wheel: consecutive colours differ clearly
 
 
 class ConstraintFacesViewProvider(compatibility.Stateless):

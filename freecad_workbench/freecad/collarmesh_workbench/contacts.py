@@ -8,11 +8,11 @@ import functools
 import numpy
 
 SAME_PLACE = 1e-6  # of the shape's diagonal
-SHARE = 1e-6  # of a face's area, or an edge's length: less is none
+SHARE = 1e-6  # of a face's area, or an edge's length: a smaller common part does not count
 ANALYTIC = ("Plane", "Cylinder", "Cone", "Sphere", "Toroid", "Line", "Circle", "Ellipse")
 KINDS = ("Face", "Edge")
-SOURCES = {"patches": "Face", "curves": "Edge"}  # in the program's size field
-SHAPES = 5  # that are remembered
+SOURCES = {"patches": "Face", "curves": "Edge"}  # names in the program's size field
+SHAPES = 5  # shapes to remember
 
 _known = collections.deque(maxlen=SHAPES)  # Contacts
 
@@ -111,7 +111,7 @@ class _ContactsOfKind:
         self.shape, self.kind = shape, kind
         self.elements = getattr(shape, kind + "s")
         self.tolerance = SAME_PLACE * shape.BoundBox.DiagonalLength
-        self._pairs, self._left = {}, {}  # what is known: which have a common part, which have a part of their own
+        self._pairs, self._left = {}, {}  # pairs with a common part; elements with a part of their own
 
     @functools.cached_property
     def solids(self):
@@ -133,7 +133,7 @@ class _ContactsOfKind:
         return [other for other in self._near(number) if self._meet(min(number, other), max(number, other))]
 
     def tags(self, number):
-        if number > len(self.elements):  # the program says that there is none
+        if number > len(self.elements):  # the program reports the missing element
             return [number]
         tags = [other for other in self.met(number) if other < number and self._is_left(other)]
         return [*tags, number] if self._is_left(number) else tags

@@ -5,7 +5,7 @@ from PySide import QtCore, QtGui
 from . import compatibility, contacts, inputs
 from .translations import translate
 
-MOST = 3  # faces that are named; the tool tip has all
+MOST = 3  # faces to name; the tool tip lists all
 
 
 class ContactsSection(QtGui.QWidget):
@@ -66,7 +66,7 @@ class ContactsSection(QtGui.QWidget):
             return []
         try:
             pairs = contacts.of(inputs.shape_of(part)).glued_faces()
-        except Exception:  # of OpenCASCADE's, too; the run tells what is wrong
+        except Exception:  # also OpenCASCADE's; the run reports the problem
             return []
         return [f"Face{first}" if first == second else f"Face{first} = Face{second}" for first, second in pairs]
 

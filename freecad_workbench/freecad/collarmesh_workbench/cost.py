@@ -7,9 +7,9 @@ from .size_presets import count_text, duration_text
 from .translations import translate
 
 MANY = 5_000_000  # elements
-BYTES = {1: 1000, 2: 2000}  # of memory for an element, by order: in the mesher, and then in FreeCAD
+BYTES = {1: 1000, 2: 2000}  # bytes of memory per element, by order: in the mesher, and then in FreeCAD
 GIGABYTE = 1e9
-LOADING = {1: 5e-6, 2: 12e-6}  # seconds for an element, by order, until FreeCAD has read it
+LOADING = {1: 5e-6, 2: 12e-6}  # seconds per element, by order, for FreeCAD to read it
 
 
 def elements_by_extent(part, size, dimension=3):

@@ -53,7 +53,7 @@ class DimensionSection(QtGui.QWidget):
             return self.asked() or 3
         try:
             return open_shape.dimension(part, self.asked(), fill_holes)
-        except Exception:  # of OpenCASCADE's, too; the run tells what is wrong
+        except Exception:  # also OpenCASCADE's; the run reports the problem
             return self.asked() or 3
 
     def show_note(self, fill_holes):

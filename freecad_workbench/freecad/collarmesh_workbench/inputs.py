@@ -7,7 +7,7 @@ from .program import MesherError
 from .translations import translate
 
 KINDS = ("Part::Feature", "App::Part", "App::LinkGroup", "Mesh::Feature")
-REST = "Rest"  # the group of the triangles that are in no segment
+REST = "Rest"  # the group of the triangles in no segment
 
 
 def triangles_of(part):

@@ -9,7 +9,7 @@ from .program import MesherError, find_program
 from .translations import translate
 from .work_folder import WorkFolder
 
-# FreeCAD's own export writes some of them, too, but not all, and loses groups of faces in .inp.
+# FreeCAD's own export writes only some of these, and loses groups of faces in .inp.
 FORMATS = (
     ("VTK, ParaView", ".vtu"), ("VTK", ".vtk"), ("Gmsh", ".msh"), ("Gmsh 2.2", ".msh2"), ("Abaqus, CalculiX", ".inp"),
     ("I-DEAS, SALOME", ".unv"), ("Medit", ".mesh"), ("TetGen", ".ele"), ("STL", ".stl"), ("OBJ", ".obj"), ("PLY", ".ply"),

@@ -14,7 +14,7 @@ def fill(menu, obj):
     """Of one of our mesh objects."""
     has_mesh = elements.is_there(obj.FemMesh)
     for name, text, action, enabled in (
-        ("edit", translate("collarmesh", "Edit mesh"), edit, True),  # as a double click does
+        ("edit", translate("collarmesh", "Edit mesh"), edit, True),  # like a double click
         ("mesh_again", translate("collarmesh", "Mesh again"), mesh_again, True),
         ("export", translate("collarmesh", "Export mesh..."), export, has_mesh),
         ("statistics", translate("collarmesh", "Statistics..."), statistics, has_mesh),

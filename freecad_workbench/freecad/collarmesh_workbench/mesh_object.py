@@ -10,7 +10,7 @@ from . import (compatibility, constraint_faces, contact_groups, contacts, elemen
 from .program import GUARANTEE_MISSED, Job, MesherError
 from .translations import translate
 
-TINY = 0.01  # of the target edge length: edges that hardly anybody means
+TINY = 0.01  # of the target edge length: shorter edges are probably unintended
 
 
 def add_properties(obj):

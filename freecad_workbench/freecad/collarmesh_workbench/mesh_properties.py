@@ -6,10 +6,10 @@ from . import compatibility, preferences, size_objects
 from .program import MesherError, Settings
 from .translations import doc, translate
 
-TYPE = "Fem::FemMeshCollarmesh"  # what FEM's tools ask for
+TYPE = "Fem::FemMeshCollarmesh"  # the type that FEM's tools check
 
-# Names that macros for FreeCAD's Gmsh object use as well come first. Lines: type, name, field of Settings, group in
-# the property editor, text.
+# Names shared with FreeCAD's Gmsh object, which macros use as well, come first. Lines: type, name, field of
+# Settings, group in the property editor, text.
 SIZES, FEATURES, QUALITY, RUN = "Sizes", "Features", "Quality", "Run"
 PROPERTIES = (
     (

@@ -18,8 +18,8 @@ from .program import MesherError, Progress
 from .time_left import TimeLeft
 from .translations import translate
 
-WAIT = 200  # milliseconds until a run that has ended asks again whether its mesh can be put in place
-_runs = {}  # that are under way, by (document, object)
+WAIT = 200  # milliseconds until a run that has ended checks again whether its mesh can be put in place
+_runs = {}  # runs in progress, by (document, object)
 _outcomes = {}  # of the last runs
 
 
@@ -27,12 +27,12 @@ _outcomes = {}  # of the last runs
 class Outcome:
     """How a run ended."""
 
-    report: dict = None  # None: without a mesh
+    report: dict = None  # None: no mesh
     error: str = ""
     cancelled: bool = False
     page: str = ""  # path of the report for people
-    part_changed: bool = False  # while it was meshed
-    warnings: tuple = ()  # of the shape, from before the run
+    part_changed: bool = False  # while it was being meshed
+    warnings: tuple = ()  # warnings about the shape, from before the run
     mesh_number: int = 0  # see mesh_undo
 
 
@@ -64,7 +64,7 @@ def start(obj, time_left=None):
 
 class MeshingProcess(QtCore.QObject):
     advanced = QtCore.Signal(object)  # a Progress
-    ended = QtCore.Signal()  # there is an outcome
+    ended = QtCore.Signal()  # the outcome is available
 
     def __init__(self, obj, time_left=None):
         super().__init__()
@@ -133,7 +133,7 @@ class MeshingProcess(QtCore.QObject):
         key = _key(self.object)
         try:
             outcome = self._outcome(exit_code)
-        except Exception as error:  # of FreeCAD: the panel goes on
+        except Exception as error:  # exceptions of FreeCAD: the panel continues
             FreeCAD.Console.PrintError(traceback.format_exc())
             outcome = Outcome(error=f"{type(error).__name__}: {error}")
         _outcomes[key] = outcome

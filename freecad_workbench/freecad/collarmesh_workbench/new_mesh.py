@@ -4,7 +4,7 @@ import FreeCAD
 
 from .translations import mark, translate
 
-CREATION = mark("collarmesh", "FEM mesh from shape by collarmesh")  # the step of undo that made it
+CREATION = mark("collarmesh", "FEM mesh from shape by collarmesh")  # name of the undo step that made it
 
 
 def take_back(document_name, name):

@@ -31,10 +31,10 @@ def quantity(text, obj):
         raise ValueError(translate("collarmesh", "there is no value"))
     try:
         value = _parsed(_with_point(text), obj)
-    except Exception as error:  # FreeCAD's have bases of all kinds
+    except Exception as error:  # FreeCAD's exceptions have many base classes
         raise ValueError(translate("collarmesh", "'{text}' is no value").format(text=text)) from error
     _require_finite(value.Value, text)
-    if value.Value == sys.float_info.min:  # what FreeCAD makes of nothing
+    if value.Value == sys.float_info.min:  # FreeCAD's value of an empty text
         raise ValueError(translate("collarmesh", "'{text}' is no value").format(text=text))
     return value
 

@@ -7,8 +7,8 @@ from . import inputs
 from .program import MesherError
 from .translations import translate
 
-SEWN = 1e-5  # of the diagonal: faces as near as this meet, as in the program
-SHAPES = 5  # whose open edges are remembered
+SEWN = 1e-5  # of the diagonal: faces this close meet, as in the program
+SHAPES = 5  # shapes whose open edges are remembered
 
 _known = collections.deque(maxlen=SHAPES)  # (shape, number of its open edges)
 

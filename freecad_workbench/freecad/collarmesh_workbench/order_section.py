@@ -5,7 +5,7 @@ from PySide import QtCore, QtGui
 from .translations import translate
 
 
-NODES = {1: (2, 3), 2: (3, 6), 3: (4, 10)}  # of elements, by dimension, of either order
+NODES = {1: (2, 3), 2: (3, 6), 3: (4, 10)}  # nodes of elements, by dimension, for both orders
 
 
 class OrderSection(QtGui.QWidget):

@@ -5,7 +5,7 @@ from PySide import QtCore, QtGui
 from . import places
 from .translations import translate
 
-MOST = 200  # rows of a kind
+MOST = 200  # rows of one kind
 MOST_PIXELS = 10000  # height of a row
 
 
@@ -27,7 +27,7 @@ class PlacesList(QtGui.QTreeWidget):
         self.setToolTip(translate("collarmesh", "Click to see the place"))
         self.itemClicked.connect(self._clicked)
         self.currentItemChanged.connect(self._moved)
-        self._moved_to = None  # by the click that is under way
+        self._moved_to = None  # by the current click
         self._filling = False
 
     def fill(self, found):
@@ -95,7 +95,8 @@ class _Wrapped(QtGui.QStyledItemDelegate):
     def sizeHint(self, option, index):
         tree = self.parent()
         levels = 2 if index.parent().isValid() else 1
-        around = 2 * tree.frameWidth() + tree.verticalScrollBar().sizeHint().width()  # it may come
+        around = 2 * tree.frameWidth() + tree.verticalScrollBar().sizeHint().width()  # the scroll bar may
+        # appear
         wrapped = QtGui.QStyleOptionViewItem(option)
         wrapped.rect = QtCore.QRect(0, 0, tree.width() - levels * tree.indentation() - around, MOST_PIXELS)
         return super().sizeHint(wrapped, index) + QtCore.QSize(0, 3)

@@ -5,8 +5,8 @@ import math
 import numpy
 import Part
 
-FLAT = 0.1  # degrees: triangles that differ by less are in one plane
-COARSE = 1  # degrees, and twice as much again and again, where there would be too many faces
+FLAT = 0.1  # degrees: triangles whose normals differ by less are in one plane
+COARSE = 1  # degrees; doubled again and again if there would be too many faces
 MOST = 2000
 
 
@@ -49,7 +49,7 @@ def _pieces(normals, areas, neighbours, angle):
         free[seed] = False
         x, y, z = vectors[seed]
         piece = [seed]
-        for number in piece:  # grows meanwhile
+        for number in piece:  # the list grows in this loop
             for other in neighbours[number]:
                 if free[other]:
                     u, v, w = vectors[other]

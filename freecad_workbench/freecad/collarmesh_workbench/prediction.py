@@ -17,7 +17,7 @@ WAIT = 400  # milliseconds after the last change
 COUNTING = {"--size-min", "--elements-per-circle", "--elements-across-gap", "--gradation", "--region-size",
             "--patch-size", "--curve-size", "--distance", "--order", "--planar-tolerance", "--weld", "--repair",
             "--repair-tolerance", "--crease-angle"}
-SHAPES = 50  # of which the answers are kept
+SHAPES = 50  # shapes whose answers are kept
 
 _answers = collections.deque(maxlen=SHAPES)  # (numbers of a shape, {(arguments, size field, size): answer})
 
@@ -34,16 +34,16 @@ def _answers_for(numbers):
 class Predictions(QtCore.QObject):
     """Asks in a process of its own, a moment after the last `ask`. Where the program does not know, nothing is told."""
 
-    made = QtCore.Signal(object)  # all that are known: {asked size in mm: (number of tetrahedra, seconds)}
+    made = QtCore.Signal(object)  # all known answers: {asked size in mm: (number of tetrahedra, seconds)}
 
     def __init__(self, obj, parent=None):
         super().__init__(parent)
         self.object = obj
-        self._folder = None  # with the shape, once it is needed
-        self._shape = ""  # its path
-        self._numbers = None  # that stand for the shape; None: not looked at
-        self._known = {}  # what is known of it
-        self._arguments, self._size_field, self._sizes = (), "", ()  # what is asked for
+        self._folder = None  # contains the shape, once it is needed
+        self._shape = ""  # path of the shape's file
+        self._numbers = None  # numbers that identify the shape; None: not computed
+        self._known = {}  # known answers for the shape
+        self._arguments, self._size_field, self._sizes = (), "", ()  # the current question
         self._process = None
         self._timer = QtCore.QTimer(self, singleShot=True)
         self._timer.timeout.connect(self._begin)
@@ -63,7 +63,7 @@ class Predictions(QtCore.QObject):
         settings = self._in_mesh_numbers(settings)
         self._arguments = tuple(_arguments(settings))
         self._size_field = json.dumps(settings.size_field) if settings.size_field else ""
-        sizes = [size for size in sizes if size >= settings.size_min]  # the program refuses others
+        sizes = [size for size in sizes if size >= settings.size_min]  # the program rejects smaller ones
         self._sizes = tuple(dict.fromkeys(sizes)) if settings.coarsen else ()
         return self._told()
 
@@ -95,13 +95,13 @@ class Predictions(QtCore.QObject):
             try:
                 self._numbers = up_to_date.shape_numbers(mesh_properties.part_to_mesh(self.object))
                 self._known = _answers_for(self._numbers)
-            except Exception:  # of OpenCASCADE's, too; the run tells what is wrong
+            except Exception:  # also OpenCASCADE's; the run reports the problem
                 self._known = {}
 
     def _in_mesh_numbers(self, settings):
         try:
             return contacts.in_mesh_numbers(settings, inputs.shape_of(compatibility.meshed_object(self.object)))
-        except Exception:  # of OpenCASCADE's, too; the run tells what is wrong
+        except Exception:  # also OpenCASCADE's; the run reports the problem
             return settings
 
     def _stop(self):
@@ -118,7 +118,7 @@ class Predictions(QtCore.QObject):
             if asked:
                 program = find_program(preferences.program())
                 self._write_files()
-        except Exception:  # of OpenCASCADE's, too; the run tells what is wrong
+        except Exception:  # also OpenCASCADE's; the run reports the problem
             asked = []
         if not asked:
             self._tell()
@@ -184,6 +184,7 @@ class Predictions(QtCore.QObject):
 
 def _arguments(settings):
     """Those of the command line that the number of elements depends on, but for the size, which is asked about."""
-    arguments = dataclasses.replace(settings, keep_apart=False).arguments()  # without a flag: pairs of option and value
+    arguments = dataclasses.replace(settings, keep_apart=False).arguments()  # without flags, so that these
+    # are pairs of option and value
     pairs = zip(arguments[::2], arguments[1::2])
     return [word for pair in pairs if pair[0] in COUNTING for word in pair]

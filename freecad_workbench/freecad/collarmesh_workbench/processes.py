@@ -8,7 +8,7 @@ import contextlib
 
 from PySide import QtCore
 
-PATIENCE = 3000  # milliseconds for a process that was killed
+PATIENCE = 3000  # milliseconds to wait for a killed process
 
 
 def new():
@@ -21,7 +21,7 @@ def new():
 def end(process):
     """Let go of a process, which is killed if it runs. False if it still runs, as one does that waits for a disk."""
     for signal in (process.finished, process.readyReadStandardError):
-        with contextlib.suppress(RuntimeError):  # of a signal that nothing is connected to
+        with contextlib.suppress(RuntimeError):  # raised for a signal without connections
             signal.disconnect()
     process.kill()
     process.waitForFinished(PATIENCE)

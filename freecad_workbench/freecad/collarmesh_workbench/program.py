@@ -12,7 +12,7 @@ from . import subshape_words
 from .translations import translate
 from .work_folder import WorkFolder
 
-GUARANTEE_MISSED = 7  # the exit code with which a mesh is written all the same
+GUARANTEE_MISSED = 7  # exit code with which the mesh is written although a guarantee is missed
 
 
 class MesherError(RuntimeError):
@@ -46,17 +46,20 @@ class Settings:
     improve: int = 2
     coarsen: bool = True
     order: int = 2
-    dimension: int = 0  # of the elements: 3 tetrahedra, 2 triangles, 1 lines; 0: from the shape
+    dimension: int = 0  # dimension of the elements: 3 tetrahedra, 2 triangles, 1 lines; 0: from the shape
     repair: str = "auto"  # or "none", or "wrap"
-    fill_holes: bool = False  # of surfaces that are open; else they are refused before the program runs
-    keep_apart: bool = False  # solids that touch get nodes of their own there, for contact; else they share them
-    split: list = dataclasses.field(default_factory=list)  # faces inside whose sides get nodes of their own: "Face7"
+    fill_holes: bool = False  # fill holes of open surfaces; otherwise they are rejected before the program
+    # runs
+    keep_apart: bool = False  # give solids that touch nodes of their own there, for contact; otherwise they
+    # share nodes
+    split: list = dataclasses.field(default_factory=list)  # internal faces whose sides get nodes of their
+    # own: "Face7"
     periodic: list = dataclasses.field(default_factory=list)  # pairs of faces: "x", "Face1=Face2", ...
-    interior_node: bool = False  # each tetrahedron has a corner that is on no face
+    interior_node: bool = False  # each tetrahedron gets a corner that is on no face
     solid_sizes: dict = dataclasses.field(default_factory=dict)
     face_sizes: dict = dataclasses.field(default_factory=dict)
     edge_sizes: dict = dataclasses.field(default_factory=dict)
-    size_field: dict = None  # sizes by place: sources, as mesher/doc/sizes.md has them
+    size_field: dict = None  # sizes by place: sources as in mesher/doc/sizes.md
 
     def arguments(self):
         """Arguments of the command line."""
@@ -116,7 +119,7 @@ def find_program(preferred=""):
 @dataclasses.dataclass
 class Progress:
     phase: str
-    fraction: float  # of everything, 0 to 1
+    fraction: float  # of the whole run, 0 to 1
     tets: int
 
 
@@ -155,7 +158,7 @@ class Job:
             pathlib.Path(path).write_text(json.dumps(settings.size_field), encoding="utf-8")
             self.command += ["--size-field", path]
         self.messages = []
-        self.explain = lambda text: text  # what the program says, in the caller's terms
+        self.explain = lambda text: text  # rewrites the program's messages in the caller's terms
         self.names = None  # of faces, edges and solids by their numbers in the mesh; None: the input has none
 
     def __enter__(self):

@@ -9,7 +9,7 @@ from PySide import QtGui
 from . import colours, numbers_typed
 from .translations import translate
 
-ROUNDING = 1e-3  # relative: what FreeCAD's number of decimals may change in what is shown
+ROUNDING = 1e-3  # relative: largest change by rounding to FreeCAD's number of decimals
 ANY, NOT_NEGATIVE, POSITIVE = range(3)
 
 

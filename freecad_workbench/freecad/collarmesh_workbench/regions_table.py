@@ -8,7 +8,7 @@ from . import colours, numbers_typed
 from .translations import translate
 from .whole_table import WholeTable
 
-MOST = 6  # rows that are seen without scrolling
+MOST = 6  # rows visible without scrolling
 MUCH = 1  # percent
 DIFFERENCE = 3  # column
 

@@ -6,10 +6,10 @@ from pivy import coin
 from PySide import QtCore
 
 SHARE = 0.1  # of the object's diagonal: half a handle's length
-SHARE_OF_VIEW = 0.025  # of what the view shows: the least half length
-THICK = 1.3  # times as thick as Coin's arrows
+SHARE_OF_VIEW = 0.025  # of the visible height: the least half length
+THICK = 1.3  # thickness relative to Coin's arrows
 EVERY = 20  # ms
-LEAST = 1e-3  # of the object's diagonal: no length gets smaller by dragging
+LEAST = 1e-3  # of the object's diagonal: dragging makes no length smaller
 AXES = {"X": FreeCAD.Vector(1, 0, 0), "Y": FreeCAD.Vector(0, 1, 0), "Z": FreeCAD.Vector(0, 0, 1)}
 
 
@@ -80,7 +80,7 @@ class Handles:
         self._hidden_from_mouse = []
         self._held = None
         self._at_start = None
-        self._height = 0  # of the view when the handles were put
+        self._height = 0  # height of the view when the handles were placed
         for axis in AXES:
             self._add(axis, axis, lambda by, axis=axis: self._move(axis, by))
         for length, axis in rods_of(kind):

@@ -17,7 +17,7 @@ TURNED = 1e-9  # rad
 class Size(compatibility.Stateless):
     """What all of them have: the size that holds inside, and how it grows outside."""
 
-    lengths = ()  # of the body: name, share of a new one, text
+    lengths = ()  # lengths of the body: name, share for a new one, text
 
     def __init__(self, obj):
         obj.Proxy = self
@@ -124,7 +124,7 @@ class Distance(Size):
     TAGS = {
         "Face": "patches",
         "Edge": "curves",
-    }  # in the program's size field: their tags are FreeCAD's numbers
+    }  # in the program's size field, whose tags are FreeCAD's numbers
 
     def add_properties(self, obj):
         super().add_properties(obj)

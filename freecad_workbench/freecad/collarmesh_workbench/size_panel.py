@@ -202,7 +202,8 @@ class SizePanel:
     def reject(self):
         document = self.object.Document
         self.close()
-        document.abortTransaction()  # a new object is gone then; the end of the edit would commit
+        document.abortTransaction()  # also removes a new object; otherwise the end of the edit would commit
+        # it
         FreeCADGui.getDocument(document.Name).resetEdit()
         document.recompute()
         return True

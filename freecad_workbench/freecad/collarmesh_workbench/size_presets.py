@@ -4,7 +4,7 @@ import math
 
 from .translations import translate
 
-DEFAULT_PART_OF_DIAGONAL = 1 / 20  # the program's, which is the medium one
+DEFAULT_PART_OF_DIAGONAL = 1 / 20  # the program's default, which is the medium preset
 DAY, YEAR = 86400, 365 * 86400  # seconds
 SUPERSCRIPTS = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 

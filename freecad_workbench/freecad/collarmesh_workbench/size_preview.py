@@ -9,11 +9,12 @@ from . import asked_sizes, compatibility, numbers_typed
 from .translations import translate
 
 NAME = "collarmesh_sizes"
-# From the smallest size to the largest one; lightness grows, so that they can be told apart without seeing colours.
+# From the smallest size to the largest one; lightness increases, so that the colours can be distinguished in
+# grey.
 SCALE = numpy.array([(0.267, 0.005, 0.329), (0.230, 0.322, 0.546), (0.128, 0.567, 0.551), (0.369, 0.789, 0.383),
                      (0.993, 0.906, 0.144)])
 WAIT = 300  # milliseconds after a change
-HEIGHT = 12  # of the scale, pixels
+HEIGHT = 12  # height of the scale, pixels
 
 
 class SizePreview(QtGui.QWidget):
@@ -76,7 +77,7 @@ class SizePreview(QtGui.QWidget):
         try:
             self._surface = self._surface or asked_sizes.surface_of(part)
             sizes = asked_sizes.on(self._surface, part, settings)
-        except Exception:  # of OpenCASCADE's, too; the run tells what is wrong
+        except Exception:  # also OpenCASCADE's; the run reports the problem
             return
         if len(sizes) == 0:
             return
@@ -93,7 +94,7 @@ class SizePreview(QtGui.QWidget):
         if self._node is not None:
             self._remove()
         self._node = coloured(coin, self._surface.places, colours(sizes))
-        self.object.ViewObject.RootNode.addChild(self._node)  # which shows though the object is hidden
+        self.object.ViewObject.RootNode.addChild(self._node)  # visible although the object is hidden
 
     def _remove(self):
         node, self._node = self._node, None

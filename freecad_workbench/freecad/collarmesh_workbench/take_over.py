@@ -9,7 +9,7 @@ from . import compatibility, extent, inputs, mesh_object, mesh_properties, size_
 from .program import MesherError
 from .translations import doc, translate
 
-# Netgen's names for how fast sizes grow and how many elements there are along a radius of curvature.
+# Netgen's names for the growth of sizes and the number of elements along a radius of curvature.
 FINENESS = {
     "VeryCoarse": (0.7, 1),
     "Coarse": (0.5, 1.5),
@@ -61,7 +61,7 @@ def take_over(old):
         notes += take_sizes_by_place([each for each in refinements if each not in new.MeshRegionList], new)
         replace(old, new)
         if new.FemMesh.NodeCount:
-            # Its mesh is not of our making, so it is out of date.
+            # The mesh was not made by collarmesh, so it is out of date.
             up_to_date.remember(new, up_to_date.State([], mesher))
             up_to_date.show(new)
     return new, notes
@@ -142,7 +142,7 @@ def hand_over(old):
         compatibility.set_refinements(new, old.MeshRegionList)
         new.MeshGroupList = old.MeshGroupList
         sizes = getattr(old, size_objects.PROPERTY)
-        if sizes:  # Gmsh does not heed them, but they are there when the mesh is taken over again
+        if sizes:  # Gmsh ignores them, but they are kept for taking the mesh over again
             new.addProperty(
                 "App::PropertyLinkList", size_objects.PROPERTY, "Base", doc("Sizes of collarmesh"), 4
             )
@@ -166,7 +166,7 @@ def replace(old, new):
     if "ViewObject" in dir(old) and old.ViewObject is not None and new.ViewObject is not None:
         new.ViewObject.Visibility = old.ViewObject.Visibility
     label = old.Label
-    # Removed objects of some kinds take with them what they list.
+    # Removing objects of some kinds also removes the objects that they list.
     for name in ("MeshRegionList", "MeshRefinementList", "MeshGroupList", size_objects.PROPERTY):
         if name in old.PropertiesList:
             setattr(old, name, [])

@@ -24,8 +24,9 @@ from .translations import translate
 from .view_marks import ViewMarks
 
 WIDTH = 400  # pixels
-MOMENT = 100  # milliseconds, in which a part that is dragged changes again
-WHAT_IS_MESHED = ("Shape", "Placement", "Mesh", "LinkPlacement")  # properties of parts
+MOMENT = 100  # milliseconds; a part that is being dragged changes again within this time
+WHAT_IS_MESHED = ("Shape", "Placement", "Mesh", "LinkPlacement")  # properties of parts that hold the meshed
+# geometry
 
 
 class MeshTaskPanel:
@@ -34,7 +35,7 @@ class MeshTaskPanel:
     def __init__(self, obj):
         self.object = obj
         self.run = None
-        self.outcome = None  # that is shown
+        self.outcome = None  # the outcome that is shown
         self.known = {}  # predictions
         self.marks = ViewMarks(obj)
         self._build()
@@ -51,7 +52,10 @@ class MeshTaskPanel:
             self._show_outcome(meshing_process.outcome_of(obj))
         out_of_date = up_to_date.is_out_of_date(obj)
         self.result.show_out_of_date(out_of_date)
-        self._predict(None if elements.is_there(obj.FemMesh) and not out_of_date else 0)  # it is only looked at
+        self._predict(None if elements.is_there(obj.FemMesh) and not out_of_date else 0)  # nothing to
+        # predict: the user
+        # only looks at the
+        # mesh
         self.form.destroyed.connect(self.dismiss)
         self.changes = QtCore.QTimer(self.form, singleShot=True, interval=MOMENT)
         self.changes.timeout.connect(self._ask_anew)
@@ -276,7 +280,7 @@ class MeshTaskPanel:
         self.preview.button.setChecked(False)
         try:
             constraint_faces_view.show(self.object)
-        except MesherError as error:  # an undo took the mesh
+        except MesherError as error:  # an undo removed the mesh
             self.result.say(str(error), colours.BAD)
 
     def getStandardButtons(self):
@@ -300,7 +304,7 @@ class MeshTaskPanel:
         self._close()
         if not is_wanted:
             key = self.object.Document.Name, self.object.Name
-            later(lambda: new_mesh.take_back(*key))  # when the panel has gone
+            later(lambda: new_mesh.take_back(*key))  # when the panel is closed
         return True
 
     def _close(self):

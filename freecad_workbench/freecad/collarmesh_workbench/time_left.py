@@ -2,11 +2,11 @@
 
 import math
 
-LEAST_SECONDS, LEAST_SHARE = 2, 0.13  # before these, nobody can know from the run itself
-GROWTH = 1.5  # what was told grows by no more than that
+LEAST_SECONDS, LEAST_SHARE = 2, 0.13  # the run itself permits no estimate before these
+GROWTH = 1.5  # the estimate grows by at most this factor
 
-# What share of the time has gone by where the program says that it is this far: rounded means over seven runs that
-# made from 2,500 to 225,000 elements.
+# The share of the time that has passed at each fraction reported by the program: rounded means over several
+# runs.
 _SHARES = ((0, 0), (0.08, 0.1), (0.131, 0.13), (0.59, 0.3), (0.675, 0.7), (0.76, 0.88), (0.811, 0.91),
            (0.93, 0.97), (1, 1))
 
@@ -25,8 +25,8 @@ class TimeLeft:
 
     def __init__(self, predicted=None, afterwards=0):
         self._predicted, self._afterwards = predicted, afterwards
-        self._fraction, self._end = -1, math.inf  # of what the run itself tells
-        self._least = math.inf  # that was told
+        self._fraction, self._end = -1, math.inf  # last fraction, and the end that the run itself suggests
+        self._least = math.inf  # smallest estimate shown
 
     def seconds(self, passed, fraction):
         """After so many seconds; None: nobody knows; infinite: longer than was told before."""

@@ -12,9 +12,9 @@ from .program import MesherError, Settings
 from .translations import doc, translate
 
 SHAPE, SETTINGS = "MeshedShape", "MeshedSettings"
-MARKS = 8  # numbers that stand for a shape
+MARKS = 8  # number of values that identify a shape
 SAME_PLACE = 1e-9  # relative to the largest coordinate; files of FreeCAD keep 16 digits
-DIGITS = 10  # of a setting
+DIGITS = 10  # digits of a setting
 HIDDEN = 4 | 16  # for addProperty: Prop_Hidden, and Prop_NoRecompute as it changes no mesh
 WITHOUT_EFFECT = ("time_limit",)
 
@@ -82,7 +82,7 @@ def has_shape(part, numbers):
     """Does the object have the shape that these numbers stand for? False for what cannot be looked at."""
     try:
         return same_shape(numbers, shape_numbers(part))
-    except Exception:  # of OpenCASCADE's, too: what cannot be looked at cannot be meshed
+    except Exception:  # also OpenCASCADE's: a shape that cannot be read cannot be meshed
         return False
 
 
@@ -142,7 +142,7 @@ def is_out_of_date(obj):
         return False
     try:
         now = state_of(obj)
-    except Exception:  # of OpenCASCADE's, too: what cannot be looked at cannot be meshed
+    except Exception:  # also OpenCASCADE's: a shape that cannot be read cannot be meshed
         return True
     return not (same_settings(made_with, now.settings) and same_shape(list(getattr(obj, SHAPE)), now.shape))
 

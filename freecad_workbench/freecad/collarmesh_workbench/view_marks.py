@@ -9,8 +9,8 @@ import numpy
 from . import compatibility, extent
 
 NAME = "collarmesh_marks"
-TRANSPARENCY = 80  # percent, of the mesh as long as something in it is marked
-AROUND = 0.15  # of the diagonal: how far around a point is to be seen, at least
+TRANSPARENCY = 80  # percent, for the mesh while something in it is marked
+AROUND = 0.15  # of the diagonal: the least visible radius around a point
 
 
 class ViewMarks:
@@ -19,7 +19,7 @@ class ViewMarks:
     def __init__(self, obj):
         self.object = obj
         self._node = None
-        self._before = None  # how the objects looked
+        self._before = None  # previous appearance of the objects
 
     def show(self, places):
         self.clear()
@@ -61,7 +61,7 @@ class ViewMarks:
     def _mark(self, points, tetrahedra):
         from pivy import coin
 
-        self._node = coin.SoAnnotation()  # over everything else
+        self._node = coin.SoAnnotation()  # drawn over everything else
         self._node.setName(NAME)
         colour = coin.SoMaterial()
         colour.diffuseColor = (0.9, 0.1, 0.1)

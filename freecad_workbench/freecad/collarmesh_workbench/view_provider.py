@@ -9,8 +9,8 @@ from .views import ICON, OUT_OF_DATE_ICON
 
 class MeshViewProvider(compatibility.Stateless):
     out_of_date = False
-    panel = None  # while it is open
-    is_new = False  # made by the button, and without a mesh yet
+    panel = None  # set while the panel is open
+    is_new = False  # created by the button, still without a mesh
     hid_part = False  # when the mesh appeared
 
     def __init__(self, view):

@@ -2,7 +2,7 @@
 
 from PySide import QtCore, QtGui
 
-SPARE = 2  # pixels, for the line below the rows
+SPARE = 2  # pixels for the line below the rows
 
 
 class WholeTable(QtGui.QTreeWidget):

@@ -40,7 +40,7 @@ def worst(fem_mesh, count=20):
     return numbers[order], angles[order], corners[order]
 
 
-MOST = 100000  # elements, of which FreeCAD's mesh is asked for the worst ones: it takes a second
+MOST = 100000  # elements up to which FreeCAD's mesh is searched for the worst ones, which takes a second
 
 
 def in_report(fem_mesh, report):
