@@ -44,7 +44,7 @@ def remesh(mesh_object):
 
 
 def meshed_object(mesh_object):
-    """The object that a mesh object meshes; the property for it is called differently in FreeCAD's versions."""
+    """Return the meshed object of a mesh object; FreeCAD's versions differ in the name of its property."""
     from . import compatibility
 
     return compatibility.meshed_object(mesh_object)

@@ -1,4 +1,4 @@
-"""The part of the panel that tells at which faces solids touch, and asks whether they are kept apart there."""
+"""The part of the panel that shows at which faces solids touch, and asks whether to keep them apart there."""
 
 from PySide import QtCore, QtGui
 
@@ -36,11 +36,11 @@ class ContactsSection(QtGui.QWidget):
         self.look_soon()
 
     def look_soon(self):
-        """At the shape, when the window has shown what is there already."""
+        """Looks at the shape after the window has shown its current contents."""
         self._timer.start()
 
     def store(self):
-        """Into the object's property."""
+        """Stores the value in the object's property."""
         if self.box.isChecked() != self.object.KeepApart:
             self.object.KeepApart = self.box.isChecked()
 

@@ -1,4 +1,4 @@
-"""A mesh of a mesh object in the program's formats, and what the program says of it."""
+"""Writes the mesh of a mesh object in the program's formats, and measures it with the program."""
 
 import json
 import os
@@ -18,17 +18,18 @@ FORMATS = (
 
 
 def filters():
-    """For a file dialog."""
+    """Returns filters for a file dialog."""
     return ";;".join(f"{name} (*{extension})" for name, extension in FORMATS)
 
 
 def extension_in(text):
-    """Of one of these filters, without the dot."""
+    """Returns the extension of one of these filters, without the dot."""
     return text[text.index("*.") + 2 : text.rindex(")")]
 
 
 def _run(mesh_object, arguments):
-    """The program's standard output; `MESH` among the arguments is the object's mesh. Raises MesherError."""
+    """Runs the program and returns its standard output; `MESH` among the arguments is the object's mesh. Raises
+    MesherError."""
     if not elements.is_there(mesh_object.FemMesh):
         raise MesherError(translate("collarmesh", "{label} has no mesh yet.").format(label=mesh_object.Label))
     program = find_program(preferences.program())
@@ -50,11 +51,12 @@ def _run(mesh_object, arguments):
 
 
 def export(mesh_object, path):
-    """Write the object's mesh, with its groups by sub-shapes and their names where the format has a place for them.
-    The format is that of the path's extension. Raises MesherError."""
+    """Writes the object's mesh, with its groups by sub-shapes and their names if the format has a place for them. The
+    path's extension gives the format. Raises MesherError."""
     _run(mesh_object, ["convert", "MESH", "-o", path, "--quiet"])
 
 
 def statistics(mesh_object):
-    """What the program measures: points, tets, angles, histograms (`collarmesh info --json`). Raises MesherError."""
+    """Returns the program's measurements: points, tets, angles, histograms (`collarmesh info --json`). Raises
+    MesherError."""
     return json.loads(_run(mesh_object, ["info", "MESH", "--json"]))["mesh"]

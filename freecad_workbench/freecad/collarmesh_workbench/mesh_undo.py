@@ -34,7 +34,7 @@ def add_properties(obj):
 
 
 def replace(obj, fem_mesh):
-    """Give the object a new mesh, in a way that can be undone."""
+    """Gives the object a new mesh, in a way that can be undone."""
     if not obj.Document.UndoMode:
         obj.FemMesh = fem_mesh
         return
@@ -52,7 +52,7 @@ def replace(obj, fem_mesh):
 
 
 def same(first, second):
-    """Is it the same mesh? Groups do not count."""
+    """Returns whether it is the same mesh. Groups do not count."""
     if any(
         getattr(first, each) != getattr(second, each)
         for each in ("NodeCount", "EdgeCount", "FaceCount", "VolumeCount")
@@ -89,7 +89,7 @@ class Observer:
 
 
 def _put(obj, fem_mesh):
-    """In place of the object's mesh, if it is another one; None: it is no longer kept."""
+    """Replaces the object's mesh, if it is another one; None: it is no longer kept."""
     if fem_mesh is None or same(fem_mesh, obj.FemMesh):
         return
     fem_mesh = fem_mesh.copy()

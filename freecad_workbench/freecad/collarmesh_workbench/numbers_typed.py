@@ -10,12 +10,12 @@ from .translations import translate
 
 
 def shown(text):
-    """A text of numbers with a decimal point, with the sign that the user's language has for it."""
+    """Replaces the decimal point in a text of numbers by the sign of the user's language."""
     return text.replace(".", QtCore.QLocale().decimalPoint())
 
 
 def number(text):
-    """A plain number. Raises ValueError."""
+    """Reads a plain number. Raises ValueError."""
     try:
         value = float(_with_point(text))
     except ValueError as error:
@@ -25,7 +25,7 @@ def number(text):
 
 
 def quantity(text, obj):
-    """A FreeCAD quantity: "2.5 mm", "1/8 in", "3 mm + 1 mm"; `obj` knows names like Spreadsheet.width. Raises
+    """Reads a FreeCAD quantity: "2.5 mm", "1/8 in", "3 mm + 1 mm"; `obj` resolves names like Spreadsheet.width. Raises
     ValueError."""
     if not text.strip():
         raise ValueError(translate("collarmesh", "there is no value"))
@@ -40,7 +40,8 @@ def quantity(text, obj):
 
 
 def _parsed(text, obj):
-    """Expressions are for sums and names only: "1/8 in" is one over eight inches there."""
+    """Parses a quantity. Expressions are used only for sums and names, because they read "1/8 in" as one over eight
+    inches."""
     try:
         return FreeCAD.Units.Quantity(text)
     except (ValueError, OSError):

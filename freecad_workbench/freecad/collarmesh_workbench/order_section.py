@@ -37,11 +37,11 @@ class OrderSection(QtGui.QWidget):
         self.combo.currentIndexChanged.connect(self._choose)
 
     def order(self):
-        """1 or 2."""
+        """Returns 1 or 2."""
         return self.combo.currentIndex() + 1
 
     def show_dimension(self, dimension):
-        """With the numbers of nodes of such elements."""
+        """Shows the numbers of nodes of such elements."""
         for i, text in enumerate((translate("collarmesh", "first (straight, {n} nodes)"),
                                   translate("collarmesh", "second (curved, {n} nodes)"))):
             self.combo.setItemText(i, text.format(n=NODES[dimension][i]))

@@ -1,4 +1,4 @@
-"""The list of places: a heading for each kind, below it what was found."""
+"""The list of places: a heading for each kind, with the findings below it."""
 
 from PySide import QtCore, QtGui
 
@@ -60,7 +60,7 @@ class PlacesList(QtGui.QTreeWidget):
         return top
 
     def pick_first(self, kind):
-        """As if the first row of the kind were clicked."""
+        """Picks the first row of the kind, like a click."""
         for i in range(self.topLevelItemCount()):
             top = self.topLevelItem(i)
             if top.data(0, QtCore.Qt.UserRole)[0].kind == kind:
@@ -81,7 +81,7 @@ class PlacesList(QtGui.QTreeWidget):
             self._pick(item)
 
     def _clicked(self, item, _column):
-        """On the row that is the current one already: the view may look elsewhere by now."""
+        """Handles a click on the current row: the view may have moved since."""
         if item is not self._moved_to:
             self._pick(item)
 

@@ -1,4 +1,4 @@
-"""How many elements sizes will make, and how long that takes, asked of the program before meshing."""
+"""Predicts with the program, before meshing, how many elements sizes will make, and how long that takes."""
 
 import collections
 import contextlib
@@ -23,7 +23,7 @@ _answers = collections.deque(maxlen=SHAPES)  # (numbers of a shape, {(arguments,
 
 
 def _answers_for(numbers):
-    """Of the shape that these numbers stand for (see up_to_date); they are kept while FreeCAD runs."""
+    """Returns the answers for the shape with these numbers (see up_to_date); they are kept while FreeCAD runs."""
     for known_numbers, answers in _answers:
         if up_to_date.same_shape(known_numbers, numbers):
             return answers
@@ -32,7 +32,7 @@ def _answers_for(numbers):
 
 
 class Predictions(QtCore.QObject):
-    """Asks in a process of its own, a moment after the last `ask`. Where the program does not know, nothing is told."""
+    """Predicts in a process of its own, a moment after the last `ask`. Reports nothing if the program does not know."""
 
     made = QtCore.Signal(object)  # all known answers: {asked size in mm: (number of tetrahedra, seconds)}
 
@@ -49,15 +49,15 @@ class Predictions(QtCore.QObject):
         self._timer.timeout.connect(self._begin)
 
     def ask(self, settings, sizes, wait=WAIT):
-        """For the Settings with each of these sizes (mm); returns the answers that are known already. Of meshes that
-        are not coarsened the program predicts nothing."""
+        """Predicts for the Settings with each of these sizes (mm); returns the answers that are known already. The
+        program makes no predictions for meshes that are not coarsened."""
         answers = self.known(settings, sizes)
         if settings.coarsen:
             self._timer.start(wait)
         return answers
 
     def known(self, settings, sizes):
-        """The answers that are known already; nothing is asked of the program."""
+        """Returns the known answers without running the program."""
         self.pause()
         self._look_at_shape()
         settings = self._in_mesh_numbers(settings)
@@ -68,12 +68,12 @@ class Predictions(QtCore.QObject):
         return self._told()
 
     def pause(self):
-        """Until the next `ask`: the processor is for something else."""
+        """Pauses until the next `ask`, to free the processor."""
         self._timer.stop()
         self._stop()
 
     def forget(self):
-        """The shape has changed, or nobody asks any more."""
+        """Forgets all answers, because the shape has changed or the panel is closed."""
         self.pause()
         self._numbers, self._known = None, {}
         if self._folder is not None:
@@ -81,16 +81,16 @@ class Predictions(QtCore.QObject):
             self._folder = None
 
     def is_asking(self):
-        """More may come without another `ask`."""
+        """Returns whether more answers may come without another `ask`."""
         return self._process is not None
 
     def shape_has_changed(self):
-        """Is it another one than the one that the answers are about?"""
+        """Returns whether the shape differs from the one of the answers."""
         part = compatibility.meshed_object(self.object)
         return self._numbers is not None and not up_to_date.has_shape(part, self._numbers)
 
     def _look_at_shape(self):
-        """Answers that are known of it are used, also those for another panel."""
+        """Looks at the shape and uses known answers for it, also those made for another panel."""
         if self._numbers is None:
             try:
                 self._numbers = up_to_date.shape_numbers(mesh_properties.part_to_mesh(self.object))
@@ -139,7 +139,7 @@ class Predictions(QtCore.QObject):
             self._tell()
 
     def _write_files(self):
-        """For the program. Raises MesherError."""
+        """Writes the program's input. Raises MesherError."""
         if self._folder is None:
             part = mesh_properties.part_to_mesh(self.object)
             folder = WorkFolder()
@@ -157,7 +157,7 @@ class Predictions(QtCore.QObject):
         return os.path.join(self._folder.name, "sizes.json")
 
     def _read(self):
-        """The program tells of each size as soon as it knows."""
+        """Reads output: the program reports each size as soon as it knows it."""
         known = len(self._known)
         while self._process.canReadLine():
             self._learn(bytes(self._process.readLine()))
@@ -170,7 +170,7 @@ class Predictions(QtCore.QObject):
         self._tell()
 
     def _learn(self, line):
-        """What the program says; nothing where it is about something else."""
+        """Records a line of the program; ignores other lines."""
         with contextlib.suppress(ValueError, KeyError, TypeError):
             made = json.loads(line)["prediction"]
             self._known[self._key(made["size"])] = made["tets"], made["seconds"]
@@ -183,7 +183,7 @@ class Predictions(QtCore.QObject):
 
 
 def _arguments(settings):
-    """Those of the command line that the number of elements depends on, but for the size, which is asked about."""
+    """Returns the options that affect the number of elements, except the size."""
     arguments = dataclasses.replace(settings, keep_apart=False).arguments()  # without flags, so that these
     # are pairs of option and value
     pairs = zip(arguments[::2], arguments[1::2])

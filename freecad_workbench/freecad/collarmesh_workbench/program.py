@@ -16,17 +16,17 @@ GUARANTEE_MISSED = 7  # exit code with which the mesh is written although a guar
 
 
 class MesherError(RuntimeError):
-    """What is wrong with the input or the program, where, and what to do next."""
+    """A fault of the input or the program, with its place and a remedy."""
 
 
 class Cancelled(MesherError):
-    """The caller did not want to go on."""
+    """The caller cancelled the run."""
 
 
 @dataclasses.dataclass
 class Settings:
-    """What the program is asked for. Lengths are millimetres and are target edge lengths; 0 leaves a value to
-    the program. Sizes by sub-shape have FreeCAD's numbers as keys: {7: 0.5} in `face_sizes` is Face7."""
+    """The options for the program. Lengths are millimetres and are target edge lengths; 0 leaves a value to the
+    program. Sizes by sub-shape have FreeCAD's numbers as keys: {7: 0.5} in `face_sizes` is Face7."""
 
     size: float = 0
     size_min: float = 0
@@ -62,7 +62,7 @@ class Settings:
     size_field: dict = None  # sizes by place: sources as in mesher/doc/sizes.md
 
     def arguments(self):
-        """Arguments of the command line."""
+        """Returns arguments for the command line."""
         arguments = []
         for field in dataclasses.fields(self)[: list(self.__dataclass_fields__).index("improve")]:
             value = getattr(self, field.name)
@@ -124,7 +124,7 @@ class Progress:
 
 
 def parse_line(line):
-    """A line of the program's standard error: a Progress, or the line if it is a message."""
+    """Parses a line of the program's standard error: returns a Progress, or the line if it is a message."""
     if line.startswith("{"):
         try:
             values = json.loads(line)
@@ -135,7 +135,7 @@ def parse_line(line):
 
 
 def as_warning(line):
-    """What the program says of the input and of what it repaired, as a warning; None for other lines."""
+    """Returns a message on the input or its repair as a warning; None for other lines."""
     if line.startswith("repaired: "):
         return "warning: the shape was repaired: " + line.removeprefix("repaired: ")
     return line if line.startswith("warning: ") else None
@@ -168,7 +168,7 @@ class Job:
         self.folder.cleanup()
 
     def heard(self, line):
-        """Take a line of standard error; returns the Progress if it is one."""
+        """Handles a line of standard error; returns the Progress if it is one."""
         said = parse_line(line)
         if isinstance(said, Progress):
             return said
@@ -177,13 +177,13 @@ class Job:
         return None
 
     def _for_people(self, text):
-        """Without the folder, which is gone when it is read."""
+        """Removes the folder from a message, because it no longer exists when the message is read."""
         text = subshape_words.in_names(text, self.names) if self.names else text
         text = text.replace(self.shape, "the shape").replace(self.folder.name + os.sep, "")
         return re.sub(r"(^|^collarmesh: |\. )the shape\b", r"\1The shape", text)
 
     def warnings(self):
-        """What was said of the shape that the user should know, with places, one line each."""
+        """Returns messages about the shape for the user, with places, one line each."""
         return [warning for warning in map(as_warning, self.messages) if warning]
 
     def require_success(self, exit_code):
@@ -195,7 +195,7 @@ class Job:
         raise MesherError(self.explain(said) or nothing.format(code=exit_code))
 
     def report(self):
-        """What the program measured (README.md, --report)."""
+        """Returns the program's report (README.md, --report)."""
         with open(self._report, encoding="utf-8") as file:
             report = json.load(file)
         report["notes"] = [self._for_people(note) for note in report["notes"]]
@@ -204,12 +204,12 @@ class Job:
         return report
 
     def add_page(self):
-        """Make the report for people, too."""
+        """Makes the report for people, too."""
         self._page = os.path.join(self.folder.name, "report.html")
         self.command += ["--report", self._page]
 
     def move_page(self, path, name):
-        """That report to a place where it stays. `name`: what it calls the shape."""
+        """Moves that report to a permanent place. `name` is what it calls the shape."""
         with open(self._page, encoding="utf-8") as page:
             text = page.read().replace(self.shape, _in_page(name)).replace(self.folder.name + os.sep, "")
         with open(path, "w", encoding="utf-8") as moved:
@@ -237,5 +237,5 @@ class Job:
 
 
 def _in_page(name):
-    """A name as it stands in the report's page: within a string of JSON, in a script."""
+    """Returns a name as it appears in the report's page: in a string of JSON, in a script."""
     return json.dumps(name)[1:-1].replace("<", "\\u003c")

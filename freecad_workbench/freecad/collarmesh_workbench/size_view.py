@@ -1,4 +1,4 @@
-"""How size objects look: translucent in the 3D view, and with handles to drag while their panel is open."""
+"""The appearance of size objects: translucent in the 3D view, with handles to drag while their panel is open."""
 
 import os
 

@@ -33,7 +33,7 @@ def can_be_taken_over(obj):
 
 
 def mesher_of(obj):
-    """Gmsh, Netgen, or "" for other objects."""
+    """Returns Gmsh, Netgen, or "" for other objects."""
     of_proxy = getattr(getattr(obj, "Proxy", None), "Type", "")
     if of_proxy == "Fem::FemMeshGmsh":
         return "Gmsh"
@@ -43,8 +43,8 @@ def mesher_of(obj):
 
 
 def take_over(old):
-    """Our object in place of one of Gmsh or Netgen: (the new object, what got lost, for people). One step of undo.
-    Raises MesherError."""
+    """Replaces a mesh object of Gmsh or Netgen by ours: returns (the new object, what got lost, for people). One undo
+    step. Raises MesherError."""
     mesher = mesher_of(old)
     if not mesher:
         raise MesherError(
@@ -82,8 +82,8 @@ def take_gmsh(old, new):
 
 
 def take_sizes_by_place(refinements, new):
-    """Ours in place of what later versions of FreeCAD have for Gmsh; notes on those that have no counterpart, which stay in
-    the document."""
+    """Makes our size objects for those that later versions of FreeCAD have for Gmsh; returns notes on those without a
+    counterpart, which stay in the document."""
     lost = []
     for each in refinements:
         wanted = compatibility.size_by_place(each)
@@ -126,7 +126,7 @@ def value_of(obj, name):
 
 
 def hand_over(old):
-    """Gmsh's object in place of ours: (the new object, what got lost, for people). One step of undo."""
+    """Replaces our object by Gmsh's: returns (the new object, what got lost, for people). One undo step."""
     document = old.Document
     notes = []
     with compatibility.transaction(document, translate("collarmesh", "Hand over to Gmsh")):
@@ -158,7 +158,7 @@ def hand_over(old):
 
 
 def replace(old, new):
-    """`new` takes the mesh, the label and the place in analyses and groups of `old`, which is removed."""
+    """Gives `new` the mesh, the label and the place in analyses and groups of `old`, and removes `old`."""
     new.FemMesh = old.FemMesh
     for holder in old.InList:
         if "Group" in holder.PropertiesList and old in holder.Group:

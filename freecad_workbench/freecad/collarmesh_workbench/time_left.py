@@ -1,4 +1,4 @@
-"""How long a run will go on, from how far it is, how long it has taken, and how long it was said to take."""
+"""Estimates the remaining time of a run from its progress, its elapsed time, and its predicted time."""
 
 import math
 
@@ -12,7 +12,7 @@ _SHARES = ((0, 0), (0.08, 0.1), (0.131, 0.13), (0.59, 0.3), (0.675, 0.7), (0.76,
 
 
 def share_of_time(fraction):
-    """0 to 1; `fraction` is the program's."""
+    """Returns the share of the time, 0 to 1, that has passed at the program's `fraction`."""
     for (f0, s0), (f1, s1) in zip(_SHARES, _SHARES[1:]):
         if fraction <= f1:
             return s0 + (s1 - s0) * max(0, fraction - f0) / (f1 - f0)
@@ -20,8 +20,8 @@ def share_of_time(fraction):
 
 
 class TimeLeft:
-    """Of one run. `predicted` and `afterwards`: seconds that the program and what comes after it were said to take;
-    `predicted` is None where nobody said."""
+    """The remaining time of one run. `predicted` and `afterwards` are the predicted seconds of the program and of the
+    steps after it; `predicted` is None without a prediction."""
 
     def __init__(self, predicted=None, afterwards=0):
         self._predicted, self._afterwards = predicted, afterwards
@@ -29,7 +29,7 @@ class TimeLeft:
         self._least = math.inf  # smallest estimate shown
 
     def seconds(self, passed, fraction):
-        """After so many seconds; None: nobody knows; infinite: longer than was told before."""
+        """Returns the remaining seconds after this many; None: unknown; infinite: longer than estimated before."""
         share = share_of_time(fraction)
         left = self._by_run(passed, fraction, share) if self._predicted is None else self._by_prediction(passed, share)
         if left is None or left > GROWTH * self._least:
@@ -38,12 +38,12 @@ class TimeLeft:
         return left
 
     def _by_prediction(self, passed, share):
-        """A run that is slower than was said goes on as slowly."""
+        """Estimates from the prediction: a run that is slower than predicted stays as slow."""
         pace = passed / (max(share, LEAST_SHARE) * self._predicted)
         return (1 - share) * self._predicted * max(1, pace) + self._afterwards
 
     def _by_run(self, passed, fraction, share):
-        """While the program stays where it is, time goes by."""
+        """Estimates from the run itself; time passes even if the program's fraction does not change."""
         if passed < LEAST_SECONDS or share < LEAST_SHARE:
             return None
         if fraction > self._fraction:
