@@ -6,8 +6,7 @@ import re
 from . import compatibility, contacts, mesh_properties, mesh_undo, up_to_date
 from .groups import name_in, named
 
-SIDES = ("_minus", "_plus")  # the program's suffixes for the two sides of a face at which solids are kept
-# apart
+SIDES = ("_minus", "_plus")  # the program's suffixes for the two sides of a face
 
 
 def add(shape, fem_mesh, apart):

@@ -95,8 +95,7 @@ class _Wrapped(QtGui.QStyledItemDelegate):
     def sizeHint(self, option, index):
         tree = self.parent()
         levels = 2 if index.parent().isValid() else 1
-        around = 2 * tree.frameWidth() + tree.verticalScrollBar().sizeHint().width()  # the scroll bar may
-        # appear
+        around = 2 * tree.frameWidth() + tree.verticalScrollBar().sizeHint().width()  # scroll bar
         wrapped = QtGui.QStyleOptionViewItem(option)
         wrapped.rect = QtCore.QRect(0, 0, tree.width() - levels * tree.indentation() - around, MOST_PIXELS)
         return super().sizeHint(wrapped, index) + QtCore.QSize(0, 3)

@@ -184,7 +184,6 @@ class Predictions(QtCore.QObject):
 
 def _arguments(settings):
     """Returns the options that affect the number of elements, except the size."""
-    arguments = dataclasses.replace(settings, keep_apart=False).arguments()  # without flags, so that these
-    # are pairs of option and value
+    arguments = dataclasses.replace(settings, keep_apart=False).arguments()  # pairs: no flags
     pairs = zip(arguments[::2], arguments[1::2])
     return [word for pair in pairs if pair[0] in COUNTING for word in pair]

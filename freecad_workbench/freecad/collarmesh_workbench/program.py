@@ -48,12 +48,9 @@ class Settings:
     order: int = 2
     dimension: int = 0  # dimension of the elements: 3 tetrahedra, 2 triangles, 1 lines; 0: from the shape
     repair: str = "auto"  # or "none", or "wrap"
-    fill_holes: bool = False  # fill holes of open surfaces; otherwise they are rejected before the program
-    # runs
-    keep_apart: bool = False  # give solids that touch nodes of their own there, for contact; otherwise they
-    # share nodes
-    split: list = dataclasses.field(default_factory=list)  # internal faces whose sides get nodes of their
-    # own: "Face7"
+    fill_holes: bool = False  # fill holes of open surfaces; otherwise such surfaces are rejected
+    keep_apart: bool = False  # give touching solids separate nodes, for contact; otherwise they share nodes
+    split: list = dataclasses.field(default_factory=list)  # faces whose sides get separate nodes: "Face7"
     periodic: list = dataclasses.field(default_factory=list)  # pairs of faces: "x", "Face1=Face2", ...
     interior_node: bool = False  # each tetrahedron gets a corner that is on no face
     solid_sizes: dict = dataclasses.field(default_factory=dict)

@@ -202,8 +202,7 @@ class SizePanel:
     def reject(self):
         document = self.object.Document
         self.close()
-        document.abortTransaction()  # also removes a new object; otherwise the end of the edit would commit
-        # it
+        document.abortTransaction()  # also removes a new object, which the edit's end would commit
         FreeCADGui.getDocument(document.Name).resetEdit()
         document.recompute()
         return True

@@ -25,8 +25,7 @@ from .view_marks import ViewMarks
 
 WIDTH = 400  # pixels
 MOMENT = 100  # milliseconds; a part that is being dragged changes again within this time
-WHAT_IS_MESHED = ("Shape", "Placement", "Mesh", "LinkPlacement")  # properties of parts that hold the meshed
-# geometry
+WHAT_IS_MESHED = ("Shape", "Placement", "Mesh", "LinkPlacement")  # properties with the geometry
 
 
 class MeshTaskPanel:
@@ -52,10 +51,7 @@ class MeshTaskPanel:
             self._show_outcome(meshing_process.outcome_of(obj))
         out_of_date = up_to_date.is_out_of_date(obj)
         self.result.show_out_of_date(out_of_date)
-        self._predict(None if elements.is_there(obj.FemMesh) and not out_of_date else 0)  # nothing to
-        # predict: the user
-        # only looks at the
-        # mesh
+        self._predict(None if elements.is_there(obj.FemMesh) and not out_of_date else 0)  # only look
         self.form.destroyed.connect(self.dismiss)
         self.changes = QtCore.QTimer(self.form, singleShot=True, interval=MOMENT)
         self.changes.timeout.connect(self._ask_anew)

@@ -206,8 +206,7 @@ def sampled_sizes(
     numbers = numpy.arange(len(points)).reshape(counts)
     cell = numbers[:-1, :-1, :-1].reshape(-1, 1)
     step = (counts[1] * counts[2], counts[2], 1)
-    paths = [(0, 1, 2), (1, 2, 0), (2, 0, 1), (0, 2, 1), (2, 1, 0), (1, 0, 2)]  # along the axes, six tets per
-    # cell
+    paths = [(0, 1, 2), (1, 2, 0), (2, 0, 1), (0, 2, 1), (2, 1, 0), (1, 0, 2)]  # along the axes, six per cell
     tets = []
     for number, path in enumerate(paths):
         ends = numpy.cumsum([0, *(step[axis] for axis in path)])

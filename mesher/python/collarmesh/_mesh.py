@@ -184,8 +184,7 @@ class Mesh:
         return {**self._arrays(), "check": self._check, "colours": self.colours, **self._said}
 
     def __setstate__(self, state: Dict[str, Any]) -> None:
-        arrays = {"tet_partition": numpy.empty(0, dtype=numpy.int64), **state}  # earlier versions did not
-        # have it
+        arrays = {"tet_partition": numpy.empty(0, dtype=numpy.int64), **state}  # missing in earlier versions
         for name in _ARRAYS:
             array = arrays[name]
             array.setflags(write=False)  # pickle makes arrays writable
