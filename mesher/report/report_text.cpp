@@ -306,7 +306,7 @@ std::string run_text(const RequestedRun& arguments, const MeshRun& run) {
   if (const auto& r = run.remeshing)
     fmt::format_to(
         Out(text),
-        "  before {} tets, dihedral angles from {:.1f} to {:.1f}; {} edges divided, {} contracted\n",
+        "  before {} tets, dihedral angles from {:.1f} to {:.1f}; {} edges divided, {} collapsed\n",
         r->tets_before, r->smallest_angle_before, r->largest_angle_before, r->divided_edges,
         r->contracted_edges);
   text += cleanup_text(run.plc.cleanup);
@@ -320,14 +320,14 @@ std::string run_text(const RequestedRun& arguments, const MeshRun& run) {
   for (const std::string& note : run.notes) fmt::format_to(Out(text), "  {}\n", note);
   if (run.projection) text += projection_text(run.plc, *run.projection);
   if (run.coarsening && arguments.verbose)
-    fmt::format_to(Out(text), "  {} tets coarsened to {}: {} edges contracted, {} of them with repair\n",
+    fmt::format_to(Out(text), "  {} tets coarsened to {}: {} edges collapsed, {} of them with repair\n",
                    run.coarsening->tets_before, run.coarsening->tets_after, run.coarsening->contracted_edges,
                    run.coarsening->repaired);
   const ImproveReport& i = run.improvement;
   if (arguments.verbose && i.candidates > 0)
     fmt::format_to(Out(text),
                    "  {} of {} poor tets improved: {} edges removed, {} boundary flips, {} vertices moved, "
-                   "{} edges contracted, {} vertices inserted; {} detours\n",
+                   "{} edges collapsed, {} vertices inserted; {} detours\n",
                    i.candidates - std::min(i.remaining, i.candidates), i.candidates, i.edge_removals,
                    i.boundary_flips, i.moved_vertices, i.contracted_edges, i.inserted_vertices, i.detours);
   if (arguments.order == 2)

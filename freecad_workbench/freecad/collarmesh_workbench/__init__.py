@@ -51,7 +51,7 @@ def meshed_object(mesh_object):
 
 
 def references_to_groups(mesh_object, *names):
-    """What constraints on groups of faces of a triangle mesh's mesh have as `References`: the names are those of the
+    """Return the `References` of constraints on groups of faces of a triangle mesh's mesh; the names are those of the
     groups, as in "patch_2" and "Segment1"."""
     from . import constraint_faces
 

@@ -68,7 +68,7 @@ def is_plain_refinement(obj):
 
 
 def size_by_place(obj):
-    """What refinements by place of FreeCAD 1.1 ask for, (kind, size, size far away, distance to there, properties) for one of
+    """Returns the request of a refinement by place of FreeCAD 1.1, (kind, size, size far away, distance to there, properties) for one of
     ours; None for other objects."""
     kind = getattr(getattr(obj, "Proxy", None), "Type", "")
     if kind == "Fem::MeshDistance":

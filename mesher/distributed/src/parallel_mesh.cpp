@@ -75,7 +75,7 @@ PetscInt point_of(DM dm, const std::array<Index, n>& corners, PetscInt first_ver
   call(DMPlexGetFullJoin(dm, static_cast<PetscInt>(n), vertices.data(), &count, &found));
   const PetscInt point = count == 1 ? found[0] : -1;
   call(DMPlexRestoreJoin(dm, static_cast<PetscInt>(n), vertices.data(), &count, &found));
-  if (point < 0) throw std::logic_error("a face or edge of the mesh is none of its tets'");
+  if (point < 0) throw std::logic_error("a face or edge of the mesh belongs to none of its tets");
   return point;
 }
 

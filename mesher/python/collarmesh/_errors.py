@@ -92,7 +92,7 @@ def sizes_from_errors(
         return numpy.clip((goal / known) ** (1 / power), finest, coarsest)
 
     def excess(goal: float) -> float:
-        """How many more tetrahedra, or how much less error, than is asked for: it falls as each one may have more error."""
+        """Returns the excess of tetrahedra, or the lack of error; it falls as each one may have more error."""
         factor = factors(goal)
         if elements is not None:
             return float((factor**-3.0).sum() - elements)

@@ -25,7 +25,7 @@ struct RestrictedTriangle {
   bool in_collar;          ///< x lies in a collar ball, so refinement ignores it
 };
 
-/// What the judges of a restricted triangle know of it, for as long as its record lasts. A new record is
+/// The judges' knowledge of a restricted triangle, for as long as its record lasts. A new record is
 /// empty.
 struct TriangleNotes {
   bool judged = false;            ///< judged since its cells last changed (TriangleQuality)
