@@ -22,11 +22,11 @@ import project  # noqa: E402
 PARTS = ("freecad", "translations", "macros")
 KINDS = {".py", ".svg", ".qm"}
 SITE, MAINTAINER, EMAIL = "https://example.org/collarmesh", "The collarmesh maintainers", "collarmesh@example.org"
-FIRST_DATE = (1980, 1, 1, 0, 0, 0)  # the earliest that a .zip knows
+FIRST_DATE = (1980, 1, 1, 0, 0, 0)  # the earliest date that a .zip can hold
 
 
 def metadata(site=SITE, maintainer=MAINTAINER, email=EMAIL, day=""):
-    """The text of package.xml."""
+    """Returns the text of package.xml."""
     text = (HERE / "package.xml").read_text(encoding="utf-8")
     for pattern, value in ((r"<version>.*?</version>", f"<version>{project.version()}</version>"),
                            (r"<date>.*?</date>", f"<date>{day or project.date()}</date>")):
@@ -43,7 +43,7 @@ def escaped(text):
 
 
 def lay_out(folder, **details):
-    """Write the add-on into a folder, which may be there already; `details`: see `metadata`."""
+    """Writes the add-on into a folder, which may exist; `details`: see `metadata`."""
     folder = pathlib.Path(folder)
     for source in sorted(path for part in PARTS for path in (HERE / part).rglob("*")):
         if source.suffix in KINDS and source.name != "update.py":
@@ -56,7 +56,7 @@ def lay_out(folder, **details):
 
 
 def pack(folder, output):
-    """The same files give the same bytes."""
+    """Packs the folder; the same files give the same bytes."""
     with zipfile.ZipFile(output, "w", zipfile.ZIP_DEFLATED) as archive:
         for path in sorted(path for path in folder.rglob("*") if path.is_file()):
             entry = zipfile.ZipInfo(str(pathlib.Path("collarmesh") / path.relative_to(folder)), FIRST_DATE)
@@ -65,7 +65,7 @@ def pack(folder, output):
 
 
 def add_details(parser):
-    """Options for what `metadata` takes."""
+    """Adds options for the details of `metadata`."""
     parser.add_argument("--site", default=SITE)
     parser.add_argument("--maintainer", default=MAINTAINER)
     parser.add_argument("--email", default=EMAIL)

@@ -1,4 +1,4 @@
-// What the module offers to programs that load it when they need it, by name.
+// The functions that programs find by name in this module when they load it.
 #include <string>
 
 #include "collarmesh/openmesh_io/read_om.h"

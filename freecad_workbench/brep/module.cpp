@@ -1,5 +1,5 @@
-// What the module offers to programs that load it when they need it, by name. The name has the version, as
-// model and program must be of one.
+// The functions that programs find by name in this module when they load it. The names contain the version,
+// because model and program must have the same.
 #include <memory>
 
 #include "collarmesh/brep/cad_model.h"

@@ -1,4 +1,4 @@
-"""A parameter of a shape goes through a range; the part is meshed again each time, in the same object."""
+"""Varies a parameter of a shape; the part is meshed again each time, in the same object."""
 
 import FreeCAD
 from freecad import collarmesh_workbench

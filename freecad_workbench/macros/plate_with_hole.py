@@ -16,7 +16,7 @@ plate.Shape = Part.makeBox(80, WIDTH, THICKNESS).cut(hole)
 
 
 def face_at(x):
-    """The name of the plane face with this x."""
+    """Returns the name of the plane face with this x."""
     return next(f"Face{i}" for i, face in enumerate(plate.Shape.Faces, 1)
                 if face.BoundBox.XLength < 1e-9 and abs(face.BoundBox.XMin - x) < 1e-9)
 

@@ -1,4 +1,4 @@
-"""A steel pin in an aluminium block: one mesh that is conforming where they touch, a group for each material."""
+"""A steel pin in an aluminium block: one mesh that conforms at the interface, with a group for each material."""
 
 import FreeCAD
 import ObjectsFem

@@ -16,17 +16,17 @@ import xml.etree.ElementTree as ElementTree
 HERE = pathlib.Path(__file__).resolve().parent
 SOURCES = HERE.parent / "freecad" / "collarmesh_workbench"
 MARKED_ELSEWHERE = (ast.Name, ast.Attribute, ast.Subscript, ast.Call)
-OF_PROPERTIES = "App::Property"  # where FreeCAD looks up what it shows of properties
+OF_PROPERTIES = "App::Property"  # the context in which FreeCAD looks up texts of properties
 
 
 def texts(folder=SOURCES):
-    """{(context, text)} of all sources but the one that defines the functions."""
+    """Returns {(context, text)} of all sources except the one that defines the functions."""
     paths = [path for path in sorted(folder.glob("*.py")) if path.name != "translations.py"]
     return set().union(*(texts_in(path.read_text(encoding="utf-8"), path.name) for path in paths))
 
 
 def texts_in(source, name=""):
-    """{(context, text)} of a source; ValueError for a text that is no constant."""
+    """Returns {(context, text)} of a source; ValueError for a text that is no constant."""
     found = set()
     for node in ast.walk(ast.parse(source)):
         function = getattr(getattr(node, "func", None), "id", "")
@@ -44,7 +44,7 @@ def texts_in(source, name=""):
 
 
 def read(path):
-    """{(context, text): translation}, None for what is unfinished."""
+    """Returns {(context, text): translation}, with None for unfinished ones."""
     if not path.exists():
         return {}
     return {
@@ -75,7 +75,7 @@ def write(path, translations, language):
 
 
 def missing(path):
-    """The texts without a translation in a file, and the translations without a text."""
+    """Returns the texts without a translation in a file, and the translations without a text."""
     have, wanted = read(path), texts()
     return sorted(key for key in wanted if not have.get(key)), sorted(have.keys() - wanted)
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What becomes of bounds that are asked for in default runs: each acute family and each file of a corpus with several
+"""How well default runs keep requested bounds: each acute family and each file of a corpus with several
 collar angles, radius-edge ratios and a vertex ratio. The certificate judges each mesh, and so does an independent
 program ($COLLARMESH_JUDGE), whose numbers are compared with those of the report. A silent difference is a mesh with
 exit code 0 in which the judge finds a bound exceeded, without a warning that names the option. Prints a Markdown table
@@ -96,7 +96,7 @@ def asked(question: tuple[str, ...], option: str, default: float) -> float:
 
 
 def judge(judging: str, case: Case, question: tuple[str, ...], mesh: Path, report: dict) -> dict | str:
-    """What it says, or why it cannot."""
+    """Returns its result, or the reason of its failure."""
     check = report["check"]
     smallest_thin = min(8, report["complex"]["smallest_angle"] / 2,
                         check["min_forced_dihedral"] if check["forced_tets"] else math.inf)

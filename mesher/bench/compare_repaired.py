@@ -239,7 +239,7 @@ def read_given(path: Path, folder: Path) -> Given:
 
 
 def closed_parts(triangles: np.ndarray, diagonal: float) -> list[np.ndarray]:
-    """What hangs together by edges and has each edge an even number of times."""
+    """Returns the parts connected by edges that use each edge an even number of times."""
     points = np.unique(np.round(triangles.reshape(-1, 3) / (1e-7 * diagonal)
                                 ).astype(np.int64), axis=0, return_inverse=True)[1]
     corners = points.reshape(-1, 3)
@@ -369,7 +369,7 @@ def compare(path: Path, options: argparse.Namespace) -> Row:
 
 
 def print_doubts(rows: list[Row]) -> None:
-    """What a person should look at: distances beyond what was told, bodies that are otherwise, volumes that differ."""
+    """Returns results to look at: distances beyond the reported ones, changed bodies, volumes that differ."""
     for row in rows:
         doubts = ["farther off than told"] if row.silent else []
         if row.changed:

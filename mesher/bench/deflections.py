@@ -58,13 +58,13 @@ def near(values: np.ndarray, value: float, scale: float) -> np.ndarray:
 
 
 def bent_beam(young: float, weight: float, length: float, area: float, inertia: float, shear_share: float) -> float:
-    """Of a beam clamped at one end, shear included (Timoshenko)."""
+    """Returns the deflection of a beam clamped at one end, shear included (Timoshenko)."""
     load, shear_modulus = weight * area, young / 2
     return load * length**4 / (8 * young * inertia) + load * length**2 / (2 * shear_share * shear_modulus * area)
 
 
 def sunk_spring(young: float, weight: float, radius: float, pitch: float, turns: float, wire: float) -> float:
-    """Of a helix of round wire clamped at its lower end: the upper end, by the unit load theorem."""
+    """The deflection of the upper end of a helix of round wire clamped below, by the unit load theorem."""
     steps = 20000
     angle = np.linspace(0, 2 * math.pi * turns, steps + 1)
     angle = (angle[1:] + angle[:-1]) / 2
@@ -77,7 +77,7 @@ def sunk_spring(young: float, weight: float, radius: float, pitch: float, turns:
     area, inertia = math.pi * wire**2, math.pi * wire**4 / 4
     end = np.array([radius * math.cos(2 * math.pi * turns), radius * math.sin(2 * math.pi * turns), pitch * turns])
     down = np.array([0.0, 0.0, -1.0])
-    # What lies beyond each place, and its moment about it.
+    # The length beyond each place, and its moment about the place.
     beyond = np.cumsum(np.ones(steps)[::-1])[::-1]
     centroid = np.cumsum(centre[::-1], 0)[::-1] / beyond[:, None]
     moment = np.cross(centroid - centre, down) * (weight * area * piece * beyond)[:, None]

@@ -123,7 +123,7 @@ def boundary(points: np.ndarray, tets: np.ndarray, n: int = 4) -> Triangles:
 
 
 def volume_of(points: np.ndarray, tets: np.ndarray) -> float:
-    """Of curved elements by two cuts of their faces, the error of which goes with the square of their pieces."""
+    """The volume of curved elements, by two cuts of their faces; the error goes with the pieces squared."""
     points = points - points.mean(0)
     coarse, fine = (abs(boundary(points, tets, n).volume()) for n in (2, 4))
     return (4 * fine - coarse) / 3

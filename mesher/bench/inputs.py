@@ -20,7 +20,7 @@ class Surface:
 
     @property
     def files(self) -> list[str]:
-        """What write("input") makes."""
+        """Returns the file that write("input") makes."""
         return [f"input{self.suffix}"]
 
     @property
@@ -35,7 +35,7 @@ class Surface:
 
     @property
     def volume(self) -> float:
-        """Of the solid, if the surface is closed and oriented outwards."""
+        """Returns the volume of the solid, if the surface is closed and oriented outwards."""
         total = 0.0
         for a, b, c in self.triangles():
             (ax, ay, az), (bx, by, bz), (cx, cy, cz) = self.points[a], self.points[b], self.points[c]
@@ -44,7 +44,7 @@ class Surface:
 
     @property
     def suffix(self) -> str:
-        """Of the format that can hold it."""
+        """Returns the extension of a format that can hold it."""
         return ".off" if len({v for q in self.polygons for v in q}) == len(self.points) else ".poly"
 
     def write(self, path_without_suffix: Path) -> None:
@@ -70,7 +70,7 @@ class Surface:
             out.write("endsolid surface\n")
 
     def write_geo(self, path: Path) -> None:
-        """For Gmsh: the box as a solid, others as a classified surface."""
+        """Writes a .geo file for Gmsh: the box as a solid, others as a classified surface."""
         if self.name == "box":
             path.write_text('SetFactory("OpenCASCADE");\nBox(1) = {0, 0, 0, 1, 1, 1};\n')
             return

@@ -24,7 +24,7 @@ Rays = tuple[np.ndarray, np.ndarray]   # from outside the body, and unit vectors
 
 
 def around_axis(radius: float, low: float, high: float, length: float, rng: np.random.Generator, count: int) -> Rays:
-    """Of a cylinder along x; angles from the y axis, in degrees."""
+    """Returns rays into a cylinder along x; angles from the y axis, in degrees."""
     angle = np.radians(rng.uniform(low, high, count))
     outwards = np.stack([np.zeros(count), np.cos(angle), np.sin(angle)], 1)
     start = 1.5 * radius * outwards

@@ -26,7 +26,7 @@ from tables import table
 
 diagonal = 20.0             # so that the target edge length is 1
 side = diagonal / math.sqrt(3)   # of a cube with that diagonal
-cuts = {"coarse": 24, "fine": 96}   # edges to a circle
+cuts = {"coarse": 24, "fine": 96}   # edges per circle
 
 # Run by FreeCAD's Python: lines of "NAME EXPRESSION", an expression makes a list of solids.
 make_step = """
@@ -142,7 +142,7 @@ def torus(radius: float, wire: float, around: int, along: int) -> Surface:
 
 
 def prism(outline: list[tuple[float, float]], low: float, high: float) -> Surface:
-    """Of a polygon that is star-shaped as seen from the origin or convex."""
+    """Returns the area of a polygon that is star-shaped as seen from the origin or convex."""
     n = len(outline)
     points = [(x, y, z) for z in (low, high) for x, y in outline]
     polygons = [[k, (k + 1) % n, n + (k + 1) % n, n + k] for k in range(n)]

@@ -86,7 +86,7 @@ class Collarmesh:
                        report)
 
     def describe(self, surface: Surface, folder: Path) -> dict:
-        """What the program says the complex is: diagonal, regions with their volumes and so on."""
+        """Returns the program's description of the complex: diagonal, regions with their volumes and so on."""
         command = [str(self.program), "info", f"input{surface.suffix}", "--json"]
         return json.loads(run(command, folder, self.time_limit).output)["complex"]
 

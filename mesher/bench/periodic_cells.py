@@ -15,7 +15,7 @@ import tempfile
 
 import numpy as np
 
-DIGITS = 12  # places of vertices are rounded to these, so that those of opposite faces are images of each other
+DIGITS = 12  # vertices are rounded to these, so that opposite faces are images of each other
 ROUNDING = 1e-14  # of places on faces of the unit cube
 
 
@@ -173,7 +173,7 @@ class Mesh:
         self.cells = {kind: (np.concatenate(nodes), np.concatenate(tags)) for kind, (nodes, tags) in self.cells.items()}
 
     def images(self, axis):
-        """Node numbers at the low end of an axis and those at the same places of the high end; fails if one has none."""
+        """Returns node numbers at the low end of an axis and their images at the high end; fails if an image is missing."""
         at = [np.flatnonzero(np.abs(self.points[:, axis] - end) < ROUNDING) for end in (0.0, 1.0)]
         others = [k for k in range(3) if k != axis]
         keys = [{tuple(np.round(self.points[v, others], 11) + 0.0): v for v in nodes} for nodes in at]

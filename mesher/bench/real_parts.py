@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What becomes of real files as they come: CAD files and surfaces of the folders given, meshed by collarmesh with its
+"""Results for real files as they are: CAD files and surfaces of the folders given, meshed by collarmesh with its
 defaults, by Gmsh (HXT), by TetGen and by CGAL's Alpha_wrap_3 followed by Mesh_3 (wrap_mesh.cpp), all at a twentieth of
 the diagonal. TetGen and the wrap get surfaces only: the triangles as they are, equal points made one.
 

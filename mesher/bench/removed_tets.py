@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What removing a tetrahedron costs beside making one: CAD parts with the defaults.
+"""The cost of removing a tetrahedron relative to making one: CAD parts with the defaults.
 
 Coarsening takes this long for each tetrahedron that it removes, over what refinement takes for each that it makes; and over
 what refinement and improvement take for each where nothing is coarsened (coarsening improves, too). The least of some

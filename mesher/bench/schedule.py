@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What whole runs would gain by more threads than this machine has cores: a simulated schedule.
+"""The gain of whole runs by more threads than this machine has cores: a simulated schedule.
 
 With COLLARMESH_RECORD_COSTS the program runs on one core, divides its work for so many threads, and records what each piece
 of each parallel part costs, and what lies between these parts, in seconds of the processor. Here the pieces are dealt to

@@ -187,7 +187,7 @@ class FeatureSize {
   std::vector<std::pair<double, std::size_t>> nearest_;  // scratch
 };
 
-/// Of h^-3 over the cells that count; the mesh tells where it varies.
+/// Returns the integral of h^-3 over the cells that count; the mesh shows where it varies.
 double integral(const TetMesh& mesh, FeatureSize& h) {
   constexpr int samples = 16;
   std::mt19937_64 random(1);

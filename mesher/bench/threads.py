@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What several threads gain: the stages of whole runs with one thread and with more.
+"""The gain by several threads: the stages of whole runs with one thread and with more.
 
 One thread runs on each of the cores in turn, as cores are not equally fast; more threads run on as many cores. All
 in turn, some rounds, after memory was fetched for each. Prints a Markdown table of medians of wall seconds, and

@@ -7,7 +7,7 @@ import math
 import tempfile
 from pathlib import Path
 
-tolerance = 0.1     # of the count: what is farther off is marked
+tolerance = 0.1     # share of the count: larger differences are marked
 near_enough = 0.03  # ends the search
 trials = 8
 

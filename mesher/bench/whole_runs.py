@@ -25,7 +25,7 @@ from tuning import SizeCache, size_for
 
 
 class Runs:
-    """Of one mesher on one input at one count, by the number of threads."""
+    """The runs of one mesher on one input at one count, by the number of threads."""
 
     def __init__(self, threads: list[int]) -> None:
         self.by_threads: dict[int, list[MeshRun]] = {t: [] for t in threads}

@@ -195,7 +195,7 @@ CLI::App* add_repair_command(CLI::App& app, RepairArguments& a) {
   return repair;
 }
 
-/// What is wrong with a format that is none.
+/// Returns a message with the known extensions for an unknown one.
 std::string extension_list(const std::string& path) {
   if (const std::string missing = io::missing_library(path); !missing.empty())
     return "cannot be written: " + missing;
@@ -210,7 +210,7 @@ std::vector<std::string> all_inputs(const MeshArguments& a) {
   return inputs;
 }
 
-/// Of a run that writes a mesh, a file beside it.
+/// Checks a file beside the mesh, for a run that writes one.
 void check_second_output(const char* option, const std::string& file, const MeshArguments& a) {
   if (file.empty()) return;
   if (files::may_write(a.output, a.output_format, file))
@@ -220,7 +220,7 @@ void check_second_output(const char* option, const std::string& file, const Mesh
     throw CLI::ValidationError(option, fmt::format("would overwrite {}; choose another", lost));
 }
 
-/// No output takes the place of an input, or of another output.
+/// Rejects an output that would replace an input or another output.
 void check_outputs(const MeshArguments& a) {
   const std::string in_the_way =
       files::overwritten(files::files_written(a.output, a.output_format), all_inputs(a), a.input_format);
@@ -245,7 +245,8 @@ bool is_among(const std::string& path, const std::string& format, const std::vec
   return std::find(formats.begin(), formats.end(), report::format_of(path, format)) != formats.end();
 }
 
-/// Partitions are for formats that keep them. `from_mesh`: one that may be partitioned already.
+/// Rejects partitions for formats that do not keep them. `from_mesh`: the input is a mesh, which may be
+/// partitioned already.
 void check_partitions(const MeshArguments& a, bool from_mesh) {
   if (a.partitions > 0 && !is_among(a.output, a.output_format, io::formats_with_partitions()))
     throw CLI::ValidationError("--partitions", fmt::format("{} has no place for partitions; use {}",
@@ -280,7 +281,7 @@ void check_run_arguments(const MeshArguments& a) {
 
 namespace {
 
-/// Each part is checked as if it were alone.
+/// Checks each part of a batch as if it were alone.
 void check_mesh_arguments(const MeshArguments& a);
 
 void check_batch(const MeshArguments& a) {
@@ -411,7 +412,7 @@ std::variant<Arguments, ExitCode> parse(int argc, const char* const* argv) {
   CLI::App* const info_command = add_info_command(app, info);
   CLI::App* const convert_command = add_convert_command(app, convert);
   CLI::App* const repair_command = add_repair_command(app, repair);
-  if (argc == 3 && argv[1] == std::string_view("--generate")) {  // when it is built; not for users
+  if (argc == 3 && argv[1] == std::string_view("--generate")) {  // used by the build, not by users
     const std::string_view kind = argv[2];
     fmt::print("{}", kind == "man"       ? man_page(app, COLLARMESH_VERSION, footer)
                      : kind == "options" ? report::json_text(report::option_table_json(), 1) + '\n'
@@ -440,7 +441,7 @@ std::variant<Arguments, ExitCode> parse(int argc, const char* const* argv) {
       *options = with_profile(*options);
     if (subcommand && (!mesh.inputs.empty() || !mesh.output.empty())) throw CLI::HorribleError("");
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) {  // --help, --version
+    if (error.get_exit_code() == 0) {  // for --help and --version
       std::ostringstream text, nothing;
       app.exit(error, text, nothing);
       process::print_result(text.str());

@@ -4,7 +4,7 @@
 
 namespace collarmesh::cli {
 
-/// Certify a mesh file; findings and measures go to standard output.
+/// Certifies a mesh file; prints findings and measures to standard output.
 ExitCode check_command(const CheckArguments& arguments);
 
 }  // namespace collarmesh::cli

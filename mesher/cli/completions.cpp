@@ -23,7 +23,7 @@ std::string names_of_subcommands(const CLI::App& app) {
   return names;
 }
 
-/// The numbers that an option of few takes, "0 1 2 3"; empty for others.
+/// Returns the numbers that an option accepts if they are few, "0 1 2 3"; empty for others.
 std::string numbers_of(const std::string& name) {
   constexpr double few = 8;
   for (const Option& option : option_table())
@@ -36,7 +36,8 @@ std::string numbers_of(const std::string& name) {
   return {};
 }
 
-/// "on|off" are words to choose from; a name in capitals is none, but stands for formats or numbers.
+/// Returns the words to choose from, as in "on|off"; a name in capitals is no word, but stands for formats or
+/// numbers.
 std::string words_of(const CLI::Option& option) {
   std::string words = option.get_type_name();
   if (words == "FORMAT") {
@@ -57,12 +58,12 @@ bool takes_file(const CLI::Option& option) {
          (option.get_type_name().empty() && takes_value(option));
 }
 
-/// What options do, in one clause.
+/// Returns a description of an option in one clause.
 std::string short_text(const std::string& description) {
   return description.substr(0, description.find(';'));
 }
 
-/// In single quotes, for any of the shells: fish alone has escapes in them.
+/// Quotes text with single quotes, for any of the shells; only fish has escapes inside them.
 std::string quoted_text(std::string_view text, bool backslashes_escape) {
   std::string result = "'";
   for (const char c : text)
@@ -108,7 +109,7 @@ std::string bash_completion(const CLI::App& app) {
       words, options, long_names(app), names_of_subcommands(app));
 }
 
-/// An argument of zsh's `_arguments`: '*--name[what it does]:what its value is:action'.
+/// Returns an argument of zsh's `_arguments`: '*--name[description]:value's description:action'.
 std::string zsh_arguments(const CLI::App& app, const std::string& indent) {
   std::string text;
   for (const CLI::Option* option : app.get_options()) {

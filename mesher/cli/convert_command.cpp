@@ -55,7 +55,7 @@ void write_soup(const MeshArguments& a, const std::vector<PolygonSoup>& soups) {
   tell_unless_quiet(a, merged.told);
 }
 
-/// As asked for, or as it was.
+/// Divides the mesh as the option says, or as the input was divided.
 void divide(const MeshArguments& a, TetMesh& mesh) {
   if (a.partitions > 0) partition(mesh, a.partitions);
   const char* const option = a.ghost_cells != io::GhostCells::none ? "--ghost-cells"
@@ -93,7 +93,8 @@ void convert_mesh(const MeshArguments& a, TetMesh& mesh) {
                     report::losses_text(report::lost_by(report::format_of(a.output, a.output_format), mesh)));
 }
 
-/// The soups become those of a complex that encloses something; unless it can be one, PlcError is thrown.
+/// Repairs the soups so that they form a complex that encloses something; throws PlcError if that is
+/// impossible.
 void repair(const MeshArguments& a, files::ComplexInput& input) {
   const Plc plc = input.build(a.complex, a.repair);
   process::tell("{}{}", report::warnings_text(plc), report::repair_text(input.repaired(), a.quiet));

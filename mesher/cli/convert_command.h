@@ -4,7 +4,7 @@
 
 namespace collarmesh::cli {
 
-/// Convert files and say what was merged, welded and dropped. Meshing a surface may end with the exit
+/// Converts files and reports what was merged, welded and dropped. Meshing a surface may end with the exit
 /// codes of `mesh_command`.
 ExitCode convert_command(const ConvertArguments& arguments);
 

@@ -27,14 +27,14 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
-/// What is known before anything fails.
+/// The data known before anything fails.
 struct Command {
   std::vector<std::string> reports;
   Json json;
   Clock::time_point begin;
 };
-// Never destroyed: destructors of JSON take memory, and when the program ends nobody can say that there is
-// none.
+// Never destroyed: destructors of JSON need memory, and at the end of the program nobody can report a lack of
+// it.
 Command& command = *new Command;
 std::atomic<bool> reported{true};
 
@@ -82,7 +82,7 @@ std::string escaped(std::string_view text) {
   return result;
 }
 
-/// There is no mesh to look at.
+/// Returns a page without a mesh.
 std::string failure_page(const Json& json) {
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>no mesh</title></head><body>\n"
@@ -94,7 +94,8 @@ std::string failure_page(const Json& json) {
       escaped(json["message"].get<std::string>()), escaped(report::json_text(json, 1)));
 }
 
-/// What a link names is replaced, but nothing that is no regular file: that may be why the command failed.
+/// Writes a report. Replaces the file that a link names, but nothing that is no regular file: that may be why
+/// the command failed.
 void write(const std::string& path, const Json& json) {
   namespace fs = std::filesystem;
   std::error_code error;
@@ -130,7 +131,7 @@ void report_failure(ExitCode code, std::string_view message, const PlcError* fau
     const Json json = failure_json(code, message, faults);
     for (const std::string& path : command.reports) write(path, json);
   } catch (...) {
-    // The message has been told, and the exit code says the rest.
+    // The message has been printed, and the exit code tells the rest.
   }
 }
 

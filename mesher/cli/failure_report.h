@@ -8,11 +8,11 @@
 
 namespace collarmesh::cli {
 
-/// From now on a failure of this command writes the reports that it was asked for.
+/// Makes a later failure of this command write the requested reports.
 void report_failures_of(const Arguments& arguments);
 
-/// Write them: what failed, in which stage, and how far it came. The first call counts; without reports, or
-/// where they cannot be written, nothing happens.
+/// Writes the reports: the error, its stage, and the progress so far. Only the first call counts. Does
+/// nothing if there are no reports, or if they cannot be written.
 void report_failure(ExitCode code, std::string_view message, const PlcError* faults = nullptr) noexcept;
 
 }  // namespace collarmesh::cli

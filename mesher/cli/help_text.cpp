@@ -12,9 +12,9 @@ namespace collarmesh::cli {
 
 namespace {
 
-constexpr std::size_t columns = 78, first_column = 34;  // --help-all moves commands by two
+constexpr std::size_t columns = 78, first_column = 34;  // --help-all indents commands by two
 
-/// In lines of at most so many characters; words that do not fit alone stay whole.
+/// Wraps text to lines of at most this many characters; longer words stay whole.
 std::string wrapped(std::string_view text, std::size_t width = columns - first_column) {
   std::string result;
   std::size_t used = 0;
@@ -54,7 +54,7 @@ std::string HelpText::make_option_desc(const CLI::Option* option) const {
   return wrapped(option->get_description());
 }
 
-/// Without the options that one needs: a message says that where they lack.
+/// Leaves out the options that an option needs: a message names them if they are missing.
 std::string HelpText::make_option_opts(const CLI::Option* option) const {
   const std::string all = CLI::Formatter::make_option_opts(option);
   return all.substr(0, all.find(" Needs:"));

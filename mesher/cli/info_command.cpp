@@ -37,8 +37,8 @@ void print_mesh(const TetMesh& mesh, bool as_json) {
   process::print_result(report::json_text(json, 1) + "\n");
 }
 
-/// The complex that would be meshed; what bounds no region, and cannot be repaired so that it does, is one
-/// here, too.
+/// Builds the complex that would be meshed. Also accepts facets that bound no region, even if repair cannot
+/// change that.
 Plc build_any(files::ComplexInput& input, const RunOptions& options) {
   try {
     return input.build(options.complex, options.repair);
@@ -49,7 +49,8 @@ Plc build_any(files::ComplexInput& input, const RunOptions& options) {
   }
 }
 
-/// `read`: seconds that reading and building the complex took, as they will again.
+/// Predicts meshes. `read` are the seconds that reading and building the complex took, which the run needs
+/// again.
 std::vector<Prediction> predictions(const InfoArguments& arguments, const Plc& plc, double read) {
   if (arguments.predicted_sizes.empty()) return {};
   PipelineOptions options = arguments;

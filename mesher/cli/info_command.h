@@ -4,7 +4,7 @@
 
 namespace collarmesh::cli {
 
-/// Say on standard output what the complex, or the mesh, is.
+/// Describes the complex, or the mesh, on standard output.
 ExitCode info_command(const InfoArguments& arguments);
 
 }  // namespace collarmesh::cli

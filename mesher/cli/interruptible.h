@@ -4,8 +4,8 @@
 
 namespace collarmesh::cli {
 
-/// How a command's input is read: as given, and so that it ends when the command is interrupted, and its
-/// supervisor knows of work on CAD files.
+/// Returns how to read a command's input: as given, but ending when the command is interrupted, and reporting
+/// work on CAD files to its supervisor.
 files::InputReading interruptible(files::InputReading reading);
 
 }  // namespace collarmesh::cli

@@ -12,7 +12,8 @@ namespace collarmesh::cli {
 
 namespace {
 
-/// Text for roff: no line begins with a dot, backslashes and hyphens are themselves.
+/// Escapes text for roff, so that a dot at the beginning of a line, backslashes and hyphens are printed as
+/// they are.
 std::string roff(std::string_view text) {
   std::string result;
   for (const char c : text) {

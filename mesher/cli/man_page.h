@@ -5,7 +5,7 @@
 
 namespace collarmesh::cli {
 
-/// A manual page of section 1, in roff. `footer`: exit codes and units.
+/// Returns a manual page of section 1, in roff. `footer` has exit codes and units.
 std::string man_page(const CLI::App& app, const std::string& version, const std::string& footer);
 
 }  // namespace collarmesh::cli

@@ -39,11 +39,11 @@ PipelineOptions pipeline_options(const MeshArguments& a) {
   PipelineOptions options = a;
   options.mesh.count_work = !a.reports.empty();
   options.trace = !a.trace_folder.empty();
-  options.mesh.time_limit = 0;  // one limit for everything, from reading to writing: the interrupt flag
+  options.mesh.time_limit = 0;  // the interrupt flag limits the whole run, from reading to writing
   return options;
 }
 
-/// For the message when the time is up.
+/// Notes the stage, for the message when the time is up.
 void note_where_it_stopped(const MeshResult& result) {
   const MeshStatistics& reached = result.statistics;
   const Point& p = result.where;
@@ -55,7 +55,7 @@ void note_where_it_stopped(const MeshResult& result) {
           p.z));
 }
 
-/// With the file's name before each line that has none: nothing else says what a quiet run is about.
+/// Puts the file's name before each line without one, because a quiet run does not print it elsewhere.
 std::string each_line_of(const std::string& file, const std::string& text) {
   std::string named;
   for (std::size_t at = 0; at < text.size();) {
@@ -68,10 +68,10 @@ std::string each_line_of(const std::string& file, const std::string& text) {
   return named;
 }
 
-/// The complexes of the input files. What was done to make each is printed.
+/// Builds complexes from the input files. Prints the changes made for each.
 class InputSource : public ComplexSource {
  public:
-  /// All are kept by reference.
+  /// Keeps all by reference.
   InputSource(const MeshArguments& arguments, files::ComplexInput& input, Stages& stages)
       : arguments_(arguments), input_(input), stages_(stages) {}
 
@@ -110,7 +110,7 @@ class InputSource : public ComplexSource {
 
   const RepairOptions& built_with() const { return built_with_; }
 
-  /// Of the size field, after a mesh was made.
+  /// Returns the sources of the size field that had no effect, after a mesh was made.
   std::vector<std::string> without_effect() const {
     std::vector<std::string> told;
     if (size_field_use_)
@@ -126,11 +126,11 @@ class InputSource : public ComplexSource {
   files::ComplexInput& input_;
   Stages& stages_;
   RepairOptions built_with_;
-  std::string told_of_options_;                   // once, however many meshes are tried
-  std::shared_ptr<SizeFieldUse> size_field_use_;  // of the mesh tried last
+  std::string told_of_options_;                   // printed once, however many meshes are tried
+  std::shared_ptr<SizeFieldUse> size_field_use_;  // for the mesh tried last
 };
 
-/// Makes the files of a run's steps, if they are asked for. They appear when they are committed.
+/// Makes the files of a run's steps, if requested. They appear when they are committed.
 std::unique_ptr<process::StagedFile> staged_trace(const MeshArguments& arguments, const Trace& trace) {
   if (arguments.trace_folder.empty() || trace.empty()) return nullptr;
   auto staged = std::make_unique<process::StagedFile>(files::trace_file(arguments.trace_folder));
@@ -181,13 +181,13 @@ ProgressStyle progress_of(const MeshArguments& arguments) {
   return arguments.quiet ? ProgressStyle::off : arguments.progress;
 }
 
-/// What pages show, in the input's unit.
+/// The data that pages show, in the input's unit.
 struct Shown {
   report::ShownMesh mesh;
   std::vector<report::ShownStep> trace;
 };
 
-/// `shown`: for pages.
+/// Writes a report. `shown` is for pages.
 void write_report(const std::string& path, const MeshArguments& arguments, const report::MeshRun& run,
                   const std::optional<Shown>& shown) {
   std::ofstream file(path);
@@ -239,7 +239,7 @@ void write_files(const MeshArguments& arguments, Stages& stages, report::MeshRun
   process::StagedFile::commit(files);
 }
 
-/// Before long work.
+/// Checks the folder before long work.
 void require_trace_folder(const std::string& folder) {
   if (folder.empty()) return;
   std::error_code error;
@@ -273,7 +273,7 @@ std::unique_ptr<files::ComplexInput> read_inputs(const MeshArguments& arguments)
   const auto tolerance = [&](const Plc& plc) {
     return tolerance_of(plc, arguments.mesh.bounds, arguments.mesh.size, static_cast<int>(arguments.order));
   };
-  // Surfaces on their own need no triangles of CAD faces that keep volumes.
+  // Meshes of surfaces do not need finer triangles of CAD faces to keep volumes.
   return std::make_unique<files::ComplexInput>(
       arguments.inputs,
       interruptible({arguments.input_format, distance,
@@ -300,7 +300,7 @@ ExitCode make_and_write(const MeshArguments& arguments,
   for (const std::string& report : arguments.reports) process::require_writable(report);
   if (!arguments.cell_decomposition.empty()) process::require_writable(arguments.cell_decomposition);
   require_trace_folder(arguments.trace_folder);
-  if (arguments.partitions > 0) require_partitioner();  // before long work
+  if (arguments.partitions > 0) require_partitioner();  // checked before long work
   report::MeshRun run;
   {
     Stages stages(progress_of(arguments), run.times);

@@ -10,28 +10,28 @@
 
 namespace collarmesh::cli {
 
-/// Read, build the complex, mesh, certify, write. Throws what the library throws.
+/// Reads the input, builds the complex, meshes, certifies and writes. Throws the library's exceptions.
 ExitCode mesh_command(const MeshArguments& arguments);
 
-/// Has a mesh made and written, with reports, and says what it is like: what all commands have in common that
-/// make one.
+/// Makes a mesh and writes it, with reports, and prints a summary: the common part of all commands that make
+/// a mesh.
 ExitCode make_and_write(const MeshArguments& arguments,
                         const std::function<void(Stages&, report::MeshRun&)>& make);
 
-/// A mesh in memory, for programs that go on with it.
+/// A mesh in memory, for programs that process it further.
 struct MadeMesh {
   std::unique_ptr<files::ComplexInput> input;  ///< has the complex of the run, and its exact geometry
   report::MeshRun run;
-  RepairOptions repair;  ///< with these that complex was built
+  RepairOptions repair;  ///< the repair options with which that complex was built
 };
 
-/// What `mesh_command` does before it writes. Throws what the library throws, and Stopped.
+/// Does everything that `mesh_command` does before it writes. Throws the library's exceptions, and Stopped.
 MadeMesh make_mesh(const MeshArguments& arguments);
 
-/// The files of the input as `make_mesh` reads them.
+/// Reads the input files as `make_mesh` does.
 std::unique_ptr<files::ComplexInput> read_inputs(const MeshArguments& arguments);
 
-/// On standard error: what is wrong with a mesh, then, unless it is to be quiet, what it is like.
+/// Prints to standard error the problems of a mesh and, unless quiet, its summary.
 void tell_of(const MeshArguments& arguments, const report::MeshRun& run);
 
 }  // namespace collarmesh::cli

@@ -4,19 +4,19 @@
 #include <string>
 #include <vector>
 
-/// What the values of options look like. A value that does not fit is answered with what would.
+/// The syntax of options' values. The error for a wrong value describes the right ones.
 namespace collarmesh::cli {
 
-/// A finite number in an interval, so that "nan" and "inf" are refused as well.
+/// Accepts a finite number in an interval, so that "nan" and "inf" are rejected as well.
 CLI::Validator number_in(double low, double high, const std::string& name);
 
-/// A whole number that is not negative: CLI11 takes "-5" for one.
+/// Accepts a whole number that is not negative; CLI11 alone would accept "-5".
 CLI::Validator whole_number();
 
-/// "STL" becomes ".stl"; one of these extensions.
+/// Accepts one of these extensions; "STL" becomes ".stl".
 CLI::Validator format_name(const std::vector<std::string>& extensions);
 
-/// ".off .stl"
+/// Joins extensions: ".off .stl"
 std::string list(const std::vector<std::string>& extensions);
 
 }  // namespace collarmesh::cli

@@ -11,10 +11,11 @@ namespace collarmesh::cli {
 
 namespace {
 
-// On nine shapes every refinement ended at 1.1, with two to four times the tets of 1.4, and none at 1.
+// The proved bound on the ratio. On test shapes refinement also ended with lower bounds, down to 1.1, but
+// never with 1 (doc/theory.md).
 constexpr double proved_radius_edge = std::numbers::sqrt2;
-// The lowest bound that all of twelve shapes reached (doc/architecture/collars.md), and 20 of 21 shapes that
-// were coarsened (doc/architecture/coarsening.md).
+// The lowest bounds that test shapes reached (doc/architecture/collars.md), and that coarsened shapes reached
+// (doc/architecture/coarsening.md).
 constexpr double reached_collar_angle = 130, reached_coarsened = 120;
 // Relative to the diagonal.
 constexpr double small_distance = 1e-5, large_planar_tolerance = 1e-3;

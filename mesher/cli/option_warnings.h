@@ -8,8 +8,8 @@
 
 namespace collarmesh::cli {
 
-/// Options that go further than what is proved or was seen to end: a full sentence each, with what to
-/// do instead.
+/// Returns warnings of options beyond the values that are proved or known to work: a full sentence each, with
+/// an alternative.
 std::vector<std::string> option_warnings(const MeshArguments& arguments, const Plc& plc);
 
 }  // namespace collarmesh::cli

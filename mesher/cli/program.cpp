@@ -38,7 +38,7 @@ struct Execute {
   ExitCode operator()(const RemeshArguments& arguments) const { return remesh_command(arguments); }
 };
 
-/// In a process of its own where it reads CAD files, which may crash.
+/// Runs a command, in a separate process if it reads CAD files, which may crash.
 ExitCode execute(const Arguments& arguments);
 
 bool reads_cad(const Arguments& arguments) {
@@ -78,13 +78,13 @@ ExitCode fail_without_threads() {
               "no thread can be made; nothing was written; raise the limit of threads or memory");
 }
 
-// TBB tells with a message alone that it got no thread.
+// Returns whether TBB failed to create a thread, which only the message tells.
 bool is_of_threads(const std::exception& error) {
   return std::string_view(error.what()).find("pthread_create") != std::string_view::npos;
 }
 
-// Heeded by all that has its threads from TBB, also outside of the stages' arenas: OpenCASCADE, too. It is
-// never lifted: TBB would make the threads then that had been asked for.
+// Limits the threads of everything that uses TBB, also outside the stages' arenas, including OpenCASCADE. The
+// limit is never lifted: TBB would then create the threads that had been requested.
 void limit_threads(const Arguments& arguments) {
   const unsigned threads =
       std::visit([](const RunOptions& options) { return options.mesh.threads; }, arguments);

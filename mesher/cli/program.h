@@ -8,10 +8,10 @@ namespace collarmesh::cli {
 
 using process::ExitCode;
 
-/// The whole program; returns its exit code (exit_code.h).
+/// Runs the whole program; returns its exit code (exit_code.h).
 int run(int argc, const char* const* argv);
 
-/// Run a command; what it throws becomes a message on standard error and an exit code.
+/// Runs a command; turns exceptions into a message on standard error and an exit code.
 ExitCode guarded(const std::function<ExitCode()>& command);
 
 }  // namespace collarmesh::cli

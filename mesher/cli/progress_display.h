@@ -11,8 +11,8 @@
 
 namespace collarmesh::cli {
 
-/// Shows how far a command is on standard error: a bar on a terminal, or one JSON object per line.
-/// The stages of the command share the fraction by fixed weights; it never decreases.
+/// Shows the progress of a command on standard error: a bar on a terminal, or one JSON object per line. The
+/// stages of the command share the fraction by fixed weights; it never decreases.
 class ProgressDisplay {
  public:
   explicit ProgressDisplay(ProgressStyle style);
@@ -20,13 +20,13 @@ class ProgressDisplay {
   ProgressDisplay(const ProgressDisplay&) = delete;
   ProgressDisplay& operator=(const ProgressDisplay&) = delete;
 
-  /// A stage begins that takes the part [begin, end] of the whole.
+  /// Begins a stage that takes the part [begin, end] of the whole.
   void begin_stage(std::string phase, double begin, double end);
 
-  /// Lines that stay, above the bar.
+  /// Prints lines that stay, above the bar.
   void print(const std::string& text);
 
-  /// News within the stage.
+  /// Shows progress within the stage.
   void update(const ProgressReport& report);
 
  private:
@@ -49,7 +49,7 @@ class ProgressDisplay {
   std::thread drawing_;
 };
 
-/// "[#####.....]  52%  refine  1.2M tets  3 s left": one line for people, at most `width` wide.
+/// Returns one line for people, at most `width` wide: "[#####.....] 52% refine 1.2M tets 3 s left".
 std::string progress_line(const std::string& phase, double fraction, std::size_t tets, double seconds,
                           std::size_t width);
 

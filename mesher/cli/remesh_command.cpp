@@ -21,7 +21,7 @@ void adapt(const RemeshArguments& arguments, const Plc& plc, PipelineOptions& op
 void remesh_file(const RemeshArguments& arguments, Stages& stages, report::MeshRun& run) {
   const TetMesh mesh = files::read_mesh(arguments.inputs.front(), arguments.input_format);
   PipelineOptions options = arguments;
-  options.mesh.time_limit = 0;  // one limit for everything, from reading to writing: the interrupt flag
+  options.mesh.time_limit = 0;  // the interrupt flag limits the whole run, from reading to writing
   Execution execution;
   execution.cancel = &process::interrupt_flag();
   execution.progress = [&](const ProgressReport& report) {

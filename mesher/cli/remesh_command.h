@@ -4,7 +4,7 @@
 
 namespace collarmesh::cli {
 
-/// Read a mesh, adapt it to sizes, certify it, write it. Throws what the library throws.
+/// Reads a mesh, adapts it to sizes, certifies and writes it. Throws the library's exceptions.
 ExitCode remesh_command(const RemeshArguments& arguments);
 
 }  // namespace collarmesh::cli

@@ -23,7 +23,7 @@ namespace collarmesh::cli {
 
 namespace {
 
-/// What a file says when it is read again: coordinates may have lost digits, and interfaces their regions.
+/// Describes a file after reading it again: coordinates may have lost digits, and interfaces their regions.
 std::string read_again(const std::string& path, const RepairArguments& a) {
   try {
     const PolygonSoup soups[] = {files::read_surface(path, a.output_format)};

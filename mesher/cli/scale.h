@@ -7,13 +7,13 @@
 
 namespace collarmesh::cli {
 
-/// Change the unit of length of what is written.
+/// Changes the unit of length of the output.
 inline void scale(std::vector<Point>& points, double factor) {
   if (factor == 1) return;
   for (Point& p : points) p = {factor * p.x, factor * p.y, factor * p.z};
 }
 
-/// With the motions of its periodic faces.
+/// Scales the mesh and the motions of its periodic faces.
 inline void scale(TetMesh& mesh, double factor) {
   scale(mesh.points, factor);
   for (TetMesh::PeriodicFaces& faces : mesh.periodic)

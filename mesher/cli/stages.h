@@ -18,7 +18,7 @@ class Stages {
   ~Stages();
 
   void begin(const std::string& phase, double begin, double end, std::size_t tets = 0);
-  /// One of those between building the complex and writing, with what is told in it.
+  /// Forwards a progress report of `run_pipeline`, scaled to its share of the command.
   void update(ProgressReport report);
   void print(const std::string& text) { display_.print(text); }
 

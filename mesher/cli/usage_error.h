@@ -5,14 +5,14 @@
 
 namespace collarmesh::cli {
 
-/// What a mistake on the command line is and what to write instead; one line without its end.
-/// CLI11's own messages tell of its types and its patterns.
+/// Returns a message for a mistake on the command line and what to write instead; one line without its end.
+/// CLI11's own messages mention its types and patterns.
 std::string usage_message(const CLI::App& app, const CLI::Error& error);
 
-/// What is wrong with a first argument that is no file and nearly a command; else empty.
+/// Returns a message for a first argument that is no file but nearly a command; otherwise empty.
 std::string mistaken_command(const std::string& word);
 
-/// How a command is called; the one that meshes has an empty name.
+/// Returns the usage line of a command; the one that meshes has an empty name.
 std::string usage_of(const std::string& command);
 
 }  // namespace collarmesh::cli

@@ -17,11 +17,11 @@ namespace collarmesh::files {
 
 namespace {
 
-// OpenCASCADE's libraries take longer to load than a small mesh to make.
+// Reads with the module: OpenCASCADE's libraries take longer to load than a small mesh takes to make.
 std::unique_ptr<brep::CadModel> read_by_module(const std::string& path, std::string_view format,
                                                const brep::CadOptions& options) {
   constexpr const char* module = "collarmesh_cad.so";
-  // Looked for along the run path of the program; stays loaded as long as its models may live.
+  // Searches along the run path of the program; the module stays loaded as long as its models may live.
   void* const loaded = dlopen(module, RTLD_NOW | RTLD_LOCAL);
   void* const found = loaded == nullptr ? nullptr : dlsym(loaded, COLLARMESH_READ_CAD);
   if (found == nullptr)
@@ -37,7 +37,7 @@ std::unique_ptr<brep::CadModel> read_by_module(const std::string& path, std::str
   return model;
 }
 
-/// Seconds, without a time limit. Parts of a hundred MB have taken minutes.
+/// Returns the seconds allowed if there is no time limit. Parts of a hundred MB have taken minutes.
 double patience_with(const std::string& path) {
   constexpr double at_least = 600, for_a_megabyte = 60;
   std::error_code error;
@@ -52,9 +52,9 @@ struct CadFiles::File {
   double deflection;
   unsigned threads;
   Index first_soup, soup_count;
-  mutable std::optional<brep::CadMeasures> measures = {};  // of these soups, when asked for
+  mutable std::optional<brep::CadMeasures> measures = {};  // of these soups, when first asked for
 
-  /// With other triangles in the places of the former soups.
+  /// Replaces the soups' triangles by finer ones.
   void cut_again(const brep::TessellationOptions& options, std::vector<PolygonSoup>& soups) {
     std::vector<PolygonSoup> own;
     ThreadLimit(threads).run([&] { own = model->tessellate(options); });
@@ -82,7 +82,7 @@ void CadFiles::read(const std::string& path, std::string_view format, const CadR
   const double patience = patience_with(path);
   std::shared_ptr<void> work = guarded("reading it and finding its solids", path, patience);
   std::unique_ptr<brep::CadModel> model;
-  ThreadLimit limit(reading.threads);  // heeded by OpenCASCADE, whose threads are those of TBB
+  ThreadLimit limit(reading.threads);  // also limits OpenCASCADE, which uses TBB's threads
   limit.run([&] { model = read_by_module(path, format, {.overlap = overlap}); });
   const double absolute = reading.deflection(model->diagonal());
   work.reset();

@@ -20,16 +20,16 @@ struct CadMeasures;
 
 namespace collarmesh::files {
 
-/// How CAD files are read.
+/// Options of reading CAD files.
 struct CadReading {
   std::function<double(double diagonal)>
-      deflection;  ///< of the triangles, absolute, from the shape's diagonal
+      deflection;  ///< distance of the triangles, absolute, from the shape's diagonal
   SolidOverlap overlap = SolidOverlap::first;
-  unsigned threads = 0;  ///< at most; 0: all cores
+  unsigned threads = 0;  ///< maximum number; 0: all cores
 };
 
-/// Tells whoever guards this process what OpenCASCADE is about to do to a file, and for how many seconds it
-/// may (0: any time). The work is over when what is returned is destroyed.
+/// Tells the process's supervisor what OpenCASCADE is about to do to a file, and how many seconds it may take
+/// (0: any time). The work is over when the returned object is destroyed.
 using CadGuard =
     std::function<std::shared_ptr<void>(std::string_view doing, std::string_view file, double seconds)>;
 
@@ -42,28 +42,27 @@ class CadFiles {
   CadFiles& operator=(CadFiles&&) noexcept;
 
   static std::vector<std::string> formats();
-  /// Is it a CAD file by its extension, or as `format` says?
+  /// Returns whether it is a CAD file, by its extension or by `format`.
   static bool knows(const std::string& path, std::string_view format);
 
-  /// Read a file and append its soups.
-  /// Throws ReadError and PlcError.
+  /// Reads a file and appends its soups. Throws ReadError and PlcError.
   void read(const std::string& path, std::string_view format, const CadReading& reading,
             std::vector<PolygonSoup>& soups);
   bool empty() const;
-  /// Of the files, for people.
+  /// Returns the names of the files, for people.
   std::string names() const;
-  /// Names and colours of the file that all these soups came from; null where there is none: the numbers of
-  /// several files are the same.
+  /// Returns names and colours of the file that all these soups came from; null if they came from several
+  /// files, whose numbers would collide.
   const brep::CadLabels* labels(std::size_t soups) const;
 
-  /// Make triangles that are finer than the first ones by a factor, in the places of the former soups.
+  /// Replaces the soups' triangles by triangles that are finer than the first ones by a factor.
   void tessellate(double finer, std::vector<PolygonSoup>& soups);
-  /// Of some faces alone: by the number of their soup and their own.
+  /// Does the same for some faces, given by the number of their soup and their own.
   void tessellate(double finer, const std::set<std::pair<Index, Tag>>& faces,
                   std::vector<PolygonSoup>& soups);
 
-  /// The nearest point of EdgeN (dimension 1) or FaceN (2) of the file that soup came from; nothing for
-  /// soups of other files.
+  /// Returns the nearest point of EdgeN (dimension 1) or FaceN (2) of the file that a soup came from; nothing
+  /// for soups of other files.
   std::optional<Point> nearest(Index soup, unsigned dimension, Tag number, const Point& p) const;
 
   /// Exact lengths, areas and volumes of the shape in the file that a soup came from, and the first soup of
@@ -74,17 +73,19 @@ class CadFiles {
   };
   std::optional<Measured> measures(Index soup) const;
 
-  /// "Face3 and Face7 of part.step", of the file whose faces are nearest.
+  /// Returns the faces nearest to a place, in the file whose faces are nearest: "Face3 and Face7 of
+  /// part.step".
   std::string faces_near(const Point& where) const;
-  /// The sub-shapes that OpenCASCADE finds invalid, or empty.
+  /// Returns the sub-shapes that OpenCASCADE finds invalid, or empty.
   std::string invalid_parts() const;
-  /// Faces that became one with others: the number that is gone and the one in its place.
+  /// Returns faces that were merged with others: the number that is gone and the one in its place.
   std::vector<std::pair<Tag, Tag>> replaced_faces() const;
-  /// False: solids that touch or overlap could not be fused, so their soups intersect, however fine.
+  /// Returns false if solids that touch or overlap could not be fused; their soups then intersect, however
+  /// fine.
   bool fused() const;
-  /// Which solids are open, at which edges and where; or empty.
+  /// Returns which solids are open, at which edges and where; or empty.
   std::string open_edges() const;
-  /// `of_solids`: with those on solids that are open.
+  /// Returns notes on the shapes; `of_solids` adds those on open solids.
   std::vector<std::string> notes(bool of_solids) const;
 
  private:

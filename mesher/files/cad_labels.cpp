@@ -38,7 +38,7 @@ std::size_t character_length(std::string_view text) {
   return valid ? length : 0;
 }
 
-/// With `_` for what is no text, and blanks around it removed.
+/// Replaces invalid text by `_` and removes blanks around it.
 std::string clean(std::string_view text) {
   std::string result;
   while (!text.empty()) {
@@ -54,7 +54,7 @@ std::string clean(std::string_view text) {
                                     : result.substr(first, result.find_last_not_of(' ') + 1 - first);
 }
 
-/// Would a reader take it for the number of a feature?
+/// Returns whether a reader would take the name for the number of a feature.
 bool is_number(const std::string& name) {
   for (std::size_t dimension = 0; dimension < 4; ++dimension)
     if (io::tag_of_group_name(dimension, name)) return true;
@@ -64,7 +64,7 @@ bool is_number(const std::string& name) {
 }  // namespace
 
 void name_regions(const brep::CadLabels& labels, Plc& plc) {
-  std::set<std::string> taken;  // in the form of those formats that keep least
+  std::set<std::string> taken;  // in the form of the formats that keep least
   for (const auto& [tag, name] : plc.names.of(3)) taken.insert(io::capital_word(name));
   TagNames names;
   for (const auto& [number, text] : labels.solid_names) {

@@ -51,7 +51,7 @@ bool has_fault(const PlcError& error, std::initializer_list<PlcFault::Kind> kind
   });
 }
 
-/// A sentence on what may help where the repair did not.
+/// Returns a sentence on other ways to mesh the input when repair failed.
 std::string advice(const PlcError& error, const RepairOptions& options, bool of_solids) {
   using Kind = PlcFault::Kind;
   if (has_fault(error, {Kind::bad_point})) return {};
@@ -80,7 +80,7 @@ ComplexInput::ComplexInput(const std::vector<std::string>& paths, InputReading r
     : reading_(std::move(reading)), cad_(reading_.guard) {
   const CadReading cad{[&](double diagonal) { return share_of_triangles * reading_.distance(diagonal); },
                        reading_.overlap, reading_.threads};
-  Tag largest_named = 0;  // numbers of names are those of their file
+  Tag largest_named = 0;  // numbers in names refer to their file
   for (const std::string& path : paths) {
     reading_.stop();
     const std::string file = existing_file(path);
@@ -114,7 +114,7 @@ Plc ComplexInput::build(const PlcOptions& options, const RepairOptions& repair) 
   return plc;
 }
 
-/// Adds the numbers that went where solids of a file touch to those of the complex.
+/// Adds the numbers of faces that were merged where solids of a file touch to those of the complex.
 void ComplexInput::add_replaced_faces(Plc& plc) const {
   std::vector<std::pair<Tag, Tag>>& all = plc.cleanup.replaced_tags;
   std::ranges::copy(cad_.replaced_faces(), std::back_inserter(all));
@@ -123,13 +123,13 @@ void ComplexInput::add_replaced_faces(Plc& plc) const {
 }
 
 const brep::CadLabels* ComplexInput::labels() const {
-  return built_.repaired.wrapped ? nullptr
-                                 : cad_.labels(soups_.size());  // wrapped, tags are no numbers of faces
+  return built_.repaired.wrapped ? nullptr : cad_.labels(soups_.size());  // after wrapping, tags are no
+                                                                          // numbers of faces
 }
 
 TagColours ComplexInput::colours() const { return labels() == nullptr ? TagColours() : labels()->colours; }
 
-/// By the path of a file, or the text itself, and by what is given beside it.
+/// Names features, by a file or the text itself, and by single names.
 void ComplexInput::name(Plc& plc) const {
   const std::string& path = reading_.names;
   if (path.empty() && reading_.given_names.empty()) return;
@@ -155,7 +155,7 @@ Plc ComplexInput::build_unnamed(const PlcOptions& options, const RepairOptions& 
       throw with_advice(error, repair, options.require_solid);
     }
   }
-  // Triangles of faces that nearly touch may meet where finer ones do not.
+  // Triangles of faces that nearly touch may intersect where finer ones do not.
   std::optional<PlcError> first;
   for (const double finer : {1.0, 4.0}) {
     tessellate(finer);
@@ -168,7 +168,7 @@ Plc ComplexInput::build_unnamed(const PlcOptions& options, const RepairOptions& 
     }
   }
   if (repair.mode == RepairMode::off) throw with_advice(*first, repair, options.require_solid);
-  tessellate(may_be_too_coarse(*first) ? 2 : 1);  // of finer ones fewer meet, and there is less to cut
+  tessellate(may_be_too_coarse(*first) ? 2 : 1);  // fewer finer ones intersect, and there is less to cut
   try {
     return build_repaired(options, repair);
   } catch (const PlcError&) {
@@ -180,8 +180,8 @@ Plc ComplexInput::build_valid(const PlcOptions& options, const RepairOptions& re
   return take(remove_noise(build_plc(soups_, options), soups_, options, repair, watched()));
 }
 
-/// As `build_valid`, or throws PlcError where there is noise and none is allowed: before its repair, which is
-/// the most work.
+/// Builds the complex like `build_valid`, but throws PlcError if there is noise and none is allowed: before
+/// repairing it, which takes the most work.
 Plc ComplexInput::build_finer(const PlcOptions& options, const RepairOptions& repair, bool with_noise) {
   if (with_noise) return build_valid(options, repair);
   Plc plc = build_plc(soups_, options);
@@ -191,9 +191,9 @@ Plc ComplexInput::build_finer(const PlcOptions& options, const RepairOptions& re
   return take(remove_noise(std::move(plc), soups_, options, none, watched()));
 }
 
-/// The complex with finer triangles of the faces whose triangles are too coarse for the mesh to come, if it
-/// is as good. Where one side of a wall is cut finely and the other is not, the wall becomes thinner: then
-/// all faces are.
+/// Returns the complex with finer triangles of the faces whose triangles are too coarse for the mesh, if it
+/// is as good. Where only one side of a wall is cut finely, the wall becomes thinner; then all faces are cut
+/// finely.
 Plc ComplexInput::resolved(Plc plc, const PlcOptions& options, const RepairOptions& repair) {
   constexpr double finer = 4, little = 2e-3;
   if (!reading_.tolerance || built_.repaired.repaired) return plc;
@@ -221,7 +221,7 @@ Plc ComplexInput::resolved(Plc plc, const PlcOptions& options, const RepairOptio
   return plc;
 }
 
-/// By how much the volume of a region differs from the exact one where this is known, relatively, at most.
+/// Returns the largest relative difference of a region's volume from the exact one, where that is known.
 double ComplexInput::volume_off(const Plc& plc) const {
   std::vector<Tag> patches, curves;
   for (const Plc::Patch& patch : plc.patches) patches.push_back(patch.tag);
@@ -246,7 +246,7 @@ void ComplexInput::tessellate(double finer) {
   finer_ = finer;
 }
 
-/// Some faces alone.
+/// Replaces the triangles of some faces.
 void ComplexInput::tessellate(double finer, const std::set<std::pair<Index, Tag>>& faces) {
   reading_.stop();
   finer_ = 0;

@@ -20,56 +20,57 @@
 
 namespace collarmesh::files {
 
-/// How the files of one complex are read.
+/// Options of reading the files of one complex.
 struct InputReading {
-  std::string format;  ///< in place of the files' extensions; empty: by these
-  /// Surface distance tolerance, absolute, from the diagonal; the triangles of CAD shapes keep a tenth of it.
+  std::string format;  ///< overrides the files' extensions; empty: by extension
+  /// Returns the surface distance tolerance, absolute, from the diagonal; the triangles of CAD shapes keep a
+  /// tenth of it.
   std::function<double(double diagonal)> distance = [](double diagonal) {
     return default_distance(0, diagonal);
   };
-  /// Of the mesh that will be made of a complex: triangles of CAD shapes that are too coarse for it are cut
-  /// finer. Empty: none is.
+  /// Returns the tolerance of the mesh that will be made of a complex: triangles of CAD shapes that are too
+  /// coarse for it are cut finer. Empty: none is.
   std::function<SurfaceTolerance(const Plc&)> tolerance = {};
   SolidOverlap overlap = SolidOverlap::first;
-  unsigned threads = 0;                       ///< for CAD shapes, at most; 0: all cores
-  std::string names = {};                     ///< of features: the path of a file, or its text; empty: none
-  std::vector<std::string> given_names = {};  ///< further ones, "fixed=11"
+  unsigned threads = 0;                       ///< maximum number for CAD shapes; 0: all cores
+  std::string names = {};                     ///< names of features: the path of a file, or its text; empty:
+                                              ///< none
+  std::vector<std::string> given_names = {};  ///< further names, "fixed=11"
   const std::atomic<bool>* cancel = nullptr;  ///< ends the work when it is set
-  CadGuard guard = {};                        ///< of work on CAD files
-  std::function<void()> stop = [] {};         ///< called between steps; throws when the work is to end
+  CadGuard guard = {};                        ///< guard of work on CAD files
+  std::function<void()> stop = [] {};         ///< called between steps; throws to end the work
 };
 
-/// The files of one complex: surfaces, complexes and CAD shapes, which are cut into triangles here.
+/// The files of one complex: surfaces, complexes and CAD shapes, which are triangulated here.
 class ComplexInput {
  public:
-  /// Read them; "-" is standard input.
-  /// Throws ReadError, for a file that does not exist with the most similar name, and PlcError.
+  /// Reads the files; "-" is standard input. Throws ReadError, which proposes the most similar name for a
+  /// file that does not exist, and PlcError.
   explicit ComplexInput(const std::vector<std::string>& paths, InputReading reading = {});
 
-  /// Surfaces that are no files.
+  /// Adds a surface that is no file.
   void add(PolygonSoup soup) { soups_.push_back(std::move(soup)); }
 
-  /// What the complex built last was made of; before, what was read.
+  /// Returns the soups from which the last complex was built; before that, the soups that were read.
   const std::vector<PolygonSoup>& soups() const { return built_.soups.empty() ? soups_ : built_.soups; }
   bool has_cad() const { return !cad_.empty(); }
   std::string cad_names() const { return cad_.names(); }
-  /// What was done to CAD shapes, a line each. `dimension` of the elements: meshes of surfaces and curves
-  /// need not know that solids are open.
+  /// Returns the changes to CAD shapes, a line each. `dimension` is that of the elements: meshes of surfaces
+  /// and curves need no notes on open solids.
   std::vector<std::string> notes(unsigned dimension = 3) const { return cad_.notes(dimension == 3); }
 
-  /// The complex, of repaired facets where that is needed. Where triangles of CAD faces meet that should not,
-  /// finer ones are tried first.
-  /// Throws PlcError; with CAD faces the messages name them.
+  /// Builds the complex, of repaired facets if necessary. If triangles of CAD faces intersect, tries finer
+  /// ones first. Throws PlcError; the messages name CAD faces.
   Plc build(const PlcOptions& options, const RepairOptions& repair = {});
   /// Returns the colours that a CAD file gives to the tags of the complex built last.
   TagColours colours() const;
-  /// What was done to the facets of the complex built last.
+  /// Returns the changes to the facets of the last complex.
   const RepairReport& repaired() const { return built_.repaired; }
 
-  /// The exact edges and faces behind the complex built last, for `run_pipeline`. Both must outlive the
+  /// Returns the exact edges and faces behind the last complex, for `run_pipeline`. Both must outlive the
   /// result.
   ExactGeometry exact_geometry(const Plc& plc) const;
-  /// Their lengths, areas and volumes, where they are known.
+  /// Returns their lengths, areas and volumes, where known.
   ShapeMeasures exact_measures(const Plc& plc) const;
 
  private:
@@ -89,17 +90,17 @@ class ComplexInput {
 
   Execution watched() const;
 
-  /// Of the complex built last.
+  /// The data of the last complex.
   struct Built {
     RepairReport repaired;
-    std::vector<PolygonSoup> soups;                 // repaired; empty where nothing was
+    std::vector<PolygonSoup> soups;                 // repaired; empty without repairs
     std::vector<Tag> patch_numbers, curve_numbers;  // before names were given
   };
 
   InputReading reading_;
   std::vector<PolygonSoup> soups_;  // as they were read
   CadFiles cad_;
-  double finer_ = 1;  // than the first triangles of CAD shapes; 0 where some faces alone are
+  double finer_ = 1;  // factor relative to the first triangles of CAD shapes; 0 if only some faces are finer
   Built built_;
 };
 

@@ -8,7 +8,7 @@
 
 namespace collarmesh::files {
 
-/// Levenshtein distance: letters to change, insert or remove.
+/// Returns the Levenshtein distance: the number of letters to change, insert or remove.
 inline std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), 0);

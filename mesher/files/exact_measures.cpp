@@ -18,10 +18,10 @@ namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-/// Correct what is left of a CAD measure in the complex by what the tessellation lacks. NaN if it is another
-/// one's.
+/// Corrects the size of a feature in the complex by the difference between a CAD measure and its
+/// tessellation. Returns NaN if the measure is another feature's.
 double corrected(double in_complex, const brep::CadMeasure& measure) {
-  constexpr double share = 1e-4;  // that repair may change without a word
+  constexpr double share = 1e-4;  // share that repair may change without a warning
   if (!(std::fabs(in_complex - measure.cut) <= share * measure.cut)) return unknown;
   return in_complex + (measure.exact - measure.cut);
 }
@@ -48,7 +48,7 @@ class Origins {
     group.measure = &found->second;
   }
 
-  /// By feature.
+  /// Returns corrected sizes by feature.
   std::vector<double> corrected_sizes() {
     for (const auto& [source, group] : groups_) {
       const double stretch = corrected(group.size, *group.measure) / group.size;
@@ -136,7 +136,7 @@ class Measures {
     return area;
   }
 
-  /// The patches around each region.
+  /// Returns the patches around each region.
   std::vector<std::vector<Index>> boundaries_of_regions() const {
     std::vector<std::vector<Index>> boundaries(plc_.regions.size());
     for (Index p = 0; p < plc_.patches.size(); ++p) {
@@ -147,7 +147,7 @@ class Measures {
     return boundaries;
   }
 
-  /// The soups of a CAD file that have the face which became a patch: solids share faces.
+  /// Returns the soups of a CAD file that have the face of a patch; solids may share faces.
   const std::vector<Index>& soups_with(Index patch) const {
     static const std::vector<Index> no_soups;
     const auto cad = cad_.measures(plc_.patches[patch].file);
@@ -156,7 +156,7 @@ class Measures {
     return found == soups_with_.end() ? no_soups : found->second;
   }
 
-  /// In the complex.
+  /// Returns the areas of soups in the complex.
   std::vector<double> areas_of_soups() const {
     std::vector<double> areas(sources_.soups.size(), 0);
     for (Index p = 0; p < plc_.patches.size(); ++p)
@@ -164,7 +164,7 @@ class Measures {
     return areas;
   }
 
-  /// The soup that differs least from a region's boundary.
+  /// Returns the soup that differs least from a region's boundary.
   std::optional<Index> soup_that_bounds(const std::vector<Index>& patches,
                                         const std::vector<double>& soup_areas) const {
     std::map<Index, double> common;
@@ -182,7 +182,7 @@ class Measures {
     return cad ? cad->measures.volumes[soup - cad->first_soup] : std::nullopt;
   }
 
-  /// A solid without those that lie in it: they bound its region by faces that are none of it.
+  /// Returns the measures of a solid without the solids inside it, whose faces also bound its region.
   std::optional<brep::CadMeasure> solid_without_others(Index own, const std::vector<Index>& boundary) const {
     std::optional<brep::CadMeasure> result = solid(own);
     if (!result) return result;

@@ -29,7 +29,7 @@ std::vector<fs::path> with_siblings(const fs::path& path, std::initializer_list<
   return files;
 }
 
-/// With the files of faces and edges beside it.
+/// Returns the file and the files of faces and edges beside it.
 std::vector<fs::path> parts_of_xdmf(const fs::path& path) {
   std::vector<fs::path> files;
   for (const char* part : {"", "_faces", "_edges"})
@@ -45,14 +45,14 @@ std::vector<fs::path> parts_of_polymesh(const fs::path& path) {
   return files;
 }
 
-/// Does this file have the name of a piece that is written with the .pvtu?
+/// Returns whether this file has the name of a piece that is written with the .pvtu.
 bool is_named_as_piece(const fs::path& file, const fs::path& pvtu) {
   const std::string first = pvtu.stem().string() + "_", stem = file.stem().string();
   return file.extension() == ".vtu" && stem.starts_with(first) && stem.size() > first.size() &&
          stem.find_first_not_of("0123456789", first.size()) == std::string::npos;
 }
 
-/// With the pieces that are there: how many there will be is not known.
+/// Returns the file and its existing pieces; how many there will be is not known.
 std::vector<fs::path> written_with_pvtu(const fs::path& path) {
   std::vector<fs::path> files{path};
   std::error_code error;
@@ -63,13 +63,13 @@ std::vector<fs::path> written_with_pvtu(const fs::path& path) {
   return files;
 }
 
-/// With the pieces, whatever their names: those that other programs write have others.
+/// Returns the file and its pieces, whose names may differ from ours if another program wrote them.
 std::vector<fs::path> read_with_pvtu(const fs::path& path) {
   std::vector<fs::path> files{path};
   try {
     for (std::string& piece : io::pieces_of_pvtu(path.string())) files.emplace_back(std::move(piece));
   } catch (const ReadError&) {
-    // Whoever reads it says what is wrong.
+    // The reader will report the error.
   }
   return files;
 }

@@ -7,21 +7,21 @@
 
 namespace collarmesh::files {
 
-/// The system's name of an input file; "-" is standard input.
-/// Throws ReadError; for a file that does not exist it proposes the most similar name.
+/// Returns the system's name of an input file; "-" is standard input. Throws ReadError; for a file that does
+/// not exist it proposes the most similar name.
 std::string existing_file(const std::string& path);
 
-/// Read a tetrahedral mesh. `format` overrides the extension. Throws ReadError.
+/// Reads a tetrahedral mesh. `format` overrides the extension. Throws ReadError.
 TetMesh read_mesh(const std::string& path, const std::string& format = {});
 
-/// The same for a file that may hold a surface instead: nothing then, which is also the answer for surface
-/// formats. Throws ReadError.
+/// Does the same for a file that may hold a surface instead; returns nothing then, and for surface formats.
+/// Throws ReadError.
 std::optional<TetMesh> read_mesh_if_there(const std::string& path, const std::string& format = {});
 
-/// Read a tetrahedral mesh, or the triangles and lines of a file that has no tetrahedra. Throws ReadError.
+/// Reads a tetrahedral mesh, or the triangles and lines of a file that has no tetrahedra. Throws ReadError.
 TetMesh read_mesh_or_triangles(const std::string& path);
 
-/// The entry of the folder of `path` whose name is most like it, or empty when none is near.
+/// Returns the entry of the folder of `path` with the most similar name, or empty if none is similar.
 std::string similar_file(const std::string& path);
 
 }  // namespace collarmesh::files

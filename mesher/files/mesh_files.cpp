@@ -24,10 +24,10 @@ files::InputReading reading_of(const RunOptions& options, const std::string& for
   return reading;
 }
 
-/// Complexes of files, one for each repair.
+/// Builds complexes from files, one for each repair.
 class FilesSource : public ComplexSource {
  public:
-  /// Both are kept by reference.
+  /// Keeps both by reference.
   FilesSource(const RunOptions& options, files::ComplexInput& input) : options_(options), input_(input) {}
 
   RepairedPlc build(const RepairOptions& repair, const Execution&) override {

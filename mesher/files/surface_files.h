@@ -9,17 +9,18 @@
 
 namespace collarmesh::files {
 
-/// The formats of io/soup_io.h and, when built with OpenMesh, .om. `format` overrides the extension.
+/// Returns whether it is a format of io/soup_io.h or, when built with OpenMesh, .om. `format` overrides the
+/// extension.
 bool is_surface_format(const std::string& path, std::string_view format = {});
 std::vector<std::string> surface_formats();
 
-/// These, and the tagged triangles of mesh files (io/mesh_surface_io.h). Throws ReadError.
+/// Reads these formats, and the tagged triangles of mesh files (io/mesh_surface_io.h). Throws ReadError.
 PolygonSoup read_surface(const std::string& path, std::string_view format = {});
-/// Throws WriteError.
+/// Writes a surface. Throws WriteError.
 void write_surface(const std::string& path, const PolygonSoup& soup, std::string_view format = {});
 
-/// The boundary and interface triangles of a mesh with their tags, in the order of these: formats without
-/// tags have patches numbered as they come. Throws ReadError if there are none.
+/// Returns the boundary and interface triangles of a mesh with their tags, ordered by tag, because formats
+/// without tags number patches in the order of the file. Throws ReadError if there are none.
 PolygonSoup surface_of(const TetMesh& mesh, const std::string& name);
 
 }  // namespace collarmesh::files

@@ -2,7 +2,7 @@
 
 namespace collarmesh::process {
 
-/// What the program tells its caller. 0 and 7 write the mesh, the others write nothing.
+/// The program's exit codes. With 0 and 7 the mesh is written, with the others nothing.
 enum class ExitCode {
   success = 0,
   internal_error = 1,

@@ -6,11 +6,11 @@
 
 namespace collarmesh::process {
 
-/// What a command does when it fails, wherever it fails: it leaves reports for programs.
+/// A function to call when a command fails anywhere; it writes reports for programs.
 using FailureHandler = void (*)(ExitCode code, std::string_view message);
 void on_failure(FailureHandler handler);
 
-/// Calls the handler, if there is one. It may have no memory, and is called by any thread.
+/// Calls the handler, if there is one. Any thread may call it, possibly when memory is used up.
 void failed(ExitCode code, std::string_view message);
 
 }  // namespace collarmesh::process

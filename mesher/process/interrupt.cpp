@@ -30,23 +30,23 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 std::atomic<bool> interrupted{false};
-std::atomic<int> signals{0};  // that the user sent
+std::atomic<int> signals{0};  // signals from the user
 std::atomic<bool> out_of_processor_time{false};
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free,
               "signal handlers need it");
 
-std::mutex deadline_mutex;  // guards the three below
+std::mutex deadline_mutex;  // guards the three variables below
 double time_limit = 0;
 Clock::time_point deadline = Clock::time_point::max();
 std::string stage_told = "stage: start";
 
-std::mutex stage_mutex;  // guards the one below; nothing allocates while it is held but a report of a failure
+std::mutex stage_mutex;  // guards the variable below; while it is held, only a report of a failure allocates
 StageReached stage_now;
 
 extern "C" void on_interrupt(int number) {
   interrupted.store(true, std::memory_order_relaxed);
   if (signals.fetch_add(1, std::memory_order_relaxed) < 2) return;
-  std::signal(number, SIG_DFL);  // nothing else has helped
+  std::signal(number, SIG_DFL);  // the last resort
   std::raise(number);
 }
 
@@ -57,7 +57,8 @@ extern "C" void on_processor_time(int) {
 
 extern "C" void on_time(int) { interrupted.store(true, std::memory_order_relaxed); }
 
-/// Without a thread that watches, stages that watch the flag end at the time limit; others do not.
+/// Sets the flag at the time limit without a watching thread. Stages that check the flag end then; others do
+/// not.
 void set_flag_at_the_deadline() {
   if (deadline == Clock::time_point::max()) return;
   const std::chrono::duration<double> left = deadline - Clock::now();
@@ -77,7 +78,7 @@ bool asked_to_stop() {
   return interrupted.load(std::memory_order_relaxed);
 }
 
-/// What may help in the stage that the time was spent in.
+/// Returns advice for the stage in which the time ran out.
 std::string coarser_text() {
   const std::string stage = stage_reached().stage;
   if (stage == "start" || stage == "read")
@@ -112,24 +113,24 @@ void install_interrupt_handlers() {
   action.sa_flags = static_cast<int>(SA_RESTART);
   sigemptyset(&action.sa_mask);
   for (const int number : {SIGINT, SIGTERM}) sigaction(number, &action, nullptr);
-  for (const int number : {SIGHUP, SIGQUIT})  // nohup has them ignored
+  for (const int number : {SIGHUP, SIGQUIT})  // nohup ignores them
     if (sigaction(number, nullptr, &before) == 0 && before.sa_handler != SIG_IGN)
       sigaction(number, &action, nullptr);
   std::signal(SIGXCPU, on_processor_time);
-  // `ulimit -t` sets both limits, and the signal of the hard one cannot be caught.
-  constexpr rlim_t to_end_within = 2;  // seconds of all threads
+  // `ulimit -t` sets both limits, and the signal of the hard limit cannot be caught.
+  constexpr rlim_t to_end_within = 2;  // CPU seconds of all threads
   rlimit limit = {};
   if (getrlimit(RLIMIT_CPU, &limit) == 0 && limit.rlim_max != RLIM_INFINITY &&
       limit.rlim_max > to_end_within && limit.rlim_cur > limit.rlim_max - to_end_within) {
     limit.rlim_cur = limit.rlim_max - to_end_within;
     setrlimit(RLIMIT_CPU, &limit);
   }
-  // A file that grew too large and a pipe that nobody reads are write errors like others.
+  // Makes a file that grew too large and a pipe that nobody reads write errors like others.
   for (const int number : {SIGXFSZ, SIGPIPE}) std::signal(number, SIG_IGN);
 }
 
 void set_time_limit(double seconds) {
-  constexpr double a_year = 3e7;  // more than the clock's type may not hold
+  constexpr double a_year = 3e7;  // the clock's type may not hold more
   const std::lock_guard lock(deadline_mutex);
   time_limit = seconds;
   deadline =
@@ -165,10 +166,10 @@ void stop_if_interrupted() {
 
 namespace {
 
-/// Ends with the command, or ends the program in its place.
+/// Watches a command. Ends with the command, or ends the program in its place.
 class Watcher {
  public:
-  /// Throws std::system_error when no thread can be made.
+  /// Starts the thread. Throws std::system_error if none can be created.
   Watcher() : thread_([this](const std::stop_token& end) { watch(end); }) {}
 
  private:

@@ -21,32 +21,33 @@ struct Cancelled : Stopped {
   Cancelled() : Stopped(ExitCode::cancelled, "cancelled; nothing was written") {}
 };
 
-/// Set by the first SIGINT (Ctrl-C), SIGTERM, SIGHUP or SIGQUIT, and when the time is up, the command's or
-/// the processor's. The second signal ends the program at once, without unfinished files; the third one kills
-/// it.
+/// Returns the flag that is set by the first SIGINT (Ctrl-C), SIGTERM, SIGHUP or SIGQUIT, and when the
+/// command's time or its CPU time is up. The second signal ends the program at once and removes unfinished
+/// files; the third one kills it.
 const std::atomic<bool>& interrupt_flag();
 
-/// Catch the signals from now on.
+/// Catches the signals from now on.
 void install_interrupt_handlers();
 
-/// The command has so many seconds from now on for everything it does; 0: any time.
+/// Limits the time of the command from now on, in seconds; 0: no limit.
 void set_time_limit(double seconds);
 
-/// What the command is doing, and how much there is of it.
+/// The current stage of the command, and the size of its mesh.
 struct StageReached {
   std::string stage = "start";
   std::size_t vertices = 0, tets = 0;  ///< 0: none yet
 };
 
-/// For the message when the time is up, where `told` says more than the stage, and for reports of failures.
+/// Records the stage for the message when the time is up and for reports of failures; `told` may describe it
+/// in more detail.
 void note_stage(StageReached reached, std::string told = {});
 StageReached stage_reached();
 
-/// Throws Stopped when the user asked to stop or the time is up.
+/// Throws Stopped if the user asked to stop or the time is up.
 void stop_if_interrupted();
 
-/// Run a command so that an interrupt ends the program within a second whatever it is doing: stages
-/// that watch the flag return by themselves, others are abandoned, with their unfinished files.
+/// Runs a command so that an interrupt ends the program within a second, whatever it is doing: stages that
+/// check the flag return by themselves, others are abandoned, and their unfinished files are removed.
 ExitCode run_interruptible(const std::function<ExitCode()>& command);
 
 }  // namespace collarmesh::process

@@ -4,8 +4,8 @@
 
 namespace collarmesh::process {
 
-/// Bytes of memory that this program may have: the machine's, or less where the control group that it
-/// runs in is limited.
+/// Returns the bytes of memory that this program may use: the machine's, or fewer if its control group is
+/// limited.
 std::size_t memory_of_the_machine();
 
 }  // namespace collarmesh::process

@@ -20,9 +20,9 @@ namespace collarmesh::process {
 
 namespace {
 
-constexpr std::string_view program = "collarmesh: ";  // messages begin with it
+constexpr std::string_view program = "collarmesh: ";  // prefix of messages
 
-/// Freed when memory is used up, so that there is some for the end.
+/// Freed when memory is used up, so that some is left for the end.
 std::unique_ptr<char[]> reserve;
 
 [[noreturn]] void end(ExitCode code, std::string_view message) noexcept {
@@ -32,7 +32,7 @@ std::unique_ptr<char[]> reserve;
   if (!abandoned)
     code = ExitCode::success;  // all files are in place
   else if (write(STDERR_FILENO, message.data(), message.size()) < 0) {
-    // There is nobody to tell.
+    // Nobody is left to report to.
   }
   if (abandoned) failed(code, message.substr(program.size(), message.find('\n') - program.size()));
   std::_Exit(static_cast<int>(code));
@@ -55,7 +55,7 @@ std::unique_ptr<char[]> reserve;
       "collarmesh: internal error; please report it with the input and the options\n");
 }
 
-// GMP aborts where it gets no memory.
+// GMP aborts if it gets no memory.
 void* gmp_allocate(std::size_t bytes) { return ::operator new(bytes); }
 void gmp_free(void* block, std::size_t) { ::operator delete(block); }
 void* gmp_reallocate(void* block, std::size_t old_bytes, std::size_t bytes) {
@@ -65,10 +65,10 @@ void* gmp_reallocate(void* block, std::size_t old_bytes, std::size_t bytes) {
   return grown;
 }
 
-/// Before the variables of this program are made, which takes a thousand allocations.
+/// Runs before the variables of this program are initialized, which takes a thousand allocations.
 [[gnu::constructor(101)]] void before_all() { std::set_new_handler(end_for_memory); }
 
-/// Without allocations.
+/// Returns the bytes of data without allocating.
 std::size_t data_bytes() {
   const int file = open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
   if (file < 0) return 0;
@@ -93,7 +93,7 @@ void end_when_memory_is_used_up() {
 }
 
 void limit_memory(std::size_t bytes) {
-  // What threads have for their stacks counts, used or not.
+  // The memory reserved for threads' stacks counts, used or not.
   constexpr std::size_t for_stacks_and_libraries = std::size_t{48} << 20;
   rlimit limit;
   if (bytes == 0 || getrlimit(RLIMIT_DATA, &limit) != 0) return;

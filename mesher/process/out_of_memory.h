@@ -4,16 +4,16 @@
 
 namespace collarmesh::process {
 
-/// From now on an allocation that fails ends the program with exit code 5, wherever it happens: nothing is
-/// unwound, as destructors and libraries may need memory, too. Unfinished files are removed. An exception
-/// that nobody catches ends it in the same way, with exit code 1.
+/// Makes any later failed allocation end the program with exit code 5, wherever it happens. Nothing is
+/// unwound, because destructors and libraries may need memory, too. Unfinished files are removed. An uncaught
+/// exception ends the program in the same way, with exit code 1.
 void end_when_memory_is_used_up();
 
-/// The process gets about so many bytes from now on for everything it does; 0: any number.
+/// Limits the memory of the process to about this many bytes from now on; 0: no limit.
 void limit_memory(std::size_t bytes);
 
-/// Is more than half of the limit in use? After a crash in a library that tells whether memory is a likely
-/// cause. May be called in a signal handler.
+/// Returns whether more than half of the limit is in use. After a crash in a library this tells whether
+/// memory is a likely cause. May be called in a signal handler.
 bool memory_is_short();
 
 }  // namespace collarmesh::process

@@ -32,9 +32,9 @@ constexpr const char* standard_output = "-";
 constexpr const char* folder_prefix = ".collarmesh-";
 constexpr std::string_view kept_prefix = "kept-";
 
-std::mutex staged_mutex;  // guards what follows
+std::mutex staged_mutex;  // guards the following variables
 
-/// Holds that mutex. A thread may hold it already: memory may be used up while it does.
+/// Holds that mutex. The thread may hold it already, if memory is used up while it does.
 class StagedLock {
  public:
   StagedLock() {
@@ -45,7 +45,7 @@ class StagedLock {
   }
   StagedLock(const StagedLock&) = delete;
   StagedLock& operator=(const StagedLock&) = delete;
-  /// For good: the program is about to end.
+  /// Keeps the lock for good, because the program is about to end.
   static void keep() { ++held_; }
 
  private:
@@ -55,9 +55,9 @@ thread_local int StagedLock::held_ = 0;
 
 std::vector<std::string> staged_folders;
 bool committed = false;
-bool keep_folders = false;  // what was there before could not be put back from them
+bool keep_folders = false;  // previous files could not be restored from them
 
-/// What a commit has done so far, to be taken back.
+/// The completed steps of a commit, so that they can be undone.
 struct Done {
   fs::path place, kept;
 };
@@ -83,7 +83,8 @@ void require_place(const fs::path& target) {
     throw WriteError(fmt::format("{}: is no regular file; name one, or - with --format", target.string()));
 }
 
-/// Those of runs that were killed: nobody holds their locks. Younger ones may be about to be locked.
+/// Removes the folders of runs that were killed, whose locks nobody holds. Younger folders may be about to be
+/// locked.
 void remove_dead_folders(const fs::path& parent) {
   using namespace std::chrono_literals;
   std::error_code error;
@@ -102,7 +103,7 @@ void remove_dead_folders(const fs::path& parent) {
   }
 }
 
-/// Where standard output is made before it is copied.
+/// Returns the place where output for standard output is made before it is copied.
 fs::path temporary_place() {
   std::error_code error;
   for (const fs::path& place : {fs::temp_directory_path(error), fs::path("/tmp"), fs::path("/var/tmp")})
@@ -121,7 +122,7 @@ fs::path make_folder_beside(const fs::path& target) {
         fmt::format("{}: {} is not a folder; choose another place", target.string(), parent.string()));
   if (target != standard_output) require_place(target);
   remove_dead_folders(parent);
-  // In the list before it is there: memory may be used up at any time.
+  // List the folder before it exists, because memory may be used up at any time.
   staged_folders.push_back((parent / fmt::format("{}XXXXXX", folder_prefix)).string());
   if (mkdtemp(staged_folders.back().data()) == nullptr) {
     const std::string why = reason();
@@ -133,7 +134,7 @@ fs::path make_folder_beside(const fs::path& target) {
   return staged_folders.back();
 }
 
-/// File systems that cannot flush say so by these numbers.
+/// Flushes a file. File systems that cannot flush report one of these error numbers.
 bool flushed(int file) { return fsync(file) == 0 || errno == EINVAL || errno == ENOTSUP; }
 
 void flush(const fs::path& path, const fs::path& place) {
@@ -144,7 +145,7 @@ void flush(const fs::path& path, const fs::path& place) {
   if (!good) throw WriteError(fmt::format("{}: cannot be written to the disk ({})", place.string(), why));
 }
 
-/// Names that were given or taken, too. The files are in place by now: nothing is lost when it fails.
+/// Flushes changes of names, too. The files are in place by now, so a failure loses nothing.
 void flush_folder(const fs::path& folder) {
   const int file = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (file < 0) return;
@@ -157,13 +158,13 @@ void keep_mode_and_owner(const fs::path& before, const fs::path& staged) {
   if (stat(before.c_str(), &status) != 0) return;
   if (chown(staged.c_str(), status.st_uid, status.st_gid) != 0 &&
       chown(staged.c_str(), -1, status.st_gid) != 0) {
-    // Only root gives files away.
+    // Only root may give files to another owner.
   }
   if (chmod(staged.c_str(), status.st_mode & 07777) != 0)
     throw WriteError(fmt::format("{}: cannot keep its mode ({})", before.string(), reason()));
 }
 
-/// A second name for a file, or, where there are no links, another one.
+/// Makes a second name for a file, or, where links are not supported, a copy.
 bool keep(const fs::path& place, const fs::path& kept) {
   return link(place.c_str(), kept.c_str()) == 0 || rename(place.c_str(), kept.c_str()) == 0;
 }
@@ -178,7 +179,7 @@ void take_back() noexcept {
 
 }  // namespace
 
-// What a symbolic link names is replaced, not the link.
+// Replaces the file that a symbolic link names, not the link.
 StagedFile::StagedFile(fs::path target) : target_(std::move(target)) {
   std::error_code error;
   if (fs::is_symlink(target_, error))
@@ -213,7 +214,7 @@ std::vector<StagedFile::Move> StagedFile::moves() const {
   for (const auto& entry : fs::directory_iterator(folder_)) names.insert(entry.path().filename());
   names.erase(target_.filename());
   std::vector<fs::path> ordered(names.begin(), names.end());
-  ordered.push_back(target_.filename());  // the target last: who sees it sees the others too
+  ordered.push_back(target_.filename());  // the target last, so that its readers find the others
   std::vector<Move> moves;
   for (const fs::path& name : ordered) {
     const fs::path place = target_.parent_path() / name;
@@ -264,7 +265,7 @@ void StagedFile::commit(const std::vector<StagedFile*>& files) {
     if ((!move.kept.empty() && !keep(move.to, move.kept)) ||
         (done.push_back(std::move(next)), rename(move.from.c_str(), move.to.c_str()) != 0)) {
       const std::string why = reason();
-      if (move.kept.empty()) done.pop_back();  // what is there now, if anything, is somebody else's
+      if (move.kept.empty()) done.pop_back();  // a file that is there now, if any, is another program's
       take_back();
       throw WriteError(fmt::format(
           "{}: cannot be replaced ({}); choose another name{}", move.to.string(), why,

@@ -7,32 +7,32 @@
 
 namespace collarmesh::process {
 
-/// A file that appears under its name when it is complete, or not at all: it is made in a temporary
-/// folder beside its place and moved there by `commit`, with those that its writer makes beside it.
-/// A file that it replaces passes on its mode and, where permitted, its owner.
-/// The target "-" is standard output, to which the file is copied.
+/// A file that appears under its name when it is complete, or not at all: it is made in a temporary folder in
+/// the same place, and `commit` moves it there, together with further files that its writer makes beside it.
+/// A replaced file passes on its mode and, where permitted, its owner. The target "-" is standard output, to
+/// which the file is copied.
 ///
-/// The folder is locked as long as it is in use: those without a lock are of runs that were killed, and are
+/// The folder is locked as long as it is in use: unlocked folders were left by runs that were killed, and are
 /// removed.
 class StagedFile {
  public:
-  /// Throws WriteError when the folder of `target` cannot be written to.
+  /// Makes the temporary folder. Throws WriteError if the folder of `target` cannot be written to.
   explicit StagedFile(std::filesystem::path target);
   ~StagedFile();
   StagedFile(const StagedFile&) = delete;
   StagedFile& operator=(const StagedFile&) = delete;
 
-  /// Make the file: `write` gets the path to write to. Errors name the target instead of it.
+  /// Makes the file: `write` gets the path to write to. Errors name the target instead of it.
   void write(const std::function<void(const std::string& path)>& write);
 
-  /// Flush files to the disk and move them to their places: all of them, or none, with what was there before
-  /// left as it was. Throws WriteError, also where two would have one place, or Cancelled when the user asked
-  /// to stop before.
+  /// Flushes files to the disk and moves them to their places: all of them, or none, leaving the previous
+  /// files as they were. Throws WriteError, also if two would have the same place, or Cancelled if the user
+  /// asked to stop before.
   static void commit(const std::vector<StagedFile*>& files);
 
  private:
   struct Move {
-    std::filesystem::path from, to, kept;  // kept: the file that was there before
+    std::filesystem::path from, to, kept;  // kept: the previous file
   };
   std::vector<Move> moves() const;
   void copy_to_standard_output() const;
@@ -42,18 +42,18 @@ class StagedFile {
   int lock_;
 };
 
-/// Can `target`, and what is written `beside` it, be made there? Throws WriteError saying why not: meant to
-/// be asked before long work.
+/// Checks that `target`, and the files written `beside` it, can be made there. Throws WriteError with the
+/// reason. Call it before long work.
 void require_writable(const std::filesystem::path& target,
                       const std::vector<std::filesystem::path>& beside = {});
 
-/// Remove the temporary folder of a process that has ended. Where it ended in a commit, between taking a file
-/// away and putting another one in its place, the former is put back.
+/// Removes the temporary folder of a process that has ended. If it ended in a commit, between removing a file
+/// and putting another one in its place, the removed file is restored.
 void remove_dead_folder(const std::filesystem::path& folder);
 
-/// Remove what is not committed and block later commits: the program is about to end while another
-/// thread writes. A commit that has begun is taken back when this thread was at it, else waited for. False
-/// when the commit has taken place, the command is then about to succeed.
+/// Removes files that are not committed and blocks later commits, because the program is about to end while
+/// another thread writes. A commit in progress is undone if this thread was making it, otherwise waited for.
+/// Returns false if the commit has taken place; the command is then about to succeed.
 bool abandon_staged_files();
 
 }  // namespace collarmesh::process

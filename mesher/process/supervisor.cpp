@@ -31,19 +31,19 @@ constexpr int running = -1;
 
 constexpr Clock::duration never = Clock::time_point::max().time_since_epoch();
 
-/// What child and supervisor share. Texts are cut where they are too long.
+/// The data that child and supervisor share. Texts that are too long are cut.
 struct Shared {
   std::atomic<int> result{running};
   std::atomic<bool> in_cad{false};
   std::atomic<Clock::rep> end{never.count()};      // of the process
-  std::atomic<Clock::rep> cad_end{never.count()};  // of OpenCASCADE's present work
+  std::atomic<Clock::rep> cad_end{never.count()};  // of OpenCASCADE's current work
   std::array<char, 128> doing{};
   std::array<char, 1024> file{};
-  std::array<char, 16384> folders{};  // paths, each with its end
+  std::array<char, 16384> folders{};  // paths, each with its terminating zero
   std::size_t folders_end = 0;
 };
 
-Shared* shared = nullptr;  // nothing where there is no supervisor
+Shared* shared = nullptr;  // null without a supervisor
 
 void copy(std::string_view text, char* place, std::size_t size) {
   const std::size_t length = std::min(text.size(), size - 1);
@@ -54,7 +54,7 @@ void copy(std::string_view text, char* place, std::size_t size) {
 volatile std::sig_atomic_t asked_to_stop = 0;
 volatile pid_t child = 0;
 
-/// A terminal sends its signals to the child as well.
+/// Passes a signal on. A terminal sends its signals to the child as well.
 extern "C" void pass_on(int number, siginfo_t* information, void*) {
   asked_to_stop = 1;
   if (information->si_code != SI_KERNEL && child > 0) kill(child, number);
@@ -100,7 +100,7 @@ class ChildSignal {
   ChildSignal& operator=(const ChildSignal&) = delete;
 
   void unblock() const { sigprocmask(SIG_SETMASK, &before_, nullptr); }
-  /// Until a child ends, another signal comes or the time, less than a second, is over.
+  /// Waits until a child ends, another signal comes or the time, less than a second, is over.
   void wait(std::chrono::nanoseconds time) const {
     const timespec most{0, time.count()};
     sigtimedwait(&signal_, nullptr, &most);
@@ -110,7 +110,7 @@ class ChildSignal {
   sigset_t signal_, before_;
 };
 
-/// How the child ended; it is killed when a limit is over.
+/// Returns how the child ended; kills it when a limit is over.
 int wait_for_child(const ChildSignal& ended_signal, bool& out_of_time) {
   using namespace std::chrono_literals;
   constexpr Clock::duration grace = 3s;  // its own watcher ends it within a second
@@ -171,8 +171,7 @@ ExitCode reason_for(int status, bool out_of_time) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) std::_Exit(static_cast<int>(ExitCode::cancelled));
   const ExitCode code = command();
-  shared->result.store(
-      static_cast<int>(code));  // what happens while libraries are unloaded does not change it
+  shared->result.store(static_cast<int>(code));  // the exit code stays even if unloading libraries fails
   std::exit(static_cast<int>(code));
 }
 

@@ -12,7 +12,7 @@ WIDTH = 118
 PLACE = re.compile(r"^( +)# options of (\w+)\n", re.M)
 TYPES = {"flag": "bool", "count": "int", "number": "float", "text": "str", "sizes": "Mapping[int, float]",
          "texts": "Sequence[str]"}
-# Python has other values for these than the command line.
+# The types of these options in Python differ from those on the command line.
 OTHER_TYPES = {"size_field": "SizeField", "names": "Union[Path, Mapping[str, Any]]", "max_memory": "Union[int, str]"}
 MORE = {
     "size_field": "a path of these; a dict as in such a .json; a tuple (mesh, values) or (points, tets, values), a "

@@ -8,7 +8,7 @@
 
 namespace collarmesh::report {
 
-/// "#rrggbb", as pages have it.
+/// Returns a colour as pages use it: "#rrggbb".
 inline std::string colour_text(Colour colour) { return fmt::format("#{:06x}", colour); }
 
 }  // namespace collarmesh::report

@@ -17,7 +17,7 @@ namespace collarmesh::report {
 
 namespace {
 
-/// What formats have a place for; corners of cells and points are kept by all.
+/// The data for which formats have a place; all keep corners of cells and points.
 struct Kept {
   std::string_view format;
   bool facet_tags = false, segments = false, point_tags = false, regions = false, names = false;
@@ -75,7 +75,7 @@ std::size_t count_tags(const Values& values) {
   return static_cast<std::size_t>(std::count_if(values.begin(), values.end(), [](auto v) { return v != 0; }));
 }
 
-/// Of the kinds of groups in `which`.
+/// Counts names of the kinds of groups in `which`.
 std::size_t count_names(const TagNames& names, unsigned which) {
   std::size_t count = 0;
   for (std::size_t dimension = 1; dimension <= 3; ++dimension)
@@ -180,7 +180,7 @@ std::string merge_text(const MergeReport& report) {
 
 namespace {
 
-// Where parts touch: "; there patch 7 is patch 2, 9 is 3".
+// Describes patches merged where parts touch: "; there patch 7 is patch 2, 9 is 3".
 std::string replaced_text(const std::vector<std::pair<Tag, Tag>>& replaced) {
   constexpr std::size_t listed = 20;
   std::string text;

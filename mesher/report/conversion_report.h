@@ -8,21 +8,21 @@
 
 namespace collarmesh::report {
 
-/// The format named, else the extension of the path, in lower case with its dot.
+/// Returns the given format, or else the extension of the path, in lower case with its dot.
 std::string format_of(const std::string& path, const std::string& format);
 
-/// What there is of something that a format has no place for; empty if nothing is lost.
+/// Describes the data for which a format has no place; empty if nothing is lost.
 std::vector<std::string> lost_by(const std::string& format, const PolygonSoup& soup);
 std::vector<std::string> lost_by(const std::string& format, const TetMesh& mesh);
 
-/// Has this format of meshes a place for the names of groups?
+/// Returns whether this format of meshes has a place for the names of groups.
 bool keeps_names(const std::string& format);
 
 // For people, lines of text:
 std::string soup_text(const std::string& path, const PolygonSoup& soup);
 std::string tet_mesh_text(const std::string& path, const TetMesh& mesh);
 std::string merge_text(const MergeReport& report);
-/// What the builder of a complex changed.
+/// Describes the changes made by the builder of a complex.
 std::string cleanup_text(const Plc::Cleanup& cleanup);
 std::string losses_text(const std::vector<std::string>& losses);
 

@@ -20,7 +20,7 @@ void append(std::string& bytes, const std::vector<Number>& numbers) {
   bytes.append(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(Number));
 }
 
-/// The text of a script element: no `<` in it can end the script.
+/// Returns the text of a script element: no `<` in it can end the script.
 std::string json_in_page(const Json& json) {
   std::string text = json_text(json), safe;
   safe.reserve(text.size());
@@ -72,7 +72,7 @@ Json shown_json(const ShownMesh& shown) {
           {"worst", std::move(worst)}};
 }
 
-/// Pages show how many pairs of nodes there are, not which.
+/// Removes the pairs of nodes, of which pages only show the number.
 Json without_node_pairs(Json report) {
   if (const auto periodic = report.find("periodic"); periodic != report.end() && periodic->is_object())
     for (Json& pair : (*periodic)["pairs"]) pair.erase("node_pairs");

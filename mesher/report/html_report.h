@@ -9,12 +9,12 @@
 
 namespace collarmesh::report {
 
-/// A run as one page that needs no network: `report` (`run_json`) to read, and a view of the mesh, in the
-/// same unit of length, that turns and cuts. `trace`: what the view shows besides, step by step.
+/// Returns a run as one page that needs no network: `report` (`run_json`) to read, and a view of the mesh, in
+/// the same unit of length, that can be turned and cut. The view also shows the steps of `trace`.
 std::string html_report(const nlohmann::ordered_json& report, const ShownMesh& shown,
                         const std::vector<ShownStep>& trace = {});
 
-/// Is a report with this path to be a page?
+/// Returns whether a report with this path is a page.
 bool is_html(const std::string& path);
 
 }  // namespace collarmesh::report

@@ -4,8 +4,8 @@
 
 namespace collarmesh::report {
 
-/// The page of a report, made of the files in html_report/ and of three.js when the program is built. In
-/// place of `<!--report-->`, `<!--shown-->` and `<!--data-->`, in this order, come those of a run.
+/// The page of a report, made at build time from the files in html_report/ and from three.js. The data of a
+/// run replace `<!--report-->`, `<!--shown-->` and `<!--data-->`, in this order.
 extern const std::string_view html_report_page;
 
 }  // namespace collarmesh::report

@@ -5,7 +5,7 @@
 
 namespace collarmesh::report {
 
-/// As text. Bytes that are no UTF-8, of names of files, become replacement characters.
+/// Returns JSON as text. Bytes of file names that are not UTF-8 become replacement characters.
 inline std::string json_text(const nlohmann::ordered_json& json, int indent = -1) {
   return json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }

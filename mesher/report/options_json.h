@@ -6,10 +6,10 @@
 
 namespace collarmesh::report {
 
-/// What a run was asked for: the options that its mesh depends on, null where a default depends on the input.
+/// Returns the options of a run that its mesh depends on; null if a default depends on the input.
 nlohmann::ordered_json options_json(const RunOptions& options);
 
-/// The table of options, for what is made from it elsewhere.
+/// Returns the table of options, for files generated from it.
 nlohmann::ordered_json option_table_json();
 
 }  // namespace collarmesh::report

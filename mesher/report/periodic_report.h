@@ -8,9 +8,9 @@
 
 namespace collarmesh::report {
 
-/// A line for each pair.
+/// Returns a line for each pair.
 std::string periodic_text(const PeriodicReport& report);
-/// With the motion of each pair, and its nodes as rows of the mesh's points, from 0.
+/// Returns the report with the motion of each pair, and its nodes as indices of the mesh's points, from 0.
 nlohmann::ordered_json periodic_json(const PeriodicReport& report, const TetMesh& mesh);
 
 }  // namespace collarmesh::report

@@ -18,13 +18,13 @@
 
 namespace collarmesh::report {
 
-/// A run, as it was asked for.
+/// The request of a run.
 struct RequestedRun : RunOptions {
   std::vector<std::string> inputs;
   std::string output;
 };
 
-/// Everything one run of the mesher found out.
+/// All results of one run of the mesher.
 struct MeshRun : SoupPipelineResult {
   PlcSummary summary;
   std::vector<std::string> warnings;  ///< of options; those of the input are in the complex
@@ -36,7 +36,7 @@ struct MeshRun : SoupPipelineResult {
 };
 
 // For programs (--report, --json):
-/// `names`: how features without a name are called. `colours`: by their tags.
+/// Describes a complex. `names` is how features without a name are called. `colours` are by their tags.
 nlohmann::ordered_json complex_json(const Plc& plc, const PlcSummary& summary,
                                     GroupNames names = GroupNames::complex, const TagColours& colours = {});
 nlohmann::ordered_json measures_json(const TetMesh& mesh, const MeshMeasures& measures);
@@ -45,25 +45,25 @@ nlohmann::ordered_json repair_json(const RepairReport& report);
 nlohmann::ordered_json prediction_json(const Prediction& prediction);
 nlohmann::ordered_json predictions_json(const std::vector<Prediction>& predictions);
 nlohmann::ordered_json run_json(const RequestedRun& arguments, const MeshRun& run);
-/// Of `collarmesh repair`.
+/// Returns the report of `collarmesh repair`.
 nlohmann::ordered_json repair_run_json(const RequestedRun& arguments, const Plc& plc,
                                        const PlcSummary& summary, const RepairReport& report);
 
 // For people, lines of text:
-/// "warning: ..." lines of the input, the first ones if there are very many.
+/// Returns "warning: ..." lines of the input, the first ones if there are very many.
 std::string warnings_text(const Plc& plc);
-/// "repaired: ..." lines, the first ones if there are very many. `quiet`: only of what may change the shape
-/// by more than the tolerance.
+/// Returns "repaired: ..." lines, the first ones if there are very many. `quiet`: only changes that may alter
+/// the shape by more than the tolerance.
 std::string repair_text(const RepairReport& report, bool quiet = false);
 std::string complex_text(const Plc& plc, const PlcSummary& summary, GroupNames names = GroupNames::complex);
-/// A table; empty where nothing was predicted.
+/// Returns a table; empty without predictions.
 std::string predictions_text(const std::vector<Prediction>& predictions);
-/// Empty for a mesh that is not partitioned.
+/// Returns an empty text for a mesh that is not partitioned.
 std::string partitions_text(const PartitionMeasures& measures);
 std::string mesh_text(const TetMesh& mesh, const MeshMeasures& measures, const CheckReport* judged = nullptr);
 std::string findings_text(const CheckReport& report, std::size_t listed);
 std::string check_text(const CheckReport& report);
-/// "straightened: ..." lines of the nodes that did not stay on their smooth feature, the first ones.
+/// Returns "straightened: ..." lines for the first nodes that did not stay on their smooth feature.
 std::string straightened_text(const SecondOrderReport& report, std::size_t listed);
 std::string run_text(const RequestedRun& arguments, const MeshRun& run);
 

@@ -17,10 +17,10 @@ namespace {
 
 Json point_json(const Point& p) { return Json::array({p.x, p.y, p.z}); }
 
-/// JSON has no infinity.
+/// Returns a number, or null for infinity, which JSON does not have.
 Json number_json(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-/// Keys that are all different: added by name, each would be compared with all before it.
+/// Makes an object from keys that are all different, without comparing each key with all before it.
 template <class Number, class Value>
 Json by_number(const std::map<Number, Value>& values) {
   Json::object_t object;
@@ -49,7 +49,7 @@ const char* status_name(MeshStatus status) {
   return "unknown";
 }
 
-/// Some places of a change; `size` is what their size is called, or null.
+/// Returns some places of a change; `size` is the name of their size, or null.
 Json places_json(const RepairPlaces& places, const char* size) {
   Json where = Json::array();
   for (const Point& p : places.where) where.push_back(point_json(p));
@@ -169,7 +169,7 @@ Json worst_json(const std::vector<WorstTet>& worst) {
   return list;
 }
 
-/// Null for a mesh that is not partitioned.
+/// Returns null for a mesh that is not partitioned.
 Json partitions_json(const PartitionMeasures& m) {
   if (m.partitions == 0) return nullptr;
   return {{"count", m.partitions},
@@ -179,19 +179,19 @@ Json partitions_json(const PartitionMeasures& m) {
           {"cut_faces", m.cut_faces}};
 }
 
-/// Null where there is none.
+/// Returns the name, null if there is none.
 Json name_json(const Plc& plc, GroupNames names, std::size_t dimension, Tag tag) {
   const std::string name = name_of(plc.names, names, dimension, tag);
   return name.empty() ? Json(nullptr) : Json(name);
 }
 
-/// Null where a file gave none.
+/// Returns the colour, null if the file gave none.
 Json colour_json(const std::map<Tag, Colour>& colours, Tag tag) {
   const auto found = colours.find(tag);
   return found == colours.end() ? Json(nullptr) : Json(colour_text(found->second));
 }
 
-/// Estimates may exceed every integer.
+/// Returns an estimate as a whole number if it fits: estimates may exceed every integer.
 Json whole_json(double value) {
   constexpr double exact = 9007199254740992;  // 2^53
   return std::fabs(value) <= exact ? Json(std::llround(value)) : number_json(value);
@@ -274,7 +274,7 @@ Json measures_json(const TetMesh& mesh, const MeshMeasures& m) {
             {"radius_edge", {{"bin_width", 0.25}, {"tets", m.radius_edges}}}}}};
 }
 
-/// Of each feature: its number, the measure in the input and in the mesh, and by how much this is off.
+/// Returns for each feature its number, its measure in the input and in the mesh, and the difference.
 Json kept_json(const std::vector<double>& input, const std::vector<double>& mesh, std::size_t first = 0) {
   Json all = Json::array();
   for (std::size_t i = first; i < std::min(input.size(), mesh.size()); ++i)
@@ -285,7 +285,7 @@ Json kept_json(const std::vector<double>& input, const std::vector<double>& mesh
   return all;
 }
 
-/// Of triangles alone; null for a mesh of tets.
+/// Returns the measures of triangles; null for a mesh of tets.
 Json triangles_json(const std::optional<TriangleMeasures>& m) {
   if (!m) return nullptr;
   return {{"triangles", m->triangles},
@@ -400,7 +400,7 @@ Json remeshing_json(const RemeshReport& r) {
 
 Json run_json(const RequestedRun& arguments, const MeshRun& run) {
   Json seconds = Json::object();
-  for (const auto& [stage, time] : run.times.stages())  // some come twice
+  for (const auto& [stage, time] : run.times.stages())  // some stages occur twice
     seconds[stage] = seconds.value(stage, 0.0) + time;
   seconds["total"] = run.times.total();
   Json json{{"program", "collarmesh"},

@@ -17,7 +17,7 @@ namespace {
 
 using Out = std::back_insert_iterator<std::string>;
 
-/// Lists longer than this are cut; --json has them all.
+/// Longer lists are cut; --json has them all.
 constexpr std::size_t listed = 20;
 
 std::string in_brackets(const std::string& name) { return name.empty() ? name : fmt::format(" ({})", name); }
@@ -42,7 +42,7 @@ void append_creases(std::string& text, const Plc& plc, const std::vector<Crease>
   if (creases.size() > listed) fmt::format_to(Out(text), "    ... and {} more\n", creases.size() - listed);
 }
 
-/// A ratio of 0 is that of no tetrahedron.
+/// Describes shapes. A ratio of 0 means that there is no tetrahedron.
 std::string shape_text(double min_dihedral, double max_dihedral, double max_radius_edge) {
   if (max_dihedral == 0) return "all tets in collars";
   return fmt::format("dihedral angles from {:.2f} to {:.2f} degrees, {}", min_dihedral, max_dihedral,
@@ -57,7 +57,8 @@ std::string times_text(const StageTimes& times) {
   return text;
 }
 
-/// Of a report what is no matter of the tolerance: holes filled, parts removed, a surface around everything.
+/// Returns the changes that are independent of the tolerance: holes filled, parts removed, a surface around
+/// everything.
 RepairReport beyond_tolerance(const RepairReport& report) {
   RepairReport rest;
   rest.turned = report.turned;
@@ -77,7 +78,7 @@ RepairReport beyond_tolerance(const RepairReport& report) {
   return rest;
 }
 
-/// By number, as sizes and formats name them.
+/// Adds patches by number, as sizes and formats refer to them.
 void append_patches(std::string& text, const Plc& plc, GroupNames names) {
   const std::vector<PatchSummary> patches = summarize_patches(plc);
   for (std::size_t k = 0; k < std::min(patches.size(), listed); ++k) {
@@ -102,12 +103,12 @@ void append_curves(std::string& text, const Plc& plc, GroupNames names) {
     fmt::format_to(Out(text), "  ... and {} more curves (--json lists all)\n", curves.size() - listed);
 }
 
-/// Digits are of no use beyond those of a double.
+/// Returns a count without digits beyond the precision of a double.
 std::string count_text(double count) {
   return count < 1e12 ? fmt::format("{:.0f}", count) : fmt::format("{:.3g}", count);
 }
 
-/// Beside the input's volume.
+/// Describes the difference from the input's volume.
 std::string off_text(const CheckReport& r, std::size_t region) {
   if (region >= std::min(r.of_input.volumes.size(), r.of_mesh.volumes.size())) return {};
   const double input = r.of_input.volumes[region];
@@ -187,7 +188,7 @@ std::string angles_text(const TriangleMeasures& m) {
                          : "");
 }
 
-/// Of triangles alone.
+/// Describes a mesh of triangles.
 std::string surface_text(const TetMesh& mesh, const CheckReport* judged) {
   std::string text = fmt::format("{} triangles, {} points, {} curve edges\n", mesh.faces.size(),
                                  mesh.points.size(), mesh.edges.size());
@@ -305,7 +306,7 @@ std::string run_text(const RequestedRun& arguments, const MeshRun& run) {
   if (const auto& r = run.remeshing)
     fmt::format_to(
         Out(text),
-        "  before {} tets, dihedral angles from {:.1f} to {:.1f}; {} edges divided, {} contracted\n",
+        "  before {} tets, dihedral angles from {:.1f} to {:.1f}; {} edges divided, {} collapsed\n",
         r->tets_before, r->smallest_angle_before, r->largest_angle_before, r->divided_edges,
         r->contracted_edges);
   text += cleanup_text(run.plc.cleanup);
@@ -319,14 +320,14 @@ std::string run_text(const RequestedRun& arguments, const MeshRun& run) {
   for (const std::string& note : run.notes) fmt::format_to(Out(text), "  {}\n", note);
   if (run.projection) text += projection_text(run.plc, *run.projection);
   if (run.coarsening && arguments.verbose)
-    fmt::format_to(Out(text), "  {} tets coarsened to {}: {} edges contracted, {} of them with repair\n",
+    fmt::format_to(Out(text), "  {} tets coarsened to {}: {} edges collapsed, {} of them with repair\n",
                    run.coarsening->tets_before, run.coarsening->tets_after, run.coarsening->contracted_edges,
                    run.coarsening->repaired);
   const ImproveReport& i = run.improvement;
   if (arguments.verbose && i.candidates > 0)
     fmt::format_to(Out(text),
                    "  {} of {} poor tets improved: {} edges removed, {} boundary flips, {} vertices moved, "
-                   "{} edges contracted, {} vertices inserted; {} detours\n",
+                   "{} edges collapsed, {} vertices inserted; {} detours\n",
                    i.candidates - std::min(i.remaining, i.candidates), i.candidates, i.edge_removals,
                    i.boundary_flips, i.moved_vertices, i.contracted_edges, i.inserted_vertices, i.detours);
   if (arguments.order == 2)

@@ -8,7 +8,7 @@ namespace collarmesh::report {
 
 namespace {
 
-/// The tets with a face among the mesh's faces.
+/// Returns which tets have a face among the mesh's faces.
 std::vector<bool> tets_at_faces(const TetMesh& mesh) {
   std::vector<std::array<Index, 3>> faces(mesh.faces);
   for (auto& face : faces) std::sort(face.begin(), face.end());
@@ -38,7 +38,7 @@ bool meets_middle_plane(const TetMesh& mesh, const std::array<Index, 4>& tet, co
   return false;
 }
 
-/// Adds the faces on patches, all of whose points are shown.
+/// Adds the faces on patches if all their points are shown.
 void add_faces(const TetMesh& mesh, const std::vector<std::uint32_t>& point_number, ShownMesh& shown) {
   shown.face_tags = mesh.face_tag;
   std::sort(shown.face_tags.begin(), shown.face_tags.end());

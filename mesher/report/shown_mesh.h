@@ -11,12 +11,12 @@ namespace collarmesh::report {
 /// The part of a mesh that a page shows.
 struct ShownMesh {
   struct ShownWorst {
-    Index tet;                 ///< of those shown
+    Index tet;                 ///< index among the shown tets
     double smallest, largest;  ///< dihedral angles, degrees
     Point where;               ///< its centre
   };
 
-  bool complete = true;               ///< all tets are there
+  bool complete = true;               ///< all tets of the mesh are included
   Point centre;                       ///< of the bounding box
   std::vector<float> points;          ///< three numbers for each, relative to the centre
   std::vector<std::uint32_t> tets;    ///< four corners for each
@@ -27,8 +27,8 @@ struct ShownMesh {
   std::vector<ShownWorst> worst;      ///< as given
 };
 
-/// All tets up to `most`; of more those with a face on the boundary or an interface, those that meet the
-/// planes through the centre, and the worst. Cost: linear.
+/// Returns all tets up to `most`; of larger meshes those with a face on the boundary or an interface, those
+/// that meet the planes through the centre, and the worst. Cost: linear.
 ShownMesh shown_mesh(const TetMesh& mesh, const std::vector<WorstTet>& worst, std::size_t most = 100000);
 
 }  // namespace collarmesh::report

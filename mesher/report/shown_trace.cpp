@@ -11,8 +11,8 @@ namespace {
 
 using State = TraceStep::State;
 
-/// The tets of a step that are worth a look, with the faces whose points they have. Those that are to be
-/// ripped out are marked as both in a collar and thin, which no others are.
+/// Makes a mesh from the tets of a step worth showing, with the faces of their points. Tets about to be
+/// ripped out are marked as both in a collar and thin, a combination that no other tet has.
 TetMesh mesh_of(const TraceStep& step) {
   TetMesh mesh;
   mesh.points = step.points;
@@ -38,8 +38,8 @@ TetMesh mesh_of(const TraceStep& step) {
   return mesh;
 }
 
-/// Faces have the numbers of the mesh's tags; those that it does not have go, and those with corners that
-/// are not shown.
+/// Replaces the tags of faces by indices into the mesh's tags; removes faces with other tags, and those with
+/// corners that are not shown.
 void use_tags_of(const ShownMesh& mesh, ShownMesh& cells) {
   std::vector<std::uint32_t> faces;
   for (std::size_t f = 0; f < cells.faces.size(); f += 4) {

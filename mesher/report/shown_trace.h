@@ -14,11 +14,12 @@ struct ShownStep {
   ShownMesh cells;           ///< relative to the centre of the mesh shown, with its face tags; marks: 1 in a
                              ///< collar, 2 thin, 4 about to be ripped out
   std::vector<float> lines;  ///< two points, six numbers, for each segment of a curve
-  std::vector<float> balls;  ///< of collars: a centre and a radius, four numbers for each
+  std::vector<float> balls;  ///< balls of collars: a centre and a radius, four numbers for each
 };
 
-/// The steps that have few enough tets to be shown, at most `most` each: of larger ones those at the surface
-/// and at the planes through the centre. Cells outside of all regions are shown where there are no others.
+/// Returns the steps that have few enough tets to be shown, at most `most` each: of larger steps the tets at
+/// the surface and at the planes through the centre. Shows cells outside all regions only if there are no
+/// others.
 std::vector<ShownStep> shown_trace(const Trace& trace, const ShownMesh& mesh, std::size_t most = 20000);
 
 }  // namespace collarmesh::report

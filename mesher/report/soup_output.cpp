@@ -16,8 +16,8 @@ CutFacets cut_for(const std::string& format) {
   return format == ".stl" ? CutFacets::all : CutFacets::complex;
 }
 
-/// Region and hole points say which parts of space are solid; a surface says it by its orientation.
-/// Returns what there is to tell.
+/// Places region and hole points, which define the solid parts of space in a complex; a surface defines them
+/// by its orientation. Returns the text to print.
 std::string place_regions(const std::vector<PolygonSoup>& soups, PlcOptions options, PolygonSoup& merged) {
   options.require_solid = false;
   try {

@@ -8,15 +8,15 @@
 
 namespace collarmesh::report {
 
-/// Several soups as one, ready to be written.
+/// Several soups merged into one, ready to be written.
 struct MergedSoup {
   PolygonSoup soup;
   std::string told;  ///< lines for people: what was welded, merged, dropped and is lost in the format
 };
 
-/// Make soups one for a file at `path` ("-" is standard output) in `format` (an extension with its dot;
-/// empty: that of the path). For .poly and .smesh points inside the regions and cavities are found. Throws
-/// PlcError for points that are not finite, indices out of range, and facets to be cut that are not planar.
+/// Merges soups for a file at `path` ("-" is standard output) in `format` (an extension with its dot; empty:
+/// that of the path). For .poly and .smesh it finds points inside the regions and cavities. Throws PlcError
+/// for points that are not finite, indices out of range, and facets to be cut that are not planar.
 MergedSoup merge_for_output(const std::vector<PolygonSoup>& soups, const std::string& path,
                             const std::string& format, const PlcOptions& plc);
 

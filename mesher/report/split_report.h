@@ -7,7 +7,7 @@
 
 namespace collarmesh::report {
 
-/// A line for each patch, and one for its nodes.
+/// Returns a line for each patch, and one for its nodes.
 std::string split_text(const SplitReport& report);
 nlohmann::ordered_json split_json(const SplitReport& report);
 

@@ -20,7 +20,7 @@ bool matches(const std::array<Index, 2>& regions, const SurfaceSelection& s) {
   return regions[0] != regions[1] && is(regions[0], s.back) && is(regions[1], s.front);
 }
 
-/// Triangles whose back and front are as selected, turned if need be.
+/// Selects triangles whose back and front are as asked, reversed if necessary.
 void select(const TetMesh& mesh, const SurfaceSelection& selection, SelectedSurface& surface) {
   for (Index f = 0; f < mesh.faces.size(); ++f) {
     Triangle corners = mesh.faces[f];
@@ -44,8 +44,8 @@ struct Side {
   auto points() const { return std::pair(low, high); }
 };
 
-/// For each side the one of the neighbour across it; none at a border, where more than two triangles
-/// meet and where two meet with opposite orientation.
+/// Finds for each side that of the neighbour across it; none at a border, where more than two triangles meet
+/// and where two meet with opposite orientation.
 std::vector<Index> find_neighbours(const std::vector<Triangle>& triangles) {
   std::vector<Side> sides;
   for (Index t = 0; t < triangles.size(); ++t)
@@ -68,7 +68,7 @@ std::vector<Index> find_neighbours(const std::vector<Triangle>& triangles) {
   return neighbour;
 }
 
-/// Give each fan of triangles around a point a vertex of its own.
+/// Gives each fan of triangles around a point a vertex of its own.
 void separate_fans(const std::vector<Index>& neighbour, SelectedSurface& surface) {
   std::vector<Index> fan(3 * surface.triangles.size());  // by corner, numbered like the side it begins
   std::iota(fan.begin(), fan.end(), 0);
@@ -100,7 +100,7 @@ void separate_fans(const std::vector<Index>& neighbour, SelectedSurface& surface
       seen.size() - static_cast<std::size_t>(std::unique(seen.begin(), seen.end()) - seen.begin());
 }
 
-/// Neighbours follow each other: OpenMesh can link a face in when it touches the ones before.
+/// Orders triangles so that neighbours follow each other: OpenMesh can link a face that touches earlier ones.
 void order_by_neighbours(const std::vector<Index>& neighbour, SelectedSurface& surface) {
   const std::size_t count = surface.triangles.size();
   std::vector<Index> order;
@@ -128,7 +128,7 @@ void order_by_neighbours(const std::vector<Index>& neighbour, SelectedSurface& s
   surface.face_regions = std::move(sorted.face_regions);
 }
 
-/// Every copy of an edge on a curve.
+/// Finds every copy of an edge on a curve.
 void find_curves(const TetMesh& mesh, SelectedSurface& surface) {
   std::map<std::pair<Index, Index>, Tag> tags;
   for (std::size_t e = 0; e < mesh.edges.size(); ++e)

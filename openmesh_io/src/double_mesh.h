@@ -10,7 +10,7 @@ struct DoubleTraits : OpenMesh::DefaultTraits {
 };
 using DoubleMesh = OpenMesh::PolyMesh_ArrayKernelT<DoubleTraits>;
 
-/// OpenMesh reports to the standard streams, a library of ours does not.
+/// Silences OpenMesh, which reports to the standard streams; our libraries do not.
 class Quiet {
  public:
   Quiet() : errors_(omerr().is_enabled()), log_(omlog().is_enabled()) {

@@ -88,7 +88,7 @@ class LayoutCheck {
       read_positions(chunk, count);
     else
       skip(count * chunk.components * chunk.value_bytes, "the values of a chunk");
-    // Old files do not say how many faces OpenMesh will make.
+    // Old files do not give the number of faces that OpenMesh will make.
     const bool needed =
         positions || chunk.values == Values::topology || (face_status && version_ >= version_2);
     if (needed) layout_.safe_bytes.append(bytes_.substr(begin, at_ - begin));
@@ -111,7 +111,7 @@ class LayoutCheck {
     const bool topology = chunk.values == Values::topology, status = chunk.values == Values::status;
     const bool too_early = (topology && chunk.entity == Entity::vertex && !has_positions_) ||
                            (status && chunk.entity == Entity::face && !has_faces_);
-    // Old files have the corners of the faces alone, from which OpenMesh makes the halfedges.
+    // Old files have only the corners of the faces, from which OpenMesh makes the halfedges.
     const bool too_new = topology && chunk.entity != Entity::face && version_ < version_2;
     if (too_early || too_new) fail("the chunks are not in the order that OpenMesh writes");
   }

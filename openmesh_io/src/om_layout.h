@@ -10,12 +10,12 @@ namespace collarmesh::openmesh_io {
 
 struct OmLayout {
   std::uint32_t vertices = 0, faces = 0, edges = 0;
-  /// The header and the chunks of positions, topology and deleted faces: what is needed and safe to read.
-  /// Custom properties and what follows them are left out.
+  /// The header and the chunks of positions, topology and deleted faces: the data that is needed and safe to
+  /// read. Custom properties and later data are left out.
   std::string safe_bytes;
 };
 
-/// Throws ReadError "PATH: byte N: ...".
+/// Checks a file's layout. Throws ReadError "PATH: byte N: ...".
 OmLayout check_om_layout(const std::string& path, std::string_view bytes);
 
 }  // namespace collarmesh::openmesh_io

@@ -19,7 +19,7 @@ namespace collarmesh::brep {
 
 namespace {
 
-/// Run OpenCASCADE on a shape; its own exceptions become errors of the shape.
+/// Runs OpenCASCADE on a shape; its own exceptions become errors of the shape.
 template <class Work>
 auto on_shape(const std::string& name, const char* doing, const Work& work) {
   try {
@@ -40,7 +40,7 @@ double diagonal_of(const TopoDS_Shape& shape) {
   return box.IsVoid() ? 0 : std::sqrt(box.SquareExtent());
 }
 
-/// The numbers of the faces, those first whose points are nearest.
+/// Returns the numbers of the faces, nearest first.
 std::vector<std::pair<double, int>> faces_by_distance(const Tessellation& tessellation, const Point& where) {
   std::vector<std::pair<double, int>> faces;
   for (const auto& [number, pieces] : tessellation.faces) {
@@ -60,7 +60,7 @@ CadModel::CadModel(const TopoDS_Shape& shape, std::string name, const CadOptions
   parts_->name = std::move(name);
   parts_->labels = std::move(labels);
   on_shape(parts_->name, "finding solids", [&] {
-    // A copy: the triangles that the caller's shape has stay as they are.
+    // Use a copy, so that triangles of the caller's shape stay as they are.
     const TopoDS_Shape copy =
         shape.IsNull() ? shape : BRepBuilderAPI_Copy(shape, /*copyGeom=*/false, /*copyMesh=*/false).Shape();
     parts_->topology = find_topology(copy, parts_->name, options);
@@ -136,7 +136,7 @@ std::string CadModel::invalid_parts() const {
       for (const TopoDS_Shape& part : subshapes(shape, kind))
         if (!analyzer.IsValid(part))
           invalid.push_back(fmt::format("{} at {}", parts_->topology.name(part), text(place_of(part))));
-      if (!invalid.empty()) break;  // what contains them is invalid too
+      if (!invalid.empty()) break;  // shapes that contain them are invalid, too
     }
   } catch (const Standard_Failure&) {
     return {};

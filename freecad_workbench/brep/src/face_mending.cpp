@@ -1,4 +1,4 @@
-// Ways to triangulate a face that BRepMesh fails on together with its neighbours.
+// Triangulates faces for which BRepMesh fails together with their neighbours.
 #include "face_mending.h"
 
 #include <BRepAdaptor_Surface.hxx>
@@ -35,7 +35,7 @@ using Parameters = std::array<double, 2>;
 Point to_point(const gp_Pnt& p) { return {p.X(), p.Y(), p.Z()}; }
 Ends sorted(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
 
-/// The sides that an odd number of triangles has.
+/// Returns the sides that an odd number of triangles has.
 std::map<Ends, int> odd_sides(const std::vector<std::array<Index, 3>>& triangles) {
   std::map<Ends, int> uses;
   for (const auto& t : triangles)
@@ -70,7 +70,7 @@ void triangulate(const TopoDS_Shape& shape, double deflection, double angle) {
   const BRepMesh_IncrementalMesh mesh(shape, parameters);
 }
 
-/// A face's own triangles, none where it has none.
+/// Returns a face's own triangles, none if it has none.
 MendedFace triangles_on(const TopoDS_Face& face) {
   MendedFace own;
   own.face = face;
@@ -92,7 +92,7 @@ MendedFace triangles_on(const TopoDS_Face& face) {
   return own;
 }
 
-/// Ways in the order of their merit; the first one that fits is the result.
+/// Tries ways to triangulate, best first; the first one that fits is the result.
 class Mender {
  public:
   Mender(const TopoDS_Face& face, const Outline& outline, double deflection, double angle)
@@ -105,7 +105,7 @@ class Mender {
 
   MendedFace run() {
     constexpr double coarse =
-        4;  // finer deflections rarely help, and take minutes where an outline crosses itself
+        4;  // finer deflections rarely help, and take minutes if an outline crosses itself
     try_way([&] { return alone(copied(face_), "alone"); });
     try_way([&] { return alone(healed(face_), "alone after shape healing"); });
     try_way([&] { return in_parameter_plane(); });
@@ -127,7 +127,7 @@ class Mender {
       least_off_ = off;
       best_ = std::move(next);
     } catch (const Standard_Failure&) {
-      return;  // the next way
+      return;  // try the next way
     }
   }
 
@@ -161,7 +161,7 @@ class Mender {
     return nearest;
   }
 
-  /// The outline with nothing inside it.
+  /// Triangulates the outline without inner points.
   MendedFace bare() const {
     MendedFace result;
     result.face = face_;
@@ -193,7 +193,8 @@ class Mender {
     return result;
   }
 
-  /// What a step of one in each parameter is in space, about: triangles are to be good there.
+  /// Returns the approximate length in space of a step of one in each parameter, so that triangles are good
+  /// in space.
   Parameters lengths_of_parameters(const BRepAdaptor_Surface& surface) const {
     Parameters sum{0, 0};
     for (const Parameters& uv : outline_.parameters) {
@@ -207,7 +208,7 @@ class Mender {
     return sum;
   }
 
-  /// The nodes of a patch of the surface around the outline, without those that come close to the outline.
+  /// Returns the nodes of a patch of the surface around the outline, without those close to the outline.
   std::vector<Parameters> inner_parameters(const std::vector<Parameters>& outline,
                                            const Parameters& scale) const {
     std::vector<Parameters> inner;
@@ -229,7 +230,7 @@ class Mender {
     return inner;
   }
 
-  /// Closer to a chord than a third of its length?
+  /// Returns whether a point is closer to a chord than a third of its length.
   bool comes_close(const Parameters& p, const std::vector<Parameters>& outline) const {
     return std::any_of(outline_.chords.begin(), outline_.chords.end(), [&](const Ends& chord) {
       const Parameters &a = outline[chord[0]], &b = outline[chord[1]];
@@ -240,7 +241,7 @@ class Mender {
     });
   }
 
-  /// In the plane across the outline's area vector, if the triangles there are on the surface.
+  /// Triangulates in the plane across the outline's area vector, if the triangles there are on the surface.
   MendedFace in_fitted_plane() const {
     MendedFace result = bare();
     result.how = "from its outline in a fitted plane";
@@ -266,7 +267,7 @@ class Mender {
 
   bool lies_on_surface(const MendedFace& mended) const {
     ShapeAnalysis_Surface surface(BRep_Tool::Surface(face_));
-    constexpr double rough = 10;  // deflections
+    constexpr double rough = 10;  // in deflections
     return std::all_of(mended.triangles.begin(), mended.triangles.end(), [&](const auto& t) {
       const Point centre = mended.points[t[0]] + (mended.points[t[1]] - mended.points[t[0]]) / 3 +
                            (mended.points[t[2]] - mended.points[t[0]]) / 3;
@@ -280,12 +281,12 @@ class Mender {
     for (auto& t : mended.triangles) std::swap(t[1], t[2]);
   }
 
-  static constexpr Index first_own = Index(1) << 31U;  // beyond the shape's points
+  static constexpr Index first_own = Index(1) << 31U;  // numbers of own points, beyond the shape's points
 
   const TopoDS_Face& face_;
   const Outline& outline_;
   double deflection_, angle_;
-  double near_ = 0;           // points of the outline and of the face alone are the same
+  double near_ = 0;           // distance below which points of the outline and of the face alone are the same
   std::vector<Ends> chords_;  // of points
   MendedFace best_;
   std::size_t least_off_ = std::numeric_limits<std::size_t>::max();

@@ -44,7 +44,7 @@ class Flipper {
     return found == triangle_at_.end() ? none : found->second;
   }
 
-  /// The side i that runs past the corner opposite to it without room in between, none if there is no such.
+  /// Returns the side i that passes the opposite corner without a gap; none if there is none.
   Index side_with_corner_on_it(Index t) const {
     Index longest = 0;
     for (Index i = 1; i < 3; ++i)

@@ -12,7 +12,7 @@ using Triangle = std::array<Index, 3>;
 
 std::uint64_t key(Index from, Index to) { return std::uint64_t{from} << 32U | to; }
 
-/// The triangles of a face, each of which has the others at its sides.
+/// The triangles of a face with their neighbours.
 class Unfolder {
  public:
   Unfolder(const std::vector<Point>& points, std::vector<Triangle>& triangles)
@@ -72,8 +72,8 @@ class Unfolder {
   }
   std::size_t folds_at(Index t) const { return folds_around(std::span(&t, 1), {}); }
 
-  /// The folds between some triangles, and to those around them, if these have the corners `as` instead
-  /// (unless that is empty). Their outer sides stay.
+  /// Returns the number of folds between some triangles, and to those around them, if their corners are
+  /// replaced by `as` (unless that is empty). Their outer sides stay.
   std::size_t folds_around(std::span<const Index> some, std::span<const Triangle> as) const {
     std::vector<Triangle> shapes(as.begin(), as.end());
     if (as.empty())
@@ -111,7 +111,7 @@ class Unfolder {
     }
   }
 
-  /// Flip a side of a triangle if that leaves fewer folds.
+  /// Flips a side of a triangle if that leaves fewer folds.
   bool flip_one(Index t) {
     for (Index i = 0; i < 3; ++i) {
       const Index other = across(t, i);
@@ -130,7 +130,7 @@ class Unfolder {
     return false;
   }
 
-  /// The triangles around a point inside the face in their order; empty where they do not close.
+  /// Returns the triangles around a point inside the face, in order; empty if they do not close.
   std::vector<Index> star(Index t, Index p) const {
     std::vector<Index> around;
     for (Index next = t; next != none && around.size() < most_in_star;) {
@@ -143,7 +143,7 @@ class Unfolder {
     return {};
   }
 
-  /// Let a corner inside the face become one with a neighbour if that leaves fewer folds.
+  /// Collapses an edge of a corner inside the face if that leaves fewer folds.
   bool collapse_one(Index t, Index first_inner, double distance) {
     for (Index i = 0; i < 3; ++i) {
       const Index p = corner(t, i);
@@ -163,7 +163,7 @@ class Unfolder {
     return false;
   }
 
-  /// The triangles of a star without its centre, all with this corner; empty where edges are there already.
+  /// Returns the triangles of a star without its centre, all with this corner; empty if edges exist already.
   std::vector<Triangle> fan_from(Index apex, const std::vector<Index>& around, Index centre) const {
     std::vector<Triangle> fan;
     for (const Index s : around) {
@@ -181,7 +181,8 @@ class Unfolder {
     return fan;
   }
 
-  /// Is the point within the distance of a triangle's plane, seen inside of it, or of a corner?
+  /// Returns whether the point is within the distance of a triangle's plane, with its foot inside, or of a
+  /// corner.
   bool keeps_near(Index p, const std::vector<Triangle>& fan, double distance_limit) const {
     return std::any_of(fan.begin(), fan.end(), [&](const Triangle& t) {
       const Vector n = normal(t);

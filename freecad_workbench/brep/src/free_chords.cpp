@@ -1,4 +1,4 @@
-// Chords and points of the edges and vertices inside solids that belong to no face.
+// Makes chords and points of the edges and vertices inside solids that belong to no face.
 #include "free_chords.h"
 
 #include "free_parts.h"
@@ -61,7 +61,7 @@ class Cutter {
   Samples samples_of(const TopoDS_Edge& edge) const {
     const BRepAdaptor_Curve curve(edge);
     const int least =
-        curve.GetType() == GeomAbs_Line ? 2 : 3;  // points, so that a curve is not taken for straight
+        curve.GetType() == GeomAbs_Line ? 2 : 3;  // points, so that a curve does not look straight
     const GCPnts_TangentialDeflection cut(curve, options_.angle * std::numbers::pi / 180, options_.deflection,
                                           least);
     Samples samples;
@@ -79,7 +79,7 @@ class Cutter {
     return static_cast<Index>(soup_.points.size() - 1);
   }
 
-  /// Ends that meet within their tolerance are one point.
+  /// Returns the point of a vertex. Ends that meet within their tolerance are one point.
   Index vertex(const TopoDS_Vertex& vertex) {
     const Point p = to_point(BRep_Tool::Pnt(vertex));
     const double tolerance = std::max(Precision::Confusion(), BRep_Tool::Tolerance(vertex));
@@ -115,7 +115,8 @@ class CutEdges {
  public:
   explicit CutEdges(double deflection) : reach_(2 * deflection) {}
 
-  /// Is one so near that its chords and those of this edge may cross? Straight edges are their chords.
+  /// Returns whether one is so near that its chords and those of this edge may cross. Straight edges are
+  /// their own chords.
   bool are_near(const TopoDS_Shape& edge) const {
     const bool straight = is_straight(edge);
     const Bnd_Box box = box_of(edge);
@@ -173,7 +174,7 @@ PolygonSoup cut_free_parts(const Topology& topology, const std::string& file,
   Cutter cutter(topology, file, options, result);
   CutEdges edges(options.deflection);
   LeftOut near_faces, near_edges;
-  const bool alone = topology.solids.empty();  // whoever makes a complex of them cuts what crosses
+  const bool alone = topology.solids.empty();  // the builder of the complex cuts chords that cross
   for (const Topology::FreePart& part : topology.free_parts) {
     if (alone) {
       cutter.add(part);

@@ -1,4 +1,4 @@
-// Edges and vertices that belong to no face: which of them lie inside a solid.
+// Finds the edges and vertices of no face that lie inside a solid.
 #include "free_parts.h"
 
 #include "free_parts_fuse.h"
@@ -41,7 +41,7 @@ double tolerance_of(const TopoDS_Shape& part) {
   return largest;
 }
 
-/// A curve in space with two ends; an edge may lack that.
+/// Returns whether a part has a place: an edge may lack a curve in space with two ends.
 bool has_place(const TopoDS_Shape& part) {
   if (!is_edge(part)) return true;
   const TopoDS_Edge& edge = TopoDS::Edge(part);
@@ -58,7 +58,7 @@ Bnd_Box box_of(const TopoDS_Shape& shape) {
   return box;
 }
 
-/// Places along a part, its ends included.
+/// Returns places along a part, its ends included.
 std::vector<gp_Pnt> samples_of(const TopoDS_Shape& part) {
   if (!is_edge(part)) return {BRep_Tool::Pnt(TopoDS::Vertex(part))};
   constexpr int pieces = 8;
@@ -79,7 +79,7 @@ bool runs_along(const TopoDS_Shape& edge, const TopoDS_Shape& other, double tole
   return distance_between(middle_of(edge), other) <= tolerance;
 }
 
-/// Do two parts meet elsewhere than end at end?
+/// Returns whether two parts meet elsewhere than end to end.
 bool meet_amid(const TopoDS_Shape& a, const TopoDS_Shape& b) {
   const double tolerance = std::max(tolerance_of(a), tolerance_of(b));
   const BRepExtrema_DistShapeShape nearest(a, b);
@@ -92,7 +92,7 @@ bool meet_amid(const TopoDS_Shape& a, const TopoDS_Shape& b) {
   return is_edge(a) && is_edge(b) && (runs_along(a, b, tolerance) || runs_along(b, a, tolerance));
 }
 
-/// Faces, and what may end on them.
+/// The faces, with the parts that end on them.
 class Faces {
  public:
   explicit Faces(const TopoDS_Shape& all) : faces_(subshapes(all, TopAbs_FACE)) {
@@ -104,7 +104,7 @@ class Faces {
 
   bool hold(const TopoDS_Shape& part) const { return held_.Contains(part); }
 
-  /// The distance of a part to those faces that it does not end on; infinite where there are none.
+  /// Returns the distance of a part to the faces that it does not end on; infinite if there are none.
   double distance_to(const TopoDS_Shape& part) const {
     std::vector<TopoDS_Shape> ends = subshapes(part, TopAbs_VERTEX);
     std::erase_if(ends, [&](const TopoDS_Shape& end) { return !hold(end); });
@@ -116,8 +116,8 @@ class Faces {
     return least;
   }
 
-  /// The distance of an edge's middle, or of a vertex, to the faces that are not planar; infinite where there
-  /// are none. An edge with both ends on a curved face may be as near to it as its triangles are.
+  /// Returns the distance of an edge's middle, or of a vertex, to the faces that are not planar; infinite if
+  /// there are none. An edge with both ends on a curved face may be as near to it as its triangles are.
   double distance_to_curved(const TopoDS_Shape& part) const {
     const TopoDS_Shape middle = is_edge(part) ? middle_of(part) : part;
     double least = std::numeric_limits<double>::infinity();
@@ -129,7 +129,7 @@ class Faces {
     return least;
   }
 
-  /// Places along an edge, one between any two neighbouring points where it meets faces.
+  /// Returns places along an edge, one between any two neighbouring points where it meets faces.
   std::vector<gp_Pnt> places_between(const TopoDS_Edge& edge) const {
     double first = 0, last = 0;
     const Handle(Geom_Curve) curve = BRep_Tool::Curve(edge, first, last);
@@ -149,7 +149,7 @@ class Faces {
   }
 
  private:
-  /// The faces, by the distances of their boxes.
+  /// Returns the faces by the distances of their boxes.
   std::vector<std::pair<double, std::size_t>> by_distance_of_boxes(const TopoDS_Shape& part) const {
     const Bnd_Box box = box_of(part);
     std::vector<std::pair<double, std::size_t>> faces;
@@ -184,11 +184,11 @@ class Solids {
       }
   }
 
-  /// Does some of a part lie inside one of them, neither outside nor on its faces?
+  /// Returns whether a piece of a part lies inside one of them, neither outside nor on its faces.
   bool hold_some_of(const TopoDS_Shape& part, const Faces& faces) const {
     return hold_some_of(samples_of(part)) ||
            (is_edge(part) &&
-            hold_some_of(faces.places_between(TopoDS::Edge(part))));  // a thin wall is between
+            hold_some_of(faces.places_between(TopoDS::Edge(part))));  // a thin wall may be in between
   }
 
  private:
@@ -208,7 +208,7 @@ class Solids {
   std::vector<Bnd_Box> boxes_;
 };
 
-/// Sorts parts of no face by where they lie.
+/// Sorts the parts of no face by their position.
 class Sorter {
  public:
   Sorter(const std::string& file, Topology& topology)
@@ -244,7 +244,7 @@ class Sorter {
     int number = 0;
     std::string name;
     double clearance = 0;
-    bool meets = false;  // a face, or one that came before
+    bool meets = false;  // it meets a face, or an earlier part
   };
 
   static std::string name_of(const TopoDS_Shape& part, int number) {
@@ -259,7 +259,7 @@ class Sorter {
     });
   }
 
-  /// Where they meet faces or one another; false when that fails, and nothing is changed.
+  /// Cuts parts where they meet faces or one another; returns false, without changes, if that fails.
   bool cut() {
     std::vector<TopoDS_Shape> parts;
     parts.reserve(inside_.size());
@@ -294,7 +294,7 @@ class Sorter {
     if (!all_cut) meeting_.push_back(part.name);
   }
 
-  /// If it is inside, which is found here; false if it is, but not cut at the faces.
+  /// Keeps a piece if it lies inside a solid. Returns false if it does, but was not cut at the faces.
   bool keep_piece(const Candidate& part, const TopoDS_Shape& piece, const Faces& faces, bool& inside) {
     try {
       inside = solids_.hold_some_of(piece, faces);
@@ -312,7 +312,7 @@ class Sorter {
     }
   }
 
-  /// A piece that several parts or faces have in common may have the number of another.
+  /// Records a piece's number: a piece that several parts or faces share may have another part's number.
   void note_number(const Candidate& part, const TopoDS_Shape& piece) {
     const int number = topology_.number(piece);
     if (number == part.number) return;

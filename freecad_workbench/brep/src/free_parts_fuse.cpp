@@ -1,4 +1,4 @@
-// Edges and vertices of no face are cut at the faces that they meet, and these get vertices there.
+// Cuts edges and vertices of no face at the faces that they meet, which get vertices there.
 #include "free_parts_fuse.h"
 
 #include <TopoDS_Compound.hxx>
@@ -15,7 +15,7 @@ using Shapes = std::vector<TopoDS_Shape>;
 
 void append(Shapes& shapes, const Shapes& more) { shapes.insert(shapes.end(), more.begin(), more.end()); }
 
-/// The closed solids, which may be several of one region, and the internal faces.
+/// Returns the closed solids, of which a region may have several, and the internal faces.
 Shapes closed_parts(const Topology& topology) {
   Shapes closed;
   for (const Topology::Solid& solid : topology.solids)
@@ -31,7 +31,7 @@ Shapes faces_of(const Topology& topology) {
   return faces;
 }
 
-/// The pieces of all shapes, in their order.
+/// Returns the pieces of all shapes, in their order.
 Shapes pieces_of(const Shapes& shapes, const PartsOf& parts_of) {
   Shapes pieces;
   for (const TopoDS_Shape& shape : shapes)
@@ -45,7 +45,7 @@ bool spoils_a_solid(BOPAlgo_Builder& fuse, const Shapes& closed) {
   });
 }
 
-/// The solids and internal faces are those that they became.
+/// Replaces the solids and internal faces by their pieces.
 void replace_faces(const PartsOf& parts_of, Topology& topology) {
   for (Topology::Solid& solid : topology.solids)
     if (!solid.open) solid = merged(pieces_of(subshapes(solid.shape, TopAbs_SOLID), parts_of), solid.number);
@@ -76,7 +76,7 @@ std::optional<PartsOf> fuse_free_parts(const Shapes& parts, const Shapes& unchan
   topology.all = compound_of(after);
   append(after, pieces_of(parts, parts_of));
   append(after, unchanged);
-  topology.kept_numbers.clear();  // parts that are left out keep theirs by `unchanged`
+  topology.kept_numbers.clear();  // parts that are left out keep their numbers by `unchanged`
   carry_numbers(compound_of(before), compound_of(after), parts_of, topology);
   return parts_of;
 }

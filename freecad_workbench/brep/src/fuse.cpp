@@ -1,4 +1,4 @@
-// Solids that touch or overlap share faces, and every point belongs to one of them.
+// Makes solids that touch or overlap share faces, so that every point belongs to one of them.
 #include "fuse.h"
 
 #include <fmt/format.h>
@@ -31,7 +31,7 @@ namespace collarmesh::brep {
 
 namespace {
 
-using Group = std::vector<std::size_t>;  // of arguments
+using Group = std::vector<std::size_t>;  // indices of arguments
 
 /// A solid or a face and the boxes around its faces.
 struct Argument {
@@ -42,7 +42,7 @@ struct Argument {
     }
   }
 
-  /// Those of its faces whose boxes meet a box.
+  /// Returns the faces whose boxes meet a box.
   std::vector<std::size_t> faces_at(const Bnd_Box& other) const {
     std::vector<std::size_t> near;
     for (std::size_t f = 0; f < faces.size(); ++f)
@@ -56,7 +56,7 @@ struct Argument {
   Bnd_Box box;
 };
 
-/// The pairs of faces that may meet.
+/// Returns the pairs of faces that may meet.
 std::vector<std::array<std::size_t, 2>> face_pairs(const Argument& a, const Argument& b) {
   std::vector<std::array<std::size_t, 2>> pairs;
   if (a.box.IsOut(b.box)) return pairs;
@@ -67,7 +67,7 @@ std::vector<std::array<std::size_t, 2>> face_pairs(const Argument& a, const Argu
   return pairs;
 }
 
-/// The sets of two and more arguments that hang together by pairs that may meet, each in order.
+/// Returns groups of two or more arguments connected by pairs that may meet, each in order.
 std::vector<Group> groups_of(const std::vector<Argument>& arguments) {
   std::vector<std::size_t> group(arguments.size());
   std::iota(group.begin(), group.end(), 0);
@@ -99,8 +99,8 @@ bool is_plane(const TopoDS_Shape& face) {
   return BRepAdaptor_Surface(TopoDS::Face(face), false).GetType() == GeomAbs_Plane;
 }
 
-/// Pairs of faces of solids that have no vertex in common, which may touch in a point that general fuse does
-/// not see. (Two planes touch at edges, where it does.)
+/// Returns pairs of faces of solids without a common vertex, which may touch in a point that general fuse
+/// does not find. (Two planes touch at edges, where it does.)
 std::vector<std::array<TopoDS_Shape, 2>> pairs_apart(const std::vector<Argument>& solids) {
   std::map<std::array<std::size_t, 2>, Bnd_Box> tight;  // by solid and face
   const auto box = [&](std::size_t s, std::size_t f) -> const Bnd_Box& {
@@ -120,8 +120,8 @@ std::vector<std::array<TopoDS_Shape, 2>> pairs_apart(const std::vector<Argument>
   return apart;
 }
 
-/// Where solids touch in a point only, which general fuse does not see: a vertex for each. As each pair of
-/// faces costs milliseconds, nothing is looked for where there are many.
+/// Returns a vertex for each place where solids touch only in a point, which general fuse does not find. Each
+/// pair of faces costs milliseconds, so it does not search if there are many.
 std::vector<TopoDS_Shape> contact_points(const TopoDS_Shape& fused) {
   constexpr std::size_t many = 100;
   std::vector<Argument> solids;
@@ -162,7 +162,7 @@ double volume_of(const TopoDS_Shape& shape) {
 double unsoundness(BOPAlgo_Builder& fuse, const TopoDS_Shape& solid) {
   if (fuse.IsDeleted(solid)) return INFINITY;
   const TopTools_ListOfShape parts = fuse.Modified(solid);
-  if (parts.IsEmpty()) return 0;  // it is as it was
+  if (parts.IsEmpty()) return 0;  // it is unchanged
   double volume = 0;
   for (const TopoDS_Shape& part : parts) {
     if (!open_edges(part).empty()) return INFINITY;
@@ -174,7 +174,7 @@ double unsoundness(BOPAlgo_Builder& fuse, const TopoDS_Shape& solid) {
 
 namespace {
 
-/// With a vertex where solids touch in a point. Null when it fails.
+/// Fuses shapes with a vertex where solids touch in a point. Null if that fails.
 Fuse fuse_with_contacts(const std::vector<TopoDS_Shape>& shapes) {
   try {
     const Fuse fuse = general_fuse(shapes);
@@ -189,10 +189,10 @@ Fuse fuse_with_contacts(const std::vector<TopoDS_Shape>& shapes) {
   }
 }
 
-/// The general fuse of what may touch, without the solids of which it makes no sound parts: these are moved
-/// from `shapes` to `left_out`, the worst one first, as it may be what spoils the others. Null when it fails.
+/// Fuses the shapes that may touch, without the solids of which it makes no sound parts: moves these from
+/// `shapes` to `left_out`, the worst one first, because it may spoil the others. Null if that fails.
 Fuse sound_fuse(std::vector<TopoDS_Shape>& shapes, std::vector<TopoDS_Shape>& left_out) {
-  constexpr int rounds = 3;  // after which all go
+  constexpr int rounds = 3;  // rounds before all are left out
   for (int round = 1; shapes.size() > 1; ++round) {
     const Fuse fuse = fuse_with_contacts(shapes);
     if (!fuse) return nullptr;
@@ -235,10 +235,11 @@ class Pieces {
   std::size_t count() const { return holders_.size(); }
   TopoDS_Shape shape(std::size_t piece) const { return pieces_(static_cast<int>(piece) + 1); }
   const std::vector<std::size_t>& holders(std::size_t piece) const { return holders_[piece]; }
-  /// Has a solid a part that belongs to another one, too?
+  /// Returns whether a solid has a part that belongs to another solid, too.
   bool overlaps(std::size_t solid) const { return common_[solid]; }
 
-  /// The first solid that holds a piece, or one that lies wholly inside that: else it would be lost.
+  /// Returns the first solid that contains a piece, or a solid that lies wholly inside that one, because it
+  /// would otherwise be lost.
   std::size_t owner(std::size_t piece) const {
     for (const std::size_t s : holders_[piece])
       if (std::none_of(holders_[piece].begin(), holders_[piece].end(),
@@ -288,12 +289,12 @@ std::string names_of(const std::vector<std::size_t>& holders, const std::vector<
   return fmt::format("{} and {}", fmt::join(names, ", "), last);
 }
 
-/// What several solids have in common, for a note.
+/// The common part of several solids, for a note.
 struct Common {
   std::vector<std::size_t> holders;
-  int number;  // of the region that gets it
+  int number;  // number of the region that gets it
   double volume = 0, largest = 0;
-  Point where;  // in its largest piece
+  Point where;  // a place in its largest piece
 };
 
 void tell_overlaps(const std::string& file, const std::vector<Common>& overlaps, Topology& topology) {
@@ -406,7 +407,7 @@ class SharedFaces {
         file_, fmt::join(names, ", "), more ? ", ..." : "", text(place_of(left_out.front()))));
   }
 
-  /// Solids that touch no face of one that they lie in are regions of their own there.
+  /// Reports solids that touch no face of a solid around them: they are regions of their own there.
   void tell_nested(const std::vector<Argument>& arguments) {
     for (const Argument& inner : arguments)
       for (const Argument& outer : arguments)
@@ -459,7 +460,7 @@ class SharedFaces {
     topology_.internal_faces = internal;
   }
 
-  /// The faces that are left: walls between parts of one region are gone.
+  /// Returns the remaining faces: walls between parts of one region are removed.
   TopoDS_Shape everything_after() const {
     if (fuses_.size() == 1 && fused_.Extent() == static_cast<int>(shapes_.size()) &&
         !has_walls(fuses_.front()->Shape()))

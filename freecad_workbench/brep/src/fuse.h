@@ -9,25 +9,25 @@
 
 namespace collarmesh::brep {
 
-/// Make closed solids and internal faces that touch share faces, edges and vertices (general fuse), and give
-/// what solids have in common to one of them; a note tells which. Solids and faces none of whose faces' boxes
-/// meet are left alone. Those whose fuse fails stay as they are, which is told, too: the surfaces have to be
+/// Makes closed solids and internal faces that touch share faces, edges and vertices (general fuse), and
+/// gives the common part of solids to one of them, with a note. Leaves solids and faces alone if the boxes of
+/// their faces meet no others. Solids whose fuse fails stay as they are, with a note: their surfaces must be
 /// cut.
 void share_faces(const std::string& file, const CadOptions& options, Topology& topology);
 
 using Fuse = std::shared_ptr<BOPAlgo_Builder>;
 
-/// OpenCASCADE's general fuse: shapes that meet share what they have in common. Null when it fails.
+/// Runs OpenCASCADE's general fuse: shapes that meet share their common parts. Null if it fails.
 Fuse general_fuse(const std::vector<TopoDS_Shape>& shapes);
 
-/// What the parts of a solid lack of its volume or exceed it by, relative; infinite when one is open or none
-/// is left.
+/// Returns the relative difference between the volumes of a solid and of its parts; infinite if one is open
+/// or none is left.
 double unsoundness(BOPAlgo_Builder& fuse, const TopoDS_Shape& solid);
 
-/// The unsoundness that integrals over trimmed faces may err by.
+/// Largest unsoundness that errors of integrals over trimmed faces explain.
 constexpr double rough_volume = 1e-3;
 
-/// A region of several pieces: their walls, which have two of them at their sides, are none of its boundary.
+/// Returns a region of several pieces without their common walls.
 Topology::Solid merged(const std::vector<TopoDS_Shape>& pieces, int number);
 
 }  // namespace collarmesh::brep

@@ -29,7 +29,7 @@ namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-/// Run OpenCASCADE, which fails on some shapes.
+/// Runs OpenCASCADE, which fails on some shapes.
 template <class Integral, class Value>
 Value integrate_or(const Value& otherwise, const Integral& integral) {
   try {
@@ -71,10 +71,10 @@ double volume_of_triangles(const PolygonSoup& soup) {
 
 struct FaceMeasure {
   double area = 0;
-  double cone = 0;  // over it as it lies in space: positive where its normal looks away from the apex
+  double cone = 0;  // volume of the cone over the face: positive if its normal points away from the apex
 };
 
-/// Areas of faces and volumes of the cones over them, with an apex amid the shape. Each face is integrated
+/// Areas of faces and volumes of the cones over them, with an apex inside the shape. Each face is integrated
 /// once.
 class FaceIntegrals {
  public:
@@ -103,8 +103,8 @@ class FaceIntegrals {
     return {integrated<BRepGProp_Sinert>(face), integrated<BRepGProp_Vinert>(face)};
   }
 
-  /// Return the face as a spline surface if it is a spline curve that was extruded or revolved: of these
-  /// OpenCASCADE does not know the spans, and integrals that adapt to an error miss waves.
+  /// Returns the face as a spline surface if it is an extruded or revolved spline curve: OpenCASCADE does not
+  /// know the spans of these, and adaptive integrals miss waves.
   static TopoDS_Face with_known_spans(const TopoDS_Face& face) {
     const BRepAdaptor_Surface surface(face, false);
     const bool is_swept =
@@ -113,8 +113,8 @@ class FaceIntegrals {
     return TopoDS::Face(BRepBuilderAPI_NurbsConvert(face, true).Shape());
   }
 
-  /// Integrate over a face as it lies in space, whatever its orientation. Integrals that adapt to an error
-  /// are much more exact than fixed ones, which have too few points for splines of more than some spans.
+  /// Integrates over a face as it lies in space, whatever its orientation. Adaptive integrals are much more
+  /// exact than fixed ones, which have too few points for splines of many spans.
   template <class Integral>
   double integrated(const TopoDS_Shape& shape) const {
     const TopoDS_Face face = with_known_spans(TopoDS::Face(shape.Oriented(TopAbs_FORWARD)));
@@ -138,7 +138,7 @@ class FaceIntegrals {
   NCollection_IndexedDataMap<TopoDS_Shape, FaceMeasure, TopTools_ShapeMapHasher> measures_;
 };
 
-/// A sum over the parts of one number, and by how much the tessellation may be off.
+/// A sum over the parts of a sub-shape, and the possible error of the tessellation.
 struct Sum {
   CadMeasure measure;
   double allowed = 0;
@@ -148,7 +148,7 @@ struct Sum {
     measure.cut += cut;
     allowed += off;
   }
-  /// Where they contradict each other one of them is wrong.
+  /// Returns whether the two agree; otherwise one of them is wrong.
   bool is_plausible() const {
     constexpr double share = 0.05;  // an arc of 20 degrees is longer than its chord by less than 1%
     return std::fabs(measure.exact - measure.cut) <= share * measure.cut + allowed;

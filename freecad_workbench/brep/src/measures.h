@@ -6,7 +6,7 @@
 
 namespace collarmesh::brep {
 
-/// Integrate over the exact solids, faces and edges, and sum up their triangles and chords.
+/// Integrates over the exact solids, faces and edges, and sums up their triangles and chords.
 CadMeasures measure(const Topology& topology, const Tessellation& tessellation, double deflection);
 
 }  // namespace collarmesh::brep

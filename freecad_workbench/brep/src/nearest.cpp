@@ -1,7 +1,7 @@
-// Nearest points on exact edges and surfaces.
+// Finds nearest points on exact edges and surfaces.
 #include "nearest.h"
 
-#define BOOST_ALLOW_DEPRECATED_HEADERS  // of Boost itself
+#define BOOST_ALLOW_DEPRECATED_HEADERS  // for Boost itself
 #include <BRepAdaptor_Curve.hxx>
 #include <BRepAdaptor_Surface.hxx>
 #include <ElSLib.hxx>
@@ -32,7 +32,7 @@ using Tree = bg::index::rtree<std::pair<TreeBox, std::size_t>, bg::index::quadra
 gp_Pnt to_gp(const Point& p) { return {p.x, p.y, p.z}; }
 Point to_point(const gp_Pnt& p) { return {p.X(), p.Y(), p.Z()}; }
 
-/// Of two answers the nearer one.
+/// Keeps the nearer of two results.
 void keep_nearer(std::optional<Point>& best, const std::optional<Point>& other, const Point& p) {
   if (other && (!best || squared_distance(*other, p) < squared_distance(*best, p))) best = other;
 }
@@ -48,7 +48,7 @@ std::optional<Point> nearest_on_curve(const TopoDS_Shape& edge, const Point& p) 
   return best;
 }
 
-/// Weights of a triangle's corners that make the point of it nearest to p.
+/// Returns the weights of a triangle's corners for its point nearest to p.
 std::array<double, 3> nearest_weights(const Point& p, const std::array<Point, 3>& corners) {
   const Vector normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
   std::array<double, 3> weights{-1, -1, -1};
@@ -112,13 +112,13 @@ class FaceSurface {
     return {samples_.points[a], samples_.points[b], samples_.points[c]};
   }
 
-  /// Where the nearest point of the tessellation has its parameters, and that point.
+  /// The nearest point of the tessellation, and its parameters.
   struct Start {
     std::array<double, 2> uv;
     Point point;
   };
-  /// Looks at the triangles in the nearest boxes first, then at all whose boxes reach as near. (Boost's
-  /// iterator over boxes by distance sorts its queue again at each step.)
+  /// Searches the triangles in the nearest boxes first, then all whose boxes are as near. (Boost's iterator
+  /// over boxes by distance sorts its queue again at each step.)
   std::optional<Start> start_near(const Point& p) const {
     std::optional<Start> start;
     double least = INFINITY;
@@ -135,7 +135,7 @@ class FaceSurface {
     };
     const auto look_at_entry = boost::make_function_output_iterator(
         [&](const std::pair<TreeBox, std::size_t>& entry) { look_at(entry.second); });
-    constexpr unsigned first = 8;  // one may be of a large triangle that is far from p
+    constexpr unsigned first = 8;  // the first may contain a large triangle far from p
     tree_.query(bg::index::nearest(TreePoint(p.x, p.y, p.z), first), look_at_entry);
     const double reach = std::sqrt(least);
     if (start && reach > 0)
@@ -145,13 +145,13 @@ class FaceSurface {
     return start;
   }
 
-  /// By steps from the nearest point of the tessellation; where that does not end, a global search.
+  /// Steps from the nearest point of the tessellation; if that does not converge, searches globally.
   std::optional<Point> from_triangle(const Point& p) const {
     const std::optional<Start> start = start_near(p);
     if (!start) return std::nullopt;
     std::optional<Point> best = descend(start->uv, to_gp(p));
     if (best) return best;
-    constexpr double tolerance = 1e-12;  // of the parameters
+    constexpr double tolerance = 1e-12;  // in parameters
     const Extrema_ExtPS global(to_gp(p), surface_, tolerance, tolerance);
     if (global.IsDone())
       for (int i = 1; i <= global.NbExt(); ++i) keep_nearer(best, to_point(global.Point(i).Value()), p);
@@ -159,8 +159,8 @@ class FaceSurface {
     return best;
   }
 
-  /// Each step solves for the nearest point of the tangent plane and is halved until it comes as near. Ends
-  /// where the next step is within rounding; nothing when it does not get there.
+  /// Solves in each step for the nearest point of the tangent plane, and halves the step until it comes as
+  /// near. Ends when the next step is within rounding; returns nothing if it does not converge.
   std::optional<Point> descend(std::array<double, 2> uv, const gp_Pnt& p) const {
     constexpr int steps = 50, halvings = 20;
     constexpr double rounding = 1e-15;
@@ -186,7 +186,7 @@ class FaceSurface {
     return std::nullopt;
   }
 
-  /// The parameters of the tangent plane's point nearest to at + d, within the face's bounds.
+  /// Returns the parameters of the tangent plane's point nearest to at + d, within the face's bounds.
   std::array<double, 2> tangent_step(const std::array<double, 2>& uv, const gp_Vec& d, const gp_Vec& du,
                                      const gp_Vec& dv) const {
     const double e = du.Dot(du), f = du.Dot(dv), g = dv.Dot(dv), a = d.Dot(du), b = d.Dot(dv);
@@ -198,7 +198,7 @@ class FaceSurface {
       next[0] += a / e;
     else if (g > 0)
       next[1] += b / g;
-    // On a bound the other parameter alone decides.
+    // On a bound only the other parameter is free.
     const double u = std::clamp(next[0], surface_.FirstUParameter(), surface_.LastUParameter());
     if (u != next[0] && g > 0) next = {u, uv[1] + (b - f * (u - uv[0])) / g};
     const double v = std::clamp(next[1], surface_.FirstVParameter(), surface_.LastVParameter());

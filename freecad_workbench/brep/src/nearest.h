@@ -22,7 +22,7 @@ class NearestOnShape {
 
  private:
   const Tessellation& tessellation_;
-  mutable std::map<int, std::vector<std::unique_ptr<FaceSurface>>> surfaces_;  // made when asked for
+  mutable std::map<int, std::vector<std::unique_ptr<FaceSurface>>> surfaces_;  // built on first use
 };
 
 }  // namespace collarmesh::brep

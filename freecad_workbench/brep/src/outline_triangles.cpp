@@ -26,14 +26,14 @@ using Ends = std::array<Index, 2>;
 
 Ends sorted(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
 
-/// Whoever crosses a chord that is there an even number of times is on the side where he was.
+/// Counts the uses of chords: crossing a chord an even number of times does not change the side.
 std::map<Ends, int> uses_of(const std::vector<Ends>& chords) {
   std::map<Ends, int> uses;
   for (const auto& [a, b] : chords) ++uses[sorted(a, b)];
   return uses;
 }
 
-/// From the infinite face over all others.
+/// Marks sides from the infinite face to all others.
 void mark_sides(Triangulation& plane, const std::map<Ends, int>& uses) {
   std::vector<Triangulation::Face_handle> reached{plane.infinite_face()};
   reached.front()->info().seen = true;
@@ -58,7 +58,7 @@ OutlineTriangles triangulate_outline(const std::vector<std::array<double, 2>>& n
                                      const std::vector<std::array<Index, 2>>& chords) {
   Triangulation plane;
   std::vector<Triangulation::Vertex_handle> vertices;
-  std::vector<Ends> merged = chords;  // nodes at one place are one
+  std::vector<Ends> merged = chords;  // nodes at the same place are merged
   for (Index i = 0; i < nodes.size(); ++i) {
     const std::size_t before = plane.number_of_vertices();
     vertices.push_back(plane.insert({nodes[i][0], nodes[i][1]}));

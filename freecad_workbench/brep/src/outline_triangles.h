@@ -14,8 +14,8 @@ struct OutlineTriangles {
   std::vector<std::array<double, 2>> crossings;
 };
 
-/// The constrained Delaunay triangles that an odd number of chords parts from the outside. Nodes that no
-/// chord has are inner points. Cost: n log n.
+/// Returns the constrained Delaunay triangles that an odd number of chords separates from the outside. Nodes
+/// without chords are inner points. Cost: n log n.
 OutlineTriangles triangulate_outline(const std::vector<std::array<double, 2>>& nodes,
                                      const std::vector<std::array<Index, 2>>& chords);
 

@@ -1,4 +1,4 @@
-// CAD files to shapes.
+// Reads CAD files as shapes.
 #include <fmt/format.h>
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
@@ -23,7 +23,7 @@ namespace collarmesh::brep {
 
 namespace {
 
-/// Keeps what is printed to standard output: OpenCASCADE says there what is wrong with a BREP file.
+/// Captures standard output, where OpenCASCADE reports the errors of a BREP file.
 class CapturedOutput {
  public:
   CapturedOutput() : before_(std::cout.rdbuf(text_.rdbuf())) {}
@@ -31,7 +31,7 @@ class CapturedOutput {
   CapturedOutput(const CapturedOutput&) = delete;
   CapturedOutput& operator=(const CapturedOutput&) = delete;
 
-  /// On one line.
+  /// Returns it on one line.
   std::string text() const {
     std::string text = text_.str();
     while (!text.empty() && text.back() == '\n') text.pop_back();
@@ -49,7 +49,7 @@ TopoDS_Shape read_brep(const std::string& path) {
   const CapturedOutput said;
   try {
     std::ifstream file(path);
-    // OpenCASCADE asks a stream for words until one comes that it knows, also where there are no more.
+    // OpenCASCADE reads words from a stream until it knows one, even at the end of the stream.
     file.exceptions(std::ios::failbit | std::ios::badbit);
     BRepTools::Read(shape, file, BRep_Builder());
   } catch (const std::ios::failure&) {
@@ -77,7 +77,7 @@ TopoDS_Shape read_exchange(const std::string& path, const char* format, XSContro
   return shape;
 }
 
-/// Returns no labels where OpenCASCADE fails at them: the shape alone matters.
+/// Returns the labels; none if OpenCASCADE fails on them, because only the shape matters.
 CadLabels labels_of(const STEPControl_Reader& reader, const TopoDS_Shape& shape) {
   try {
     return step_labels(reader, shape);

@@ -1,4 +1,4 @@
-// Closed shells from faces that do not share their edges.
+// Makes closed shells from faces that do not share their edges.
 #include "sewing.h"
 
 #include <fmt/format.h>
@@ -19,13 +19,13 @@ namespace collarmesh::brep {
 
 namespace {
 
-constexpr std::array relative_gaps{1e-5, 1e-4, 1e-3};  // to the diagonal of what is sewn
+constexpr std::array relative_gaps{1e-5, 1e-4, 1e-3};  // relative to the diagonal of the sewn faces
 
 struct Sewn {
   std::shared_ptr<BRepBuilderAPI_Sewing> sewing;
   TopoDS_Shape shape;
   double gap = 0;
-  std::size_t open = 0;  ///< edges
+  std::size_t open = 0;  ///< number of open edges
 };
 
 Sewn sewn_within(double gap, const TopoDS_Shape& shape) {
@@ -39,7 +39,7 @@ Sewn sewn_within(double gap, const TopoDS_Shape& shape) {
   return sewn;
 }
 
-/// Within the smallest gap that leaves the fewest edges open; no shape where sewing fails.
+/// Sews within the smallest gap that leaves the fewest edges open; returns no shape if sewing fails.
 Sewn sewn(const TopoDS_Shape& shape) {
   Sewn best;
   const double diagonal = rough_diagonal(shape);
@@ -49,7 +49,7 @@ Sewn sewn(const TopoDS_Shape& shape) {
       if (next.shape.IsNull() || (!best.shape.IsNull() && next.open >= best.open)) continue;
       best = next;
     } catch (const Standard_Failure&) {
-      continue;  // within another gap, perhaps
+      continue;  // another gap may work
     }
     if (best.open == 0) break;
   }
@@ -64,7 +64,7 @@ TopoDS_Shell shell_of(const TopoDS_Shape& face) {
   return shell;
 }
 
-/// The shells of what was sewn; a face that borders on no other one, as a sphere, is in none as yet.
+/// Returns the shells of sewn faces; a face without neighbours, such as a sphere, is in no shell yet.
 std::vector<TopoDS_Shell> shells_of(const TopoDS_Shape& sewn) {
   std::vector<TopoDS_Shell> shells;
   for (const TopoDS_Shape& shell : subshapes(sewn, TopAbs_SHELL)) shells.push_back(TopoDS::Shell(shell));
@@ -81,7 +81,7 @@ TopoDS_Solid solid_of(const std::vector<TopoDS_Shell>& shells) {
   return solid;
 }
 
-/// All faces as they were sewn, or as they are where sewing failed: a solid with holes.
+/// Keeps all faces, sewn or, if sewing failed, unsewn, as a solid with holes.
 void keep_open(const Sewn& sewn, const std::string& file, Topology& topology) {
   Topology::Solid open;
   open.shape = sewn.shape.IsNull() ? topology.all : sewn.shape;
@@ -97,13 +97,13 @@ void keep_open(const Sewn& sewn, const std::string& file, Topology& topology) {
   topology.solids.push_back(open);
 }
 
-/// A closed shell with some faces missing, rather than a sheet?
+/// Returns whether it is a closed shell with some faces missing, rather than a sheet.
 bool nearly_closed(const TopoDS_Shape& shell) {
   return 2 * open_edges(shell).size() < subshapes(shell, TopAbs_EDGE).size();
 }
 
-/// Closed shells become solids, and nearly closed ones solids that are open. Returns the number of faces that
-/// are in neither.
+/// Makes solids of closed shells, and open solids of nearly closed ones. Returns the number of faces that are
+/// in neither.
 std::size_t make_solids(const std::vector<TopoDS_Shell>& shells, Topology& topology) {
   std::size_t left_out = 0;
   for (const TopoDS_Shell& shell : shells) {
@@ -122,7 +122,7 @@ std::size_t make_solids(const std::vector<TopoDS_Shell>& shells, Topology& topol
   return left_out;
 }
 
-/// A solid in place of one that is open, where sewing closes it.
+/// Returns a closed solid for an open one, if sewing closes it.
 TopoDS_Shape closed(const Topology::Solid& open, const std::string& file, Topology& topology,
                     std::vector<Sewn>& sewings) {
   const Sewn result = sewn(open.shape);

@@ -6,12 +6,12 @@
 
 namespace collarmesh::brep {
 
-/// Faces without a solid: sewn within 1e-5, 1e-4 and 1e-3 of the diagonal until they enclose something;
-/// shells that are closed then become solids. Where there is none, all faces are one solid that is open.
+/// Sews faces without a solid within 1e-5, 1e-4 and 1e-3 of the diagonal until they enclose something; closed
+/// shells then become solids. Otherwise all faces become one open solid.
 void sew_faces(const std::string& file, Topology& topology);
 
-/// Solids that are open: their faces are sewn in the same way. One that stays open is kept as it is and told
-/// in `open_text`.
+/// Sews the faces of open solids in the same way. A solid that stays open is kept, and reported in
+/// `open_text`.
 void close_solids(const std::string& file, Topology& topology);
 
 }  // namespace collarmesh::brep

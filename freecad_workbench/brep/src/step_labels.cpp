@@ -1,5 +1,5 @@
-// Names and colours of a STEP file: the entities that have them lead to the shapes that the reader made of
-// them. Sub-shapes of the whole are found by their geometry (TShape), which instances of a product share.
+// Reads names and colours of a STEP file: the entities that have them lead to the shapes that the reader made
+// of them. Sub-shapes are identified by their geometry (TShape), which instances of a product share.
 #include "step_labels.h"
 
 #include <Interface_InterfaceModel.hxx>
@@ -46,10 +46,10 @@ std::string text_of(const Handle(TCollection_HAsciiString) & text) {
   return text.IsNull() ? std::string() : std::string(text->ToCString());
 }
 
-/// OpenCASCADE's writer calls products that have no name by its own.
+/// Returns whether OpenCASCADE's writer made up the name, as it does for products without one.
 bool is_of_writer(const std::string& name) { return name.starts_with("Open CASCADE STEP translator"); }
 
-/// How many shapes contain the first solid in a shape.
+/// Returns how many shapes contain the first solid in a shape.
 std::size_t depth_of(const TopoDS_Shape& shape) {
   std::size_t depth = 0;
   TopoDS_Shape inner = shape;
@@ -77,7 +77,7 @@ class StepNames {
       if (product.own > 0) ++products_of_solids_;
   }
 
-  /// The name of the innermost product; of several solids in it, that of the solid, too.
+  /// Returns the name of the innermost product, with the name of the solid if the product has several.
   std::string find(const TopoDS_Shape& solid) const {
     const auto found = own_.find(geometry_of(solid));
     std::string own = found == own_.end() ? std::string() : found->second;
@@ -91,8 +91,8 @@ class StepNames {
  private:
   struct Product {
     std::string name;
-    std::size_t solids = 0;  // with those of the products in it
-    std::size_t depth = 0;   // of its first solid
+    std::size_t solids = 0;  // including those of the products in it
+    std::size_t depth = 0;   // depth of its first solid
     std::size_t own = 0;     // solids that are in no product inside this one
   };
 
@@ -127,12 +127,12 @@ class StepNames {
 
   Handle(Transfer_TransientProcess) process_;
   std::map<Geometry, std::string> own_;
-  std::map<Geometry, std::size_t> product_of_;  // the innermost
+  std::map<Geometry, std::size_t> product_of_;  // the innermost product of each solid
   std::vector<Product> products_;
   std::size_t products_of_solids_ = 0;
 };
 
-/// Is the style one of an instance of a product?
+/// Returns whether the style is that of an instance of a product.
 bool is_of_instance(const StepVisual_StyledItem& style) {
   if (style.Styles().IsNull()) return false;
   for (int i = 1; i <= style.Styles()->Length(); ++i)
@@ -161,7 +161,7 @@ std::optional<Colour> colour_of(const STEPConstruct_Styles& styles,
 
 using ByGeometry = std::map<Geometry, Colour>;
 
-/// Gives the sub-shapes of one kind the colours of the styles; those of smaller shapes count.
+/// Gives the sub-shapes of one kind the colours of the styles; colours of smaller shapes take precedence.
 ByGeometry colours_of(const std::vector<std::pair<TopoDS_Shape, Colour>>& styled, TopAbs_ShapeEnum kind) {
   ByGeometry colours;
   for (const auto& [shape, colour] : styled)
@@ -169,7 +169,7 @@ ByGeometry colours_of(const std::vector<std::pair<TopoDS_Shape, Colour>>& styled
   return colours;
 }
 
-/// Shapes with their colours, larger ones before those in them.
+/// Returns shapes with their colours, larger ones before the shapes in them.
 std::vector<std::pair<TopoDS_Shape, Colour>> styled_shapes(const STEPControl_Reader& reader) {
   STEPConstruct_Styles styles(reader.WS());
   std::vector<std::pair<TopoDS_Shape, Colour>> styled;

@@ -1,4 +1,4 @@
-// Triangles of faces whose edges are cut once, for all faces that share them.
+// Triangulates faces, after dividing each edge once for all faces that share it.
 #include "tessellation.h"
 
 #include "face_mending.h"
@@ -58,7 +58,7 @@ class Tessellator {
   Tessellation run(const TessellationOptions& options) {
     finer_faces_.insert(options.finer_faces.begin(), options.finer_faces.end());
     BRepTools::Clean(topology_.all);
-    // Finer ones first: the others take over the chords of edges that they share.
+    // Finer faces first: the others take over the chords of shared edges.
     if (const TopoDS_Compound finer = finer_faces(); finer.NbChildren() > 0) {
       set_fineness(options, true);
       cut(finer);
@@ -81,15 +81,17 @@ class Tessellator {
     measure();
     for (const Topology::Solid& solid : topology_.solids) result_.soups.push_back(soup_of(solid));
     if (!topology_.internal_faces.empty()) result_.soups.push_back(internal_soup());
-    if (!topology_.free_parts.empty())  // even if none is cut: the number of soups is that of any fineness
+    if (!topology_.free_parts.empty())  // even if none is divided, because the number of soups must not
+                                        // depend on the fineness
       result_.soups.push_back(cut_free_parts(topology_, file_, options, result_));
     return std::move(result_);
   }
 
  private:
   static constexpr double straight_ = 1e-13;  // rounding, relative to the diagonal
-  static constexpr double seam_gap_ = 1e-3;   // between the ends of edges in the parameter plane, likewise
-  static constexpr double flat_ = 1e-3;       // height of a triangle without one, relative to the deflection
+  static constexpr double seam_gap_ = 1e-3;   // largest gap between the ends of edges in the parameter plane,
+                                              // relative
+  static constexpr double flat_ = 1e-3;       // height of a flat triangle, relative to the deflection
 
   void set_fineness(const TessellationOptions& options, bool finer) {
     const double by = finer ? options.finer : 1;
@@ -118,7 +120,7 @@ class Tessellator {
 
   static std::size_t slot(int index) { return static_cast<std::size_t>(index - 1); }
 
-  /// The triangles that BRepMesh gave a face, unless it failed: then nothing is added and false returned.
+  /// Adds the triangles that BRepMesh gave a face; returns false without adding any if it failed.
   bool add_face(const TopoDS_Face& face, int index) {
     TopLoc_Location location;
     const Handle(Poly_Triangulation) triangulation = BRep_Tool::Triangulation(face, location);
@@ -149,7 +151,7 @@ class Tessellator {
     return true;
   }
 
-  /// Does a face have triangles, and the same points along its edges as the faces that came before?
+  /// Returns whether a face has triangles, and the same points along its edges as the earlier faces.
   bool fits_neighbours(const TopoDS_Face& face, const Handle(Poly_Triangulation) & triangulation,
                        const TopLoc_Location& location) const {
     if (triangulation.IsNull() || triangulation->NbTriangles() == 0) return false;
@@ -166,7 +168,7 @@ class Tessellator {
     return true;
   }
 
-  /// The chords around a face; edges inside it have none.
+  /// Returns the chords around a face; edges inside it have none.
   std::vector<std::array<Index, 2>> chords_of(const TopoDS_Face& face) const {
     std::vector<std::array<Index, 2>> chords;
     for (TopExp_Explorer edge(face, TopAbs_EDGE); edge.More(); edge.Next()) {
@@ -177,7 +179,7 @@ class Tessellator {
     return chords;
   }
 
-  /// Says which points of the shape the triangulation's nodes on an edge are.
+  /// Records which points of the shape the triangulation's nodes on an edge are.
   void add_edge(const TopoDS_Edge& edge, const Handle(Poly_Triangulation) & triangulation,
                 const TopLoc_Location& location, std::vector<Index>& at) {
     const Handle(Poly_PolygonOnTriangulation) polygon =
@@ -189,8 +191,8 @@ class Tessellator {
       at[slot(polygon->Node(i))] = points[BRep_Tool::Degenerated(edge) ? 0 : slot(i)];
   }
 
-  /// The points on an edge in the order of its parameter; of a degenerate one its vertex. It is cut at the
-  /// parameters when it has not been.
+  /// Returns the points on an edge in the order of its parameter; of a degenerate one its vertex. Divides the
+  /// edge at the parameters if that was not done yet.
   const std::vector<Index>& points_of(const TopoDS_Edge& edge, const std::vector<double>& parameters) {
     const std::size_t index = slot(edges_.FindIndex(edge));
     std::vector<Index>& points = edge_points_[index];
@@ -215,7 +217,7 @@ class Tessellator {
     return points;
   }
 
-  /// An edge that only faces have which BRepMesh failed on.
+  /// Divides an edge that only has faces for which BRepMesh failed.
   void cut_edge(const TopoDS_Edge& edge) {
     if (!edge_points_[slot(edges_.FindIndex(edge))].empty()) return;
     const BRepAdaptor_Curve curve(TopoDS::Edge(edge.Oriented(TopAbs_FORWARD)));
@@ -223,14 +225,14 @@ class Tessellator {
     if (BRep_Tool::Degenerated(edge)) {
       parameters = {curve.FirstParameter(), curve.LastParameter()};
     } else {
-      constexpr int least = 3;  // points, that a circle is none that is flat
+      constexpr int least = 3;  // points, so that a circle is not flat
       const GCPnts_TangentialDeflection cut(curve, angle_, deflection_, least);
       for (int i = 1; i <= cut.NbPoints(); ++i) parameters.push_back(cut.Parameter(i));
     }
     points_of(edge, parameters);
   }
 
-  /// In another way, see mend_face. Notes tell which.
+  /// Triangulates a face in another way, see mend_face. Notes tell which.
   void mend(const TopoDS_Face& face, int index) {
     for (TopExp_Explorer edge(face, TopAbs_EDGE); edge.More(); edge.Next())
       cut_edge(TopoDS::Edge(edge.Current()));
@@ -274,7 +276,7 @@ class Tessellator {
          place_of(topology_.all));
   }
 
-  /// The chords of a face's edges, with the parameters of the points on its surface.
+  /// Returns the chords of a face's edges, with the parameters of the points on its surface.
   Outline outline_of(const TopoDS_Face& face) const {
     Outline outline;
     std::map<Index, std::vector<Index>> nodes_of;  // by point
@@ -308,10 +310,10 @@ class Tessellator {
     return outline;
   }
 
-  /// Points of a seam have two places in the parameter plane.
+  /// Returns whether two parameters are near in the plane. Points of a seam have two places there.
   static bool near_in_plane(const BRepAdaptor_Surface& surface, const std::array<double, 2>& a,
                             const std::array<double, 2>& b) {
-    constexpr double share = 0.01;  // of a period
+    constexpr double share = 0.01;  // share of a period
     return !(surface.IsUPeriodic() && std::fabs(a[0] - b[0]) > share * surface.UPeriod()) &&
            !(surface.IsVPeriodic() && std::fabs(a[1] - b[1]) > share * surface.VPeriod()) &&
            !(!surface.IsUPeriodic() && surface.IsUClosed() &&
@@ -320,7 +322,8 @@ class Tessellator {
              std::fabs(a[1] - b[1]) > share * (surface.LastVParameter() - surface.FirstVParameter()));
   }
 
-  /// Of an edge's points on a face: by its curve in the parameter plane, or where that is off by projection.
+  /// Returns the parameters of an edge's points on a face: by its curve in the parameter plane, or by
+  /// projection if that curve is off.
   std::vector<std::array<double, 2>> parameters_on(const TopoDS_Face& face, const TopoDS_Edge& edge,
                                                    const BRepAdaptor_Surface& surface) const {
     const std::size_t index = slot(edges_.FindIndex(edge));
@@ -371,7 +374,7 @@ class Tessellator {
     }
   }
 
-  /// The vertex that lies amid a face at this place, none if there is no such.
+  /// Returns the vertex inside a face at this place; none if there is none.
   Index vertex_amid(const TopoDS_Face& face, const Point& p) const {
     for (TopExp_Explorer vertex(face, TopAbs_VERTEX, TopAbs_EDGE); vertex.More(); vertex.Next()) {
       const TopoDS_Vertex& v = TopoDS::Vertex(vertex.Current());
@@ -381,7 +384,8 @@ class Tessellator {
     return none;
   }
 
-  /// Those vertices amid a face that are no node of its triangulation: each cuts its triangle in three.
+  /// Inserts vertices inside a face that are no node of its triangulation: each divides its triangle into
+  /// three.
   void insert_vertices_amid(const TopoDS_Face& face, const std::vector<Index>& nodes,
                             std::vector<std::array<Index, 3>>& triangles) const {
     for (TopExp_Explorer vertex(face, TopAbs_VERTEX, TopAbs_EDGE); vertex.More(); vertex.Next()) {
@@ -402,14 +406,15 @@ class Tessellator {
   double area_of(const std::array<Index, 3>& t) const {
     return 0.5 * norm(cross(points_[t[1]] - points_[t[0]], points_[t[2]] - points_[t[0]]));
   }
-  /// Of the three triangles that a point makes with the sides: as large as the triangle if it lies in it.
+  /// Returns the area of the three triangles that a point makes with the sides: that of the triangle if the
+  /// point lies in it.
   double area_with(const std::array<Index, 3>& t, Index p) const {
     return area_of({t[0], t[1], p}) + area_of({t[1], t[2], p}) + area_of({t[2], t[0], p});
   }
 
-  /// An edge of one chord that its curve leaves, if by less than the deflection (also where vertices lie
-  /// off it), gets a point in its middle, so that the complex knows it is not straight: its neighbours'
-  /// triangles there are cut in two.
+  /// Adds a middle point to an edge of one chord if its curve leaves the chord by less than the deflection
+  /// (also because vertices lie off it), so that the complex knows that it is not straight. The triangles
+  /// there are divided into two.
   void bend_single_chords() {
     std::map<std::array<Index, 2>, Index> middle_of;
     for (int e = 1; e <= edges_.Extent(); ++e) {
@@ -444,7 +449,7 @@ class Tessellator {
       }
   }
 
-  /// Edges that are features: all but seams (both sides on one face) and degenerate ones.
+  /// Finds the edges that are features: all but seams (both sides on one face) and degenerate ones.
   void find_features() {
     TopTools_IndexedDataMapOfShapeListOfShape faces_at;
     TopExp::MapShapesAndAncestors(topology_.all, TopAbs_EDGE, TopAbs_FACE, faces_at);
@@ -467,7 +472,7 @@ class Tessellator {
     }
     for (const TopoDS_Shape& face : subshapes(topology_.all, TopAbs_FACE))
       for (TopExp_Explorer vertex(face, TopAbs_VERTEX, TopAbs_EDGE); vertex.More(); vertex.Next())
-        is_vertex_[slot(vertices_.FindIndex(vertex.Current()))] = true;  // amid a face
+        is_vertex_[slot(vertices_.FindIndex(vertex.Current()))] = true;  // inside a face
   }
 
   void measure() {
@@ -486,14 +491,14 @@ class Tessellator {
     }
   }
 
-  /// Where a surface ends in a point, as a cone in its apex, that is a vertex; but not the poles of a sphere.
+  /// Marks a vertex where a surface ends in a point, such as a cone's apex, but not the poles of a sphere.
   void mark_apex(const TopoDS_Edge& edge, const TopTools_ListOfShape& faces) {
     for (const TopoDS_Shape& face : faces)
       if (BRepAdaptor_Surface(TopoDS::Face(face), false).GetType() != GeomAbs_Sphere)
         is_vertex_[edge_points_[slot(edges_.FindIndex(edge))].front()] = true;
   }
 
-  /// Collects what belongs to one soup, with the points it uses.
+  /// Collects the data of one soup, with the points it uses.
   class Collector {
    public:
     Collector(const Tessellator& all, std::string name) : all_(all), used_(all.points_.size(), none) {
@@ -571,7 +576,7 @@ class Tessellator {
   std::vector<std::vector<std::array<Index, 3>>> face_triangles_;
   std::vector<bool> is_feature_, is_vertex_;
   std::set<Tag> finer_faces_;
-  double deflection_ = 0, angle_ = 0;  // of the faces that are being cut
+  double deflection_ = 0, angle_ = 0;  // of the faces that are being triangulated
   double diagonal_ = 0;
   Tessellation result_;
 };

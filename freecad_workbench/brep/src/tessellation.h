@@ -15,20 +15,21 @@ namespace collarmesh::brep {
 struct Samples {
   TopoDS_Shape shape;
   std::vector<Point> points;
-  std::vector<std::array<double, 2>> parameters;  ///< of an edge the first one only
-  std::vector<std::array<Index, 3>> triangles;    ///< of a face, corners among the points; two at a seam
+  std::vector<std::array<double, 2>> parameters;  ///< for an edge only the first one
+  std::vector<std::array<Index, 3>> triangles;    ///< for a face, corners among the points; two at a seam
 };
 
 struct Tessellation {
   /// One per solid, one for the internal faces and one for the free edges and vertices where there are any.
   std::vector<PolygonSoup> soups;
   std::map<int, std::vector<Samples>> edges, faces;  ///< by number
-  TopTools_DataMapOfShapeReal lengths, areas;  ///< of the chords of edges that are features, of the triangles
-  std::vector<std::string> notes;              ///< on faces that were cut in another way, or not at all
+  TopTools_DataMapOfShapeReal lengths, areas;        ///< of the chords of feature edges, and of the triangles
+  std::vector<std::string> notes;  ///< on faces that were triangulated in another way, or not at
+                                   ///< all
 };
 
-/// Triangulate all faces; neighbours share the points of their edges, but for faces that notes name.
-/// Throws PlcError when no face has a triangulation. Precondition: the deflection is above 0.
+/// Triangulates all faces; neighbours share the points of their edges, except for faces that notes name.
+/// Throws PlcError if no face can be triangulated. Precondition: the deflection is above 0.
 Tessellation tessellate(const Topology& topology, const std::string& file,
                         const TessellationOptions& options);
 

@@ -1,4 +1,4 @@
-// From a shape to its solids with numbered sub-shapes.
+// Finds the solids of a shape, with numbered sub-shapes.
 #include "topology.h"
 
 #include "free_parts.h"
@@ -52,7 +52,7 @@ void number_subshapes(const TopoDS_Shape& shape, TopTools_DataMapOfShapeInteger&
   }
 }
 
-/// Faces that bound no solid.
+/// Returns the faces that bound no solid.
 std::vector<TopoDS_Shape> internal_faces_of(const TopoDS_Shape& shape) {
   TopTools_MapOfShape bounding;
   for (TopExp_Explorer solid(shape, TopAbs_SOLID); solid.More(); solid.Next())
@@ -64,7 +64,7 @@ std::vector<TopoDS_Shape> internal_faces_of(const TopoDS_Shape& shape) {
   return internal;
 }
 
-/// An edge that a closed surface would have two faces at.
+/// Returns whether an edge has one face where a closed surface would have two.
 bool borders_one_face(const TopoDS_Shape& edge, const TopTools_ListOfShape& faces) {
   if (BRep_Tool::Degenerated(TopoDS::Edge(edge))) return false;
   int uses = 0;
@@ -111,7 +111,7 @@ void carry_numbers(const TopoDS_Shape& before, const TopoDS_Shape& after, const 
                    Topology& topology) {
   TopTools_DataMapOfShapeInteger numbers;
   for (const TopAbs_ShapeEnum kind : numbered_kinds) {
-    std::multimap<int, TopoDS_Shape> by_number;  // parts of one have the same
+    std::multimap<int, TopoDS_Shape> by_number;  // parts of a solid have its number
     for (const TopoDS_Shape& old : subshapes(before, kind))
       if (topology.number(old) > 0) by_number.emplace(topology.number(old), old);
     int next = by_number.empty() ? 1 : by_number.rbegin()->first + 1;
@@ -198,7 +198,7 @@ std::string Topology::name(const TopoDS_Shape& shape) const {
 
 namespace {
 
-/// Edges alone, for meshes of lines.
+/// Keeps edges alone, for meshes of lines.
 void take_wires(const TopoDS_Shape& shape, const std::string& file, Topology& topology) {
   for (const TopoDS_Shape& edge : subshapes(shape, TopAbs_EDGE))
     if (!BRep_Tool::Degenerated(TopoDS::Edge(edge)))

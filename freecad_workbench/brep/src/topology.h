@@ -21,77 +21,80 @@ struct Topology {
   struct Solid {
     TopoDS_Shape shape;
     int number = 0;
-    std::vector<TopoDS_Shape> faces;  ///< its boundary, each as it is oriented there
-    bool open = false;                ///< edges border one face only
+    std::vector<TopoDS_Shape> faces;  ///< faces of its boundary, with their orientation there
+    bool open = false;                ///< some edges border only one face
   };
 
   /// An edge or vertex of no face, or a piece of one.
   struct FreePart {
     TopoDS_Shape shape;
     int number = 0;
-    double clearance = 0;  ///< to the faces that it does not end on; of its middle, to curved ones
+    double clearance = 0;  ///< distance from the faces that it does not end on; from curved faces that of its
+                           ///< middle
   };
 
   std::vector<Solid> solids;                 ///< parts of one solid have the same number
-  std::vector<TopoDS_Shape> internal_faces;  ///< that belong to no solid, or lie inside one
-  std::vector<FreePart> free_parts;          ///< that lie inside a solid, or all of a shape of edges alone
-  TopoDS_Shape all;                          ///< what is tessellated
+  std::vector<TopoDS_Shape> internal_faces;  ///< faces that belong to no solid, or lie inside one
+  std::vector<FreePart> free_parts;          ///< parts that lie inside a solid, or all edges of a shape of
+                                             ///< edges alone
+  TopoDS_Shape all;                          ///< the shape to tessellate
   TopTools_DataMapOfShapeInteger numbers;    ///< of solids, faces, edges and vertices
   std::vector<std::pair<TopoDS_Shape, int>> kept_numbers;  ///< of parts that no step changes
   std::vector<std::pair<Tag, Tag>> replaced_faces;         ///< number that is gone, number in its place
   std::vector<std::string> notes;
-  bool fused = true;      ///< all that touch or overlap
+  bool fused = true;      ///< all solids that touch or overlap were fused
   std::string open_text;  ///< which solids are open, at which edges; empty: none
 
   int number(const TopoDS_Shape& shape) const { return numbers.IsBound(shape) ? numbers.Find(shape) : 0; }
   /// Reserves the numbers of these parts and of their vertices.
   void keep_numbers(const std::vector<TopoDS_Shape>& parts);
-  /// "Face7".
+  /// Returns a name such as "Face7".
   std::string name(const TopoDS_Shape& shape) const;
 };
 
-/// Find the solids of a shape, sew where there is none or one is open, make those that touch share faces.
+/// Finds the solids of a shape, sews if there is none or one is open, and makes those that touch share faces.
 /// A shape of edges alone keeps these as free parts. Throws PlcError for a shape without faces and edges.
 Topology find_topology(const TopoDS_Shape& shape, const std::string& file, const CadOptions& options);
 
-/// The sub-shapes of one kind, each once, in the order that numbers them.
+/// Returns the sub-shapes of one kind, each once, in the order that numbers them.
 std::vector<TopoDS_Shape> subshapes(const TopoDS_Shape& shape, TopAbs_ShapeEnum kind);
 
 TopoDS_Compound compound_of(const std::vector<TopoDS_Shape>& shapes);
 
-/// Is it no part of the boundary of the solid that it is met in?
+/// Returns whether a face inside a solid is no part of the solid's boundary.
 bool inside_orientation(const TopoDS_Shape& face);
 
-/// The faces of a solid that are its boundary, oriented.
+/// Returns the faces of a solid that are its boundary, oriented.
 std::vector<TopoDS_Shape> boundary_of(const TopoDS_Shape& solid);
 
-/// What became of a sub-shape: itself, parts of it, or nothing.
+/// Returns the pieces of a sub-shape: itself, parts of it, or nothing.
 using PartsOf = std::function<TopTools_ListOfShape(const TopoDS_Shape&)>;
 
-/// Numbers for the parts that the sub-shapes of `before` became in `after`, the smallest where several became
-/// one; and the next free ones for parts that come from none. Records the numbers of faces that went.
+/// Numbers the parts that the sub-shapes of `before` became in `after`: with the smallest number if several
+/// became one, and with the next free numbers for parts that come from none. Records the numbers of faces
+/// that are gone.
 void carry_numbers(const TopoDS_Shape& before, const TopoDS_Shape& after, const PartsOf& parts_of,
                    Topology& topology);
 
-/// The edges at which the faces of a shape are open, each with a face there.
+/// Returns the edges at which the faces of a shape are open, each with a face there.
 std::vector<std::pair<TopoDS_Shape, TopoDS_Shape>> open_edges(const TopoDS_Shape& shape);
 
-/// "4 edges border one face only: Edge2 of Face1 at (0, 1, 2), ...".
+/// Describes open edges: "4 edges border one face only: Edge2 of Face1 at (0, 1, 2), ...".
 std::string open_edges_text(const Topology& topology, const TopoDS_Shape& shape);
 
-/// The middle of an edge, of the box around anything else.
+/// Returns the middle of an edge, or of the box around another shape.
 Point place_of(const TopoDS_Shape& shape);
 
-/// Of the box around a shape, which may be somewhat too large.
+/// Returns the diagonal of the box around a shape, which may be somewhat too large.
 double rough_diagonal(const TopoDS_Shape& shape);
 
-/// "(1, 2, 3)".
+/// Returns "(1, 2, 3)".
 std::string text(const Point& p);
 
-/// A PlcError of one fault.
+/// Throws a PlcError with one fault.
 [[noreturn]] void fail(PlcFault::Kind kind, const std::string& message, const Point& where = {});
 
-/// What OpenCASCADE says about a failure of its own; its exceptions are no std::exception.
+/// Returns OpenCASCADE's message of a failure; its exceptions are no std::exception.
 std::string text(const Standard_Failure& failure);
 
 }  // namespace collarmesh::brep

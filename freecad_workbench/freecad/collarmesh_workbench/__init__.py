@@ -44,14 +44,14 @@ def remesh(mesh_object):
 
 
 def meshed_object(mesh_object):
-    """The object that a mesh object meshes; the property for it is called differently in FreeCAD's versions."""
+    """Return the meshed object of a mesh object; FreeCAD's versions differ in the name of its property."""
     from . import compatibility
 
     return compatibility.meshed_object(mesh_object)
 
 
 def references_to_groups(mesh_object, *names):
-    """What constraints on groups of faces of a triangle mesh's mesh have as `References`: the names are those of the
+    """Return the `References` of constraints on groups of faces of a triangle mesh's mesh; the names are those of the
     groups, as in "patch_2" and "Segment1"."""
     from . import constraint_faces
 

@@ -1,4 +1,4 @@
-"""The part of the panel that is folded at first: everything but size and order."""
+"""The folded part of the panel: all settings except size and order."""
 
 import dataclasses
 
@@ -14,12 +14,12 @@ MOST = 1000000
 
 @dataclasses.dataclass
 class Row:
-    """A property of the mesh object, and how it is asked for."""
+    """A property of the mesh object, with the texts of its field."""
 
-    name: str  # of the property
+    name: str  # name of the property
     text: str
     unit: str = ""  # "mm" or "deg"
-    zero: str = ""  # what 0 stands for
+    zero: str = ""  # text for 0
     choices: tuple = ()  # texts by value: numbers from 0, or the property's own words
     tip: str = ""  # empty: the property's text
 
@@ -118,7 +118,7 @@ class AdvancedSection(QtGui.QWidget):
         layout.addWidget(body)
 
     def store(self):
-        """Into the object's properties. Raises ValueError, which names the field."""
+        """Stores the values in the object's properties. Raises ValueError, which names the field."""
         for name, (text, read) in self._readers.items():
             try:
                 value = read()
@@ -129,11 +129,11 @@ class AdvancedSection(QtGui.QWidget):
                 setattr(self.object, name, value)
 
     def tick(self, name):
-        """The box of a property."""
+        """Returns the check box of a property."""
         self.findChild(QtGui.QCheckBox, "collarmesh_" + name).setChecked(True)
 
     def apply_to(self, settings):
-        """Into Settings, as far as they can be read."""
+        """Returns Settings with the values of the fields, as far as they can be read."""
         for _, name, field, *_ in mesh_properties.PROPERTIES:
             if name in self._readers:
                 try:
@@ -158,7 +158,7 @@ class AdvancedSection(QtGui.QWidget):
         rows.labelForField(widget).setToolTip(widget.toolTip())
 
     def _widget(self, row):
-        """The widget, and what reads its value."""
+        """Returns the widget, and a function that reads its value."""
         value = self._value(row.name)
         if row.choices:
             return self._combo(row, value)
@@ -199,7 +199,7 @@ class AdvancedSection(QtGui.QWidget):
 
 
 def in_panel_words(text):
-    """A message of the program, with the names of the panel's fields in place of options."""
+    """Replaces options in a message of the program by the names of the panel's fields."""
     labels = {row.name: row.text for _, rows in sections() for row in rows}
     labels["CharacteristicLengthMax"] = translate("collarmesh", "Size of the elements")
     fields = {name: field for _, name, field, *_ in mesh_properties.PROPERTIES}
@@ -214,7 +214,7 @@ def in_panel_words(text):
 
 
 def narrow_combo():
-    """One that may be narrower than its texts."""
+    """Returns a combo box that may be narrower than its texts."""
     combo = QtGui.QComboBox()
     combo.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToMinimumContentsLengthWithIcon)
     combo.setMinimumContentsLength(6)
@@ -223,7 +223,7 @@ def narrow_combo():
 
 
 def _ratio(text, zero):
-    """A number without unit that is not negative; empty text is 0 where that stands for something."""
+    """Reads a number without unit that is not negative; empty text is 0 if 0 has a meaning."""
     if not text.strip():
         if zero:
             return 0.0

@@ -25,7 +25,7 @@ class AngleChart(QtGui.QWidget):
         self.is_of_tetrahedra = True
 
     def show_report(self, report):
-        """Of a run; lines have no angles."""
+        """Shows the angles of a run; lines have no angles."""
         dimension = report["options"]["dimension"]
         of_elements = report["check"]["triangles"] if dimension == 2 else report["mesh"]
         names, counted = (("min_angle", "max_angle"), "triangles") if dimension == 2 else (
@@ -45,7 +45,7 @@ class AngleChart(QtGui.QWidget):
         return QtCore.QSize(260, 130)
 
     def _frame(self):
-        """Where the bars are: the text is above and below."""
+        """Returns the rectangle of the bars: the text is above and below."""
         line = self.fontMetrics().height()
         return QtCore.QRectF(6, line + 4, self.width() - 12, self.height() - 2 * line - 12)
 
@@ -54,7 +54,7 @@ class AngleChart(QtGui.QWidget):
         return frame.left() + frame.width() * angle / STRAIGHT
 
     def _mark(self):
-        """The triangle that marks the worst tetrahedron, by its smallest angle."""
+        """Returns the triangle that marks the worst tetrahedron, by its smallest angle."""
         x, bottom = self._x(self.extremes[0]), self._frame().bottom()
         corners = ((x, bottom - 1), (x - 5, bottom - 12), (x + 5, bottom - 12))
         return QtGui.QPolygonF([QtCore.QPointF(*corner) for corner in corners])
@@ -70,7 +70,7 @@ class AngleChart(QtGui.QWidget):
             for bin_number, count in enumerate(counts):
                 if count == 0:
                     continue
-                height = max(2, frame.height() * count / most)  # a single element is seen, too
+                height = max(2, frame.height() * count / most)  # even a single element is visible
                 left = frame.left() + bin_number * width + i * width / 2
                 bar = QtCore.QRectF(left, frame.bottom() - height, width / 2 - 0.5, height)
                 painter.fillRect(bar, QtGui.QColor(colour))

@@ -1,6 +1,6 @@
-"""The sizes that are asked for on the surface of a part, by place. Works without the GUI.
+"""The sizes asked for on the surface of a part, by place. Works without the GUI.
 
-The mesh follows them; where it must be finer, in thin places and sharp corners, they do not show it."""
+The mesh follows them; they do not show that it must be finer in thin places and at sharp corners."""
 
 import dataclasses
 import math
@@ -9,24 +9,24 @@ import numpy
 
 from . import inputs, size_presets
 
-FINE = 1 / 60  # of the diagonal: how long edges of the triangles are at most
+FINE = 1 / 60  # of the diagonal: largest length of the triangles' edges
 DEFLECTION = 1 / 200  # of the diagonal
 MOST = 20000  # triangles that are divided further
-SAMPLES = 6  # of the curvature, along each parameter of a face
-POINTS = 500  # of a face or an edge, from which distances are measured, at most
-GROWTH = 1  # of sizes away from finer faces and edges, where none is asked for
+SAMPLES = 6  # samples of the curvature along each parameter of a face
+POINTS = 500  # largest number of points of a face or an edge for measuring distances
+GROWTH = 1  # growth of sizes away from finer faces and edges, unless another one is asked for
 
 
 @dataclasses.dataclass
 class Surface:
-    """Triangles with corners of their own: places, shape (3 n, 3), and the number of each corner's face, 0 for none."""
+    """Separate triangles: places, shape (3 n, 3), and the number of each corner's face, 0 for none."""
 
     places: numpy.ndarray
     faces: numpy.ndarray
 
 
 def surface_of(part):
-    """Of an object, in triangles that are small enough for colours."""
+    """Returns the surface of an object, in triangles that are small enough for colours."""
     mesh = inputs.triangles_of(part)
     if mesh is not None:
         triangles = [(0, *mesh.Topology)]
@@ -64,7 +64,7 @@ def subdivided(triangles, faces, longest):
 
 
 def on(surface, part, settings):
-    """For each corner of a Surface the size that the Settings ask for, mm."""
+    """Returns for each corner of a Surface the size that the Settings ask for, mm."""
     shape = inputs.shape_of(part)
     diagonal = (inputs.triangles_of(part) or shape).BoundBox.DiagonalLength
     places = surface.places
@@ -85,14 +85,14 @@ def on(surface, part, settings):
 
 
 def _on_solid(surface, shape, number):
-    """Which corners are on it?"""
+    """Returns which corners are on the solid."""
     faces = [i for i, face in enumerate(shape.Faces, 1) if any(face.isSame(each)
                                                                for each in shape.Solids[number - 1].Faces)]
     return numpy.isin(surface.faces, faces)
 
 
 def _to_source(surface, shape, source):
-    """Distances from a source of a size field; 0 inside."""
+    """Returns distances from a source of a size field; 0 inside."""
     places = surface.places
     if "ball" in source:
         ball = source["ball"]
@@ -124,7 +124,7 @@ def _to_cylinder(places, cylinder):
 
 
 def _to_subshape(surface, shape, kind, number):
-    """Distances from a face or an edge; 0 on the face."""
+    """Returns distances from a face or an edge; 0 on the face."""
     if kind == "Face":
         its = surface.faces == number
         distances = _to_points(surface.places, numpy.unique(surface.places[its], axis=0))
@@ -136,7 +136,7 @@ def _to_subshape(surface, shape, kind, number):
 
 
 def _to_points(places, points):
-    """The distance from the nearest one, one row of places after the other."""
+    """Returns the distance from the nearest point, block by block."""
     points = points[:: max(1, math.ceil(len(points) / POINTS))]
     if not len(points):
         return numpy.full(len(places), numpy.inf)
@@ -148,7 +148,8 @@ def _to_points(places, points):
 
 
 def _of_curvature(surface, shape, count):
-    """So many elements on a full circle, of the smallest radius of curvature at the nearest of some places of the face."""
+    """Returns the size for N elements on a full circle, of the smallest radius of curvature near some places of the
+    face."""
     sizes = numpy.full(len(surface.places), numpy.inf)
     for number, face in enumerate(shape.Faces, 1):
         if type(face.Surface).__name__ == "Plane":
@@ -164,7 +165,7 @@ def _of_curvature(surface, shape, count):
 
 
 def _parameters(face):
-    """Of places on a face, not at its ends, where some surfaces have no curvature."""
+    """Returns the parameters of places on a face, away from its ends, where some surfaces have no curvature."""
     u0, u1, v0, v1 = face.ParameterRange
     for i in range(SAMPLES):
         for j in range(SAMPLES):

@@ -1,17 +1,18 @@
-"""Colours of words, which can be read on light and on dark themes."""
+"""Colours of text that is readable on light and on dark themes."""
 
 import FreeCADGui
 from PySide import QtGui
 
 GOOD, BAD, CARE, FAINT = range(4)
-# Ink and paper.
+# Pairs of text and background.
 _LIGHT = (("#1e7b47", "#e6f4ec"), ("#b82c2c", "#fbe9e9"), ("#8a5500", "#fdf2e0"), ("#606060", "#eeeeee"))
 _DARK = (("#7fd8a0", "#17352a"), ("#ff8f8f", "#3c1d1d"), ("#f0b860", "#3a2c12"), ("#b4b4b4", "#2c2c2c"))
 
 
 def of(kind):
-    """What to write good news, bad ones, warnings and what does not count in: ink, and paper. FreeCAD's themes have greys
-    on which no colour can be read, so words bring their paper; without a theme it is "", what is there already."""
+    """Returns text colour and background for success, failure, warnings and unimportant text. FreeCAD's themes have
+    greys on which no colour is readable, so the text has its own background; without a theme it is "", the existing
+    one."""
     ink, paper = (_DARK if is_dark() else _LIGHT)[kind]
     return ink, paper if QtGui.QApplication.instance().styleSheet() else ""
 
@@ -23,7 +24,7 @@ def css(kind):
 
 
 def paint(item, column, kind):
-    """A text in a tree or a table."""
+    """Colours a text in a tree or a table."""
     ink, paper = of(kind)
     item.setForeground(column, QtGui.QColor(ink))
     if paper:
@@ -31,7 +32,7 @@ def paint(item, column, kind):
 
 
 def is_dark():
-    """Is the theme? Themes are style sheets, so that only a widget of the window knows."""
+    """Returns whether the theme is dark. Themes are style sheets, so only a widget of the window can tell."""
     probe = QtGui.QLabel(FreeCADGui.getMainWindow())
     probe.ensurePolished()
     ink = probe.palette().color(QtGui.QPalette.WindowText)

@@ -18,7 +18,7 @@ GROUP_COMMAND = "Collarmesh_Group"
 
 
 def selected(condition):
-    """The one selected object that the condition holds for, else None."""
+    """Returns the one selected object that meets the condition, else None."""
     found = [each for each in FreeCADGui.Selection.getSelection() if condition(each)]
     return found[0] if len(found) == 1 else None
 
@@ -28,10 +28,10 @@ def selected_part():
 
 
 class Command:
-    """A button; `create` makes an object for what is selected, which is then edited in its panel."""
+    """A button; `create` makes an object for the selection, which is then edited in its panel."""
 
     icon, menu_text, tool_tip = "", "", ""
-    # Creation and first edit are one step of undo, which "Cancel" of the panel takes back.
+    # Creation and first edit are one undo step, which "Cancel" of the panel undoes.
     panel_commits = False
 
     def GetResources(self):
@@ -50,7 +50,7 @@ class Command:
 
     def Activated(self):
         target = self.target()
-        if target is None or other_panel.is_in_the_way():  # it may have gone since the click
+        if target is None or other_panel.is_in_the_way():  # it may have been deleted since the click
             return
         document = target.Document
         document.openTransaction(self.text())
@@ -99,7 +99,7 @@ class MeshFromShape(Command):
 
 
 def mesh_of(part):
-    """Our mesh object for a part, of the active analysis if there is one; None: there is none yet."""
+    """Returns our mesh object for a part, in the active analysis if there is one; None without one."""
     import FemGui
 
     analysis = FemGui.getActiveAnalysis()
@@ -134,13 +134,13 @@ class Group(Refinement):
 
 
 class Size(Command):
-    """A size by place, for the mesh that is selected, or that of the selected part, or the only one there is."""
+    """A size by place, for the selected mesh, or the mesh of the selected part, or the only mesh in the document."""
 
     kind = ""
     panel_commits = True
 
     def Activated(self):
-        # FreeCAD ends its transactions with the command, so this waits until that has ended.
+        # FreeCAD ends its transactions with the command, so this waits until the command has ended.
         later(super().Activated)
 
     def target(self):
@@ -167,7 +167,8 @@ class Size(Command):
 
 
 def middle_of(elements):
-    """Of faces and edges together: of a hole a place on its axis. (Boxes around curved faces are larger than these.)"""
+    """Returns the middle of faces and edges; of a hole a place on its axis. (Boxes around curved faces are larger than
+    these.)"""
     extents = [each.Area if each.ShapeType == "Face" else each.Length for each in elements]
     total = sum(extents)
     middle = FreeCAD.Vector()
@@ -214,7 +215,7 @@ class SizeDistance(Size):
 
 
 class TakeOver(Command):
-    """For Netgen's objects, too, which have no context menu of their own before FreeCAD 1.0."""
+    """Also for Netgen's objects, which have no context menu of their own before FreeCAD 1.0."""
 
     icon = os.path.join(os.path.dirname(ICON), "take_over.svg")
     menu_text = mark("collarmesh", "Take over by collarmesh")

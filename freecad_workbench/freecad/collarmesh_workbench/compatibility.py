@@ -1,4 +1,4 @@
-"""Where FreeCAD's versions differ."""
+"""Differences between FreeCAD's versions."""
 
 import contextlib
 import importlib
@@ -10,7 +10,7 @@ from femmesh import meshtools
 
 
 class Stateless:
-    """A proxy of which nothing is saved. FreeCAD 0.20 calls the first two methods, later versions the others."""
+    """A proxy that saves nothing. FreeCAD 0.20 calls the first two methods, later versions the others."""
 
     def __getstate__(self):
         return None
@@ -26,7 +26,7 @@ class Stateless:
 
 
 def add_mesh_object(document, name):
-    """An empty mesh object with a Python proxy. FreeCAD 1.0 has a base that knows the meshed shape."""
+    """Adds an empty mesh object with a Python proxy. FreeCAD 1.0 has a base class with the meshed shape."""
     try:
         return document.addObject("Fem::FemMeshShapeBaseObjectPython", name)
     except (RuntimeError, TypeError):
@@ -34,7 +34,7 @@ def add_mesh_object(document, name):
 
 
 def shape_property(mesh_object):
-    """The property that links the meshed object: `Shape` from FreeCAD 1.0 on, `Part` before."""
+    """Returns the property that links the meshed object: `Shape` from FreeCAD 1.0 on, `Part` before."""
     return "Shape" if "Shape" in mesh_object.PropertiesList else "Part"
 
 
@@ -57,18 +57,18 @@ def set_refinements(mesh_object, refinements):
 
 
 def is_suppressed(obj):
-    """Has the user switched it off? Objects of an analysis have that from FreeCAD 1.0 on."""
+    """Returns whether the user has suppressed it, as is possible for objects of an analysis from FreeCAD 1.0 on."""
     return bool(getattr(obj, "Suppressed", False))
 
 
 def is_plain_refinement(obj):
-    """A size on sub-shapes. From FreeCAD 1.1 on lists of refinements have other kinds, too."""
+    """Returns whether it is a size on sub-shapes. From FreeCAD 1.1 on lists of refinements have other kinds, too."""
     kind = getattr(getattr(obj, "Proxy", None), "Type", "")
     return not kind.startswith("Fem::Mesh") or kind in ("Fem::MeshRegion", "Fem::MeshRefinement")
 
 
 def size_by_place(obj):
-    """What refinements by place of FreeCAD 1.1 ask for, (kind, size, size far away, distance to there, properties) for one of
+    """Returns the request of a refinement by place of FreeCAD 1.1, (kind, size, size far away, distance to there, properties) for one of
     ours; None for other objects."""
     kind = getattr(getattr(obj, "Proxy", None), "Type", "")
     if kind == "Fem::MeshDistance":
@@ -86,12 +86,12 @@ def size_by_place(obj):
 
 
 def mesh_objects(document):
-    """FEM's, of all meshers."""
+    """Returns FEM's mesh objects, of all meshers."""
     return document.findObjects("Fem::FemMeshObject")
 
 
 def make_refinement(document, mesh_object):
-    """FreeCAD's object for a size on sub-shapes; later versions call it a refinement."""
+    """Makes FreeCAD's object for a size on sub-shapes; later versions call it a refinement."""
     make = getattr(ObjectsFem, "makeMeshRegion", None) or ObjectsFem.makeMeshRefinement
     return make(document, mesh_object)
 
@@ -105,8 +105,8 @@ _in_transaction = set()  # names of documents
 
 @contextlib.contextmanager
 def transaction(document, name):
-    """One step of undo; an exception takes it back. One within another is part of that. FreeCAD's own that is still
-    open ends before: scripts and deletions leave theirs open."""
+    """One undo step, which an exception undoes. A nested one is part of the outer one. A transaction of FreeCAD's that
+    is still open is closed first: scripts and deletions leave theirs open."""
     if document.Name in _in_transaction:
         yield
         return
@@ -166,7 +166,8 @@ def write_constraints_on(*finders):
 
 
 def force_of(constraint):
-    """In N, a quantity where the property is one, from FreeCAD 0.21 on, as its writer then wants it."""
+    """Returns the force in N, as a quantity if the property is one, from FreeCAD 0.21 on, as its writer then
+    requires."""
     force = constraint.Force
     return FreeCAD.Units.Quantity(force.getValueAs("N")) if hasattr(force, "getValueAs") else force
 
@@ -193,22 +194,22 @@ def _extend(provider, fill):
 
 
 class Manipulator:
-    """What FreeCAD 1.0 and later ask when a workbench builds its bars."""
+    """The methods that FreeCAD 1.0 and later call when a workbench builds its bars."""
 
     def __init__(self, places):
-        """`places`: for each command the one of FreeCAD that it is put beside; several beside one in this order."""
+        """`places`: for each command FreeCAD's command to put it beside; several beside one in this order."""
         self.places = places
 
     def modifyToolBars(self):
         return [{"insert": command, "toolItem": place} for command, place in self.places.items()]
 
     def modifyMenuBar(self):
-        # Each one goes right after its place, so the last one comes first.
+        # Each command goes directly after its place, so the last one comes first.
         return [{"insert": command, "menuItem": place, "after": ""} for command, place in reversed(self.places.items())]
 
 
 def add_to_bars(places):
-    """Have FreeCAD put commands into its toolbars and menus; False where it cannot, before 1.0."""
+    """Puts commands into FreeCAD's toolbars and menus; returns False if it cannot, before 1.0."""
     import FreeCADGui
 
     if not hasattr(FreeCADGui, "addWorkbenchManipulator"):
@@ -218,7 +219,7 @@ def add_to_bars(places):
 
 
 def as_number(button):
-    """Standard buttons of panels as FreeCAD wants them; PySide6 (FreeCAD 1.x) has them as an enumeration."""
+    """Returns standard buttons of panels as FreeCAD requires; in PySide6 (FreeCAD 1.x) they are an enumeration."""
     return button.value if hasattr(button, "value") else int(button)
 
 

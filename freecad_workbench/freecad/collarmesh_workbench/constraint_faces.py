@@ -1,7 +1,7 @@
-"""Faces to choose for constraints on a mesh of triangles, whose part has none: an object with planar faces in place of
-each group of the mesh's faces. FEM's panels take them as they take a part's. Face1 is of the first group, Face2 of the
-second one, and so on; more follow where a group is not plane. Each stands for all of its group: when constraints are
-written for a solver, the nodes are those of the group."""
+"""Faces to choose for constraints on the mesh of a triangle mesh, which has none: an object with planar faces for each
+group of the mesh's faces. FEM's panels accept them like a part's faces. Face1 belongs to the first group, Face2 to
+the second one, and so on; groups that are not plane have further faces after these. Each face stands for its whole
+group: when constraints are written for a solver, the nodes are those of the group."""
 
 import FreeCAD
 import numpy
@@ -24,10 +24,10 @@ class Proxy(compatibility.Stateless):
         for kind, name, text in (("App::PropertyLink", MESH, doc("The mesh whose groups these faces stand for")),
                                  ("App::PropertyStringList", GROUPS, doc("The group of each face"))):
             obj.addProperty(kind, name, "Base", text)
-            obj.setEditorMode(name, 1)  # to look at only
+            obj.setEditorMode(name, 1)  # read-only
 
     def execute(self, _obj):
-        """Nothing: the faces change with the mesh only."""
+        """Does nothing: the faces only change with the mesh."""
 
 
 def is_ours(obj):
@@ -35,18 +35,18 @@ def is_ours(obj):
 
 
 def can_be_made(mesh_object):
-    """Is it a mesh of triangles, with elements?"""
+    """Returns whether it is a mesh of a triangle mesh, with elements."""
     part = compatibility.meshed_object(mesh_object)
     return part is not None and elements.is_there(mesh_object.FemMesh) and inputs.triangles_of(part) is not None
 
 
 def of(mesh_object):
-    """The object with the faces of a mesh; None: there is none yet."""
+    """Returns the object with the faces of a mesh; None without one."""
     return next((each for each in mesh_object.InList if is_ours(each)), None)
 
 
 def make(mesh_object):
-    """The object with the faces, a new one if there is none yet. Raises MesherError."""
+    """Returns the object with the faces, a new one if necessary. Raises MesherError."""
     if not can_be_made(mesh_object):
         text = translate(
             "collarmesh", "{label}: only a mesh of triangles needs faces for constraints, and it must be made first.")
@@ -66,7 +66,7 @@ def make(mesh_object):
 
 
 def references(mesh_object, names):
-    """What a constraint on groups of these names has as `References`. Raises MesherError."""
+    """Returns the `References` of a constraint on groups of these names. Raises MesherError."""
     obj = make(mesh_object)
     groups = getattr(obj, GROUPS)
     for name in names:
@@ -77,8 +77,8 @@ def references(mesh_object, names):
 
 
 def refresh(mesh_object):
-    """After the mesh was made anew: faces of its groups, and constraints on the same groups as before. Returns messages
-    on constraints whose group is gone."""
+    """Updates the faces after the mesh was made again, and keeps constraints on the same groups. Returns messages on
+    constraints whose group is gone."""
     obj = of(mesh_object)
     if obj is None:
         return []
@@ -101,7 +101,7 @@ def refresh(mesh_object):
 
 
 def _fill(obj, fem_mesh):
-    """Give the object the faces of a mesh's groups."""
+    """Gives the object the faces of a mesh's groups."""
     nodes = fem_mesh.Nodes
     numbers = numpy.array(sorted(nodes))
     points = numpy.array([tuple(nodes[number]) for number in numbers.tolist()])
@@ -124,12 +124,12 @@ def _groups_of_faces(fem_mesh):
 
 
 def _face_of(groups, name):
-    """The face that a constraint on a group refers to, whichever of its faces was chosen."""
+    """Returns the face that a constraint on a group refers to, whichever of its faces was chosen."""
     return f"Face{groups.index(name) + 1}"
 
 
 def _group_of(groups, face):
-    """The group of a face; None for edges and vertices."""
+    """Returns the group of a face; None for edges and vertices."""
     number = int(face[4:]) if face.startswith("Face") else 0
     return groups[number - 1] if 0 < number <= len(groups) else None
 
@@ -140,7 +140,8 @@ def _constraints_on(obj):
 
 
 def _has_references(obj):
-    """To sub-shapes, as constraints have them; objects of other add-ons may call other properties so."""
+    """Returns whether it has references to sub-shapes, as constraints do; other add-ons may use this name for other
+    properties."""
     return (REFERENCES in obj.PropertiesList
             and obj.getTypeIdOfProperty(REFERENCES).startswith("App::PropertyLinkSubList"))
 
@@ -151,8 +152,8 @@ def _set_references(constraint, wanted):
 
 
 def elements_of(fem_mesh, obj, name):
-    """The face elements of the group that a face stands for; None for other objects, for edges, and in a mesh without
-    that group."""
+    """Returns the face elements of the group that a face stands for; None for other objects, for edges, and in a mesh
+    without that group."""
     if not is_ours(obj):
         return None
     group = _group_of(getattr(obj, GROUPS), name)

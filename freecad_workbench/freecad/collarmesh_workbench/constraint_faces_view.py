@@ -1,4 +1,4 @@
-"""How faces for constraints look: each group has its colour."""
+"""The appearance of faces for constraints: each group has its own colour."""
 
 import colorsys
 import os
@@ -6,7 +6,7 @@ import os
 from . import compatibility, constraint_faces, views
 
 ICON = os.path.join(views.ICONS, "group.svg")
-STEP = 0.381966  # of the circle of colours: of any few in a row none are alike
+STEP = 0.381966  # share of the colour wheel: consecutive colours differ clearly
 
 
 class ConstraintFacesViewProvider(compatibility.Stateless):
@@ -28,13 +28,13 @@ class ConstraintFacesViewProvider(compatibility.Stateless):
 
 
 def colours(groups):
-    """For each face that of its group."""
+    """Returns for each face the colour of its group."""
     hues = {name: STEP * number % 1 for number, name in enumerate(dict.fromkeys(groups))}
     return [(*colorsys.hsv_to_rgb(hues[name], 0.35, 0.95), 0.0) for name in groups]
 
 
 def show(mesh_object):
-    """The faces, made if there are none yet, in place of the mesh and its part. Raises MesherError."""
+    """Shows the faces, made if necessary, instead of the mesh and its part. Raises MesherError."""
     faces = constraint_faces.make(mesh_object)
     for each in (mesh_object, compatibility.meshed_object(mesh_object)):
         each.ViewObject.Visibility = False

@@ -1,17 +1,17 @@
-"""Groups of the faces and edges at which solids touch, and the elements that constraints on them mean. Works without
-the GUI."""
+"""Groups of the faces and edges at which solids touch, and the elements for constraints on them. Works without the
+GUI."""
 
 import re
 
 from . import compatibility, contacts, mesh_properties, mesh_undo, up_to_date
 from .groups import name_in, named
 
-SIDES = ("_minus", "_plus")  # of a face at which solids are kept apart, as the program names them
+SIDES = ("_minus", "_plus")  # the program's suffixes for the two sides of a face
 
 
 def add(shape, fem_mesh, apart):
-    """Give each face and edge of touching solids its group: the mesh has common parts in that with the smallest number,
-    and where solids are kept apart, there is one for each of two sides."""
+    """Gives each face and edge of touching solids its group: in the mesh common parts are in the group with the
+    smallest number; where solids are kept apart, each side has its group."""
     here = contacts.of(shape)
     owners = _Owners(here, fem_mesh) if apart else None
     for kind, find in (("Face", fem_mesh.getFacesByFace), ("Edge", fem_mesh.getEdgesByEdge)):
@@ -30,8 +30,8 @@ def add(shape, fem_mesh, apart):
 
 
 def elements_of(fem_mesh, obj, name):
-    """The elements of a face, an edge or a solid in a mesh that keeps solids apart: places do not tell one solid's nodes
-    from those of another there. None for other meshes."""
+    """Returns the elements of a face, an edge or a solid in a mesh that keeps solids apart, where places cannot tell
+    the nodes of two solids apart. None for other meshes."""
     for mesh_object in filter(mesh_properties.is_ours, compatibility.mesh_objects(obj.Document)):
         part = compatibility.meshed_object(mesh_object)
         if part is not None and up_to_date.is_kept_apart(mesh_object) and mesh_undo.same(mesh_object.FemMesh, fem_mesh):
@@ -41,7 +41,7 @@ def elements_of(fem_mesh, obj, name):
 
 
 class _Owners:
-    """Which elements belong to which solids, by their nodes."""
+    """The solids to which elements belong, by their nodes."""
 
     def __init__(self, here, fem_mesh):
         self.here, self.fem_mesh = here, fem_mesh
@@ -50,7 +50,7 @@ class _Owners:
         self._nodes = {}
 
     def own(self, kind, number, elements):
-        """Those that belong to the solids of Face7."""
+        """Returns those that belong to the solids of a face."""
         nodes = [self._nodes_of(solid) for solid in self.here.solids(kind, number)]
         return {each for each in elements if any(set(self.fem_mesh.getElementNodes(each)) <= those for those in nodes)}
 
@@ -62,7 +62,7 @@ class _Owners:
 
 
 def _elements_of_tags(fem_mesh, kind):
-    """By the number that faces or edges have in the mesh, those of both sides together."""
+    """Returns the elements by the number of their face or edge in the mesh, those of both sides together."""
     found = {}
     for name, number in named(fem_mesh).items():
         match = re.fullmatch(rf"{kind}(\d+)({'|'.join(SIDES)})?", name)

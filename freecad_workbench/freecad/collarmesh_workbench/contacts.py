@@ -1,4 +1,4 @@
-"""Faces and edges that touching solids have in common. The mesh has a common part once, with the smallest of its numbers.
+"""The common faces and edges of touching solids. The mesh has a common part once, with the smallest of its numbers.
 Works without the GUI."""
 
 import collections
@@ -8,17 +8,17 @@ import functools
 import numpy
 
 SAME_PLACE = 1e-6  # of the shape's diagonal
-SHARE = 1e-6  # of a face's area, or an edge's length: less is none
+SHARE = 1e-6  # of a face's area, or an edge's length: a smaller common part does not count
 ANALYTIC = ("Plane", "Cylinder", "Cone", "Sphere", "Toroid", "Line", "Circle", "Ellipse")
 KINDS = ("Face", "Edge")
-SOURCES = {"patches": "Face", "curves": "Edge"}  # in the program's size field
-SHAPES = 5  # that are remembered
+SOURCES = {"patches": "Face", "curves": "Edge"}  # names in the program's size field
+SHAPES = 5  # shapes to remember
 
 _known = collections.deque(maxlen=SHAPES)  # Contacts
 
 
 def of(shape):
-    """The Contacts of a shape, which may be null."""
+    """Returns the Contacts of a shape, which may be null."""
     if shape.isNull():
         return Contacts(shape)
     found = next((each for each in _known if each.shape.isSame(shape)), None)
@@ -29,8 +29,8 @@ def of(shape):
 
 
 def in_mesh_numbers(settings, shape):
-    """Settings as the mesh numbers faces and edges: sizes of all that a face has parts of. Where no solids touch, none are
-    kept apart."""
+    """Returns Settings with the mesh's numbers of faces and edges: sizes for all faces of which a face has parts. If no
+    solids touch, none are kept apart."""
     here = of(shape)
     sizes = {}
     for field, kind in (("face_sizes", "Face"), ("edge_sizes", "Edge")):
@@ -54,7 +54,7 @@ def _field_in_mesh_numbers(field, here):
 
 
 class Contacts:
-    """Of one shape. Names are FreeCAD's: `kind` is Face or Edge, numbers begin with 1."""
+    """The contacts of one shape. Names are FreeCAD's: `kind` is Face or Edge, numbers begin with 1."""
 
     def __init__(self, shape):
         self.shape = shape
@@ -62,35 +62,37 @@ class Contacts:
         self._of_kind = {kind: _ContactsOfKind(shape, kind) for kind in KINDS} if several else {}
 
     def tags(self, kind, number):
-        """The numbers that the parts of Face7 have in the mesh."""
+        """Returns the numbers of the parts of Face7 in the mesh."""
         return self._of_kind[kind].tags(number) if kind in self._of_kind else [number]
 
     def has_all(self, kind, tag, number):
-        """Is all that the mesh has of the number `tag` a part of Face7? Precondition: it is one of its tags."""
+        """Returns whether everything with the number `tag` in the mesh is a part of Face7. Precondition: it is one of
+        its tags."""
         return tag == number or self._of_kind[kind].has_all(tag, number)
 
     def names(self, kind, tag):
-        """All that what has this number in the mesh may be a part of: Face7, Face9."""
+        """Returns the names of which a part may have this number in the mesh: Face7, Face9."""
         return [f"{kind}{number}" for number in (tag, *self._larger(kind, tag))]
 
     def numbers(self, kind):
-        """Those of all faces or edges; none in a shape of one solid."""
+        """Returns the numbers of all faces or edges; none in a shape of one solid."""
         return range(1, len(self._of_kind[kind].elements) + 1) if kind in self._of_kind else ()
 
     def in_contact(self, kind):
-        """Numbers of those that have a part with a smaller number in the mesh."""
+        """Returns the numbers of those that have a part with a smaller number in the mesh."""
         return [number for number in self.numbers(kind) if self.tags(kind, number) != [number]]
 
     def solids(self, kind, number):
-        """The numbers of the solids that Face7 belongs to. Precondition: there are several solids."""
+        """Returns the numbers of the solids that Face7 belongs to. Precondition: there are several solids."""
         return sorted(solid + 1 for solid in self._of_kind[kind].solids[number - 1])
 
     def name(self, kind, tag):
-        """These in one: "Face7 = Face9"."""
+        """Returns one name for them: "Face7 = Face9"."""
         return " = ".join(self.names(kind, tag))
 
     def glued_faces(self):
-        """Pairs of numbers of faces with a part in common; twice the same for a face that two solids share already."""
+        """Returns pairs of numbers of faces with a common part; the same number twice for a face that two solids share
+        already."""
         if not self._of_kind:
             return []
         holders = self._of_kind["Face"].solids
@@ -105,17 +107,17 @@ class Contacts:
 
 
 class _ContactsOfKind:
-    """Between faces, or between edges."""
+    """Contacts between faces, or between edges."""
 
     def __init__(self, shape, kind):
         self.shape, self.kind = shape, kind
         self.elements = getattr(shape, kind + "s")
         self.tolerance = SAME_PLACE * shape.BoundBox.DiagonalLength
-        self._pairs, self._left = {}, {}  # what is known: which have a common part, which have a part of their own
+        self._pairs, self._left = {}, {}  # pairs with a common part; elements with a part of their own
 
     @functools.cached_property
     def solids(self):
-        """For each element the solids that it belongs to."""
+        """Returns for each element the solids that it belongs to."""
         members = collections.defaultdict(list)
         for i, solid in enumerate(self.shape.Solids):
             for each in getattr(solid, self.kind + "s"):
@@ -124,16 +126,16 @@ class _ContactsOfKind:
 
     @functools.cached_property
     def boxes(self):
-        """Lower corners, and upper ones with the other sign."""
+        """Returns lower corners and negated upper ones."""
         boxes = [each.BoundBox for each in self.elements]
         return numpy.array([(b.XMin, b.YMin, b.ZMin, -b.XMax, -b.YMax, -b.ZMax) for b in boxes]).reshape(-1, 6)
 
     def met(self, number):
-        """Numbers of those of other solids that have a part in common with this one."""
+        """Returns the numbers of elements of other solids that have a common part with this one."""
         return [other for other in self._near(number) if self._meet(min(number, other), max(number, other))]
 
     def tags(self, number):
-        if number > len(self.elements):  # the program says that there is none
+        if number > len(self.elements):  # the program reports the missing element
             return [number]
         tags = [other for other in self.met(number) if other < number and self._is_left(other)]
         return [*tags, number] if self._is_left(number) else tags
@@ -143,7 +145,7 @@ class _ContactsOfKind:
         return _is_nothing(other.cut(self.elements[number - 1]), other)
 
     def _is_left(self, number):
-        """Is there a part of it that has its number in the mesh?"""
+        """Returns whether a part of it has its number in the mesh."""
         if number not in self._left:
             element = self.elements[number - 1]
             smaller = [self.elements[other - 1] for other in self.met(number) if other < number]
@@ -151,14 +153,14 @@ class _ContactsOfKind:
         return self._left[number]
 
     def _near(self, number):
-        """Those of other solids whose boxes meet its box."""
+        """Returns elements of other solids whose boxes meet its box."""
         opposite = -self.boxes[number - 1][[3, 4, 5, 0, 1, 2]]
         meet = (self.boxes <= opposite + self.tolerance).all(axis=1)
         mine = self.solids[number - 1]
         return [int(i) + 1 for i in numpy.flatnonzero(meet) if not self.solids[i] & mine]
 
     def _meet(self, *numbers):
-        """Have the two a part in common?"""
+        """Returns whether the two have a common part."""
         if numbers not in self._pairs:
             a, b = (self.elements[number - 1] for number in numbers)
             is_possible = not self._seams & set(numbers) and _may_coincide(a, b, self.tolerance)
@@ -167,7 +169,7 @@ class _ContactsOfKind:
 
     @functools.cached_property
     def _seams(self):
-        """Numbers of edges that the mesh does not have."""
+        """Returns the numbers of edges that the mesh does not have."""
         if self.kind == "Face":
             return set()
         seams = collections.defaultdict(list)
@@ -180,20 +182,20 @@ class _ContactsOfKind:
 
 
 def is_seam(shape, edge):
-    """Of a face, or a degenerate one: the mesh has no such edge."""
+    """Returns whether it is a face's seam or a degenerate edge: the mesh has no such edge."""
     return edge.Degenerated or any(edge.isSeam(face) for face in shape.Faces if any(edge.isSame(e) for e in face.Edges))
 
 
 def _is_nothing(part, whole):
-    """Has it no area or length to speak of?"""
+    """Returns whether its area or length is negligible."""
     if whole.ShapeType == "Face":
         return part.Area <= SHARE * whole.Area
     return part.Length <= SHARE * whole.Length
 
 
 def _may_coincide(a, b, tolerance):
-    """False where points of one are off the surface or the curve of the other. Planes, cylinders and the like coincide
-    with others everywhere or nowhere."""
+    """Returns False if points of one are off the surface or the curve of the other. Planes, cylinders and similar
+    surfaces coincide everywhere or nowhere."""
     if _is_analytic(a):
         a, b = b, a
     if not _is_analytic(b):
@@ -212,7 +214,7 @@ def _is_analytic(element):
 
 
 def _distance(geometry, point):
-    """To a surface or a curve, without its ends."""
+    """Returns the distance to a surface or a curve, without its ends."""
     place = geometry.parameter(point)
     return point.distanceToPoint(geometry.value(*(place if isinstance(place, tuple) else (place,))))
 

@@ -1,11 +1,11 @@
-"""The part of the panel that tells at which faces solids touch, and asks whether they are kept apart there."""
+"""The part of the panel that shows at which faces solids touch, and asks whether to keep them apart there."""
 
 from PySide import QtCore, QtGui
 
 from . import compatibility, contacts, inputs
 from .translations import translate
 
-MOST = 3  # faces that are named; the tool tip has all
+MOST = 3  # faces to name; the tool tip lists all
 
 
 class ContactsSection(QtGui.QWidget):
@@ -36,11 +36,11 @@ class ContactsSection(QtGui.QWidget):
         self.look_soon()
 
     def look_soon(self):
-        """At the shape, when the window has shown what is there already."""
+        """Looks at the shape after the window has shown its current contents."""
         self._timer.start()
 
     def store(self):
-        """Into the object's property."""
+        """Stores the value in the object's property."""
         if self.box.isChecked() != self.object.KeepApart:
             self.object.KeepApart = self.box.isChecked()
 
@@ -66,7 +66,7 @@ class ContactsSection(QtGui.QWidget):
             return []
         try:
             pairs = contacts.of(inputs.shape_of(part)).glued_faces()
-        except Exception:  # of OpenCASCADE's, too; the run tells what is wrong
+        except Exception:  # also OpenCASCADE's; the run reports the problem
             return []
         return [f"Face{first}" if first == second else f"Face{first} = Face{second}" for first, second in pairs]
 

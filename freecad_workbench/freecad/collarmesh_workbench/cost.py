@@ -1,4 +1,4 @@
-"""What a mesh costs, and when that is asked about before it is made. Works without the GUI."""
+"""The cost of a mesh, and when to ask the user before making it. Works without the GUI."""
 
 import math
 
@@ -7,13 +7,14 @@ from .size_presets import count_text, duration_text
 from .translations import translate
 
 MANY = 5_000_000  # elements
-BYTES = {1: 1000, 2: 2000}  # of memory for an element, by order: in the mesher, and then in FreeCAD
+BYTES = {1: 1000, 2: 2000}  # bytes of memory per element, by order: in the mesher, and then in FreeCAD
 GIGABYTE = 1e9
-LOADING = {1: 5e-6, 2: 12e-6}  # seconds for an element, by order, until FreeCAD has read it
+LOADING = {1: 5e-6, 2: 12e-6}  # seconds per element, by order, for FreeCAD to read it
 
 
 def elements_by_extent(part, size, dimension=3):
-    """About how many elements of one size (mm) a part takes: regular tetrahedra, equilateral triangles, or lines."""
+    """Estimates the number of elements of one size (mm) in a part: regular tetrahedra, equilateral triangles, or
+    lines."""
     mesh, shape = inputs.triangles_of(part), inputs.shape_of(part)
     if mesh is None and shape.isNull():
         return 0
@@ -25,7 +26,8 @@ def elements_by_extent(part, size, dimension=3):
 
 
 def estimates(part, sizes, dimension):
-    """{size: (elements, None)} of meshes that the program does not predict, as curves and small faces are not counted."""
+    """Returns {size: (elements, None)} for meshes that the program does not predict; ignores curvature and small
+    faces."""
     return {} if part is None else {size: (elements_by_extent(part, size, dimension), None) for size in sizes if size > 0}
 
 
@@ -34,7 +36,7 @@ def loading_seconds(elements, order):
 
 
 def free_memory():
-    """In bytes; infinite where nobody knows."""
+    """Returns the free memory in bytes; infinite if unknown."""
     try:
         with open("/proc/meminfo", encoding="ascii") as file:
             lines = dict(line.split(":", 1) for line in file)
@@ -44,7 +46,7 @@ def free_memory():
 
 
 def question(elements, order, seconds=None):
-    """What to ask before so many elements are made; "" where nothing is. `seconds`: None where nobody knows."""
+    """Returns the question to ask before this many elements are made; "" for none. `seconds`: None if unknown."""
     needed, free = BYTES[order] * elements, free_memory()
     if elements <= MANY and needed <= free:
         return ""

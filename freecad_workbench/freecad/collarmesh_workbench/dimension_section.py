@@ -1,4 +1,4 @@
-"""The part of the panel that asks what elements there are to be: tetrahedra, triangles or lines."""
+"""The part of the panel that asks for the kind of elements: tetrahedra, triangles or lines."""
 
 from PySide import QtCore, QtGui
 
@@ -35,7 +35,7 @@ class DimensionSection(QtGui.QWidget):
         self.combo.currentIndexChanged.connect(lambda _index: self.changed.emit())
 
     def asked(self):
-        """1, 2 or 3; 0: from the shape."""
+        """Returns 1, 2 or 3; 0: from the shape."""
         return self.combo.currentIndex()
 
     def store(self):
@@ -47,17 +47,17 @@ class DimensionSection(QtGui.QWidget):
         settings.dimension = self.asked()
 
     def chosen(self, fill_holes):
-        """1, 2 or 3, with what the shape asks for."""
+        """Returns 1, 2 or 3, by the shape if the user has not chosen."""
         part = compatibility.meshed_object(self.object)
         if part is None:
             return self.asked() or 3
         try:
             return open_shape.dimension(part, self.asked(), fill_holes)
-        except Exception:  # of OpenCASCADE's, too; the run tells what is wrong
+        except Exception:  # also OpenCASCADE's; the run reports the problem
             return self.asked() or 3
 
     def show_note(self, fill_holes):
-        """What was chosen from the shape, and what FEM needs for it."""
+        """Shows the dimension chosen from the shape, and what FEM needs for it."""
         part, chosen = compatibility.meshed_object(self.object), self.chosen(fill_holes)
         words = [] if part is None or self.asked() else [open_shape.word(part, chosen)]
         words.append(missing_section(self.object, chosen))
@@ -67,7 +67,7 @@ class DimensionSection(QtGui.QWidget):
 
 
 def missing_section(mesh_object, dimension):
-    """What FEM needs for such elements and the analysis does not have; "" for nothing."""
+    """Returns the object that FEM needs for such elements if the analysis lacks it; "" for none."""
     analysis = analysis_of(mesh_object)
     members = [] if analysis is None else analysis.Group
     if dimension == 3 or any(type_of(each) == f"Fem::ElementGeometry{dimension}D" for each in members):

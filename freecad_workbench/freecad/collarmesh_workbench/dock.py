@@ -7,7 +7,7 @@ from PySide import QtCore, QtGui
 
 
 def widen(form, width):
-    """Make room for all of a panel (pixels), once it is in its dock, which shows only what fits."""
+    """Makes room for a panel's whole width (pixels), once it is in its dock, which only shows what fits."""
     QtCore.QTimer.singleShot(0, lambda: _widen(form, width))
 
 

@@ -2,23 +2,23 @@
 
 
 def dimension(fem_mesh):
-    """3, 2 or 1; 0 for an empty mesh."""
+    """Returns 3, 2 or 1; 0 for an empty mesh."""
     counts = (fem_mesh.VolumeCount, fem_mesh.FaceCount, fem_mesh.EdgeCount)
     return next((3 - i for i, count in enumerate(counts) if count > 0), 0)
 
 
 def numbers(fem_mesh):
-    """Those of highest dimension, which a solver gets."""
+    """Returns the elements of highest dimension, which a solver gets."""
     return {0: (), 1: fem_mesh.Edges, 2: fem_mesh.Faces, 3: fem_mesh.Volumes}[dimension(fem_mesh)]
 
 
 def is_there(fem_mesh):
-    """Is it the mesh of a run? Edges alone come with every mesh."""
+    """Returns whether it is the mesh of a run. Edges alone come with every mesh."""
     return fem_mesh.NodeCount > 0 and dimension(fem_mesh) > 0
 
 
 def order(fem_mesh):
-    """1 or 2; 1 for an empty mesh."""
+    """Returns 1 or 2; 1 for an empty mesh."""
     nodes = {3: 10, 2: 6, 1: 3}
     first = next(iter(numbers(fem_mesh)), None)
     return 2 if first is not None and len(fem_mesh.getElementNodes(first)) == nodes[dimension(fem_mesh)] else 1

@@ -1,4 +1,4 @@
-"""How large the parts are that are meshed."""
+"""The sizes of the parts to mesh."""
 
 import FreeCAD
 import Part
@@ -7,7 +7,7 @@ from . import inputs
 
 
 def bounding_box(part):
-    """Of a shape or of a mesh of triangles; not valid where there is none."""
+    """Returns the box of a shape or of a triangle mesh; not valid if there is none."""
     if part is None:
         return FreeCAD.BoundBox()
     mesh = inputs.triangles_of(part)
@@ -18,7 +18,7 @@ def bounding_box(part):
 
 
 def box_of_subshape(part, name):
-    """Of Face7, say; not valid where the part has none."""
+    """Returns the box of a sub-shape such as Face7; not valid if the part does not have it."""
     try:
         return Part.getShape(part).getElement(name).BoundBox
     except (AttributeError, ValueError, IndexError, RuntimeError, Part.OCCError):
@@ -26,6 +26,6 @@ def box_of_subshape(part, name):
 
 
 def diagonal(part):
-    """In mm; 0 where there is nothing."""
+    """Returns the diagonal in mm; 0 without geometry."""
     box = bounding_box(part)
     return box.DiagonalLength if box.isValid() else 0

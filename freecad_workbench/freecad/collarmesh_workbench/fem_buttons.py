@@ -20,13 +20,13 @@ EVERY = 200  # milliseconds
 
 
 def freecads_place(command):
-    """FreeCAD's own command that one of ours is put beside, directly or behind others of ours."""
+    """Returns FreeCAD's own command beside which ours is put, directly or after others of ours."""
     place = BESIDE[command]
     return freecads_place(place) if place in BESIDE else place
 
 
 class Inserter(QtCore.QObject):
-    """Each time a workbench has become active, look for the actions and put ours after them."""
+    """Looks for FreeCAD's actions each time a workbench becomes active, and puts ours after them."""
 
     def __init__(self, window):
         super().__init__(window)
@@ -46,7 +46,7 @@ class Inserter(QtCore.QObject):
         return action
 
     def grey(self):
-        """As FreeCAD does for its own: what would do nothing now."""
+        """Disables commands that would do nothing now, like FreeCAD's own."""
         for action in self.actions:
             action.setEnabled(FreeCADGui.Command.get(action.objectName()).isActive())
 

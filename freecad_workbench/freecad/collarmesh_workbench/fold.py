@@ -1,4 +1,4 @@
-"""A part of a panel that is folded to one line."""
+"""A part of a panel that can be folded to one line."""
 
 from PySide import QtCore, QtGui
 

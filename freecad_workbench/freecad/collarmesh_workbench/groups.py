@@ -17,12 +17,12 @@ KINDS = {"Solid": "Volume", "Face": "Face", "Edge": "Edge"}
 
 
 def named(fem_mesh):
-    """The numbers of the groups by name."""
+    """Returns the numbers of the groups by name."""
     return {fem_mesh.getGroupName(number): number for number in fem_mesh.Groups}
 
 
 def analysis_of(mesh_object):
-    """The analysis that the mesh belongs to, None without one."""
+    """Returns the analysis that contains the mesh, None without one."""
     return next((each for each in mesh_object.InList if each.isDerivedFrom("Fem::FemAnalysis")), None)
 
 
@@ -32,7 +32,7 @@ def materials_of(analysis):
 
 
 def elements_of(fem_mesh, part, subshapes):
-    """The kind of group and the elements for names like Face7; by place where the mesh has no such group."""
+    """Returns the kind of group and the elements for names like Face7; by place if the mesh has no such group."""
     groups, kind, elements = named(fem_mesh), "", set()
     for name in subshapes:
         kind = next((value for key, value in KINDS.items() if name.startswith(key)), "")
@@ -46,14 +46,15 @@ def elements_of(fem_mesh, part, subshapes):
 
 
 def names_in(part, references):
-    """The names that the sub-shapes of references have in a part, where it has all of them; else empty. FreeCAD looks for them by
-    place, and takes the first of two that coincide."""
+    """Returns the names that the sub-shapes of references have in a part, if it has all of them; otherwise nothing.
+    FreeCAD looks for them by place, and takes the first of two that coincide."""
     names = [name_in(part, obj, name) for obj, subshapes in references for name in subshapes]
     return sorted(names) if all(names) else []
 
 
 def name_in(part, obj, name):
-    """The name that a sub-shape of an object has in a part, as that of a compound; "" where the part does not have it."""
+    """Returns the name that a sub-shape of an object, such as a compound, has in a part; "" if the part does not have
+    it."""
     if obj is part:
         return name
     kind, number = re.fullmatch(r"([A-Za-z]*)(\d*)", name).groups()
@@ -65,13 +66,13 @@ def name_in(part, obj, name):
 
 
 def _is_same(first, second):
-    """Is it one sub-shape, at one place?"""
+    """Returns whether it is the same sub-shape at the same place."""
     near = contacts.SAME_PLACE * second.BoundBox.DiagonalLength
     return first.isPartner(second) and first.BoundBox.Center.distanceToPoint(second.BoundBox.Center) <= near
 
 
 def wanted(mesh_object, fem_mesh):
-    """What groups the mesh must have besides those of sub-shapes: [(name, kind, elements)]."""
+    """Returns the groups that the mesh must have besides those of sub-shapes: [(name, kind, elements)]."""
     part = compatibility.meshed_object(mesh_object)
     if inputs.triangles_of(part) is not None:  # its segments are groups already
         return []
@@ -95,7 +96,8 @@ def wanted(mesh_object, fem_mesh):
 
 
 def materials_elsewhere(mesh_object):
-    """Messages on materials that refer to solids which the meshed part does not have, so that they get no elements."""
+    """Returns messages on materials that get no elements because they refer to solids which the meshed part does not
+    have."""
     part = compatibility.meshed_object(mesh_object)
     if part is None or inputs.triangles_of(part) is not None:
         return []
@@ -113,7 +115,7 @@ def materials_elsewhere(mesh_object):
 
 
 def add_groups(mesh_object, fem_mesh):
-    """Bring the groups of `fem_mesh` up to date; True if it had to be changed."""
+    """Updates the groups of `fem_mesh`; returns True if it had to be changed."""
     made = {f"{name}_{kind}s" for name in names_of_owners(mesh_object) for kind in KINDS.values()}
     groups = wanted(mesh_object, fem_mesh)
     have = named(fem_mesh)
@@ -130,13 +132,13 @@ def add_groups(mesh_object, fem_mesh):
 
 
 def names_of_owners(mesh_object):
-    """Names of all objects that groups are made for, those that are no members any more included."""
+    """Returns the names of all objects for which groups are made, including former members."""
     document = mesh_object.Document
     return {name for each in document.Objects for name in (each.Name, each.Label) if hasattr(each, "References")}
 
 
 class Observer:
-    """Follows what the groups are made from."""
+    """Follows the objects from which groups are made."""
 
     def slotChangedObject(self, changed, name):
         if name not in ("References", "Group"):
@@ -166,7 +168,7 @@ class Observer:
 
 
 def meshes_among(objects):
-    """Our mesh objects that have a mesh and a part."""
+    """Returns our mesh objects that have a mesh and a part."""
     return [each for each in objects if mesh_properties.is_ours(each) and elements.is_there(each.FemMesh)
             and compatibility.meshed_object(each) is not None]
 

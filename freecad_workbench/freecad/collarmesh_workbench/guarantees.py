@@ -4,7 +4,7 @@ from .translations import translate
 
 
 def guarantees(report):
-    """[(text, messages of what breaks it)], none of which is the good case."""
+    """Returns [(text, messages of violations)]; no messages if the guarantee holds."""
     groups = {1: _groups_of_lines, 2: _groups_of_triangles, 3: _groups}[report["options"]["dimension"]]()
     if report["options"]["order"] != 2:
         groups = groups[:-1]
@@ -51,7 +51,7 @@ def _groups_of_lines():
 
 
 def _groups():
-    """The certificate's names, by what they guarantee."""
+    """Groups the certificate's names by what they guarantee."""
     return [
         (translate("collarmesh", "The mesh fills the shape: every face, edge and corner is kept"),
          ("conforming", "watertight", "curve_cover", "curve_distance", "patch_area", "patch_border", "patch_distance",

@@ -1,4 +1,4 @@
-"""The part of the panel that tells which guarantees a mesh keeps."""
+"""The part of the panel that shows which guarantees a mesh keeps."""
 
 from PySide import QtCore, QtGui
 
@@ -9,7 +9,7 @@ from .translations import translate
 
 
 class GuaranteesView(QtGui.QWidget):
-    """One line when all hold, which unfolds to all of them."""
+    """A single line if all hold, which unfolds to the list."""
 
     def __init__(self):
         super().__init__()
@@ -33,7 +33,7 @@ class GuaranteesView(QtGui.QWidget):
         self.show()
 
     def show_out_of_date(self, out_of_date):
-        """What held when the mesh was made is grey then."""
+        """Shows the results in grey, because they are those of an older mesh."""
         if self._report is not None and out_of_date != self._out_of_date:
             self._out_of_date = out_of_date
             self._write()
@@ -61,5 +61,5 @@ class GuaranteesView(QtGui.QWidget):
 
 
 def escaped(text):
-    """For labels."""
+    """Escapes text for labels."""
     return text.replace("&", "&amp;").replace("<", "&lt;").replace("\n", "<br>")

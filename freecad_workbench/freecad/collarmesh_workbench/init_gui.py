@@ -5,7 +5,7 @@ import FreeCADGui
 from . import (commands, constraint_faces_view, fem_buttons, mesh_menu, meshing_process, preferences, size_view,
                translations, view_provider)
 
-translations.load()  # before there are texts
+translations.load()  # before any text is used
 commands.register()
 view_provider.register()
 size_view.register()

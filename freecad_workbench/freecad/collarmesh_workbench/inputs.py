@@ -1,4 +1,5 @@
-"""What can be meshed: whatever has a shape (bodies, compounds, links, also to other documents), and triangle meshes."""
+"""Objects that can be meshed: any object with a shape (bodies, compounds, links, also to other documents), and triangle
+meshes."""
 
 import numpy
 import Part
@@ -7,11 +8,11 @@ from .program import MesherError
 from .translations import translate
 
 KINDS = ("Part::Feature", "App::Part", "App::LinkGroup", "Mesh::Feature")
-REST = "Rest"  # the group of the triangles that are in no segment
+REST = "Rest"  # the group of the triangles in no segment
 
 
 def triangles_of(part):
-    """The `Mesh` of a `Mesh::Feature` or of a link to one, placed as it shows; None for other objects."""
+    """Returns the `Mesh` of a `Mesh::Feature` or of a link to one, placed as shown; None for other objects."""
     linked = part.getLinkedObject(True)
     if linked is None or not linked.isDerivedFrom("Mesh::Feature"):
         return None
@@ -23,7 +24,7 @@ def triangles_of(part):
 
 
 def shape_of(part):
-    """The shape of an object, with its placement; a null shape if it has none, as triangle meshes have."""
+    """Returns the shape of an object, with its placement; a null shape if it has none, like triangle meshes."""
     shape = getattr(part, "Shape", None)
     if hasattr(shape, "exportBrep"):
         return shape
@@ -31,18 +32,19 @@ def shape_of(part):
 
 
 def can_be_meshed(obj):
-    """Is it worth a try? Asked often, so kinds decide; what is no closed solid is refused when it is meshed."""
+    """Returns whether meshing is worth a try. Called often, so it only checks kinds; shapes that are no closed solids
+    are rejected when they are meshed."""
     linked = obj.getLinkedObject(True)
     return linked is not None and any(linked.isDerivedFrom(kind) for kind in KINDS)
 
 
 def file_name(part):
-    """The name of a file for what `write` writes, in a format that fits."""
+    """Returns a file name for `write`, in a format that fits."""
     return "shape.brep" if triangles_of(part) is None else "triangles.msh"
 
 
 def write(part, path):
-    """The shape, or the triangles with their segments as groups. Raises MesherError where there is nothing."""
+    """Writes the shape, or the triangles with their segments as groups. Raises MesherError without geometry."""
     mesh = triangles_of(part)
     if mesh is None:
         shape = shape_of(part)
@@ -58,7 +60,7 @@ def write(part, path):
 
 
 def segments(mesh):
-    """For each triangle the number of its segment from 1 on, the first one where it is in several; 0: in none."""
+    """Returns for each triangle the number of its segment, from 1, the first one if it is in several; 0: in none."""
     numbers = numpy.zeros(mesh.CountFacets, dtype=int)
     for number in range(mesh.countSegments(), 0, -1):
         numbers[numpy.array(mesh.getSegment(number - 1), dtype=int)] = number
@@ -66,8 +68,8 @@ def segments(mesh):
 
 
 def write_triangles(mesh, path):
-    """As .msh 2.2: segments are physical groups. Without segments the triangles have no tags, so that the program
-    finds the faces by their angles."""
+    """Writes triangles as .msh 2.2; segments are physical groups. Without segments the triangles have no tags, so that
+    the program finds the faces by their angles."""
     points, triangles = mesh.Topology
     numbers = segments(mesh)
     count = mesh.countSegments()

@@ -1,5 +1,5 @@
-"""Actions from Qt's main loop. FreeCAD's progress bar lets timers run in the middle of a recompute, when no document
-may be changed: a recompute within another one, or an object that goes meanwhile, can end FreeCAD."""
+"""Actions from Qt's main loop. FreeCAD's progress bar runs timers in the middle of a recompute, when no document may be
+changed: a nested recompute, or an object deleted meanwhile, can crash FreeCAD."""
 
 import FreeCAD
 from PySide import QtCore
@@ -8,7 +8,7 @@ AGAIN = 100  # milliseconds
 
 
 def later(action, milliseconds=0):
-    """Call `action` after this time, or when no document is recomputed any more."""
+    """Calls `action` after this time, or when no document is being recomputed any more."""
     QtCore.QTimer.singleShot(milliseconds, lambda: _try(action))
 
 

@@ -1,4 +1,4 @@
-"""A mesh of a mesh object in the program's formats, and what the program says of it."""
+"""Writes the mesh of a mesh object in the program's formats, and measures it with the program."""
 
 import json
 import os
@@ -9,7 +9,7 @@ from .program import MesherError, find_program
 from .translations import translate
 from .work_folder import WorkFolder
 
-# FreeCAD's own export writes some of them, too, but not all, and loses groups of faces in .inp.
+# FreeCAD's own export writes only some of these, and loses groups of faces in .inp.
 FORMATS = (
     ("VTK, ParaView", ".vtu"), ("VTK", ".vtk"), ("Gmsh", ".msh"), ("Gmsh 2.2", ".msh2"), ("Abaqus, CalculiX", ".inp"),
     ("I-DEAS, SALOME", ".unv"), ("Medit", ".mesh"), ("TetGen", ".ele"), ("STL", ".stl"), ("OBJ", ".obj"), ("PLY", ".ply"),
@@ -18,17 +18,18 @@ FORMATS = (
 
 
 def filters():
-    """For a file dialog."""
+    """Returns filters for a file dialog."""
     return ";;".join(f"{name} (*{extension})" for name, extension in FORMATS)
 
 
 def extension_in(text):
-    """Of one of these filters, without the dot."""
+    """Returns the extension of one of these filters, without the dot."""
     return text[text.index("*.") + 2 : text.rindex(")")]
 
 
 def _run(mesh_object, arguments):
-    """The program's standard output; `MESH` among the arguments is the object's mesh. Raises MesherError."""
+    """Runs the program and returns its standard output; `MESH` among the arguments is the object's mesh. Raises
+    MesherError."""
     if not elements.is_there(mesh_object.FemMesh):
         raise MesherError(translate("collarmesh", "{label} has no mesh yet.").format(label=mesh_object.Label))
     program = find_program(preferences.program())
@@ -50,11 +51,12 @@ def _run(mesh_object, arguments):
 
 
 def export(mesh_object, path):
-    """Write the object's mesh, with its groups by sub-shapes and their names where the format has a place for them.
-    The format is that of the path's extension. Raises MesherError."""
+    """Writes the object's mesh, with its groups by sub-shapes and their names if the format has a place for them. The
+    path's extension gives the format. Raises MesherError."""
     _run(mesh_object, ["convert", "MESH", "-o", path, "--quiet"])
 
 
 def statistics(mesh_object):
-    """What the program measures: points, tets, angles, histograms (`collarmesh info --json`). Raises MesherError."""
+    """Returns the program's measurements: points, tets, angles, histograms (`collarmesh info --json`). Raises
+    MesherError."""
     return json.loads(_run(mesh_object, ["info", "MESH", "--json"]))["mesh"]

@@ -1,4 +1,4 @@
-"""What the context menus of mesh objects offer, ours and those of FreeCAD's meshers."""
+"""The context menus of mesh objects, ours and those of FreeCAD's meshers."""
 
 import FreeCADGui
 from PySide import QtCore, QtGui
@@ -11,10 +11,10 @@ from .translations import translate
 
 
 def fill(menu, obj):
-    """Of one of our mesh objects."""
+    """Fills the menu of one of our mesh objects."""
     has_mesh = elements.is_there(obj.FemMesh)
     for name, text, action, enabled in (
-        ("edit", translate("collarmesh", "Edit mesh"), edit, True),  # as a double click does
+        ("edit", translate("collarmesh", "Edit mesh"), edit, True),  # like a double click
         ("mesh_again", translate("collarmesh", "Mesh again"), mesh_again, True),
         ("export", translate("collarmesh", "Export mesh..."), export, has_mesh),
         ("statistics", translate("collarmesh", "Statistics..."), statistics, has_mesh),
@@ -26,7 +26,7 @@ def fill(menu, obj):
 
 
 def fill_for_others(menu, obj):
-    """Of a mesh object of Gmsh or Netgen."""
+    """Fills the menu of a mesh object of Gmsh or Netgen."""
     _add(menu, "take_over", translate("collarmesh", "Take over by collarmesh"), take, obj)
 
 
@@ -49,7 +49,7 @@ def _run(action, obj):
 
 
 def edit(obj):
-    """Open the panel."""
+    """Opens the panel."""
     document = FreeCADGui.getDocument(obj.Document.Name)
     if document.getInEdit():
         document.resetEdit()
@@ -57,7 +57,7 @@ def edit(obj):
 
 
 def mesh_again(obj):
-    """Open the panel and start."""
+    """Opens the panel and starts meshing."""
     edit(obj)
     panel = obj.ViewObject.Proxy.panel
     if panel is not None:
@@ -101,5 +101,5 @@ def _replaced(result):
 
 
 def install():
-    """Into the context menus of FreeCAD's own mesh objects."""
+    """Adds entries to the context menus of FreeCAD's own mesh objects."""
     compatibility.extend_context_menus(fill_for_others)

@@ -1,4 +1,4 @@
-"""The mesh object in the document, and how its mesh is made. Works without the GUI."""
+"""The mesh object in the document, and how to make its mesh. Works without the GUI."""
 
 import dataclasses
 
@@ -10,7 +10,7 @@ from . import (compatibility, constraint_faces, contact_groups, contacts, elemen
 from .program import GUARANTEE_MISSED, Job, MesherError
 from .translations import translate
 
-TINY = 0.01  # of the target edge length: edges that hardly anybody means
+TINY = 0.01  # of the target edge length: shorter edges are probably unintended
 
 
 def add_properties(obj):
@@ -20,7 +20,7 @@ def add_properties(obj):
 
 
 class MeshProxy(compatibility.Stateless):
-    """The Python side of the object. `Type` is what FEM's tools ask for."""
+    """The Python side of the object. FEM's tools check `Type`."""
 
     Type = mesh_properties.TYPE
 
@@ -32,12 +32,12 @@ class MeshProxy(compatibility.Stateless):
         add_properties(obj)
 
     def execute(self, obj):
-        """FreeCAD recomputes the object: its mesh stays, and is marked if it is out of date."""
+        """Handles a recompute by FreeCAD: the mesh stays, and is marked if it is out of date."""
         up_to_date.show(obj)
 
 
 def make(document, part=None, name="FEMMeshCollarmesh"):
-    """A new mesh object, empty, for the shape of `part`."""
+    """Makes a new, empty mesh object for the shape of `part`."""
     obj = compatibility.add_mesh_object(document, name)
     MeshProxy(obj)
     if part is not None:
@@ -47,7 +47,7 @@ def make(document, part=None, name="FEMMeshCollarmesh"):
 
 
 def start(obj, program="", settings=None):
-    """A Job with the shape written, to be run; `settings` in place of the object's own. Raises MesherError."""
+    """Returns a Job to run, with the shape written; `settings` replaces the object's own. Raises MesherError."""
     part = mesh_properties.part_to_mesh(obj)
     state = up_to_date.state_of(obj)
     settings = settings or mesh_properties.settings_of(obj)
@@ -83,7 +83,7 @@ def start(obj, program="", settings=None):
 
 
 def tiny_edges(shape, size):
-    """Warnings, one for each edge much shorter than the target edge length (mm; 0: the default)."""
+    """Returns a warning for each edge much shorter than the target edge length (mm; 0: the default)."""
     if shape.isNull():
         return []
     default = shape.BoundBox.DiagonalLength / 20
@@ -107,7 +107,7 @@ def tiny_edges(shape, size):
 
 
 def finish(obj, job, exit_code=0):
-    """Put the mesh of a job that ended into the object. Raises MesherError; the object keeps its mesh then."""
+    """Puts the mesh of a job that has ended into the object. Raises MesherError; the object keeps its mesh then."""
     job.require_success(exit_code)
     fem_mesh = Fem.read(job.mesh)
     if elements.dimension(fem_mesh) != job.dimension:
@@ -132,7 +132,7 @@ def finish(obj, job, exit_code=0):
 
 
 def remesh(obj, progress=None):
-    """Make the object's mesh anew and wait; returns the program's report. Raises MesherError."""
+    """Makes the object's mesh again and waits; returns the program's report. Raises MesherError."""
     with start(obj) as job:
         exit_code = job.run(progress)
         return finish(obj, job, exit_code)

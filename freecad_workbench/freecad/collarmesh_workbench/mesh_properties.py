@@ -1,4 +1,4 @@
-"""The properties of mesh objects, and the Settings that they stand for. Works without the GUI."""
+"""The properties of mesh objects, and the Settings that they represent. Works without the GUI."""
 
 import re
 
@@ -6,10 +6,10 @@ from . import compatibility, preferences, size_objects
 from .program import MesherError, Settings
 from .translations import doc, translate
 
-TYPE = "Fem::FemMeshCollarmesh"  # what FEM's tools ask for
+TYPE = "Fem::FemMeshCollarmesh"  # the type that FEM's tools check
 
-# Names that macros for FreeCAD's Gmsh object use as well come first. Lines: type, name, field of Settings, group in
-# the property editor, text.
+# Names shared with FreeCAD's Gmsh object, which macros use as well, come first. Lines: type, name, field of
+# Settings, group in the property editor, text.
 SIZES, FEATURES, QUALITY, RUN = "Sizes", "Features", "Quality", "Run"
 PROPERTIES = (
     (
@@ -230,7 +230,7 @@ def add_properties(obj):
 
 
 def settings_of(obj):
-    """The Settings that the object's properties ask for. Raises MesherError."""
+    """Returns the Settings of the object's properties. Raises MesherError."""
     values = {}
     for _kind, name, field, _group, _text in PROPERTIES:
         value = getattr(obj, name)
@@ -251,7 +251,7 @@ def settings_of(obj):
 
 
 def apply_settings(obj, settings):
-    """The other way round; sizes by sub-shape have no property."""
+    """Sets the properties from Settings; sizes by sub-shape have no property."""
     for _kind, name, field, _group, _text in PROPERTIES:
         setattr(obj, name, getattr(settings, field))
     obj.ElementOrder = ORDERS[settings.order - 1]
@@ -260,7 +260,7 @@ def apply_settings(obj, settings):
 
 
 def add_refinement(region, part, settings):
-    """The sizes of a mesh region object; the smallest counts where several have one."""
+    """Adds the sizes of a mesh region object; the smallest counts if several have one."""
     size = getattr(region.CharacteristicLength, "Value", region.CharacteristicLength)
     if not size:
         return
@@ -284,7 +284,7 @@ def add_refinement(region, part, settings):
 
 
 def part_to_mesh(obj):
-    """The object that is to be meshed. Raises MesherError."""
+    """Returns the object to mesh. Raises MesherError."""
     part = compatibility.meshed_object(obj)
     if part is None:
         raise MesherError(

@@ -14,11 +14,11 @@ from .translations import doc
 
 NUMBER = "MeshNumber"
 KEPT = 20  # as many steps of undo as FreeCAD has by default
-NODES = 4_000_000  # in all that is kept of an object, but the last two meshes are kept in any case
+NODES = 4_000_000  # nodes in all kept meshes of an object; the last two are kept in any case
 
-_numbers = itertools.count(int(time.time()))  # not those of earlier sessions, which files have
-_kept = {}  # by document and object: {number: mesh}, the last one that was put in place last
-_in_place = {}  # by document and object: the number that the object had when its mesh was last looked after here
+_numbers = itertools.count(int(time.time()))  # differs from numbers of earlier sessions, which files contain
+_kept = {}  # by document and object: {number: mesh}, the current one last
+_in_place = {}  # by document and object: the object's number when this module last handled its mesh
 
 
 def _key(obj):
@@ -34,14 +34,14 @@ def add_properties(obj):
 
 
 def replace(obj, fem_mesh):
-    """Give the object a new mesh, in a way that can be undone."""
+    """Gives the object a new mesh, in a way that can be undone."""
     if not obj.Document.UndoMode:
         obj.FemMesh = fem_mesh
         return
     meshes = _kept.setdefault(_key(obj), {})
     before, number = getattr(obj, NUMBER), next(_numbers)
     kept = meshes.pop(before, None)
-    # Something else may have cleared or replaced the mesh since then.
+    # Other code may have cleared or replaced the mesh since then.
     meshes[before] = kept if kept is not None and same(kept, obj.FemMesh) else obj.FemMesh.copy()
     meshes[number] = fem_mesh
     while len(meshes) > 2 and (len(meshes) > KEPT or sum(each.NodeCount for each in meshes.values()) > NODES):
@@ -52,7 +52,7 @@ def replace(obj, fem_mesh):
 
 
 def same(first, second):
-    """Is it the same mesh? Groups do not count."""
+    """Returns whether it is the same mesh. Groups do not count."""
     if any(
         getattr(first, each) != getattr(second, each)
         for each in ("NodeCount", "EdgeCount", "FaceCount", "VolumeCount")
@@ -77,7 +77,7 @@ class Observer:
             if not mesh_properties.is_ours(each):
                 continue
             number = getattr(each, NUMBER)
-            if number != _in_place.get(_key(each)):  # else this step was about something else
+            if number != _in_place.get(_key(each)):  # otherwise this undo step did not change the mesh
                 _in_place[_key(each)] = number
                 _put(each, _kept.get(_key(each), {}).get(number))
             up_to_date.show(each)
@@ -89,7 +89,7 @@ class Observer:
 
 
 def _put(obj, fem_mesh):
-    """In place of the object's mesh, if it is another one; None: it is no longer kept."""
+    """Replaces the object's mesh, if it is another one; None: it is no longer kept."""
     if fem_mesh is None or same(fem_mesh, obj.FemMesh):
         return
     fem_mesh = fem_mesh.copy()

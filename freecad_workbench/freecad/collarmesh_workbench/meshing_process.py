@@ -18,21 +18,21 @@ from .program import MesherError, Progress
 from .time_left import TimeLeft
 from .translations import translate
 
-WAIT = 200  # milliseconds until a run that has ended asks again whether its mesh can be put in place
-_runs = {}  # that are under way, by (document, object)
+WAIT = 200  # milliseconds until a run that has ended checks again whether its mesh can be put in place
+_runs = {}  # runs in progress, by (document, object)
 _outcomes = {}  # of the last runs
 
 
 @dataclasses.dataclass
 class Outcome:
-    """How a run ended."""
+    """The result of a run."""
 
-    report: dict = None  # None: without a mesh
+    report: dict = None  # None: no mesh
     error: str = ""
     cancelled: bool = False
     page: str = ""  # path of the report for people
-    part_changed: bool = False  # while it was meshed
-    warnings: tuple = ()  # of the shape, from before the run
+    part_changed: bool = False  # while it was being meshed
+    warnings: tuple = ()  # warnings about the shape, from before the run
     mesh_number: int = 0  # see mesh_undo
 
 
@@ -41,13 +41,13 @@ def _key(obj):
 
 
 def run_of(obj):
-    """The run that is under way, else None."""
+    """Returns the run in progress, else None."""
     return _runs.get(_key(obj))
 
 
 def outcome_of(obj):
-    """The outcome of the object's last run since its document was opened, else None. By undo, say, the mesh may be
-    another one than that of the run."""
+    """Returns the outcome of the object's last run since its document was opened, else None. The mesh may differ from
+    that of the run, for example after undo."""
     outcome = _outcomes.get(_key(obj))
     if outcome is None or outcome.report is None:
         return outcome
@@ -56,7 +56,7 @@ def outcome_of(obj):
 
 
 def start(obj, time_left=None):
-    """Begin a run; `time_left`: a TimeLeft, if somebody said how long it takes. Raises MesherError."""
+    """Begins a run; `time_left` is a TimeLeft, if there is an estimate. Raises MesherError."""
     if run_of(obj) is None:
         _runs[_key(obj)] = MeshingProcess(obj, time_left)
     return run_of(obj)
@@ -64,7 +64,7 @@ def start(obj, time_left=None):
 
 class MeshingProcess(QtCore.QObject):
     advanced = QtCore.Signal(object)  # a Progress
-    ended = QtCore.Signal()  # there is an outcome
+    ended = QtCore.Signal()  # the outcome is available
 
     def __init__(self, obj, time_left=None):
         super().__init__()
@@ -98,7 +98,7 @@ class MeshingProcess(QtCore.QObject):
         self._process.kill()
 
     def abandon(self):
-        """End at once, without an outcome: there is nothing any more that could have it."""
+        """Ends the run at once, without an outcome, because nothing is left that could use it."""
         self._abandoned = True
         if processes.end(self._process):
             self.job.folder.program_is(None)
@@ -133,7 +133,7 @@ class MeshingProcess(QtCore.QObject):
         key = _key(self.object)
         try:
             outcome = self._outcome(exit_code)
-        except Exception as error:  # of FreeCAD: the panel goes on
+        except Exception as error:  # exceptions of FreeCAD: the panel continues
             FreeCAD.Console.PrintError(traceback.format_exc())
             outcome = Outcome(error=f"{type(error).__name__}: {error}")
         _outcomes[key] = outcome
@@ -168,8 +168,8 @@ class MeshingProcess(QtCore.QObject):
         return outcome
 
     def _something_else_is_edited(self):
-        """With a step of undo that is still open, so that "Cancel" there can take it back: a mesh that is put in place
-        would end that step."""
+        """Returns whether another object is edited in an undo step that is still open, so that "Cancel" can undo it:
+        putting a mesh in place would end that step."""
         document = self.object.Document
         if not document.HasPendingTransaction:
             return False
@@ -179,7 +179,7 @@ class MeshingProcess(QtCore.QObject):
 
 @contextlib.contextmanager
 def _told_in_report_view():
-    """The mesh is in place: what fails after that takes nothing of it away."""
+    """Reports failures after the mesh is in place, which do not affect the mesh."""
     try:
         yield
     except Exception:
@@ -187,7 +187,7 @@ def _told_in_report_view():
 
 
 def _tell(obj, outcome):
-    """For those whose panel is closed."""
+    """Tells users whose panel is closed."""
     text = translate("collarmesh", "{object}: the mesh is made")
     if outcome.report is None:
         text = translate("collarmesh", "{object}: no new mesh is made")
@@ -195,7 +195,7 @@ def _tell(obj, outcome):
 
 
 def _say(text, milliseconds):
-    """In the status bar."""
+    """Shows a text in the status bar."""
     FreeCADGui.getMainWindow().statusBar().showMessage(text, milliseconds)
 
 

@@ -6,7 +6,7 @@ from PySide import QtCore, QtGui
 
 
 def say(text):
-    """A message that waits for nobody."""
+    """Shows a message without waiting for an answer."""
     FreeCAD.Console.PrintWarning(f"collarmesh: {text}\n")
     box = QtGui.QMessageBox(QtGui.QMessageBox.Information, "collarmesh", text, QtGui.QMessageBox.Ok,
                             FreeCADGui.getMainWindow())

@@ -1,14 +1,14 @@
-"""A mesh object that the button has made, and that nobody wants."""
+"""Removal of a mesh object that the button has made and the user does not want."""
 
 import FreeCAD
 
 from .translations import mark, translate
 
-CREATION = mark("collarmesh", "FEM mesh from shape by collarmesh")  # the step of undo that made it
+CREATION = mark("collarmesh", "FEM mesh from shape by collarmesh")  # name of the undo step that made it
 
 
 def take_back(document_name, name):
-    """Undo its creation, or remove it where that was not the last step."""
+    """Undoes its creation, or removes it if that was not the last step."""
     document = FreeCAD.listDocuments().get(document_name)
     if document is None or document.getObject(name) is None:
         return

@@ -10,12 +10,12 @@ from .translations import translate
 
 
 def shown(text):
-    """A text of numbers with a decimal point, with the sign that the user's language has for it."""
+    """Replaces the decimal point in a text of numbers by the sign of the user's language."""
     return text.replace(".", QtCore.QLocale().decimalPoint())
 
 
 def number(text):
-    """A plain number. Raises ValueError."""
+    """Reads a plain number. Raises ValueError."""
     try:
         value = float(_with_point(text))
     except ValueError as error:
@@ -25,22 +25,23 @@ def number(text):
 
 
 def quantity(text, obj):
-    """A FreeCAD quantity: "2.5 mm", "1/8 in", "3 mm + 1 mm"; `obj` knows names like Spreadsheet.width. Raises
+    """Reads a FreeCAD quantity: "2.5 mm", "1/8 in", "3 mm + 1 mm"; `obj` resolves names like Spreadsheet.width. Raises
     ValueError."""
     if not text.strip():
         raise ValueError(translate("collarmesh", "there is no value"))
     try:
         value = _parsed(_with_point(text), obj)
-    except Exception as error:  # FreeCAD's have bases of all kinds
+    except Exception as error:  # FreeCAD's exceptions have many base classes
         raise ValueError(translate("collarmesh", "'{text}' is no value").format(text=text)) from error
     _require_finite(value.Value, text)
-    if value.Value == sys.float_info.min:  # what FreeCAD makes of nothing
+    if value.Value == sys.float_info.min:  # FreeCAD's value of an empty text
         raise ValueError(translate("collarmesh", "'{text}' is no value").format(text=text))
     return value
 
 
 def _parsed(text, obj):
-    """Expressions are for sums and names only: "1/8 in" is one over eight inches there."""
+    """Parses a quantity. Expressions are used only for sums and names, because they read "1/8 in" as one over eight
+    inches."""
     try:
         return FreeCAD.Units.Quantity(text)
     except (ValueError, OSError):

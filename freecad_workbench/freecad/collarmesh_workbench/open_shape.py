@@ -1,4 +1,4 @@
-"""Shapes without a volume: what they are, with what elements they are meshed, and whether they may be closed. Works without
+"""Shapes without a volume: their kinds, the elements for meshing them, and whether they may be closed. Works without
 the GUI."""
 
 import collections
@@ -7,15 +7,15 @@ from . import inputs
 from .program import MesherError
 from .translations import translate
 
-SEWN = 1e-5  # of the diagonal: faces as near as this meet, as in the program
-SHAPES = 5  # whose open edges are remembered
+SEWN = 1e-5  # of the diagonal: faces this close meet, as in the program
+SHAPES = 5  # shapes whose open edges are remembered
 
 _known = collections.deque(maxlen=SHAPES)  # (shape, number of its open edges)
 
 
 def dimension(part, asked, fill_holes):
-    """That of the elements: what is asked for, or else, as 0 asks, from the shape: 3 for solids and what encloses a volume,
-    or will when its holes are filled; 2 for faces and open surfaces; 1 for wires."""
+    """Returns the dimension of the elements: the requested one, or, for 0, by the shape: 3 for solids and shapes that
+    enclose a volume, also after filling holes; 2 for faces and open surfaces; 1 for wires."""
     if asked:
         return asked
     shape = _without_volume(part)
@@ -27,8 +27,8 @@ def dimension(part, asked, fill_holes):
 
 
 def check(part, dimension_of_elements, fill_holes):
-    """Raises MesherError for wires, faces, and surfaces that are open, where tetrahedra are asked for, unless their holes may
-    be filled; and where there are no faces for triangles, or no edges for lines."""
+    """Raises MesherError if tetrahedra are requested for wires, faces or open surfaces, unless their holes may be
+    filled, and if there are no faces for triangles, or no edges for lines."""
     text = fault(part, dimension_of_elements)
     if not text and dimension_of_elements == 3 and not fill_holes and question(part):
         text = question(part) + " " + translate("collarmesh", "Or set “Fill holes of open surfaces”.")
@@ -37,7 +37,7 @@ def check(part, dimension_of_elements, fill_holes):
 
 
 def fault(part, dimension_of_elements=3):
-    """Why no such elements can be made of it; "" where they may be."""
+    """Returns why the shape cannot be meshed with such elements; "" if it can."""
     shape = inputs.shape_of(part)
     text = ""
     if dimension_of_elements == 2 and not shape.isNull() and not shape.Faces:
@@ -63,7 +63,7 @@ def _fault_of_volume(shape):
 
 
 def question(part):
-    """What to ask before the holes of a surface are filled; "" where there are none."""
+    """Returns the question to ask before the holes of a surface are filled; "" if there are none."""
     shape = _without_volume(part)
     count = open_edges(shape) if shape is not None and len(shape.Faces) > 1 else 0
     if not count:
@@ -74,20 +74,20 @@ def question(part):
 
 
 def word(part, chosen):
-    """What the panel says of a dimension that it chose from the shape; "" for solids."""
+    """Returns the panel's text on a dimension chosen from the shape; "" for solids."""
     text = {1: translate("collarmesh", "{label} has edges only: it is meshed with lines, for beams."),
             2: translate("collarmesh", "{label} encloses no volume: it is meshed with triangles, for shells.")}.get(chosen, "")
     return text.format(label=part.Label)
 
 
 def _without_volume(part):
-    """The shape of an object that has no solids; None for others."""
+    """Returns the shape of an object that has no solids; None for others."""
     shape = inputs.shape_of(part)
     return None if shape.isNull() or shape.Solids else shape
 
 
 def open_edges(shape):
-    """How many edges of its faces border one face only, when faces that meet are sewn."""
+    """Returns how many edges border only one face after sewing faces that meet."""
     found = next((count for known, count in _known if known.isSame(shape)), None)
     if found is None:
         found = _count_open_edges(shape)

@@ -5,7 +5,7 @@ from PySide import QtCore, QtGui
 from .translations import translate
 
 
-NODES = {1: (2, 3), 2: (3, 6), 3: (4, 10)}  # of elements, by dimension, of either order
+NODES = {1: (2, 3), 2: (3, 6), 3: (4, 10)}  # nodes of elements, by dimension, for both orders
 
 
 class OrderSection(QtGui.QWidget):
@@ -37,11 +37,11 @@ class OrderSection(QtGui.QWidget):
         self.combo.currentIndexChanged.connect(self._choose)
 
     def order(self):
-        """1 or 2."""
+        """Returns 1 or 2."""
         return self.combo.currentIndex() + 1
 
     def show_dimension(self, dimension):
-        """With the numbers of nodes of such elements."""
+        """Shows the numbers of nodes of such elements."""
         for i, text in enumerate((translate("collarmesh", "first (straight, {n} nodes)"),
                                   translate("collarmesh", "second (curved, {n} nodes)"))):
             self.combo.setItemText(i, text.format(n=NODES[dimension][i]))

@@ -1,4 +1,4 @@
-"""FreeCAD shows one panel at a time, of whichever document: what to do when there is one already."""
+"""Handles other open panels: FreeCAD shows only one at a time, for all documents."""
 
 import FreeCAD
 import FreeCADGui
@@ -8,7 +8,8 @@ from .translations import translate
 
 
 def is_in_the_way():
-    """Is a panel open that stays when an object is edited? Says so, then. FreeCAD closes those of edited objects."""
+    """Returns whether a panel is open that stays when an object is edited, and tells the user. FreeCAD closes those of
+    edited objects."""
     documents = map(FreeCADGui.getDocument, FreeCAD.listDocuments())
     if not FreeCADGui.Control.activeDialog() or any(each.getInEdit() is not None for each in documents):
         return False

@@ -1,4 +1,4 @@
-"""What a run has found, by place: problems, warnings, repairs, nodes off their faces. Knows nothing of the window."""
+"""The findings of a run, by place: problems, warnings, repairs, nodes off their faces. Independent of the window."""
 
 import dataclasses
 import re
@@ -13,7 +13,7 @@ _SHAPE_BY_DIMENSION = ("Vertex", "Edge", "Face")
 
 @dataclasses.dataclass
 class Place:
-    """Something to tell, and where it is: at points (mm), on sub-shapes like Face7, or in a tetrahedron."""
+    """A finding and its place: at points (mm), on sub-shapes like Face7, or in a tetrahedron."""
 
     kind: str
     text: str
@@ -23,18 +23,18 @@ class Place:
 
 
 def told(kind, text, points=()):
-    """A message, with the places that stand in it."""
+    """Returns a message with the places that it mentions."""
     found = tuple(tuple(map(float, numbers)) for numbers in _POINT.findall(text))
     return Place(kind, text, found or tuple(map(tuple, points)), tuple(dict.fromkeys(_SUBSHAPE.findall(text))))
 
 
 def in_error(message):
-    """Of a run without a mesh: a Place for each line."""
+    """Returns a Place for each line of a run without a mesh."""
     return [told(PROBLEM, line) for line in message.splitlines() if line.strip()]
 
 
 def in_report(report, warnings=()):
-    """Of a run with a mesh, each message once; `warnings` that are not in the report."""
+    """Returns the Places of a run with a mesh, each message once; `warnings` are not in the report."""
     places = [told(PROBLEM, each["message"], [each["where"]]) for each in report["check"]["findings"]]
     if report["message"] and not report["guarantees_hold"]:
         places.insert(0, told(PROBLEM, report["message"]))

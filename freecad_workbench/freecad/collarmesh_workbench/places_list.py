@@ -1,11 +1,11 @@
-"""The list of places: a heading for each kind, below it what was found."""
+"""The list of places: a heading for each kind, with the findings below it."""
 
 from PySide import QtCore, QtGui
 
 from . import places
 from .translations import translate
 
-MOST = 200  # rows of a kind
+MOST = 200  # rows of one kind
 MOST_PIXELS = 10000  # height of a row
 
 
@@ -27,7 +27,7 @@ class PlacesList(QtGui.QTreeWidget):
         self.setToolTip(translate("collarmesh", "Click to see the place"))
         self.itemClicked.connect(self._clicked)
         self.currentItemChanged.connect(self._moved)
-        self._moved_to = None  # by the click that is under way
+        self._moved_to = None  # by the current click
         self._filling = False
 
     def fill(self, found):
@@ -60,7 +60,7 @@ class PlacesList(QtGui.QTreeWidget):
         return top
 
     def pick_first(self, kind):
-        """As if the first row of the kind were clicked."""
+        """Picks the first row of the kind, like a click."""
         for i in range(self.topLevelItemCount()):
             top = self.topLevelItem(i)
             if top.data(0, QtCore.Qt.UserRole)[0].kind == kind:
@@ -81,7 +81,7 @@ class PlacesList(QtGui.QTreeWidget):
             self._pick(item)
 
     def _clicked(self, item, _column):
-        """On the row that is the current one already: the view may look elsewhere by now."""
+        """Handles a click on the current row: the view may have moved since."""
         if item is not self._moved_to:
             self._pick(item)
 
@@ -95,7 +95,7 @@ class _Wrapped(QtGui.QStyledItemDelegate):
     def sizeHint(self, option, index):
         tree = self.parent()
         levels = 2 if index.parent().isValid() else 1
-        around = 2 * tree.frameWidth() + tree.verticalScrollBar().sizeHint().width()  # it may come
+        around = 2 * tree.frameWidth() + tree.verticalScrollBar().sizeHint().width()  # scroll bar
         wrapped = QtGui.QStyleOptionViewItem(option)
         wrapped.rect = QtCore.QRect(0, 0, tree.width() - levels * tree.indentation() - around, MOST_PIXELS)
         return super().sizeHint(wrapped, index) + QtCore.QSize(0, 3)

@@ -1,12 +1,12 @@
-"""Triangles as few planar faces: those that lie in one plane are one face, with its holes."""
+"""Merges triangles into few planar faces: triangles in one plane become one face, with its holes."""
 
 import math
 
 import numpy
 import Part
 
-FLAT = 0.1  # degrees: triangles that differ by less are in one plane
-COARSE = 1  # degrees, and twice as much again and again, where there would be too many faces
+FLAT = 0.1  # degrees: triangles whose normals differ by less are in one plane
+COARSE = 1  # degrees; doubled again and again if there would be too many faces
 MOST = 2000
 
 
@@ -27,7 +27,7 @@ def faces(points, triangles):
 
 
 def _neighbours(triangles):
-    """For each triangle those across its edges."""
+    """Returns for each triangle its neighbours."""
     at_edge = {}
     for number, corners in enumerate(triangles.tolist()):
         for a, b in zip(corners, corners[1:] + corners[:1]):
@@ -40,7 +40,8 @@ def _neighbours(triangles):
 
 
 def _pieces(normals, areas, neighbours, angle):
-    """Connected triangles whose normals are within `angle` of that of the first one, the largest triangles first."""
+    """Returns connected triangles whose normals are within `angle` of that of the first one, largest triangles
+    first."""
     least, free, pieces = math.cos(math.radians(angle)), [True] * len(normals), []
     vectors = normals.tolist()
     for seed in numpy.argsort(-areas, kind="stable").tolist():
@@ -49,7 +50,7 @@ def _pieces(normals, areas, neighbours, angle):
         free[seed] = False
         x, y, z = vectors[seed]
         piece = [seed]
-        for number in piece:  # grows meanwhile
+        for number in piece:  # the list grows in this loop
             for other in neighbours[number]:
                 if free[other]:
                     u, v, w = vectors[other]
@@ -61,7 +62,7 @@ def _pieces(normals, areas, neighbours, angle):
 
 
 def _face(points, triangles, normal):
-    """The face with the outline of triangles, in the plane of the first one."""
+    """Returns the face with the outline of triangles, in the plane of the first one."""
     origin = points[triangles[0, 0]]
     try:
         wires = [_wire(points[loop], origin, normal) for loop in _loops(triangles.tolist())]
@@ -85,7 +86,7 @@ def _wire(corners, origin, normal):
 
 
 def _loops(triangles):
-    """The outlines of triangles, none of which meets a point twice."""
+    """Returns the outlines of triangles, none of which passes a point twice."""
     edges = {(a, b) for corners in triangles for a, b in zip(corners, corners[1:] + corners[:1])}
     after = {}
     for a, b in sorted(edges):

@@ -1,4 +1,4 @@
-"""How many elements sizes will make, and how long that takes, asked of the program before meshing."""
+"""Predicts with the program, before meshing, how many elements sizes will make, and how long that takes."""
 
 import collections
 import contextlib
@@ -17,13 +17,13 @@ WAIT = 400  # milliseconds after the last change
 COUNTING = {"--size-min", "--elements-per-circle", "--elements-across-gap", "--gradation", "--region-size",
             "--patch-size", "--curve-size", "--distance", "--order", "--planar-tolerance", "--weld", "--repair",
             "--repair-tolerance", "--crease-angle"}
-SHAPES = 50  # of which the answers are kept
+SHAPES = 50  # shapes whose answers are kept
 
 _answers = collections.deque(maxlen=SHAPES)  # (numbers of a shape, {(arguments, size field, size): answer})
 
 
 def _answers_for(numbers):
-    """Of the shape that these numbers stand for (see up_to_date); they are kept while FreeCAD runs."""
+    """Returns the answers for the shape with these numbers (see up_to_date); they are kept while FreeCAD runs."""
     for known_numbers, answers in _answers:
         if up_to_date.same_shape(known_numbers, numbers):
             return answers
@@ -32,48 +32,48 @@ def _answers_for(numbers):
 
 
 class Predictions(QtCore.QObject):
-    """Asks in a process of its own, a moment after the last `ask`. Where the program does not know, nothing is told."""
+    """Predicts in a process of its own, a moment after the last `ask`. Reports nothing if the program does not know."""
 
-    made = QtCore.Signal(object)  # all that are known: {asked size in mm: (number of tetrahedra, seconds)}
+    made = QtCore.Signal(object)  # all known answers: {asked size in mm: (number of tetrahedra, seconds)}
 
     def __init__(self, obj, parent=None):
         super().__init__(parent)
         self.object = obj
-        self._folder = None  # with the shape, once it is needed
-        self._shape = ""  # its path
-        self._numbers = None  # that stand for the shape; None: not looked at
-        self._known = {}  # what is known of it
-        self._arguments, self._size_field, self._sizes = (), "", ()  # what is asked for
+        self._folder = None  # contains the shape, once it is needed
+        self._shape = ""  # path of the shape's file
+        self._numbers = None  # numbers that identify the shape; None: not computed
+        self._known = {}  # known answers for the shape
+        self._arguments, self._size_field, self._sizes = (), "", ()  # the current question
         self._process = None
         self._timer = QtCore.QTimer(self, singleShot=True)
         self._timer.timeout.connect(self._begin)
 
     def ask(self, settings, sizes, wait=WAIT):
-        """For the Settings with each of these sizes (mm); returns the answers that are known already. Of meshes that
-        are not coarsened the program predicts nothing."""
+        """Predicts for the Settings with each of these sizes (mm); returns the answers that are known already. The
+        program makes no predictions for meshes that are not coarsened."""
         answers = self.known(settings, sizes)
         if settings.coarsen:
             self._timer.start(wait)
         return answers
 
     def known(self, settings, sizes):
-        """The answers that are known already; nothing is asked of the program."""
+        """Returns the known answers without running the program."""
         self.pause()
         self._look_at_shape()
         settings = self._in_mesh_numbers(settings)
         self._arguments = tuple(_arguments(settings))
         self._size_field = json.dumps(settings.size_field) if settings.size_field else ""
-        sizes = [size for size in sizes if size >= settings.size_min]  # the program refuses others
+        sizes = [size for size in sizes if size >= settings.size_min]  # the program rejects smaller ones
         self._sizes = tuple(dict.fromkeys(sizes)) if settings.coarsen else ()
         return self._told()
 
     def pause(self):
-        """Until the next `ask`: the processor is for something else."""
+        """Pauses until the next `ask`, to free the processor."""
         self._timer.stop()
         self._stop()
 
     def forget(self):
-        """The shape has changed, or nobody asks any more."""
+        """Forgets all answers, because the shape has changed or the panel is closed."""
         self.pause()
         self._numbers, self._known = None, {}
         if self._folder is not None:
@@ -81,27 +81,27 @@ class Predictions(QtCore.QObject):
             self._folder = None
 
     def is_asking(self):
-        """More may come without another `ask`."""
+        """Returns whether more answers may come without another `ask`."""
         return self._process is not None
 
     def shape_has_changed(self):
-        """Is it another one than the one that the answers are about?"""
+        """Returns whether the shape differs from the one of the answers."""
         part = compatibility.meshed_object(self.object)
         return self._numbers is not None and not up_to_date.has_shape(part, self._numbers)
 
     def _look_at_shape(self):
-        """Answers that are known of it are used, also those for another panel."""
+        """Looks at the shape and uses known answers for it, also those made for another panel."""
         if self._numbers is None:
             try:
                 self._numbers = up_to_date.shape_numbers(mesh_properties.part_to_mesh(self.object))
                 self._known = _answers_for(self._numbers)
-            except Exception:  # of OpenCASCADE's, too; the run tells what is wrong
+            except Exception:  # also OpenCASCADE's; the run reports the problem
                 self._known = {}
 
     def _in_mesh_numbers(self, settings):
         try:
             return contacts.in_mesh_numbers(settings, inputs.shape_of(compatibility.meshed_object(self.object)))
-        except Exception:  # of OpenCASCADE's, too; the run tells what is wrong
+        except Exception:  # also OpenCASCADE's; the run reports the problem
             return settings
 
     def _stop(self):
@@ -118,7 +118,7 @@ class Predictions(QtCore.QObject):
             if asked:
                 program = find_program(preferences.program())
                 self._write_files()
-        except Exception:  # of OpenCASCADE's, too; the run tells what is wrong
+        except Exception:  # also OpenCASCADE's; the run reports the problem
             asked = []
         if not asked:
             self._tell()
@@ -139,7 +139,7 @@ class Predictions(QtCore.QObject):
             self._tell()
 
     def _write_files(self):
-        """For the program. Raises MesherError."""
+        """Writes the program's input. Raises MesherError."""
         if self._folder is None:
             part = mesh_properties.part_to_mesh(self.object)
             folder = WorkFolder()
@@ -157,7 +157,7 @@ class Predictions(QtCore.QObject):
         return os.path.join(self._folder.name, "sizes.json")
 
     def _read(self):
-        """The program tells of each size as soon as it knows."""
+        """Reads output: the program reports each size as soon as it knows it."""
         known = len(self._known)
         while self._process.canReadLine():
             self._learn(bytes(self._process.readLine()))
@@ -170,7 +170,7 @@ class Predictions(QtCore.QObject):
         self._tell()
 
     def _learn(self, line):
-        """What the program says; nothing where it is about something else."""
+        """Records a line of the program; ignores other lines."""
         with contextlib.suppress(ValueError, KeyError, TypeError):
             made = json.loads(line)["prediction"]
             self._known[self._key(made["size"])] = made["tets"], made["seconds"]
@@ -183,7 +183,7 @@ class Predictions(QtCore.QObject):
 
 
 def _arguments(settings):
-    """Those of the command line that the number of elements depends on, but for the size, which is asked about."""
-    arguments = dataclasses.replace(settings, keep_apart=False).arguments()  # without a flag: pairs of option and value
+    """Returns the options that affect the number of elements, except the size."""
+    arguments = dataclasses.replace(settings, keep_apart=False).arguments()  # pairs: no flags
     pairs = zip(arguments[::2], arguments[1::2])
     return [word for pair in pairs if pair[0] in COUNTING for word in pair]

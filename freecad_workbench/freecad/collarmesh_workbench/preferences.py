@@ -1,4 +1,4 @@
-"""What the user sets once: the program's place, its threads and the defaults of new meshes."""
+"""The user's preferences: the program's path, its threads and the defaults of new meshes."""
 
 import FreeCAD
 
@@ -10,12 +10,12 @@ def _stored():
 
 
 def program():
-    """Path of the program; empty: look for it."""
+    """Returns the path of the program; empty: search for it."""
     return _stored().GetString("Program", "")
 
 
 def threads():
-    """How many the program may use; 0: as many as there are cores."""
+    """Returns the maximum number of threads; 0: all cores."""
     return max(0, _stored().GetInt("Threads", 0))
 
 
@@ -24,7 +24,7 @@ def improve_level():
 
 
 def improve_levels():
-    """Texts by level."""
+    """Returns texts by level."""
     return (translate("collarmesh", "none"), translate("collarmesh", "quick"), translate("collarmesh", "good"),
             translate("collarmesh", "best"))
 

@@ -8,20 +8,21 @@ import contextlib
 
 from PySide import QtCore
 
-PATIENCE = 3000  # milliseconds for a process that was killed
+PATIENCE = 3000  # milliseconds to wait for a killed process
 
 
 def new():
-    """One that reads nothing, to be started, and let go by `end`."""
+    """Returns a process that reads nothing, ready to start; release it with `end`."""
     process = QtCore.QProcess(QtCore.QCoreApplication.instance())
     process.setStandardInputFile(QtCore.QProcess.nullDevice())
     return process
 
 
 def end(process):
-    """Let go of a process, which is killed if it runs. False if it still runs, as one does that waits for a disk."""
+    """Releases a process, and kills it if it runs. Returns False if it still runs, for example because it waits for a
+    disk."""
     for signal in (process.finished, process.readyReadStandardError):
-        with contextlib.suppress(RuntimeError):  # of a signal that nothing is connected to
+        with contextlib.suppress(RuntimeError):  # raised for a signal without connections
             signal.disconnect()
     process.kill()
     process.waitForFinished(PATIENCE)

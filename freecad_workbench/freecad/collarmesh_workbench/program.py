@@ -12,21 +12,21 @@ from . import subshape_words
 from .translations import translate
 from .work_folder import WorkFolder
 
-GUARANTEE_MISSED = 7  # the exit code with which a mesh is written all the same
+GUARANTEE_MISSED = 7  # exit code with which the mesh is written although a guarantee is missed
 
 
 class MesherError(RuntimeError):
-    """What is wrong with the input or the program, where, and what to do next."""
+    """A fault of the input or the program, with its place and a remedy."""
 
 
 class Cancelled(MesherError):
-    """The caller did not want to go on."""
+    """The caller cancelled the run."""
 
 
 @dataclasses.dataclass
 class Settings:
-    """What the program is asked for. Lengths are millimetres and are target edge lengths; 0 leaves a value to
-    the program. Sizes by sub-shape have FreeCAD's numbers as keys: {7: 0.5} in `face_sizes` is Face7."""
+    """The options for the program. Lengths are millimetres and are target edge lengths; 0 leaves a value to the
+    program. Sizes by sub-shape have FreeCAD's numbers as keys: {7: 0.5} in `face_sizes` is Face7."""
 
     size: float = 0
     size_min: float = 0
@@ -46,20 +46,20 @@ class Settings:
     improve: int = 2
     coarsen: bool = True
     order: int = 2
-    dimension: int = 0  # of the elements: 3 tetrahedra, 2 triangles, 1 lines; 0: from the shape
+    dimension: int = 0  # dimension of the elements: 3 tetrahedra, 2 triangles, 1 lines; 0: from the shape
     repair: str = "auto"  # or "none", or "wrap"
-    fill_holes: bool = False  # of surfaces that are open; else they are refused before the program runs
-    keep_apart: bool = False  # solids that touch get nodes of their own there, for contact; else they share them
-    split: list = dataclasses.field(default_factory=list)  # faces inside whose sides get nodes of their own: "Face7"
+    fill_holes: bool = False  # fill holes of open surfaces; otherwise such surfaces are rejected
+    keep_apart: bool = False  # give touching solids separate nodes, for contact; otherwise they share nodes
+    split: list = dataclasses.field(default_factory=list)  # faces whose sides get separate nodes: "Face7"
     periodic: list = dataclasses.field(default_factory=list)  # pairs of faces: "x", "Face1=Face2", ...
-    interior_node: bool = False  # each tetrahedron has a corner that is on no face
+    interior_node: bool = False  # each tetrahedron gets a corner that is on no face
     solid_sizes: dict = dataclasses.field(default_factory=dict)
     face_sizes: dict = dataclasses.field(default_factory=dict)
     edge_sizes: dict = dataclasses.field(default_factory=dict)
-    size_field: dict = None  # sizes by place: sources, as mesher/doc/sizes.md has them
+    size_field: dict = None  # sizes by place: sources as in mesher/doc/sizes.md
 
     def arguments(self):
-        """Arguments of the command line."""
+        """Returns arguments for the command line."""
         arguments = []
         for field in dataclasses.fields(self)[: list(self.__dataclass_fields__).index("improve")]:
             value = getattr(self, field.name)
@@ -116,12 +116,12 @@ def find_program(preferred=""):
 @dataclasses.dataclass
 class Progress:
     phase: str
-    fraction: float  # of everything, 0 to 1
+    fraction: float  # of the whole run, 0 to 1
     tets: int
 
 
 def parse_line(line):
-    """A line of the program's standard error: a Progress, or the line if it is a message."""
+    """Parses a line of the program's standard error: returns a Progress, or the line if it is a message."""
     if line.startswith("{"):
         try:
             values = json.loads(line)
@@ -132,7 +132,7 @@ def parse_line(line):
 
 
 def as_warning(line):
-    """What the program says of the input and of what it repaired, as a warning; None for other lines."""
+    """Returns a message on the input or its repair as a warning; None for other lines."""
     if line.startswith("repaired: "):
         return "warning: the shape was repaired: " + line.removeprefix("repaired: ")
     return line if line.startswith("warning: ") else None
@@ -155,7 +155,7 @@ class Job:
             pathlib.Path(path).write_text(json.dumps(settings.size_field), encoding="utf-8")
             self.command += ["--size-field", path]
         self.messages = []
-        self.explain = lambda text: text  # what the program says, in the caller's terms
+        self.explain = lambda text: text  # rewrites the program's messages in the caller's terms
         self.names = None  # of faces, edges and solids by their numbers in the mesh; None: the input has none
 
     def __enter__(self):
@@ -165,7 +165,7 @@ class Job:
         self.folder.cleanup()
 
     def heard(self, line):
-        """Take a line of standard error; returns the Progress if it is one."""
+        """Handles a line of standard error; returns the Progress if it is one."""
         said = parse_line(line)
         if isinstance(said, Progress):
             return said
@@ -174,13 +174,13 @@ class Job:
         return None
 
     def _for_people(self, text):
-        """Without the folder, which is gone when it is read."""
+        """Removes the folder from a message, because it no longer exists when the message is read."""
         text = subshape_words.in_names(text, self.names) if self.names else text
         text = text.replace(self.shape, "the shape").replace(self.folder.name + os.sep, "")
         return re.sub(r"(^|^collarmesh: |\. )the shape\b", r"\1The shape", text)
 
     def warnings(self):
-        """What was said of the shape that the user should know, with places, one line each."""
+        """Returns messages about the shape for the user, with places, one line each."""
         return [warning for warning in map(as_warning, self.messages) if warning]
 
     def require_success(self, exit_code):
@@ -192,7 +192,7 @@ class Job:
         raise MesherError(self.explain(said) or nothing.format(code=exit_code))
 
     def report(self):
-        """What the program measured (README.md, --report)."""
+        """Returns the program's report (README.md, --report)."""
         with open(self._report, encoding="utf-8") as file:
             report = json.load(file)
         report["notes"] = [self._for_people(note) for note in report["notes"]]
@@ -201,12 +201,12 @@ class Job:
         return report
 
     def add_page(self):
-        """Make the report for people, too."""
+        """Makes the report for people, too."""
         self._page = os.path.join(self.folder.name, "report.html")
         self.command += ["--report", self._page]
 
     def move_page(self, path, name):
-        """That report to a place where it stays. `name`: what it calls the shape."""
+        """Moves that report to a permanent place. `name` is what it calls the shape."""
         with open(self._page, encoding="utf-8") as page:
             text = page.read().replace(self.shape, _in_page(name)).replace(self.folder.name + os.sep, "")
         with open(path, "w", encoding="utf-8") as moved:
@@ -234,5 +234,5 @@ class Job:
 
 
 def _in_page(name):
-    """A name as it stands in the report's page: within a string of JSON, in a script."""
+    """Returns a name as it appears in the report's page: in a string of JSON, in a script."""
     return json.dumps(name)[1:-1].replace("<", "\\u003c")

@@ -9,7 +9,7 @@ from PySide import QtGui
 from . import colours, numbers_typed
 from .translations import translate
 
-ROUNDING = 1e-3  # relative: what FreeCAD's number of decimals may change in what is shown
+ROUNDING = 1e-3  # relative: largest change by rounding to FreeCAD's number of decimals
 ANY, NOT_NEGATIVE, POSITIVE = range(3)
 
 
@@ -18,7 +18,7 @@ class QuantityField:
     without a unit is in the one that the field has shown last, which depends on FreeCAD's preferences."""
 
     def __init__(self, unit, value, obj, allowed=NOT_NEGATIVE, zero=""):
-        """`value` in `unit`; `obj` knows the names in what is typed; `zero`: what 0 and an empty field stand for."""
+        """`value` in `unit`; `obj` resolves names in the text; `zero`: the meaning of 0 and of an empty field."""
         self.unit, self.obj = unit, obj
         self.allowed, self.zero = allowed, zero
         self.widget = QtGui.QLineEdit()
@@ -36,7 +36,7 @@ class QuantityField:
         self._text = self.widget.text()
 
     def value(self):
-        """In `unit`, exactly what was shown where nobody has edited it. Raises ValueError."""
+        """Returns the value in `unit`: exactly the shown one unless it was edited. Raises ValueError."""
         value = self._shown if self.widget.text() == self._text else self._typed(self.widget.text())
         if value < 0 and self.allowed != ANY:
             raise ValueError(translate("collarmesh", "'{text}' is negative").format(text=self.widget.text()))

@@ -1,4 +1,4 @@
-"""The table of the solids' volumes in the panel: of the shape, of the mesh, and how far they differ."""
+"""The panel's table of the solids' volumes: in the shape, in the mesh, and their difference."""
 
 import dataclasses
 
@@ -8,7 +8,7 @@ from . import colours, numbers_typed
 from .translations import translate
 from .whole_table import WholeTable
 
-MOST = 6  # rows that are seen without scrolling
+MOST = 6  # rows visible without scrolling
 MUCH = 1  # percent
 DIFFERENCE = 3  # column
 
@@ -24,7 +24,7 @@ class Region:
 
 
 def in_report(report):
-    """The Regions of a run."""
+    """Returns the Regions of a run."""
     names = {each["region"]: each["name"] for each in report["complex"]["regions"]}
     return [Region(names.get(each["number"]) or _numbered(each["number"]), each["input"], each["mesh"], each["percent"])
             for each in report["check"]["kept"]["region_volumes"]]

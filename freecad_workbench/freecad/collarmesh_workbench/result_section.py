@@ -1,4 +1,4 @@
-"""The part of the panel that tells what came: counts, guarantees and a chart of the angles."""
+"""The part of the panel that shows the result: counts, guarantees and a chart of the angles."""
 
 from PySide import QtCore, QtGui
 
@@ -35,12 +35,12 @@ class ResultSection(QtGui.QWidget):
             widget.hide()
 
     def say(self, text, kind):
-        """A message above everything else; `kind` is one of colours."""
+        """Shows a message above everything else; `kind` is one of colours."""
         self.message.setText(_coloured(kind, text))
         self.message.show()
 
     def show_out_of_date(self, out_of_date):
-        """Say so, or say so no more."""
+        """Shows or hides that the mesh is out of date."""
         self.out_of_date.setVisible(out_of_date)
         self.guarantees.show_out_of_date(out_of_date)
 
@@ -69,7 +69,7 @@ class ResultSection(QtGui.QWidget):
 
 
 def counts_text(report):
-    """What was made, for people."""
+    """Returns the counts of the mesh, for people."""
     mesh = report["mesh"]
     dimension, time = report["options"]["dimension"], _time(report["seconds"]["total"])
     if dimension == 1:
@@ -90,7 +90,7 @@ def counts_text(report):
 
 
 def filled_text(areas):
-    """Of the holes of the shape that repair has filled, mm²."""
+    """Describes the holes of the shape that repair has filled, mm²."""
     if len(areas) == 1:
         text = translate("collarmesh", "A hole of the shape is filled, with {area} mm²; the list has its place.")
     else:

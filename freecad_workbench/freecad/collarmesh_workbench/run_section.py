@@ -1,4 +1,4 @@
-"""The part of the panel that starts and cancels runs, and tells how far they are."""
+"""The part of the panel that starts and cancels runs, and shows their progress."""
 
 import math
 
@@ -44,23 +44,23 @@ class RunSection(QtGui.QWidget):
         self.rest()
 
     def ask(self, text, answer=""):
-        """Another click is the answer, which stands on the button then."""
+        """Asks a question; another click on the button, which shows the answer, confirms."""
         self.question.setText(text)
         self.question.show()
         self.run.setText(answer or translate("collarmesh", "Mesh all the same"))
 
     def asked(self):
-        """The question that is shown; "" without one."""
+        """Returns the current question; "" without one."""
         return self.question.text()
 
     def withdraw(self):
-        """Ask no more."""
+        """Withdraws the question."""
         self.question.clear()
         self.question.hide()
         self.run.setText(translate("collarmesh", "Mesh"))
 
     def rest(self):
-        """No run is under way."""
+        """Shows that no run is in progress."""
         self.withdraw()
         self.run.setEnabled(True)
         self.cancel.setEnabled(False)
@@ -96,7 +96,7 @@ class RunSection(QtGui.QWidget):
 
 
 def phase_text(phase):
-    """The program's word for a stage, in words for people."""
+    """Returns words for people for the program's name of a stage."""
     return {
         "read": translate("collarmesh", "reading the shape"),
         "repair": translate("collarmesh", "repairing"),

@@ -1,4 +1,4 @@
-"""Sizes that make no sense are refused before anything runs. Works without the GUI."""
+"""Rejects invalid sizes before anything runs. Works without the GUI."""
 
 from . import extent
 from .program import MesherError
@@ -8,7 +8,7 @@ LEAST = 1e-5  # of the part's diagonal
 
 
 def check(settings, sources, part):
-    """`sources`: those of the size field with their labels. Raises MesherError, which says whose size is wrong."""
+    """`sources` are those of the size field with their labels. Raises MesherError, which names the wrong size."""
     diagonal = extent.diagonal(part)
     asked = [(translate("collarmesh", "Size of the elements"), settings.size)] if settings.size else []
     for kind, sizes in (("Solid", settings.solid_sizes), ("Face", settings.face_sizes), ("Edge", settings.edge_sizes)):

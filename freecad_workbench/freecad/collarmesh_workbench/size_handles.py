@@ -1,4 +1,4 @@
-"""Handles of a sphere, box or cylinder in the 3D view: those in its middle move it, the others change its lengths."""
+"""Handles of a sphere, box or cylinder in the 3D view: those at its middle move it, the others change its lengths."""
 
 import FreeCAD
 import FreeCADGui
@@ -6,15 +6,15 @@ from pivy import coin
 from PySide import QtCore
 
 SHARE = 0.1  # of the object's diagonal: half a handle's length
-SHARE_OF_VIEW = 0.025  # of what the view shows: the least half length
-THICK = 1.3  # times as thick as Coin's arrows
+SHARE_OF_VIEW = 0.025  # of the visible height: the least half length
+THICK = 1.3  # thickness relative to Coin's arrows
 EVERY = 20  # ms
-LEAST = 1e-3  # of the object's diagonal: no length gets smaller by dragging
+LEAST = 1e-3  # of the object's diagonal: dragging makes no length smaller
 AXES = {"X": FreeCAD.Vector(1, 0, 0), "Y": FreeCAD.Vector(0, 1, 0), "Z": FreeCAD.Vector(0, 0, 1)}
 
 
 def rods_of(kind):
-    """What each length's handle slides along: (name of the length, axis in the object's frame)."""
+    """Returns the axis along which each length's handle slides: (name of the length, axis in the object's frame)."""
     return {
         "Sphere": (("Radius", "X"),),
         "Box": (("Length", "X"), ("Width", "Y"), ("Height", "Z")),
@@ -43,7 +43,7 @@ class Handle:
         return self.name == self.axis
 
     def put(self, place, rotation, scale):
-        """Back to no translation, there. `scale`: half its length, mm."""
+        """Resets the translation, and moves the handle there. `scale` is half its length, mm."""
         self.scale = scale
         self.was_at = 0.0
         self.transform.translation = tuple(place)
@@ -58,7 +58,7 @@ class Handle:
         return self.dragger.translation.getValue()[0]
 
     def look(self):
-        """Call `dragged` if the handle was moved."""
+        """Calls `dragged` if the handle was moved."""
         if self.is_at() != self.was_at:
             self.was_at = self.is_at()
             self.dragged(self.was_at * self.scale)
@@ -80,7 +80,7 @@ class Handles:
         self._hidden_from_mouse = []
         self._held = None
         self._at_start = None
-        self._height = 0  # of the view when the handles were put
+        self._height = 0  # height of the view when the handles were placed
         for axis in AXES:
             self._add(axis, axis, lambda by, axis=axis: self._move(axis, by))
         for length, axis in rods_of(kind):
@@ -93,7 +93,7 @@ class Handles:
         self._timer.start(EVERY)
 
     def _hide_others_from_mouse(self):
-        """Handles inside of a part can be dragged."""
+        """Lets the mouse reach handles inside a part."""
         for each in self.object.Document.Objects:
             root = getattr(each.ViewObject, "RootNode", None)
             if root is not None and each is not self.object:
@@ -136,7 +136,7 @@ class Handles:
         self._held = held
 
     def place(self, but=None):
-        """Put the handles where the object is; `but`: the name of the one that is being dragged."""
+        """Puts the handles where the object is; `but` is the name of the dragged one."""
         placement = self.object.Placement
         self._height = self._shown_height()
         scale = max(SHARE * self.object.Shape.BoundBox.DiagonalLength, SHARE_OF_VIEW * self._height)
@@ -148,7 +148,7 @@ class Handles:
             handle.put(placement.multVec(place), turn, scale)
 
     def _shown_height(self):
-        """Of the view at the object, in mm."""
+        """Returns the visible height at the object, in mm."""
         view = FreeCADGui.getDocument(self.object.Document.Name).ActiveView
         if not hasattr(view, "getCameraNode"):
             return 0
@@ -161,7 +161,7 @@ class Handles:
         return self.object.Proxy.middle(self.object)
 
     def _end(self, handle):
-        """Where a length ends, in the object's frame."""
+        """Returns the end of a length, in the object's frame."""
         along = AXES[handle.axis] * getattr(self.object, handle.name).Value
         middle = self._middle()
         if handle.name == "Radius":

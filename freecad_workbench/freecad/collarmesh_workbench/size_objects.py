@@ -15,9 +15,9 @@ TURNED = 1e-9  # rad
 
 
 class Size(compatibility.Stateless):
-    """What all of them have: the size that holds inside, and how it grows outside."""
+    """The common part of all size objects: the size inside, and its growth outside."""
 
-    lengths = ()  # of the body: name, share of a new one, text
+    lengths = ()  # lengths of the body: name, share for a new one, text
 
     def __init__(self, obj):
         obj.Proxy = self
@@ -40,7 +40,7 @@ class Size(compatibility.Stateless):
                     obj.Growth = GROWTH
 
     def place(self, obj, part):
-        """A first size and place, in the middle of a part."""
+        """Sets a first size and place, in the middle of a part."""
         bounds = extent.bounding_box(part)
         length = DEFAULT_SHARE * bounds.DiagonalLength
         for name, share, _ in self.lengths:
@@ -51,7 +51,7 @@ class Size(compatibility.Stateless):
         return FreeCAD.Vector()
 
     def sources(self, obj, _part):
-        """What the program's size field has for it: a list of sources. Raises MesherError."""
+        """Returns its sources in the program's size field. Raises MesherError."""
         for name in ("Size", *(name for name, _, _ in self.lengths)):
             if getattr(obj, name).Value <= 0:
                 text = translate("collarmesh", "{label}: {property} is {value}, but must be positive.")
@@ -118,13 +118,13 @@ class Cylinder(Size):
 
 
 class Distance(Size):
-    """Near faces and edges of the meshed object."""
+    """A size near faces and edges of the meshed object."""
 
     Type = "Fem::CollarmeshSizeDistance"
     TAGS = {
         "Face": "patches",
         "Edge": "curves",
-    }  # in the program's size field: their tags are FreeCAD's numbers
+    }  # in the program's size field, whose tags are FreeCAD's numbers
 
     def add_properties(self, obj):
         super().add_properties(obj)
@@ -136,7 +136,7 @@ class Distance(Size):
             obj.setEditorMode("Placement", 2)
 
     def place(self, obj, part):
-        """It is where its faces and edges are."""
+        """Does nothing: its place is that of its faces and edges."""
 
     def execute(self, obj):
         shapes = [inputs.shape_of(linked).getElement(name) for linked, name in references(obj) if name]
@@ -185,7 +185,7 @@ class Distance(Size):
 
 
 def references(obj):
-    """[(object, name of a face or edge)]"""
+    """Returns [(object, name of a face or edge)]."""
     return [
         (linked, name)
         for linked, names in obj.References
@@ -194,7 +194,7 @@ def references(obj):
 
 
 def kind_and_number(name):
-    """("Face", 7) for Face7, ("", 0) for what is no sub-shape."""
+    """Returns ("Face", 7) for Face7, ("", 0) for names of no sub-shape."""
     match = re.fullmatch(r"([A-Za-z]+)([1-9]\d*)", name)
     return (match[1], int(match[2])) if match else ("", 0)
 
@@ -204,7 +204,7 @@ PROPERTY = "MeshSizeList"  # of a mesh object
 
 
 def kind_of(obj):
-    """A key of KINDS; None for other objects."""
+    """Returns a key of KINDS; None for other objects."""
     of_proxy = getattr(getattr(obj, "Proxy", None), "Type", "")
     return next((kind for kind, proxy in KINDS.items() if proxy.Type == of_proxy), None)
 
@@ -233,7 +233,7 @@ def make(mesh_object, kind, size=0, name=""):
 
 
 def sources_of(mesh_object):
-    """What the size objects of a mesh object ask for: [(label, source of the program's size field)]. Raises
+    """Returns the requests of a mesh object's size objects: [(label, source of the program's size field)]. Raises
     MesherError."""
     part = compatibility.meshed_object(mesh_object)
     objects = [obj for obj in getattr(mesh_object, PROPERTY) if not compatibility.is_suppressed(obj)]
@@ -241,13 +241,13 @@ def sources_of(mesh_object):
 
 
 def field_of(mesh_object):
-    """The program's size field for a mesh object's size objects; None without any. Raises MesherError."""
+    """Returns the program's size field for a mesh object's size objects; None without any. Raises MesherError."""
     found = [source for _, source in sources_of(mesh_object)]
     return {"sources": found} if found else None
 
 
 def with_labels(message, labels):
-    """What the program says of its size field, in terms of the objects. `labels`: of the sources."""
+    """Rewrites the program's messages on its size field in terms of the objects. `labels` are those of the sources."""
     match = re.search(
         r"\S*: size field: sources\[(\d+)\](?:\.(patches|curves): no \w+ have the tag (\d+))?", message
     )

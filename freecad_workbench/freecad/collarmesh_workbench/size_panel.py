@@ -1,4 +1,4 @@
-"""The panel of a size object: how fine, how fast it grows, where. What is entered or dragged shows at once."""
+"""The panel of a size object: size, growth and place. Changes take effect at once."""
 
 import contextlib
 
@@ -15,7 +15,7 @@ WIDTH = 340  # pixels
 
 
 def texts():
-    """What the properties are called in the panel."""
+    """Returns the panel's names of the properties."""
     return {
         "Size": translate("collarmesh", "Element size"),
         "Growth": translate("collarmesh", "Growth away from it"),
@@ -37,7 +37,7 @@ def titles():
 
 
 class SizePanel:
-    """All changes are one step of undo, with the creation of a new object; "Cancel" takes them back."""
+    """All changes are one undo step, together with the creation of a new object; "Cancel" undoes them."""
 
     def __init__(self, obj):
         self.object = obj
@@ -83,7 +83,7 @@ class SizePanel:
         self.fields[name] = field
 
     def _typed(self, field, store):
-        """Values that make no sense are red and not stored."""
+        """Stores a value, unless it is invalid; invalid values are red."""
         with contextlib.suppress(ValueError):
             self._changed(store, field.value())
 
@@ -132,7 +132,7 @@ class SizePanel:
         self.handles = Handles(self.object, self.kind, self.fill)
 
     def fill(self):
-        """The object's values into the fields."""
+        """Copies the object's values to the fields."""
         self.filling = True
         for name, field in self.fields.items():
             if name in AXES:
@@ -164,7 +164,7 @@ class SizePanel:
         self.object.Placement = placement
 
     def add_selected(self):
-        """The faces and edges that are selected in the 3D view."""
+        """Adds the faces and edges selected in the 3D view."""
         found = size_objects.references(self.object)
         for each in FreeCADGui.Selection.getSelectionEx(self.object.Document.Name):
             for name in each.SubElementNames:
@@ -184,7 +184,7 @@ class SizePanel:
         self.fill()
 
     def close(self):
-        """Leave nothing in the 3D view."""
+        """Closes the panel and removes its marks from the 3D view."""
         if self.handles:
             self.handles.remove()
             self.handles = None
@@ -202,7 +202,7 @@ class SizePanel:
     def reject(self):
         document = self.object.Document
         self.close()
-        document.abortTransaction()  # a new object is gone then; the end of the edit would commit
+        document.abortTransaction()  # also removes a new object, which the edit's end would commit
         FreeCADGui.getDocument(document.Name).resetEdit()
         document.recompute()
         return True

@@ -4,13 +4,13 @@ import math
 
 from .translations import translate
 
-DEFAULT_PART_OF_DIAGONAL = 1 / 20  # the program's, which is the medium one
+DEFAULT_PART_OF_DIAGONAL = 1 / 20  # the program's default, which is the medium preset
 DAY, YEAR = 86400, 365 * 86400  # seconds
 SUPERSCRIPTS = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def presets(diagonal):
-    """Names and target edge lengths for a shape with a bounding box of this diagonal (mm)."""
+    """Returns names and target edge lengths for a shape with a bounding box of this diagonal (mm)."""
     names = (
         (translate("collarmesh", "Very coarse"), 4),
         (translate("collarmesh", "Coarse"), 2),
@@ -22,12 +22,12 @@ def presets(diagonal):
 
 
 def rounded(length, digits=2):
-    """To this many digits that count."""
+    """Rounds to this many significant digits."""
     return round(length, digits - 1 - math.floor(math.log10(length))) if length > 0 else 0
 
 
 def count_text(count):
-    """A number of elements, rounded, as people read it: 12 000."""
+    """Returns a rounded number of elements for people: 12 000."""
     if count >= 1e9:
         mantissa, exponent = f"{count:.0e}".split("e")
         return f"{mantissa}·10" + str(int(exponent)).translate(SUPERSCRIPTS)
@@ -35,7 +35,7 @@ def count_text(count):
 
 
 def duration_text(seconds):
-    """A duration, rounded."""
+    """Returns a rounded duration."""
     if seconds < 1:
         return translate("collarmesh", "< 1 s")
     if seconds < 100:

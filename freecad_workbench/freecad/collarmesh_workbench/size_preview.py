@@ -1,4 +1,4 @@
-"""The part in colours of the sizes that are asked for, and what the colours mean."""
+"""Shows the requested sizes as colours on the part, with a legend."""
 
 import contextlib
 
@@ -9,15 +9,17 @@ from . import asked_sizes, compatibility, numbers_typed
 from .translations import translate
 
 NAME = "collarmesh_sizes"
-# From the smallest size to the largest one; lightness grows, so that they can be told apart without seeing colours.
+# From the smallest size to the largest one; lightness increases, so that the colours can be distinguished in
+# grey.
 SCALE = numpy.array([(0.267, 0.005, 0.329), (0.230, 0.322, 0.546), (0.128, 0.567, 0.551), (0.369, 0.789, 0.383),
                      (0.993, 0.906, 0.144)])
 WAIT = 300  # milliseconds after a change
-HEIGHT = 12  # of the scale, pixels
+HEIGHT = 12  # height of the scale, pixels
 
 
 class SizePreview(QtGui.QWidget):
-    """A button; while it is down the part shows in colours. `settings()` gives Settings, None where there are none."""
+    """A button that shows the part in colours while it is down. `settings()` returns Settings, or None if there are
+    none."""
 
     def __init__(self, obj, settings):
         super().__init__()
@@ -43,14 +45,14 @@ class SizePreview(QtGui.QWidget):
         self.button.toggled.connect(self._toggle)
 
     def update_soon(self, shape_too=False):
-        """After a change of sizes, or of the shape."""
+        """Updates the colours soon, after a change of sizes or of the shape."""
         if shape_too:
             self._surface = None
         if self.button.isChecked():
             self._timer.start()
 
     def clear(self):
-        """The part and the mesh look as before."""
+        """Restores the appearance of part and mesh."""
         self._timer.stop()
         with contextlib.suppress(ReferenceError, RuntimeError):  # objects may be gone
             if self._node is not None:
@@ -76,7 +78,7 @@ class SizePreview(QtGui.QWidget):
         try:
             self._surface = self._surface or asked_sizes.surface_of(part)
             sizes = asked_sizes.on(self._surface, part, settings)
-        except Exception:  # of OpenCASCADE's, too; the run tells what is wrong
+        except Exception:  # also OpenCASCADE's; the run reports the problem
             return
         if len(sizes) == 0:
             return
@@ -93,7 +95,7 @@ class SizePreview(QtGui.QWidget):
         if self._node is not None:
             self._remove()
         self._node = coloured(coin, self._surface.places, colours(sizes))
-        self.object.ViewObject.RootNode.addChild(self._node)  # which shows though the object is hidden
+        self.object.ViewObject.RootNode.addChild(self._node)  # visible although the object is hidden
 
     def _remove(self):
         node, self._node = self._node, None
@@ -111,7 +113,7 @@ class SizePreview(QtGui.QWidget):
 
 
 def colours(sizes):
-    """Red, green and blue for each size, by its logarithm; all are alike where the sizes are."""
+    """Returns red, green and blue for each size, by its logarithm; the same colour if all sizes are equal."""
     smallest, largest = numpy.log(sizes.min()), numpy.log(sizes.max())
     if largest - smallest < 1e-6:
         return on_scale(numpy.ones(len(sizes)))
@@ -119,13 +121,13 @@ def colours(sizes):
 
 
 def on_scale(shares):
-    """Shape (n, 3), for shares from 0 to 1."""
+    """Returns colours, shape (n, 3), for shares from 0 to 1."""
     marks = numpy.linspace(0, 1, len(SCALE))
     return numpy.stack([numpy.interp(shares, marks, SCALE[:, i]) for i in range(3)], axis=1)
 
 
 def coloured(coin, places, rgb):
-    """A node of triangles with corners of their own."""
+    """Returns a node of separate triangles."""
     node, hints, points = coin.SoSeparator(), coin.SoShapeHints(), coin.SoCoordinate3()
     node.setName(NAME)
     hints.vertexOrdering = coin.SoShapeHints.COUNTERCLOCKWISE  # lit from both sides

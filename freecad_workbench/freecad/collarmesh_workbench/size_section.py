@@ -1,4 +1,4 @@
-"""The first part of the panel: how large the elements are to be, and how many that makes."""
+"""The first part of the panel: the size of the elements, and their predicted number."""
 
 from PySide import QtCore, QtGui
 
@@ -11,12 +11,12 @@ NAME, SIZE, ELEMENTS, TIME = range(4)
 
 
 class SizeSection(QtGui.QWidget):
-    """A table of presets with what each will make, and a field. `changed` is emitted when another size is chosen."""
+    """A table of presets with predictions, and a field. `changed` is emitted when another size is chosen."""
 
     changed = QtCore.Signal()
 
     def __init__(self, obj, diagonal):
-        """For a mesh object, whose size may be 0, which is the default one; `diagonal` of the shape's bounding box."""
+        """For a mesh object, whose size may be 0 for the default; `diagonal` is that of the shape's bounding box."""
         super().__init__()
         self.presets = size_presets.presets(diagonal)
         self.table = self._table()
@@ -38,18 +38,19 @@ class SizeSection(QtGui.QWidget):
         self.field.widget.textChanged.connect(self._edited)
 
     def size(self):
-        """In mm. Raises ValueError, which names the field."""
+        """Returns the size in mm. Raises ValueError, which names the field."""
         try:
             return self.field.value()
         except ValueError as error:
             raise ValueError(f"{self.label}: {error}") from error
 
     def sizes(self):
-        """Those of the table, in mm, the chosen one first."""
+        """Returns the sizes of the table, in mm, the chosen one first."""
         return [size for size in (self._size_or_zero(), *(size for _, size in self.presets)) if size > 0]
 
     def show_predictions(self, predictions, missing=""):
-        """{size: (elements, seconds)}, None for seconds that nobody knows; `missing` stands for what is not there."""
+        """Shows {size: (elements, seconds)}, with None for unknown seconds; `missing` is shown for sizes without an
+        entry."""
         sizes = [size for _, size in self.presets]
         sizes.append(self._size_or_zero() if self._size_or_zero() not in sizes else 0)
         for row, size in enumerate(sizes):
@@ -84,7 +85,7 @@ class SizeSection(QtGui.QWidget):
             return 0
 
     def _mark_row(self):
-        """The row of the size in the field."""
+        """Marks the row of the size in the field."""
         size = self._size_or_zero()
         sizes = [preset for _, preset in self.presets]
         number = sizes.index(size) if size in sizes else len(sizes)

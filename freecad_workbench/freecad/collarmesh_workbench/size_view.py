@@ -1,4 +1,4 @@
-"""How size objects look: translucent in the 3D view, and with handles to drag while their panel is open."""
+"""The appearance of size objects: translucent in the 3D view, with handles to drag while their panel is open."""
 
 import os
 
@@ -23,7 +23,7 @@ class SizeViewProvider(compatibility.Stateless):
         view.LineWidth = 1.5
         if size_objects.kind_of(view.Object) == "Distance":
             view.LineWidth = 4
-        view.Selectable = False  # what is inside must stay within reach of the mouse
+        view.Selectable = False  # objects inside must stay within reach of the mouse
 
     def attach(self, view):
         self.ViewObject = view

@@ -1,4 +1,4 @@
-"""A window with what is to know of a mesh: counts, angles, groups."""
+"""A window with the statistics of a mesh: counts, angles, groups."""
 
 import html
 
@@ -11,7 +11,7 @@ BAR = 160  # width of the longest bar in pixels
 
 
 def page(mesh_object):
-    """HTML. Raises MesherError."""
+    """Returns HTML. Raises MesherError."""
     fem_mesh = mesh_object.FemMesh
     if elements.dimension(fem_mesh) < 3:
         return _table(_rows_of_shell(fem_mesh)) + _groups(fem_mesh)
@@ -32,7 +32,7 @@ def page(mesh_object):
 
 
 def _rows_of_shell(fem_mesh):
-    """Of triangles, or of lines."""
+    """Returns rows for triangles or lines."""
     of_triangles = elements.dimension(fem_mesh) == 2
     name = translate("collarmesh", "Triangles") if of_triangles else translate("collarmesh", "Lines")
     return [(name, f"{len(elements.numbers(fem_mesh))}"),

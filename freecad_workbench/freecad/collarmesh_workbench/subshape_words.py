@@ -1,4 +1,4 @@
-"""What the program says of patches, curves and regions, in FreeCAD's names of faces, edges and solids."""
+"""Replaces patches, curves and regions in the program's messages by FreeCAD's names of faces, edges and solids."""
 
 import re
 
@@ -7,12 +7,12 @@ _TAGGED = re.compile(rf"\b({'|'.join(KINDS)}) \d+ \(tag (\d+)\)", re.IGNORECASE)
 
 
 def in_names(text, names):
-    """`names("Face", 7)`: what a face with that number in the mesh is called."""
+    """Rewrites a message. `names("Face", 7)` returns the name of the face with that number in the mesh."""
     return _TAGGED.sub(lambda match: names(KINDS[match[1].lower()], int(match[2])), text)
 
 
 def report_in_names(report, names):
-    """Change all messages of a run's report."""
+    """Rewrites all messages of a run's report."""
     for holder in (*report["check"]["findings"], *report["complex"]["warnings"], report):
         holder["message"] = in_names(holder["message"], names)
     for holder, key in ((report, "warnings"), (report, "notes"), (report["repair"], "messages")):

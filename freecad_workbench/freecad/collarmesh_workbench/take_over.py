@@ -9,7 +9,7 @@ from . import compatibility, extent, inputs, mesh_object, mesh_properties, size_
 from .program import MesherError
 from .translations import doc, translate
 
-# Netgen's names for how fast sizes grow and how many elements there are along a radius of curvature.
+# Netgen's names for the growth of sizes and the number of elements along a radius of curvature.
 FINENESS = {
     "VeryCoarse": (0.7, 1),
     "Coarse": (0.5, 1.5),
@@ -33,7 +33,7 @@ def can_be_taken_over(obj):
 
 
 def mesher_of(obj):
-    """Gmsh, Netgen, or "" for other objects."""
+    """Returns Gmsh, Netgen, or "" for other objects."""
     of_proxy = getattr(getattr(obj, "Proxy", None), "Type", "")
     if of_proxy == "Fem::FemMeshGmsh":
         return "Gmsh"
@@ -43,8 +43,8 @@ def mesher_of(obj):
 
 
 def take_over(old):
-    """Our object in place of one of Gmsh or Netgen: (the new object, what got lost, for people). One step of undo.
-    Raises MesherError."""
+    """Replaces a mesh object of Gmsh or Netgen by ours: returns (the new object, what got lost, for people). One undo
+    step. Raises MesherError."""
     mesher = mesher_of(old)
     if not mesher:
         raise MesherError(
@@ -61,7 +61,7 @@ def take_over(old):
         notes += take_sizes_by_place([each for each in refinements if each not in new.MeshRegionList], new)
         replace(old, new)
         if new.FemMesh.NodeCount:
-            # Its mesh is not of our making, so it is out of date.
+            # The mesh was not made by collarmesh, so it is out of date.
             up_to_date.remember(new, up_to_date.State([], mesher))
             up_to_date.show(new)
     return new, notes
@@ -82,8 +82,8 @@ def take_gmsh(old, new):
 
 
 def take_sizes_by_place(refinements, new):
-    """Ours in place of what later versions of FreeCAD have for Gmsh; notes on those that have no counterpart, which stay in
-    the document."""
+    """Makes our size objects for those that later versions of FreeCAD have for Gmsh; returns notes on those without a
+    counterpart, which stay in the document."""
     lost = []
     for each in refinements:
         wanted = compatibility.size_by_place(each)
@@ -126,7 +126,7 @@ def value_of(obj, name):
 
 
 def hand_over(old):
-    """Gmsh's object in place of ours: (the new object, what got lost, for people). One step of undo."""
+    """Replaces our object by Gmsh's: returns (the new object, what got lost, for people). One undo step."""
     document = old.Document
     notes = []
     with compatibility.transaction(document, translate("collarmesh", "Hand over to Gmsh")):
@@ -142,7 +142,7 @@ def hand_over(old):
         compatibility.set_refinements(new, old.MeshRegionList)
         new.MeshGroupList = old.MeshGroupList
         sizes = getattr(old, size_objects.PROPERTY)
-        if sizes:  # Gmsh does not heed them, but they are there when the mesh is taken over again
+        if sizes:  # Gmsh ignores them, but they are kept for taking the mesh over again
             new.addProperty(
                 "App::PropertyLinkList", size_objects.PROPERTY, "Base", doc("Sizes of collarmesh"), 4
             )
@@ -158,7 +158,7 @@ def hand_over(old):
 
 
 def replace(old, new):
-    """`new` takes the mesh, the label and the place in analyses and groups of `old`, which is removed."""
+    """Gives `new` the mesh, the label and the place in analyses and groups of `old`, and removes `old`."""
     new.FemMesh = old.FemMesh
     for holder in old.InList:
         if "Group" in holder.PropertiesList and old in holder.Group:
@@ -166,7 +166,7 @@ def replace(old, new):
     if "ViewObject" in dir(old) and old.ViewObject is not None and new.ViewObject is not None:
         new.ViewObject.Visibility = old.ViewObject.Visibility
     label = old.Label
-    # Removed objects of some kinds take with them what they list.
+    # Removing objects of some kinds also removes the objects that they list.
     for name in ("MeshRegionList", "MeshRefinementList", "MeshGroupList", size_objects.PROPERTY):
         if name in old.PropertiesList:
             setattr(old, name, [])

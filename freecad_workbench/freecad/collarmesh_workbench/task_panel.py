@@ -1,4 +1,4 @@
-"""The panel in which a mesh is made: what is asked for, the run, and what came."""
+"""The panel that makes a mesh: settings, run and result."""
 
 import contextlib
 
@@ -24,17 +24,17 @@ from .translations import translate
 from .view_marks import ViewMarks
 
 WIDTH = 400  # pixels
-MOMENT = 100  # milliseconds, in which a part that is dragged changes again
-WHAT_IS_MESHED = ("Shape", "Placement", "Mesh", "LinkPlacement")  # properties of parts
+MOMENT = 100  # milliseconds; a part that is being dragged changes again within this time
+WHAT_IS_MESHED = ("Shape", "Placement", "Mesh", "LinkPlacement")  # properties with the geometry
 
 
 class MeshTaskPanel:
-    """Shows the run of its object, which goes on when the panel is closed."""
+    """Shows the run of its object; the run continues when the panel is closed."""
 
     def __init__(self, obj):
         self.object = obj
         self.run = None
-        self.outcome = None  # that is shown
+        self.outcome = None  # the outcome that is shown
         self.known = {}  # predictions
         self.marks = ViewMarks(obj)
         self._build()
@@ -51,7 +51,7 @@ class MeshTaskPanel:
             self._show_outcome(meshing_process.outcome_of(obj))
         out_of_date = up_to_date.is_out_of_date(obj)
         self.result.show_out_of_date(out_of_date)
-        self._predict(None if elements.is_there(obj.FemMesh) and not out_of_date else 0)  # it is only looked at
+        self._predict(None if elements.is_there(obj.FemMesh) and not out_of_date else 0)  # only look
         self.form.destroyed.connect(self.dismiss)
         self.changes = QtCore.QTimer(self.form, singleShot=True, interval=MOMENT)
         self.changes.timeout.connect(self._ask_anew)
@@ -96,7 +96,7 @@ class MeshTaskPanel:
         self.report_button.hide()
 
     def _store(self):
-        """The fields into the properties. Raises MesherError."""
+        """Stores the fields in the properties. Raises MesherError."""
         try:
             size = self.size.size()
             self.advanced.store()
@@ -111,14 +111,14 @@ class MeshTaskPanel:
         self.contacts.store()
 
     def _ask(self, *_):
-        """After a change."""
+        """Updates the predictions after a change."""
         self.preview.update_soon()
         self.run_section.withdraw()
         self._predict(prediction.WAIT)
 
     def _predict(self, wait):
-        """What the sizes will make with what is in the fields, asked after so many milliseconds; None, and while the
-        mesher runs: only what is known already."""
+        """Predicts the meshes for the sizes with the current fields, after this many milliseconds; with None, and while
+        the mesher runs, shows only known answers."""
         settings = self._settings()
         if settings is None:
             return
@@ -135,7 +135,7 @@ class MeshTaskPanel:
             self._show_predictions(self.predictions.ask(settings, self.size.sizes(), wait), "…")
 
     def _settings(self):
-        """What is in the fields; None where that makes no sense."""
+        """Returns the Settings in the fields; None if they are invalid."""
         try:
             settings = mesh_properties.settings_of(self.object)
         except MesherError:
@@ -175,14 +175,14 @@ class MeshTaskPanel:
             self._show_outcome(meshing_process.Outcome(error=str(error)))
 
     def _clear(self):
-        """What is told of the last run."""
+        """Clears the messages of the last run."""
         self.marks.clear()
         self.list.fill([])
         self.result.clear()
         self.report_button.hide()
 
     def _asks(self):
-        """What has to be asked before the mesh is made; False where there is nothing."""
+        """Shows a question if one must be answered before meshing; returns False if there is none."""
         holes, question = "" if self.object.FillHoles else self._open_surface(), self._question()
         if holes:
             self.run_section.ask(" ".join((holes, question)), translate("collarmesh", "Fill the holes"))
@@ -191,12 +191,12 @@ class MeshTaskPanel:
         return bool(holes or question)
 
     def _open_surface(self):
-        """What to ask of one that is to be filled with tetrahedra; "" for other parts."""
+        """Returns the question about an open surface that will be filled with tetrahedra; "" for other parts."""
         part = compatibility.meshed_object(self.object)
         return open_shape.question(part) if part is not None and self.dimension.chosen(self.object.FillHoles) == 3 else ""
 
     def _question(self):
-        """About a mesh that costs much; "" where there is none."""
+        """Returns the question about an expensive mesh; "" if there is none."""
         part, size = compatibility.meshed_object(self.object), self.object.CharacteristicLengthMax.Value
         count, seconds = self.known.get(size, (0, None))
         if not count and part is not None:
@@ -238,8 +238,8 @@ class MeshTaskPanel:
             run.ended.disconnect(self._ended)
 
     def show_state(self, out_of_date):
-        """After a recompute, a run, an undo: is the mesh the one that is told about, and up to date? What is wrong with
-        the fields, or the part, stays."""
+        """Updates the state after a recompute, a run or an undo: whether the mesh is the shown one, and up to date.
+        Messages on the fields or the part stay."""
         outcome = meshing_process.outcome_of(self.object)
         tells_of_mesh = self.outcome is None or self.outcome.report is not None
         if self.run is None and tells_of_mesh and outcome is not self.outcome:
@@ -247,7 +247,8 @@ class MeshTaskPanel:
         self.result.show_out_of_date(out_of_date)
 
     def _show_outcome(self, outcome):
-        """None: of a mesh that was there before the document was opened nothing but its worst elements is known."""
+        """Shows the outcome of a run. None: only the worst elements are known of a mesh made before the document was
+        opened."""
         self.outcome = outcome
         if outcome is None:
             self.result.clear()
@@ -276,14 +277,14 @@ class MeshTaskPanel:
         self.preview.button.setChecked(False)
         try:
             constraint_faces_view.show(self.object)
-        except MesherError as error:  # an undo took the mesh
+        except MesherError as error:  # an undo removed the mesh
             self.result.say(str(error), colours.BAD)
 
     def getStandardButtons(self):
         return compatibility.as_number(QtGui.QDialogButtonBox.Ok | QtGui.QDialogButtonBox.Cancel)
 
     def accept(self):
-        """What is in the fields holds for the next run."""
+        """Stores the fields for the next run."""
         try:
             self._store()
         except MesherError as error:
@@ -295,12 +296,12 @@ class MeshTaskPanel:
         return True
 
     def reject(self):
-        """A new mesh object that is still empty goes; a run goes on."""
+        """Removes a new mesh object that is still empty; a run continues."""
         is_wanted = not self.object.ViewObject.Proxy.is_new or self.object.FemMesh.NodeCount or self.run is not None
         self._close()
         if not is_wanted:
             key = self.object.Document.Name, self.object.Name
-            later(lambda: new_mesh.take_back(*key))  # when the panel has gone
+            later(lambda: new_mesh.take_back(*key))  # when the panel is closed
         return True
 
     def _close(self):
@@ -308,7 +309,7 @@ class MeshTaskPanel:
         FreeCADGui.getDocument(self.object.Document.Name).resetEdit()
 
     def dismiss(self, *_):
-        """The panel goes; what it showed in the view goes with it."""
+        """Closes the panel and removes its marks from the view."""
         with contextlib.suppress(ValueError):
             FreeCAD.removeDocumentObserver(self)
         self._let_go()
@@ -322,12 +323,12 @@ class MeshTaskPanel:
             self.changes.start()
 
     def slotRecomputedDocument(self, _document):
-        """What a link or a container shows may be another shape then, without a change of its own."""
+        """Handles a recompute: a link or a container may show another shape without a change of its own."""
         if self.predictions.shape_has_changed():
             self.changes.start()
 
     def _ask_anew(self):
-        """Of another shape."""
+        """Predicts again for another shape."""
         self.predictions.forget()
         self.contacts.look_soon()
         self.preview.update_soon(shape_too=True)
@@ -335,7 +336,7 @@ class MeshTaskPanel:
         self.show_state(up_to_date.is_out_of_date(self.object))
 
     def slotStartSaveDocument(self, document, _path):
-        """The file has the objects as they look without marks."""
+        """Removes marks before the document is saved, so that the file does not contain them."""
         if document is self.object.Document:
             self.marks.clear()
             self.preview.button.setChecked(False)

@@ -1,18 +1,18 @@
-"""How long a run will go on, from how far it is, how long it has taken, and how long it was said to take."""
+"""Estimates the remaining time of a run from its progress, its elapsed time, and its predicted time."""
 
 import math
 
-LEAST_SECONDS, LEAST_SHARE = 2, 0.13  # before these, nobody can know from the run itself
-GROWTH = 1.5  # what was told grows by no more than that
+LEAST_SECONDS, LEAST_SHARE = 2, 0.13  # the run itself permits no estimate before these
+GROWTH = 1.5  # the estimate grows by at most this factor
 
-# What share of the time has gone by where the program says that it is this far: rounded means over seven runs that
-# made from 2,500 to 225,000 elements.
+# The share of the time that has passed at each fraction reported by the program: rounded means over several
+# runs.
 _SHARES = ((0, 0), (0.08, 0.1), (0.131, 0.13), (0.59, 0.3), (0.675, 0.7), (0.76, 0.88), (0.811, 0.91),
            (0.93, 0.97), (1, 1))
 
 
 def share_of_time(fraction):
-    """0 to 1; `fraction` is the program's."""
+    """Returns the share of the time, 0 to 1, that has passed at the program's `fraction`."""
     for (f0, s0), (f1, s1) in zip(_SHARES, _SHARES[1:]):
         if fraction <= f1:
             return s0 + (s1 - s0) * max(0, fraction - f0) / (f1 - f0)
@@ -20,16 +20,16 @@ def share_of_time(fraction):
 
 
 class TimeLeft:
-    """Of one run. `predicted` and `afterwards`: seconds that the program and what comes after it were said to take;
-    `predicted` is None where nobody said."""
+    """The remaining time of one run. `predicted` and `afterwards` are the predicted seconds of the program and of the
+    steps after it; `predicted` is None without a prediction."""
 
     def __init__(self, predicted=None, afterwards=0):
         self._predicted, self._afterwards = predicted, afterwards
-        self._fraction, self._end = -1, math.inf  # of what the run itself tells
-        self._least = math.inf  # that was told
+        self._fraction, self._end = -1, math.inf  # last fraction, and the end that the run itself suggests
+        self._least = math.inf  # smallest estimate shown
 
     def seconds(self, passed, fraction):
-        """After so many seconds; None: nobody knows; infinite: longer than was told before."""
+        """Returns the remaining seconds after this many; None: unknown; infinite: longer than estimated before."""
         share = share_of_time(fraction)
         left = self._by_run(passed, fraction, share) if self._predicted is None else self._by_prediction(passed, share)
         if left is None or left > GROWTH * self._least:
@@ -38,12 +38,12 @@ class TimeLeft:
         return left
 
     def _by_prediction(self, passed, share):
-        """A run that is slower than was said goes on as slowly."""
+        """Estimates from the prediction: a run that is slower than predicted stays as slow."""
         pace = passed / (max(share, LEAST_SHARE) * self._predicted)
         return (1 - share) * self._predicted * max(1, pace) + self._afterwards
 
     def _by_run(self, passed, fraction, share):
-        """While the program stays where it is, time goes by."""
+        """Estimates from the run itself; time passes even if the program's fraction does not change."""
         if passed < LEAST_SECONDS or share < LEAST_SHARE:
             return None
         if fraction > self._fraction:

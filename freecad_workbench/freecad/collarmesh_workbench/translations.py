@@ -8,7 +8,7 @@ FOLDER = pathlib.Path(__file__).resolve().parents[2] / "translations"
 
 
 def load():
-    """Show the files' language in FreeCAD's window; texts that are asked for before are English."""
+    """Installs the translations for the language of FreeCAD's window; texts used before are English."""
     import FreeCADGui
 
     FreeCADGui.addLanguagePath(str(FOLDER))
@@ -16,15 +16,15 @@ def load():
 
 
 def translate(context, text):
-    """`text` in the language that FreeCAD shows; the context of all texts of this add-on is "collarmesh"."""
+    """Returns `text` in FreeCAD's language; the context of all texts of this add-on is "collarmesh"."""
     return FreeCAD.Qt.translate(context, text)
 
 
 def mark(_context, text):
-    """`text` as it is, but with an entry in the files: it is translated where it is shown."""
+    """Returns `text` unchanged and gives it an entry in the files: it is translated where it is shown."""
     return text
 
 
 def doc(text):
-    """A property's documentation, which FreeCAD translates where it shows it (context "App::Property")."""
+    """Marks a property's documentation, which FreeCAD translates when it shows it (context "App::Property")."""
     return text

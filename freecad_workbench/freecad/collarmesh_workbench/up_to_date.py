@@ -1,5 +1,5 @@
-"""Does a mesh still belong to its shape, its sizes and its settings? A mesh object remembers in hidden properties what
-its mesh was made of. Nothing here makes a mesh: that happens on request only."""
+"""Decides whether a mesh still belongs to its shape, its sizes and its settings. A mesh object records in hidden
+properties what its mesh was made of. Nothing here makes a mesh."""
 
 import dataclasses
 import json
@@ -12,16 +12,16 @@ from .program import MesherError, Settings
 from .translations import doc, translate
 
 SHAPE, SETTINGS = "MeshedShape", "MeshedSettings"
-MARKS = 8  # numbers that stand for a shape
+MARKS = 8  # number of values that identify a shape
 SAME_PLACE = 1e-9  # relative to the largest coordinate; files of FreeCAD keep 16 digits
-DIGITS = 10  # of a setting
+DIGITS = 10  # digits of a setting
 HIDDEN = 4 | 16  # for addProperty: Prop_Hidden, and Prop_NoRecompute as it changes no mesh
 WITHOUT_EFFECT = ("time_limit",)
 
 
 @dataclasses.dataclass
 class State:
-    """What a mesh is made of: numbers that stand for the shape, and the settings as text."""
+    """The shape, as identifying numbers, and the settings, as text, that a mesh was made of."""
 
     shape: list
     settings: str
@@ -35,7 +35,7 @@ def add_properties(obj):
 
 
 def shape_numbers(part):
-    """Numbers that change with the shape of an object, or with the numbers of its faces and edges."""
+    """Returns numbers that change with the shape of an object, or with the numbers of its faces and edges."""
     mesh = inputs.triangles_of(part)
     if mesh is not None:
         points, triangles = mesh.Topology
@@ -46,7 +46,7 @@ def shape_numbers(part):
 
 
 def sample(shape):
-    """Points on every vertex, edge and face."""
+    """Returns points on every vertex, edge and face."""
     for vertex in shape.Vertexes:
         yield vertex.Point
     inside = (0.11, 0.5, 0.83)  # shares of the parameters' range, not symmetric
@@ -60,8 +60,8 @@ def sample(shape):
 
 
 def marks(points, *numbers):
-    """Sums of all coordinates and numbers with weights that depend on their places; the last one is the largest
-    coordinate, which says how exact they are."""
+    """Returns sums of all coordinates and numbers with weights that depend on their positions; the last one is the
+    largest coordinate, which tells how exact they are."""
     sums = numpy.zeros(MARKS)
     frequencies = numpy.sqrt(numpy.arange(2, 2 + MARKS))
     for values in (points, *numbers):
@@ -79,10 +79,10 @@ def same_shape(first, second):
 
 
 def has_shape(part, numbers):
-    """Does the object have the shape that these numbers stand for? False for what cannot be looked at."""
+    """Returns whether the object has the shape with these numbers. False for shapes that cannot be read."""
     try:
         return same_shape(numbers, shape_numbers(part))
-    except Exception:  # of OpenCASCADE's, too: what cannot be looked at cannot be meshed
+    except Exception:  # also OpenCASCADE's: a shape that cannot be read cannot be meshed
         return False
 
 
@@ -95,7 +95,8 @@ def settings_text(settings, groups):
 
 
 def same_settings(first, second):
-    """Settings that only one of them knows have their default in the other one, which is of an older version."""
+    """Compares settings. One that only one of them has counts as the default in the other, which is of an older
+    version."""
     if not (first.startswith("{") and second.startswith("{")):
         return first == second
     defaults = json.loads(settings_text(Settings(), []))
@@ -111,7 +112,7 @@ def rounded(value):
 
 
 def state_of(obj):
-    """What a mesh of the object would be made of now. Raises MesherError."""
+    """Returns the State that a new mesh of the object would have. Raises MesherError."""
     part = compatibility.meshed_object(obj)
     if part is None:
         raise MesherError(
@@ -130,25 +131,25 @@ def remember(obj, state):
 
 
 def is_kept_apart(obj):
-    """Was the mesh made with nodes of their own for solids that touch?"""
+    """Returns whether the mesh was made with separate nodes for touching solids."""
     made_with = getattr(obj, SETTINGS, "")
     return made_with.startswith("{") and json.loads(made_with).get("keep_apart", False)
 
 
 def is_out_of_date(obj):
-    """Was the mesh made of something else than what is there now? False without a mesh."""
+    """Returns whether shape or settings have changed since the mesh was made. False without a mesh."""
     made_with = getattr(obj, SETTINGS, "")
     if not made_with or obj.FemMesh.NodeCount == 0:
         return False
     try:
         now = state_of(obj)
-    except Exception:  # of OpenCASCADE's, too: what cannot be looked at cannot be meshed
+    except Exception:  # also OpenCASCADE's: a shape that cannot be read cannot be meshed
         return True
     return not (same_settings(made_with, now.settings) and same_shape(list(getattr(obj, SHAPE)), now.shape))
 
 
 def show(obj):
-    """Mark the object in the tree if it is out of date."""
+    """Marks the object in the tree if it is out of date."""
     proxy = getattr(getattr(obj, "ViewObject", None), "Proxy", None)
     if hasattr(proxy, "show_out_of_date"):
         proxy.show_out_of_date(is_out_of_date(obj))

@@ -1,4 +1,4 @@
-"""Showing places in the 3D view: sub-shapes are selected, points and tetrahedra are marked, the camera goes there."""
+"""Shows places in the 3D view: selects sub-shapes, marks points and tetrahedra, and moves the camera."""
 
 import contextlib
 
@@ -9,17 +9,17 @@ import numpy
 from . import compatibility, extent
 
 NAME = "collarmesh_marks"
-TRANSPARENCY = 80  # percent, of the mesh as long as something in it is marked
-AROUND = 0.15  # of the diagonal: how far around a point is to be seen, at least
+TRANSPARENCY = 80  # percent, for the mesh while something in it is marked
+AROUND = 0.15  # of the diagonal: the least visible radius around a point
 
 
 class ViewMarks:
-    """At most one set of places at a time, until `clear`."""
+    """Shows one set of places at a time, until `clear`."""
 
     def __init__(self, obj):
         self.object = obj
         self._node = None
-        self._before = None  # how the objects looked
+        self._before = None  # previous appearance of the objects
 
     def show(self, places):
         self.clear()
@@ -36,7 +36,7 @@ class ViewMarks:
         self._look_at(points, tetrahedra, subshapes)
 
     def clear(self):
-        """Everything looks as before; the camera stays."""
+        """Restores the appearance of everything except the camera."""
         if self._node is not None:
             self.object.ViewObject.RootNode.removeChild(self._node)
             self._node = None
@@ -50,7 +50,7 @@ class ViewMarks:
                     part.ViewObject.Visibility = visible
 
     def _make_room(self, part, part_too):
-        """The mesh becomes transparent; the part shows where sub-shapes of it are selected, and only there."""
+        """Makes the mesh transparent, and shows the part only while sub-shapes of it are selected."""
         view = self.object.ViewObject
         FreeCADGui.Selection.clearSelection()
         self._before = part, part.ViewObject.Visibility if part else False, view.Transparency
@@ -61,7 +61,7 @@ class ViewMarks:
     def _mark(self, points, tetrahedra):
         from pivy import coin
 
-        self._node = coin.SoAnnotation()  # over everything else
+        self._node = coin.SoAnnotation()  # drawn over everything else
         self._node.setName(NAME)
         colour = coin.SoMaterial()
         colour.diffuseColor = (0.9, 0.1, 0.1)
@@ -89,7 +89,7 @@ class ViewMarks:
 
 
 def move_camera(obj, centre, radius):
-    """See all within this radius (mm) of a point, from where the camera looks already."""
+    """Moves the camera to show everything within this radius (mm) of a point, without changing its direction."""
     from pivy import coin
 
     views = FreeCADGui.getDocument(obj.Document.Name).mdiViewsOfType("Gui::View3DInventor")
@@ -131,7 +131,7 @@ def _faces(coin, tetrahedra):
 
 
 def _markers(coin, points):
-    """Red dots with a white rim."""
+    """Returns red dots with a white rim."""
     group = coin.SoSeparator()
     places = coin.SoCoordinate3()
     places.point.setValues(0, len(points), [list(map(float, point)) for point in points])

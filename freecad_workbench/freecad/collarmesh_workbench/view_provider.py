@@ -1,4 +1,4 @@
-"""How the mesh object looks in the tree, and what a double click does."""
+"""The appearance of the mesh object in the tree, and its reaction to a double click."""
 
 import FreeCADGui
 
@@ -9,8 +9,8 @@ from .views import ICON, OUT_OF_DATE_ICON
 
 class MeshViewProvider(compatibility.Stateless):
     out_of_date = False
-    panel = None  # while it is open
-    is_new = False  # made by the button, and without a mesh yet
+    panel = None  # set while the panel is open
+    is_new = False  # created by the button, still without a mesh
     hid_part = False  # when the mesh appeared
 
     def __init__(self, view):
@@ -27,7 +27,7 @@ class MeshViewProvider(compatibility.Stateless):
         up_to_date.show(self.Object)
 
     def show_out_of_date(self, out_of_date):
-        """Mark the object in the tree and in its panel, or take the mark away."""
+        """Marks the object in the tree and in its panel, or removes the mark."""
         if out_of_date != self.out_of_date:
             self.out_of_date = out_of_date
             self.ViewObject.signalChangeIcon()
@@ -37,7 +37,7 @@ class MeshViewProvider(compatibility.Stateless):
             self.show_part_again()
 
     def show_in_place_of_part(self):
-        """The mesh, which has appeared: a part at the same place would be seen through it."""
+        """Hides the part when the mesh appears: a part at the same place would be seen through it."""
         part = compatibility.meshed_object(self.Object)
         self.is_new = False
         if elements.dimension(self.Object.FemMesh) == 2:
@@ -48,7 +48,7 @@ class MeshViewProvider(compatibility.Stateless):
             self.hid_part = True
 
     def show_part_again(self):
-        """If it was hidden for the mesh, which goes."""
+        """Shows the part again when the mesh disappears, if it was hidden for it."""
         part = compatibility.meshed_object(self.Object)
         if self.hid_part and part is not None:
             part.ViewObject.Visibility = True

@@ -1,5 +1,5 @@
-"""How new objects show in FreeCAD's window. The modules of the window register that here, so that those of the document
-need not know them."""
+"""Registers how new objects are shown in FreeCAD's window, so that modules of the document need not import modules of
+the window."""
 
 import os
 
@@ -11,11 +11,11 @@ _providers = {}
 
 
 def register(kind, provider):
-    """`kind`: the `Type` of the objects' proxies."""
+    """`kind` is the `Type` of the objects' proxies."""
     _providers[kind] = provider
 
 
 def show(kind, obj):
-    """Nothing without a window."""
+    """Shows an object; does nothing without a window."""
     if kind in _providers:
         _providers[kind](obj.ViewObject)

@@ -2,11 +2,11 @@
 
 from PySide import QtCore, QtGui
 
-SPARE = 2  # pixels, for the line below the rows
+SPARE = 2  # pixels for the line below the rows
 
 
 class WholeTable(QtGui.QTreeWidget):
-    """Rows in one level; the first column takes what the others leave. Beyond `most` rows it scrolls."""
+    """Rows without a hierarchy; the first column takes the remaining width. Scrolls beyond `most` rows."""
 
     def __init__(self, headings, most=100):
         super().__init__()
@@ -24,14 +24,14 @@ class WholeTable(QtGui.QTreeWidget):
                 self.headerItem().setTextAlignment(column, QtCore.Qt.AlignRight | QtCore.Qt.AlignVCenter)
 
     def add_row(self, texts):
-        """Numbers are at the right of their columns."""
+        """Adds a row; numbers are right-aligned."""
         row = QtGui.QTreeWidgetItem(self, texts)
         for column in range(1, len(texts)):
             row.setTextAlignment(column, QtCore.Qt.AlignRight | QtCore.Qt.AlignVCenter)
         return row
 
     def fit(self):
-        """To its rows and its width."""
+        """Fits the table to its rows and its width."""
         rows = min(self._most, self.topLevelItemCount())
         around = self.height() - self.viewport().height()
         self.setFixedHeight(around + rows * max(1, self.sizeHintForRow(0)) + SPARE)

@@ -21,7 +21,7 @@ done
 
 
 class WorkFolder:
-    """As `tempfile.TemporaryDirectory`, with a program that works in it."""
+    """Like `tempfile.TemporaryDirectory`, with a program that works in it."""
 
     def __init__(self):
         self.name = tempfile.mkdtemp(prefix="collarmesh-")
@@ -30,13 +30,13 @@ class WorkFolder:
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
 
     def program_is(self, process_id):
-        """The process that works in the folder; None: it has ended."""
+        """Sets the process that works in the folder; None: it has ended."""
         with contextlib.suppress(OSError, ValueError):
             self._watcher.stdin.write(f"{process_id or ''}\n")
             self._watcher.stdin.flush()
 
     def cleanup(self):
-        """End the program, if there is one, and remove the folder."""
+        """Ends the program, if there is one, and removes the folder."""
         with contextlib.suppress(OSError, ValueError):
             self._watcher.stdin.close()
         self._watcher.wait()

@@ -7,7 +7,7 @@ from .translations import translate
 
 
 def tetrahedra(fem_mesh):
-    """Element numbers, shape (n,), and their corners, shape (n, 4, 3), in mm."""
+    """Returns element numbers, shape (n,), and their corners, shape (n, 4, 3), in mm."""
     numbers = [n for n in fem_mesh.Volumes if len(fem_mesh.getElementNodes(n)) in (4, 10)]
     nodes = fem_mesh.Nodes
     node_numbers, places_of_nodes = numpy.array(list(nodes)), numpy.array([tuple(p) for p in nodes.values()])
@@ -18,7 +18,7 @@ def tetrahedra(fem_mesh):
 
 
 def smallest_dihedral_angles(corners):
-    """In degrees, shape (n,), for corners of shape (n, 4, 3)."""
+    """Returns angles in degrees, shape (n,), for corners of shape (n, 4, 3)."""
     normals = []
     for a, b, c, opposite in ((1, 2, 3, 0), (0, 3, 2, 1), (0, 1, 3, 2), (0, 2, 1, 3)):
         normal = numpy.cross(corners[:, b] - corners[:, a], corners[:, c] - corners[:, a])
@@ -33,18 +33,18 @@ def smallest_dihedral_angles(corners):
 
 
 def worst(fem_mesh, count=20):
-    """Numbers, angles and corners of the worst tetrahedra, the worst first."""
+    """Returns numbers, angles and corners of the worst tetrahedra, worst first."""
     numbers, corners = tetrahedra(fem_mesh)
     angles = smallest_dihedral_angles(corners)
     order = numpy.argsort(angles, kind="stable")[:count]
     return numbers[order], angles[order], corners[order]
 
 
-MOST = 100000  # elements, of which FreeCAD's mesh is asked for the worst ones: it takes a second
+MOST = 100000  # elements up to which FreeCAD's mesh is searched for the worst ones, which takes a second
 
 
 def in_report(fem_mesh, report):
-    """The worst tetrahedra of a run as Places."""
+    """Returns the worst tetrahedra of a run as Places."""
     numbers = fem_mesh.Volumes
     text = translate("collarmesh", "{smallest}° to {largest}° in element {number}")
     return [places.Place(places.WORST, text.format(smallest=f"{each['smallest']:.1f}", largest=f"{each['largest']:.1f}",
@@ -53,7 +53,7 @@ def in_report(fem_mesh, report):
 
 
 def in_mesh(fem_mesh):
-    """The worst tetrahedra of a mesh of which there is no report, unless it is large."""
+    """Returns the worst tetrahedra of a mesh without a report, unless it is large."""
     if not 0 < fem_mesh.VolumeCount <= MOST:
         return []
     text = translate("collarmesh", "{angle}° in element {number}")

@@ -1,7 +1,7 @@
-// From a part to a solution, in memory: mpirun -n 2 poisson part.off [SIZE [LEVELS]]
+// Solves a problem on a part, all in memory: mpirun -n 2 poisson part.off [SIZE [LEVELS]]
 //
-// Solves -div grad u = f with linear elements on the coarse mesh and after each level of refinement; u is
-// given on all patches, so that the error is known. It falls by four with each level.
+// The equation -div grad u = f is solved with linear elements on the coarse mesh and after each level of
+// refinement; u is given on all patches, so that the error is known. Each level divides it by four.
 #include <collarmesh/distributed.h>
 #include <collarmesh/io/soup_io.h>
 #include <collarmesh/mesher.h>
@@ -49,7 +49,7 @@ class Poisson {
   Poisson(const Poisson&) = delete;
   Poisson& operator=(const Poisson&) = delete;
 
-  /// The error of the solution in the norm of L2, and the norm of the solution.
+  /// Returns the error of the solution in the L2 norm, and the norm of the solution.
   std::array<double, 2> solve() {
     Mat matrix = nullptr;
     Vec load = nullptr, solution = nullptr;
@@ -79,7 +79,7 @@ class Poisson {
     return {at[0], at[1], at[2]};
   }
 
-  /// `visit` for each tet of this rank.
+  /// Calls `visit` for each tet of this rank.
   template <class Visit>
   void for_each_tet(const Visit& visit) const {
     Vec coordinates = nullptr;
@@ -105,7 +105,7 @@ class Poisson {
     return std::fabs(collarmesh::six_volume(a, b, c, d)) / 6;
   }
 
-  /// Values at the four points of a quadrature that is exact for quadratic polynomials.
+  /// Visits the values at the four points of a quadrature that is exact for quadratic polynomials.
   template <class Visit>
   static void quadrature(const Tet& tet, const Visit& visit) {
     constexpr double near = 0.5854101966249685, far = 0.1381966011250105;
@@ -148,7 +148,7 @@ class Poisson {
     PetscCallAbort(PETSC_COMM_WORLD, DMRestoreLocalVector(dm_, &local));
   }
 
-  /// The label `patch` tells where the solution is given.
+  /// Sets the given values, at the points with the label `patch`.
   void constrain(Mat matrix, Vec load, Vec solution) const {
     PetscSection global = nullptr;
     PetscCallAbort(PETSC_COMM_WORLD, DMGetGlobalSection(dm_, &global));
@@ -170,7 +170,7 @@ class Poisson {
         for (PetscInt k = count - 3; k < count; ++k) {
           PetscInt row = 0;
           PetscCallAbort(PETSC_COMM_WORLD, PetscSectionGetOffset(global, closure[2 * k], &row));
-          if (row < 0) row = -row - 1;  // another rank's
+          if (row < 0) row = -row - 1;  // owned by another rank
           rows.push_back(row);
           PetscCallAbort(
               PETSC_COMM_WORLD,

@@ -75,7 +75,7 @@ std::variant<DistributedArguments, process::ExitCode> parse(int argc, const char
     app.parse(argc, argv);
     check(arguments);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) {  // --help, --version
+    if (error.get_exit_code() == 0) {  // for --help and --version
       std::ostringstream text, nothing;
       app.exit(error, text, nothing);
       process::print_result(text.str());

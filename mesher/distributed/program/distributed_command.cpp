@@ -38,11 +38,11 @@ namespace {
 using process::ExitCode;
 using process::tell;
 
-/// MPI and PETSc for as long as it lives.
+/// Initializes MPI and PETSc for its lifetime.
 class Session {
  public:
   Session() {
-    PetscOptionsSetValue(nullptr, "-no_signal_handler", "true");  // the program has its own
+    PetscOptionsSetValue(nullptr, "-no_signal_handler", "true");  // the program has its own handler
     PetscInitializeNoArguments();
   }
   ~Session() { PetscFinalize(); }
@@ -50,21 +50,21 @@ class Session {
   Session& operator=(const Session&) = delete;
 };
 
-/// Ranks are out of step: one of them says why and ends all.
+/// Ends all ranks because they are out of step; one of them prints the reason.
 [[noreturn]] void end_all(process::ExitCode code, const std::string& message) {
   const Ranks ranks(MPI_COMM_WORLD);
-  // Of several that fail at once the first one speaks: it ends the others before they do.
+  // If several fail at once the first one reports: it ends the others before they do.
   std::this_thread::sleep_for(std::chrono::milliseconds(200) * ranks.rank);
   process::abandon_staged_files();
   const std::string text = fmt::format("collarmesh: {}\n", message);
   if (write(STDERR_FILENO, text.data(), text.size()) < 0) {
-    // There is nobody to tell.
+    // Nobody is left to report to.
   }
   MPI_Abort(MPI_COMM_WORLD, static_cast<int>(code));
   std::_Exit(static_cast<int>(code));
 }
 
-/// HDF5 and MPI may crash where they get no memory. mpirun ends the other ranks.
+/// Ends after a crash, because HDF5 and MPI may crash if they get no memory. mpirun ends the other ranks.
 [[noreturn]] void end_after_crash(int) {
   const bool short_of_memory = process::memory_is_short();
   process::abandon_staged_files();
@@ -74,7 +74,7 @@ class Session {
             "use more ranks\n"
           : "collarmesh: a library has crashed; please report it with the input and the options\n";
   if (write(STDERR_FILENO, text.data(), text.size()) < 0) {
-    // There is nobody to tell.
+    // Nobody is left to report to.
   }
   std::_Exit(
       static_cast<int>(short_of_memory ? process::ExitCode::budget_hit : process::ExitCode::internal_error));
@@ -87,8 +87,8 @@ class Session {
                   failure.what()));
 }
 
-/// Work that is not collective and may end the program: when it does on one rank it does on all, and the
-/// first of them tells why.
+/// Does work that is not collective and may end the program: if it does on one rank it does on all, and the
+/// first of them reports the reason.
 void together(const std::function<void()>& work) {
   std::exception_ptr thrown;
   std::optional<process::Stopped> stopped;
@@ -113,7 +113,7 @@ void together(const std::function<void()>& work) {
   throw process::Stopped(static_cast<process::ExitCode>(code), message);
 }
 
-/// FNV-1a.
+/// The hash FNV-1a.
 class Hash {
  public:
   void add(const void* bytes, std::size_t count) {
@@ -129,7 +129,7 @@ class Hash {
   std::uint64_t value_ = 0xcbf29ce484222325ULL;
 };
 
-/// The first rank whose value is not that of rank 0; -1 where there is none.
+/// Returns the first rank whose value differs from rank 0's; -1 if there is none.
 int first_that_differs(std::uint64_t value) {
   const Ranks ranks(MPI_COMM_WORLD);
   std::uint64_t of_first = value;
@@ -188,9 +188,9 @@ std::uint64_t fingerprint(const Plc& plc) {
   return hash.value();
 }
 
-/// What every rank knows of the input, and what rank 0 made of it.
+/// The data of the input on every rank, and the mesh that rank 0 made of it.
 struct Coarse {
-  cli::MadeMesh made;  ///< of others than rank 0 only the input and the complex
+  cli::MadeMesh made;  ///< on ranks other than 0 only the input and the complex
   Shape shape() const {
     const Plc& plc = made.run.plc;
     return {plc, made.input->has_cad() ? made.input->exact_geometry(plc) : ExactGeometry{},
@@ -199,7 +199,7 @@ struct Coarse {
   PipelineOptions options;
 };
 
-/// Rank 0 makes the mesh, the others the complex that it was made of.
+/// Makes the mesh on rank 0, and on the others its complex.
 Coarse make_coarse(const DistributedArguments& arguments) {
   const Ranks ranks(MPI_COMM_WORLD);
   Coarse coarse;
@@ -267,7 +267,7 @@ nlohmann::ordered_json json_by_tag(const Map& values) {
   return json;
 }
 
-/// Everything a run found out.
+/// All results of a run.
 struct Report {
   std::vector<LevelReport> levels;
   std::optional<OrderReport> order;
@@ -347,7 +347,7 @@ void write_report(const std::string& path, const Report& report) {
   if (!file) throw WriteError(fmt::format("{}: cannot be written; is the disk full?", path));
 }
 
-/// A message that names the places of files in one folder, for another folder.
+/// Replaces one folder by another in a message that names files.
 std::string with_name(std::string message, const std::filesystem::path& from,
                       const std::filesystem::path& to) {
   const std::string folder = from.string() + "/", target = to.empty() ? "" : to.string() + "/";
@@ -357,8 +357,8 @@ std::string with_name(std::string message, const std::filesystem::path& from,
   return message;
 }
 
-/// Under temporary names first, in a folder of rank 0's, which moves them to their places when all ranks are
-/// done.
+/// Writes files under temporary names first, in a folder of rank 0, which moves them to their places when all
+/// ranks are done.
 void write_files(const DistributedArguments& arguments, const ParallelMesh& mesh, Report& report) {
   const bool first = Ranks(MPI_COMM_WORLD).rank == 0;
   const Timer timer;
@@ -377,7 +377,7 @@ void write_files(const DistributedArguments& arguments, const ParallelMesh& mesh
   } catch (const PetscFailure& failure) {
     end_all(process::ExitCode::cannot_write, fmt::format("{}: cannot be written ({}); is the disk full?",
                                                          arguments.mesh.output, failure.what()));
-  } catch (const WriteError& error) {  // of all ranks, with the temporary name
+  } catch (const WriteError& error) {  // from all ranks, with the temporary name
     const std::filesystem::path target = arguments.mesh.output;
     throw WriteError(
         with_name(error.what(), std::filesystem::path(place).parent_path(), target.parent_path()));
@@ -450,13 +450,14 @@ process::ExitCode mesh_distributed(const DistributedArguments& arguments) {
 }  // namespace
 
 process::ExitCode run(int argc, char** argv) {
-  // Before MPI begins: it writes files of its own, and one that grows too large must not end the program.
+  // Before MPI is initialized: it writes files of its own, and one that grows too large must not end the
+  // program.
   process::install_interrupt_handlers();
   const Session session;
   if (Ranks(MPI_COMM_WORLD).rank != 0) process::be_silent();
-  std::signal(SIGSEGV, end_after_crash);  // in place of PETSc's
-  // Watched only until the result is known: when a rank has ended with an error, which has been reported by
-  // then, mpirun asks those that are still in MPI_Finalize to stop.
+  std::signal(SIGSEGV, end_after_crash);  // replaces PETSc's handler
+  // Watch only until the result is known: after a rank has ended with an error, which is reported by then,
+  // mpirun asks those that are still in MPI_Finalize to stop.
   const process::ExitCode result = process::run_interruptible([&] {
     return cli::guarded([&]() -> process::ExitCode {
       try {

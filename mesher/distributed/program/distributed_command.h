@@ -4,8 +4,8 @@
 
 namespace collarmesh::distributed {
 
-/// `mpirun -n P collarmesh-mpi INPUT... -o OUT.h5`, on each rank: all of them return the same, and one of
-/// them says what is wrong. Initializes MPI and PETSc and finalizes them.
+/// Runs `mpirun -n P collarmesh-mpi INPUT... -o OUT.h5` on each rank: all return the same code, and one of
+/// them prints errors. Initializes MPI and PETSc and finalizes them.
 process::ExitCode run(int argc, char** argv);
 
 }  // namespace collarmesh::distributed

@@ -14,19 +14,19 @@ namespace collarmesh::distributed {
 namespace {
 
 std::string first_message;
-bool out_of_memory = false;  // is what it says
+bool out_of_memory = false;  // memory ran out, as the code or message says
 
 PetscErrorCode remember(MPI_Comm, int, const char* function, const char*, PetscErrorCode code,
                         PetscErrorType type, const char* message, void*) {
   if (type == PETSC_ERROR_INITIAL) {
     first_message = fmt::format("{} ({})", message != nullptr ? message : "no reason given", function);
-    // PETSc 3.18 gives a number of a line for a code where it cannot allocate.
+    // PETSc 3.18 returns the number of a line as code if it cannot allocate.
     out_of_memory = code == PETSC_ERR_MEM || std::string_view(function).starts_with("PetscMalloc");
   }
   return code;
 }
 
-/// What was thrown, to be thrown again elsewhere. The order is that of `rethrow`.
+/// The kind of a caught exception, to be thrown again on other ranks. The order is that of `rethrow`.
 enum class Kind { nothing, option, read, plc, write, memory, petsc, other };
 
 struct Thrown {
@@ -71,7 +71,8 @@ Thrown caught(const std::function<void()>& work) {
   }
 }
 
-/// MPI's own waiting keeps a processor busy, for which another rank of the machine may have a use.
+/// Waits for a request without using the processor, which other ranks of the machine may need; MPI's own
+/// waiting keeps it busy.
 void wait_quietly(MPI_Request request) {
   using namespace std::chrono_literals;
   auto pause = 10us;

@@ -12,7 +12,7 @@
 /// Errors of PETSc and MPI, and errors that concern all ranks.
 namespace collarmesh::distributed {
 
-/// A call of PETSc failed. Ranks may be out of step then: the program can only end.
+/// A call of PETSc failed. Ranks may be out of step then, so the program can only end.
 struct PetscFailure : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -20,7 +20,7 @@ struct PetscOutOfMemory : PetscFailure {
   using PetscFailure::PetscFailure;
 };
 
-/// What PETSc said about its first error, as one line; it prints nothing while one of these lives.
+/// Collects PETSc's message about its first error in one line; PETSc prints nothing while one of these lives.
 class PetscMessages {
  public:
   PetscMessages();
@@ -29,18 +29,18 @@ class PetscMessages {
   PetscMessages& operator=(const PetscMessages&) = delete;
 };
 
-/// Throws PetscOutOfMemory, or another PetscFailure, with what PETSc said.
+/// Throws PetscOutOfMemory, or another PetscFailure, with PETSc's message.
 [[noreturn]] void fail(PetscErrorCode code);
 inline void call(PetscErrorCode code) {
   if (code != 0) fail(code);
 }
 
-/// Work of each rank that is not collective. When it throws on one rank, all ranks throw the exception of the
-/// first that failed: of its class among those of collarmesh/error.h, or std::bad_alloc, with its message.
-/// Waiting for others takes no processor time.
+/// Does work of each rank that is not collective. If it throws on one rank, all ranks throw the exception of
+/// the first that failed: of its class among those of collarmesh/error.h, or std::bad_alloc, with its
+/// message. Waiting for others takes no processor time.
 void agree(MPI_Comm communicator, const std::function<void()>& work);
 
-/// A rank and the number of them.
+/// A rank and the number of ranks.
 struct Ranks {
   explicit Ranks(MPI_Comm communicator) {
     MPI_Comm_rank(communicator, &rank);
@@ -49,7 +49,7 @@ struct Ranks {
   int rank = 0, count = 1;
 };
 
-/// The values of rank 0.
+/// Returns the values of rank 0.
 std::string broadcast(MPI_Comm communicator, std::string text);
 
 double all_reduce(MPI_Comm communicator, double value, MPI_Op operation);

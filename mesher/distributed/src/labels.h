@@ -9,13 +9,13 @@
 
 namespace collarmesh::distributed {
 
-/// Make a label, or make it anew: the points that have each value.
+/// Sets a label: the points that have each value. Replaces an existing label.
 void set_label(DM dm, const char* name, std::vector<std::pair<PetscInt, PetscInt>> values_and_points);
 
-/// Refinement labels everything inside of what had a label: leave the points of one depth alone.
+/// Restricts a label to points of one depth: refinement labels everything inside labelled points.
 void keep_depth(DM dm, const char* name, PetscInt depth);
 
-/// Make `patch` and `curve` of `feature`.
+/// Makes the labels `patch` and `curve` from `feature`.
 void label_patches_and_curves(DM dm, const Plc& plc);
 
 }  // namespace collarmesh::distributed

@@ -14,13 +14,13 @@ std::array<Index, n> closure_vertices(DM dm, PetscInt point, PetscInt first_vert
   PetscInt* closure = nullptr;
   call(DMPlexGetTransitiveClosure(dm, point, PETSC_TRUE, &count, &closure));
   std::array<Index, n> vertices;
-  for (std::size_t k = 0; k < n; ++k)  // they are the last ones
+  for (std::size_t k = 0; k < n; ++k)  // the vertices are the last points
     vertices[k] = static_cast<Index>(closure[2 * (static_cast<std::size_t>(count) - n + k)] - first_vertex);
   call(DMPlexRestoreTransitiveClosure(dm, point, PETSC_TRUE, &count, &closure));
   return vertices;
 }
 
-/// The coordinates of vertices: where those of each begin.
+/// The coordinates of vertices, and where those of each begin.
 class VertexCoordinates {
  public:
   explicit VertexCoordinates(DM dm) {
@@ -108,7 +108,7 @@ void set_points(DM dm, const std::vector<Point>& points) {
     at[2] = p.z;
   }
   call(VecRestoreArray(coordinates.values(), &values));
-  call(DMSetCoordinatesLocal(dm, coordinates.values()));  // the global ones are no longer these
+  call(DMSetCoordinatesLocal(dm, coordinates.values()));  // the global coordinates are out of date
 }
 
 std::array<Index, 4> corners_of(DM dm, PetscInt tet, PetscInt first_vertex) {

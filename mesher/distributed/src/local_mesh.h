@@ -17,7 +17,7 @@ using Corners = std::array<Point, 4>;
 /// The label `feature`: see ParallelMesh.
 inline constexpr const char* feature_label = "feature";
 inline PetscInt encoded(const TetMesh::VertexFeature& feature) {
-  // All vertices of the complex in one: their places tell which they are.
+  // All vertices of the complex share one value: their places identify them.
   return feature.dimension == 0 ? 0 : static_cast<PetscInt>(4 * feature.feature + feature.dimension);
 }
 inline TetMesh::VertexFeature decoded(PetscInt code) {
@@ -25,7 +25,7 @@ inline TetMesh::VertexFeature decoded(PetscInt code) {
   return {static_cast<std::uint8_t>(code % 4), code == 0 ? none : static_cast<Index>(code / 4)};
 }
 
-/// The values of a label at the points from `first` on; -1 where there is none.
+/// Returns the values of a label at the points from `first` on; -1 where there is none.
 std::vector<PetscInt> label_values(DM dm, const char* name, PetscInt first, std::size_t count);
 
 /// The tets of a rank and their vertices, numbered from 0 as in the DMPlex.
@@ -39,16 +39,17 @@ struct LocalMesh {
   }
 
   std::vector<Point> points;
-  /// Positively oriented, as in TetMesh, where the DMPlex says so.
+  /// Positively oriented, as in TetMesh, if they are in the DMPlex.
   std::vector<std::array<Index, 4>> tets;
 };
 
-/// Make `points` the coordinates of the DMPlex' vertices.
+/// Sets the coordinates of the DMPlex's vertices.
 void set_points(DM dm, const std::vector<Point>& points);
 
-/// The corners of a tet in the order of PETSc, whose tets are mirror images of ours, from `first_vertex` on.
+/// Returns the corners of a tet in the order of PETSc, whose tets are mirror images of ours, counted from
+/// `first_vertex`.
 std::array<Index, 4> corners_of(DM dm, PetscInt tet, PetscInt first_vertex);
-/// Those of a face and of an edge.
+/// Return the corners of a face and of an edge.
 std::array<Index, 3> corners_of_face(DM dm, PetscInt face, PetscInt first_vertex);
 std::array<Index, 2> ends_of_edge(DM dm, PetscInt edge, PetscInt first_vertex);
 

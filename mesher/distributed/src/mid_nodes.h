@@ -11,22 +11,23 @@
 
 namespace collarmesh::distributed {
 
-/// The ends of a tet's edges, in the order of its mid-side nodes (TetMesh::tet_mid_nodes).
+/// The ends of a tet's edges, in the order of its mid-edge nodes (TetMesh::tet_mid_nodes).
 inline constexpr std::array<std::array<std::size_t, 2>, 6> tet_edges{
     {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
 
-/// The edges of a rank, numbered from 0, and the nodes amid them.
+/// The edges of a rank, numbered from 0, and their mid-edge nodes.
 class Edges {
  public:
   explicit Edges(DM dm);
 
   std::size_t size() const { return ends_.size(); }
   const std::array<Index, 2>& ends(std::size_t edge) const { return ends_[edge]; }
-  /// Those of a tet and of a face (amid ab, bc, ca), by their numbers in the DMPlex and their corners.
+  /// Return the edges of a tet and of a face (ab, bc, ca), from their numbers in the DMPlex and their
+  /// corners.
   std::array<Index, 6> of_tet(PetscInt tet, const std::array<Index, 4>& corners) const;
   std::array<Index, 3> of_face(PetscInt face, const std::array<Index, 3>& corners) const;
 
-  /// The nodes as the coordinates of the DMPlex have them. Precondition: it has those of order 2.
+  /// Returns the nodes as in the coordinates of the DMPlex. Precondition: these are of order 2.
   std::vector<Point> nodes() const;
   void set_nodes(const std::vector<Point>& nodes);
 

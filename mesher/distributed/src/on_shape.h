@@ -6,7 +6,7 @@
 
 namespace collarmesh::distributed {
 
-/// Asks a shape where nodes on curves and patches belong. Keeps it by reference.
+/// Returns the places on a shape of nodes on curves and patches. Keeps the shape by reference.
 class OnShape {
  public:
   explicit OnShape(const Shape& shape)
@@ -22,18 +22,18 @@ class OnShape {
            : feature.dimension == 2 ? !plc_.patches[feature.feature].planar
                                     : false;
   }
-  /// May nodes on this feature belong off their chords?
+  /// Returns whether nodes on this feature belong off their chords.
   bool has_places(const TetMesh::VertexFeature& feature) const {
     const bool on_feature = feature.dimension == 1 || feature.dimension == 2;
     return on_feature && feature.feature != none && (exact_ || is_smooth(feature));
   }
-  /// Precondition: has_places(feature).
+  /// Returns the place of a node. Precondition: has_places(feature).
   Point place(const TetMesh::VertexFeature& feature, const Point& p) {
     if (exact_)
       if (const auto place = exact_(feature.dimension, feature.feature, p)) return *place;
     return is_smooth(feature) ? nearest_.nearest(feature, p) : p;
   }
-  /// To the complex's own polyline or triangles.
+  /// Returns the distance to the complex's own polyline or triangles.
   double distance_to_complex(const TetMesh::VertexFeature& feature, const Point& p) {
     return distance(nearest_.nearest(feature, p), p);
   }

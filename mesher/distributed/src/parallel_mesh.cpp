@@ -1,4 +1,4 @@
-// From the mesh of one rank to a DMPlex on all of them.
+// Distributes the mesh of one rank to a DMPlex on all ranks.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -50,7 +50,7 @@ AngleBounds angles_of(const TetMesh& mesh) {
   return bounds;
 }
 
-/// The whole mesh on rank 0, nothing elsewhere.
+/// Makes the DMPlex of the whole mesh on rank 0, and an empty one elsewhere.
 DM create(MPI_Comm communicator, const TetMesh& mesh) {
   std::vector<PetscInt> cells;
   cells.reserve(4 * mesh.tets.size());
@@ -75,7 +75,7 @@ PetscInt point_of(DM dm, const std::array<Index, n>& corners, PetscInt first_ver
   call(DMPlexGetFullJoin(dm, static_cast<PetscInt>(n), vertices.data(), &count, &found));
   const PetscInt point = count == 1 ? found[0] : -1;
   call(DMPlexRestoreJoin(dm, static_cast<PetscInt>(n), vertices.data(), &count, &found));
-  if (point < 0) throw std::logic_error("a face or edge of the mesh is none of its tets'");
+  if (point < 0) throw std::logic_error("a face or edge of the mesh belongs to none of its tets");
   return point;
 }
 
@@ -96,7 +96,7 @@ void label_features(DM dm, const TetMesh& mesh) {
     codes[static_cast<std::size_t>(face)] = code;
     const PetscInt* edges = nullptr;
     call(DMPlexGetCone(dm, face, &edges));
-    for (std::size_t k = 0; k < 3; ++k)  // those that are no curve's
+    for (std::size_t k = 0; k < 3; ++k)  // corners on no curve
       if (PetscInt& of_edge = codes[static_cast<std::size_t>(edges[k])]; of_edge < 0) of_edge = code;
   }
   std::vector<std::pair<PetscInt, PetscInt>> labels;

@@ -1,6 +1,6 @@
-// The vertices of a refined mesh onto the shape. Whatever is decided about a vertex depends on all tets
-// around it, which may be on several ranks, by minima, maxima and sums of whole numbers only: these are the
-// same in any order, so the mesh is the same on any number of ranks, bit by bit.
+// Moves the vertices of a refined mesh onto the shape. Decisions about a vertex depend on all tets around it,
+// which may be on several ranks, and only use minima, maxima and sums of whole numbers: these are the same in
+// any order, so the mesh is the same on any number of ranks, bit by bit.
 #include "placement.h"
 
 #include <algorithm>
@@ -20,32 +20,32 @@ namespace collarmesh::distributed {
 
 namespace {
 
-// Vertices that are drawn back go so much of their way in turn.
+// The shares of their way that vertices keep as they move back, step by step.
 constexpr std::array<double, 4> shares{1, 0.5, 0.25, 0};
-// A way of so many times the shortest edge at the vertex leads through other tets.
+// A move longer than this many times the shortest edge at the vertex would pass through other tets.
 constexpr double longest_way = 2;
-// The cosine between an edge of a curve and itself before.
+// Least cosine between an edge of a curve and its initial direction.
 constexpr double least_course = 0.5;
-// Angles so many degrees beyond the bounds are a last resort.
+// Degrees: angles up to this far beyond the bounds are a last resort.
 constexpr double tolerated = 10;
-// A tet may stay that keeps so much of the way from there to the bounds.
+// Least score of a tet that may stay: a share of the range from the last resort to the bounds.
 constexpr double least_score = 0.2;
-// Of a flat tet; inverted ones have less.
+// The score of a flat tet; inverted ones have less.
 constexpr double flat_score = -100;
-// Of the squares of what tets lack whole numbers are made, relative to this. Doubles add them without
-// rounding.
+// The unit in which squared penalties are rounded to whole numbers. Doubles add these without rounding.
 constexpr double unit_of_lack = 0x1p-16;
-// Room is made in so many sweeps at most; a vertex tries steps of these shares of its shortest edge.
+// The maximum number of sweeps that make room, and the steps that a vertex tries, relative to its shortest
+// edge.
 constexpr unsigned most_sweeps = 60;
 constexpr std::array<double, 3> steps{0.3, 0.1, 0.03};
-constexpr std::size_t places = 2 + 6 * steps.size();  // that a vertex tries, beside its own
-// In each sweep in other directions. So often a vertex tries in vain, unless something around it changes.
+constexpr std::size_t places = 2 + 6 * steps.size();  // places that a vertex tries, including its own
+// Each sweep uses other directions. A vertex tries this often in vain, unless something around it changes.
 constexpr std::uint8_t tries = 4;
 // A move that gains less is not worth it.
 constexpr double least_gain = 1e-3;
-// A way off a plane or a straight curve that is shorter than this, relative to the shortest edge, is none.
+// A way off a plane or a straight curve shorter than this, relative to the shortest edge, counts as none.
 constexpr double no_way = 1e-6;
-// So often vertices that were drawn back are tried again.
+// How often vertices that moved back are tried again.
 constexpr unsigned retries = 2;
 
 std::uint64_t mixed(std::uint64_t h) {  // the finalizer of MurmurHash3
@@ -56,7 +56,7 @@ std::uint64_t mixed(std::uint64_t h) {  // the finalizer of MurmurHash3
   return h ^ (h >> 33U);
 }
 
-/// Three directions at right angles.
+/// Returns three directions at right angles.
 std::array<Vector, 3> frame_of(unsigned sweep) {
   if (sweep == 0) return {Vector{1, 0, 0}, Vector{0, 1, 0}, Vector{0, 0, 1}};
   const double s = sweep;
@@ -85,7 +85,8 @@ class Placement {
     share_places();
     for (std::size_t v = 0; v < mesh_->points.size(); ++v)
       if (has_way_[v]) mesh_->points[v] = place_of(v);
-    std::vector<Index> look_at;  // tets; the straight ones may have poorer angles than the coarse mesh, too
+    std::vector<Index> look_at;  // tets to check; straight ones may have poorer angles than the coarse mesh,
+                                 // too
     std::int64_t spoilt = 0;
     for (Index t = 0; t < mesh_->tets.size(); ++t) {
       if (score(t, mesh_->corners(t)) < 1) look_at.push_back(t);
@@ -132,7 +133,7 @@ class Placement {
     has_way_.assign(n, false);
   }
 
-  // The owners ask for all.
+  // Finds the places; the owners do it for all ranks.
   void find_places() {
     targets_ = origins_;
     for (std::size_t v = 0; v < features_.size(); ++v)
@@ -183,7 +184,7 @@ class Placement {
     if (dimension == 1) return shape_.plc.curves[feature].straight;
     return dimension == 2 && shape_.plc.patches[feature].planar;
   }
-  /// Where a vertex comes to that is to go by a displacement and stays on its feature.
+  /// Returns the place of a vertex after a displacement along its feature.
   Point displaced(Index v, const Vector& displacement) {
     const Point& p = mesh_->points[v];
     const auto& [dimension, feature] = features_[v];
@@ -197,7 +198,7 @@ class Placement {
     const Vector chord = shape_.plc.points[chain.back()] - shape_.plc.points[chain.front()];
     return p + dot(displacement, chord) / squared_norm(chord) * chord;
   }
-  /// May it move? Those on features slide along these, but not before they are there.
+  /// Returns whether a vertex may move. Vertices on features slide along these, but only once they are there.
   bool is_free(std::size_t v) const {
     if (frozen_[v]) return false;
     const auto& [dimension, feature] = features_[v];
@@ -208,7 +209,7 @@ class Placement {
   double least(Index tet) const { return wanted_.least[in_collar_[tet] ? 1 : 0]; }
   double most(Index tet) const { return wanted_.most[in_collar_[tet] ? 1 : 0]; }
 
-  /// 1 for a tet within the bounds of angles, 0 at the last resort.
+  /// Returns 1 for a tet within the bounds of angles, 0 at the last resort.
   double score(Index tet, const Corners& p) const {
     const double six = six_volume(p[0], p[1], p[2], p[3]);
     if (!(six > 0)) {
@@ -220,7 +221,7 @@ class Placement {
     const ExtremeAngles angles = extreme_angles(p);
     return 1 + std::min({0.0, angles.least - least(tet), most(tet) - angles.most}) / tolerated;
   }
-  /// The square of what it lacks to 1, a whole number.
+  /// Returns the squared penalty of a tet, relative to a score of 1, as a whole number.
   double lack(Index tet, const Corners& p) const {
     const double missing = 1 - score(tet, p);
     return std::nearbyint(missing * missing * missing * missing / unit_of_lack);
@@ -241,8 +242,8 @@ class Placement {
     return dot(then, now) > least_course * norm(then) * norm(now);
   }
 
-  /// Move vertices, inside regions and along their features, to where the tets around them lack less. Returns
-  /// the tets that it looked at.
+  /// Moves vertices, inside regions and along their features, to places where the tets around them have
+  /// smaller penalties. Returns the visited tets.
   std::vector<Index> relax(std::vector<Index> tets) {
     for (unsigned sweep = 0; sweep < most_sweeps; ++sweep) {
       const std::vector<Index> movers = independent_vertices(tets, sweep);
@@ -270,7 +271,7 @@ class Placement {
     return h;
   }
 
-  /// Vertices that may gain, no two of one tet.
+  /// Returns vertices that may gain, no two of one tet.
   std::vector<Index> independent_vertices(const std::vector<Index>& tets, unsigned sweep) const {
     std::vector<PetscInt> wishes(mesh_->points.size(), 0);
     for (const Index t : tets) {
@@ -282,8 +283,8 @@ class Placement {
     return independent(wishes, sweep);
   }
 
-  /// Of two vertices of one tet the one with the greater number, made of its place. The same on all ranks
-  /// that have the vertex, if the wishes are.
+  /// Returns a set of vertices without two of one tet: of two the one with the greater hash of its place. The
+  /// same on all ranks that have the vertex, if the wishes are.
   std::vector<Index> independent(const std::vector<PetscInt>& wishes, unsigned sweep) const {
     std::vector<Index> vertices;
     std::vector<PetscInt> yields(mesh_->points.size(), 0);
@@ -300,7 +301,7 @@ class Placement {
     return vertices;
   }
 
-  /// Combine values of some vertices, `width` each, over the ranks.
+  /// Combines values of some vertices, `width` each, over the ranks.
   void combine(const std::vector<Index>& vertices, std::vector<PetscReal>& values, MPI_Op operation,
                std::size_t width) const {
     const std::vector<std::size_t>& shared = vertices_.shared();
@@ -318,7 +319,7 @@ class Placement {
     for_each_shared([](const PetscReal& there, PetscReal& here) { here = there; });
   }
 
-  /// What the tets around a vertex lack in sum, or a part of it that is not below `enough`.
+  /// Returns the sum of the penalties of the tets around a vertex, or a part of it that is at least `enough`.
   double lack_around(Index vertex, const Point& place, double enough) const {
     double sum = 0;
     for (const Index t : tets_at_[vertex]) {
@@ -398,8 +399,8 @@ class Placement {
     return tried;
   }
 
-  /// In each tet that cannot stay the vertex with the longest way goes less of it; where all went back, those
-  /// that made room do. Returns the tets around them.
+  /// Moves back, in each tet that cannot stay, the vertex with the longest way; if all are back, those that
+  /// made room. Returns the tets around them.
   std::vector<Index> draw_back(const std::vector<Index>& tets) {
     std::vector<PetscInt> marks(mesh_->points.size(), 0);
     const auto mark_longest = [&](const auto& corners) {
@@ -440,7 +441,7 @@ class Placement {
     return around;
   }
 
-  /// Vertices that were drawn back may have room by now. False when none has.
+  /// Moves vertices that moved back forward again if they have room by now. Returns false if none has.
   bool try_again(unsigned sweep) {
     std::vector<PetscInt> wishes(mesh_->points.size(), 0);
     for (std::size_t v = 0; v < wishes.size(); ++v) wishes[v] = has_way_[v] && back_[v] > 0 ? 1 : 0;
@@ -506,9 +507,9 @@ class Placement {
   std::vector<std::array<Index, 2>> curve_edges_;
   CellsAtVertices tets_at_;
   std::vector<Point> origins_, targets_;
-  std::vector<std::uint8_t> back_;  // in shares
+  std::vector<std::uint8_t> back_;  // by vertex: index in shares
   std::vector<bool> has_way_, frozen_;
-  std::vector<std::uint8_t> fresh_;  // how often it may try unless something around changes
+  std::vector<std::uint8_t> fresh_;  // by vertex: remaining tries unless something around it changes
   std::int64_t moves_ = 0;
 };
 

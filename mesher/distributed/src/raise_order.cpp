@@ -1,4 +1,4 @@
-// A node amid every edge, on the shape where the edge is.
+// Adds mid-edge nodes, on the shape if the edge is.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,9 +18,9 @@ namespace {
 // A node farther from the middle of its edge than this, relative to the edge, belongs to another part of its
 // feature. A half circle has 0.5.
 constexpr double farthest = 0.5;
-// As SecondOrderOptions::least_jacobian.
+// The default of SecondOrderOptions::least_jacobian.
 constexpr double least_jacobian = 0.1;
-// Nodes that are drawn back go so much of their way in turn.
+// The shares of their way that nodes keep as they move back, step by step.
 constexpr std::array<double, 4> shares{1, 0.5, 0.25, 0};
 
 class Curving {
@@ -33,7 +33,7 @@ class Curving {
         edges_(dm),
         shared_(dm, 1) {}
 
-  /// The nodes by edge.
+  /// Returns the nodes by edge.
   std::vector<Point> run() {
     agree(communicator_, [&] { find_ways(); });
     share_ways();
@@ -78,7 +78,7 @@ class Curving {
   }
   Point node(std::size_t edge) const { return middle(edge) + shares[back_[edge]] * ways_[edge]; }
 
-  // The owners ask for all.
+  // Finds the ways; the owners do it for all ranks.
   void find_ways() {
     ways_.assign(edges_.size(), {});
     back_.assign(edges_.size(), 0);
@@ -115,7 +115,7 @@ class Curving {
     }
   }
 
-  /// Of each tet that is not valid the edges whose nodes have the longest way.
+  /// Returns for each invalid tet the edges whose nodes have the longest way.
   std::vector<PetscInt> faulty() {
     std::vector<PetscInt> marks(edges_.size(), 0);
     const auto way_of = [&](Index e) { return shares[back_[e]] * norm(ways_[e]); };
@@ -144,8 +144,8 @@ class Curving {
   LocalMesh mesh_;
   Edges edges_;
   SharedPoints shared_;
-  std::vector<Vector> ways_;        // by edge, from its middle to where its node belongs
-  std::vector<std::uint8_t> back_;  // by edge, in shares
+  std::vector<Vector> ways_;        // by edge: from its middle to the place of its node
+  std::vector<std::uint8_t> back_;  // by edge: index in shares
   std::vector<CurvedCell> curved_;
 };
 

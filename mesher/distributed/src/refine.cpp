@@ -1,4 +1,4 @@
-// One level: every tet into eight.
+// One level of refinement: divides every tet into eight.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -26,8 +26,8 @@ namespace {
 /// once: the best diagonal at each level makes ever new shapes, and worse ones.
 constexpr std::array<PetscInt, 3> arrangements{0, 1, 2};
 
-/// How good the four tets around the diagonal between the edges ij and kl are: the smaller of their least
-/// angle and of what their greatest lacks to 180 degrees.
+/// Returns the quality of the four tets around the diagonal between the edges ij and kl: the smaller of their
+/// least angle and of 180 degrees minus their greatest angle.
 double goodness(const Corners& p, std::size_t i, std::size_t j, std::size_t k, std::size_t l) {
   const auto middle = [&](std::size_t a, std::size_t b) { return 0.5 * (p[a] + p[b]); };
   const Point from = middle(i, j), to = middle(k, l);
@@ -66,7 +66,7 @@ LevelReport ParallelMesh::refine(const Shape& shape) {
   const auto start = std::chrono::steady_clock::now();
   PetscInt first = 0, end = 0;
   call(DMPlexGetHeightStratum(dm_, 0, &first, &end));
-  // A tet comes with two faces, more than an edge and a fifth of a vertex; numbers count those of all ranks.
+  // Each tet adds two faces, and more than an edge and a fifth of a vertex; numbers count those of all ranks.
   const std::int64_t points = 8 * 9 * all_reduce(communicator_, std::int64_t{end - first}, MPI_SUM) / 2;
   agree(communicator_, [&] {
     if (order_ != 1) throw OptionError("meshes of second order are not refined; raise the order afterwards");

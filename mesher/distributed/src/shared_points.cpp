@@ -9,7 +9,7 @@ namespace collarmesh::distributed {
 
 namespace {
 
-/// So many values of a basic type. PETSc knows one alone by its own name only.
+/// A type of several values of a basic type. PETSc accepts a single value only by its own name.
 class UnitType {
  public:
   UnitType(MPI_Datatype basic, std::size_t width) : type_(basic), is_made_(width > 1) {

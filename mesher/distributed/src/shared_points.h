@@ -10,7 +10,7 @@
 namespace collarmesh::distributed {
 
 /// The points of one depth of a DMPlex (0 vertices, 1 edges, 2 faces, 3 tets), numbered from 0 on each rank,
-/// and those among them that other ranks have, too. Values of these are combined by minima, maxima or sums of
+/// and those among them that other ranks have, too. Combines their values by minima, maxima or sums of
 /// integers, which are the same in any order.
 class SharedPoints {
  public:
@@ -19,25 +19,25 @@ class SharedPoints {
   SharedPoints(const SharedPoints&) = delete;
   SharedPoints& operator=(const SharedPoints&) = delete;
 
-  PetscInt first() const { return first_; }  ///< in the DMPlex
+  PetscInt first() const { return first_; }  ///< number in the DMPlex
   std::size_t size() const { return owned_.size(); }
-  /// One rank owns a point.
+  /// Returns whether this rank owns a point; each point has one owner.
   bool owned(std::size_t i) const { return owned_[i]; }
-  /// Of this rank.
+  /// Returns the number of points of this rank.
   std::size_t owned_count() const;
-  /// Ascending.
+  /// Returns the shared points, ascending.
   const std::vector<std::size_t>& shared() const { return shared_; }
 
-  /// Combine the values of each shared point over the ranks that have it, `width` values for each point; all
+  /// Combines the values of each shared point over the ranks that have it, `width` values for each point; all
   /// of them get the result. T: PetscInt or PetscReal. MPI_REPLACE: all get the owner's.
   template <class T>
   void combine(std::vector<T>& values, MPI_Op operation, std::size_t width = 1) const;
 
-  /// The same for values of the points in `shared()` alone, in that order.
+  /// Does the same for values of the points in `shared()` alone, in that order.
   template <class T>
   void combine_shared(std::vector<T>& values, MPI_Op operation, std::size_t width = 1) const;
 
-  /// Consecutive numbers over all ranks, of each rank's own points in their order, from `begin` on.
+  /// Returns consecutive numbers over all ranks, of each rank's own points in their order, from `begin` on.
   std::vector<PetscInt> global_numbers(PetscInt begin = 0) const;
 
  private:

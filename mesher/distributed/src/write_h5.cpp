@@ -1,5 +1,5 @@
-// NAME.h5: the DMPlex as PETSc stores it, and the arrays of uniform grids of XDMF 3 (www.xdmf.org, "XDMF
-// Model and Format"), one grid in a file, which is what dolfinx and meshio read.
+// NAME.h5: the DMPlex in PETSc's format, and the arrays of uniform grids of XDMF 3 (www.xdmf.org, "XDMF Model
+// and Format"), one grid per file, as dolfinx and meshio read them.
 #include <fmt/format.h>
 #include <petscviewerhdf5.h>
 
@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 /// The cells of one dimension that this rank owns, with global numbers.
 struct Cells {
-  std::string_view name;      ///< of the grid, and of its group in the HDF5 file
+  std::string_view name;      ///< name of the grid, and of its group in the HDF5 file
   std::string_view topology;  ///< XDMF's name of the kind of cells
   std::size_t nodes_per_cell = 0;
   std::vector<PetscInt> nodes;
@@ -46,7 +46,7 @@ class GridMaker {
         shared_edges_(dm, 1),
         faces_(dm, 2) {}
 
-  /// Collective.
+  /// Makes the grid. Collective.
   Grid make() {
     number_nodes();
     Grid grid;
@@ -67,7 +67,7 @@ class GridMaker {
     points.insert(points.end(), {p.x, p.y, p.z});
   }
 
-  /// Each rank's vertices, then its nodes amid edges, then the next rank's.
+  /// Numbers each rank's vertices, then its mid-edge nodes, then the next rank's.
   void number_nodes() {
     const MPI_Comm communicator = PetscObjectComm(reinterpret_cast<PetscObject>(dm_));
     const auto own =
@@ -146,11 +146,11 @@ class GridMaker {
 class ValueFile {
  public:
   ValueFile(MPI_Comm communicator, const std::string& path) : communicator_(communicator) {
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are ours to tell
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // we report errors ourselves
     call(PetscViewerHDF5Open(communicator, path.c_str(), FILE_MODE_WRITE, &viewer_));
   }
   ~ValueFile() {
-    // Closing is collective, and after an error there may be nobody to close with.
+    // Closing is collective, and after an error the other ranks may not take part.
     if (std::uncaught_exceptions() == 0) PetscViewerDestroy(&viewer_);
   }
   ValueFile(const ValueFile&) = delete;
@@ -167,7 +167,7 @@ class ValueFile {
     if (given == PETSC_FALSE) call(PetscOptionsClearValue(nullptr, option));
     call(PetscViewerPopFormat(viewer_));
   }
-  /// Returns how many rows there are on all ranks.
+  /// Writes rows. Returns how many there are on all ranks.
   std::int64_t write(const std::string& group, const std::string& name, const std::vector<PetscInt>& values,
                      std::size_t columns) {
     IS set = nullptr;
@@ -219,9 +219,9 @@ void write_text(const fs::path& path, const std::string& text) {
   if (!file) throw WriteError(fmt::format("{}: cannot be written; is the disk full?", path.string()));
 }
 
-/// A disk that is full is better told before than in the middle of it.
+/// Checks for disk space: a full disk is better reported before writing than in the middle.
 void require_space(DM dm, const fs::path& path) {
-  constexpr double bytes_per_tet = 150;  // at least
+  constexpr double bytes_per_tet = 150;  // lower bound
   const MPI_Comm communicator = PetscObjectComm(reinterpret_cast<PetscObject>(dm));
   PetscInt first = 0, end = 0;
   call(DMPlexGetHeightStratum(dm, 0, &first, &end));
@@ -244,7 +244,7 @@ void require_space(DM dm, const fs::path& path) {
   });
 }
 
-/// NAME.xdmf for the tets, NAME_faces.xdmf and NAME_edges.xdmf for the others.
+/// Returns NAME.xdmf for the tets, NAME_faces.xdmf and NAME_edges.xdmf for the others.
 fs::path xdmf_of(const fs::path& path, const Cells& cells) {
   const std::string suffix = cells.name == "mesh" ? "" : fmt::format("_{}", cells.name);
   return path.parent_path() / fmt::format("{}{}.xdmf", path.stem().string(), suffix);

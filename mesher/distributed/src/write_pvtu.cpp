@@ -1,4 +1,4 @@
-// NAME.pvtu and the pieces of the ranks, which the writer of .vtu makes.
+// NAME.pvtu and the pieces of the ranks, made by the writer of .vtu.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The tets of this rank.
+/// Returns the tets of this rank.
 TetMesh piece_of(DM dm, int order, const std::map<Tag, Index>& regions) {
   LocalMesh local(dm);
   PetscInt first = 0;
@@ -50,11 +50,11 @@ std::string piece_name(const fs::path& path, int rank) {
   return fmt::format("{}_{}.vtu", path.stem().string(), rank);
 }
 
-/// The index has the arrays of the pieces without their values.
+/// Writes the index: the arrays of the pieces without their values.
 void write_index(const fs::path& path, int pieces) {
   pugi::xml_document piece, index;
   const fs::path first = path.parent_path() / piece_name(path, 0);
-  // Of the XML only what stands before the values, which it does not end with.
+  // Reads only the XML before the values, so it is incomplete.
   if (!piece.load_file(first.c_str(), pugi::parse_default | pugi::parse_fragment).operator bool())
     throw WriteError(fmt::format("{}: cannot be read back", first.string()));
   pugi::xml_node file = index.append_child("VTKFile");

@@ -10,29 +10,31 @@ namespace collarmesh {
 /// The bounds that every stage keeps and that `check` judges by. Angles in degrees.
 struct Bounds {
   double radius_edge = 2;  ///< largest circumradius / shortest edge in regions, outside collars; at least 1
-  /// Smallest dihedral angle of thin tets, which may exceed that ratio; at a sharper crease half its angle,
-  /// and half of what is left where the input forces edges to be short, as across a thin wall.
-  /// Dihedral and face angles of thin tets are at most 150. 0: no tet may exceed the ratio.
+  /// Smallest dihedral angle of thin tets, which may exceed that ratio; 0: no tet may exceed it. At a crease
+  /// sharper than this, half of the crease's angle is enough. Where the input forces edges to be short, as
+  /// across a thin wall, half of the angle that they leave is enough. Dihedral and face angles of thin tets
+  /// are at most 150.
   double thin_angle = 8;
-  /// Tets may be thin only at creases and in narrow places, where features that have no point in common or
-  /// meet in a crease are nearer to each other than the longest edge over `radius_edge`; else anywhere.
+  /// Tets may be thin only at creases and in narrow places; otherwise anywhere. A place is narrow if the
+  /// distance between features that have no point in common, or that meet in a crease, is below the longest
+  /// edge over `radius_edge`.
   bool thin_in_narrow_places_only = false;
   double collar_angle = 150;  ///< largest dihedral angle in collars; 100 to 175
   double crease_angle = 60;   ///< features that meet below it form a crease and get a collar
   /// Largest distance from smooth patches and curves, absolute; 0: `default_tolerance`.
   double distance = 0;
   std::optional<SurfaceTolerance> tolerance = {};  ///< by place, in place of `distance`
-  /// Share of the bounds on angles of thin tets, from 0 and from 180 degrees, and of the width of narrow
-  /// places that is kept in reserve for stages that move vertices afterwards (`project_boundary`); 0 to 0.5.
+  /// Share of the bounds on angles of thin tets (from 0 and from 180 degrees) and of the width of narrow
+  /// places that is kept in reserve for later stages that move vertices (`project_boundary`); 0 to 0.5.
   double reserve = 0;
-  /// Let edges that the input forces to be short lower the smallest angle of thin tets. A mesh that was made
+  /// Allows edges that the input forces to be short to lower the smallest angle of thin tets. A mesh made
   /// without this is within the bounds with it.
   bool lower_where_forced = true;
-  /// No tet has all corners on boundaries, interfaces or patches inside regions. Where features meet, at
-  /// least two tets share the angle then, and each may have half of what is asked of one otherwise.
+  /// Requires that no tet has all corners on boundaries, interfaces or patches inside regions. Where features
+  /// meet, at least two tets then share the angle, so each may have half of the angle asked of a single one.
   bool interior_node = false;
 
-  /// Returns the number of tets that share what creases and forced edges leave.
+  /// Returns the number of tets that share the angle left by creases and forced edges.
   double tets_across() const { return interior_node ? 2 : 1; }
 };
 
@@ -40,7 +42,7 @@ struct Bounds {
 /// mesh made with this target edge length (0: its default).
 SurfaceTolerance tolerance_of(const Plc& plc, const Bounds& bounds, double size, int order = 1);
 
-/// The same for a mesh of unknown target edge length: the distance that the largest one allows.
+/// Returns the distance for a mesh of unknown target edge length: the distance that the largest one allows.
 SurfaceTolerance tolerance_of_any_size(const Plc& plc, const Bounds& bounds);
 
 }  // namespace collarmesh

@@ -18,16 +18,17 @@ struct CheckOptions {
   /// If the mesh marks thin tets, only marked ones may be thin, in memory as well as read from a file. Cells
   /// of a collar are exempt at creases only.
   Bounds bounds = {};
-  ShapeMeasures exact = {};  ///< of the exact geometry behind the complex; NaN or missing: the complex's own
+  ShapeMeasures exact = {};  ///< measures of the exact geometry behind the complex; NaN or missing: the
+                             ///< complex's own
   std::size_t findings_per_guarantee = 20;  ///< more are counted, not listed
-  unsigned threads = 0;                     ///< maximum number; 0: all cores
+  unsigned threads = 0;                     ///< maximum number of threads; 0: all cores
 };
 
 /// A guarantee that does not hold, and where.
 struct Finding {
   std::string guarantee;   ///< short stable name, e.g. "positive_volume", "watertight", "region_volume"
   std::string message;     ///< full sentence with ids, coordinates, measured and allowed value
-  std::vector<Index> ids;  ///< of the mesh entities concerned
+  std::vector<Index> ids;  ///< indices of the mesh entities concerned
   Point where;
 };
 
@@ -35,54 +36,55 @@ struct Finding {
 struct TriangleMeasures {
   static constexpr std::size_t bins = 18;
   std::size_t triangles = 0;
-  double min_angle = 180, max_angle = 0;       ///< degrees, of the corners
+  double min_angle = 180, max_angle = 0;       ///< degrees, of the triangles' corners
   std::array<std::size_t, bins> min_angles{};  ///< triangles by their smallest angle, 10 degrees a bin
-  std::array<std::size_t, bins> max_angles{};  ///< triangles by their largest one
+  std::array<std::size_t, bins> max_angles{};  ///< triangles by their largest angle
   std::size_t at_sharp_corners = 0;  ///< triangles below the bound only because the input has a sharp corner
 };
 
 struct CheckReport {
   std::vector<Finding> findings;
-  std::size_t findings_total = 0;     ///< with those not listed
-  std::vector<std::string> notes;     ///< sentences: labels that were not the complex's, so positions decided
+  std::size_t findings_total = 0;     ///< findings, including those not listed
+  std::vector<std::string> notes;     ///< sentences: labels that differ from the complex's, so that positions
+                                      ///< decided
   std::vector<std::string> warnings;  ///< sentences: volumes and thin places that changed noticeably
   // Measurements:
   std::size_t tets = 0, points = 0, faces = 0, edges = 0, collar_tets = 0, thin_tets = 0;
-  double max_radius_edge = 0;       ///< outside collars, without thin tets
+  double max_radius_edge = 0;       ///< of tets outside collars that are not thin
   double max_thin_radius_edge = 0;  ///< of thin tets
   std::size_t forced_tets = 0;  ///< thin tets within their bounds only because the input forces short edges
-  double min_forced_dihedral = 180;             ///< of these
-  double min_dihedral = 180, max_dihedral = 0;  ///< outside collars
+  double min_forced_dihedral = 180;             ///< smallest dihedral angle of those tets
+  double min_dihedral = 180, max_dihedral = 0;  ///< dihedral angles outside collars, degrees
   double max_collar_dihedral = 0;
   double min_collar_dihedral = 180;
-  double max_surface_distance = 0;  ///< two-sided, on smooth patches and curves
+  double max_surface_distance = 0;  ///< in both directions, on smooth patches and curves
   double median_edge = 0;
-  std::size_t surface_tets = 0;  ///< with all corners on boundaries, interfaces or patches inside regions
-  std::vector<double> region_volumes;  ///< by region index, [0] unused; of curved elements as they curve
+  std::size_t surface_tets = 0;        ///< tets with all corners on boundaries, interfaces or patches inside
+                                       ///< regions
+  std::vector<double> region_volumes;  ///< by region index, [0] unused; curved elements with their curvature
   ShapeMeasures of_input, of_mesh;     ///< empty when labels or points are not usable
-  MeshMeasures measures;               ///< with collars; of no tet when labels or points are not usable
-  std::optional<TriangleMeasures> triangles;  ///< of a mesh without tets (`check_shells`)
+  MeshMeasures measures;               ///< collars included; of no tet when labels or points are not usable
+  std::optional<TriangleMeasures> triangles;  ///< only for a mesh without tets (`check_shells`)
 
-  bool cancelled = false;  ///< by the execution, so that not everything was checked
+  bool cancelled = false;  ///< the execution cancelled the check, so it is incomplete
 
   bool passed() const { return findings_total == 0 && !cancelled; }
 };
 
-/// Recompute every guarantee from the mesh alone, independently of how it was made: positive
-/// volumes, conformity, watertight regions, region volumes, curves as unions of edges, facets as
-/// unions of faces with equal area, radius-edge ratio or angles, surface distance. A region may lose or gain
-/// 5% of its volume with elements of first order, 1% with those of second order, unless the bounds ask for a
-/// distance; a warning names regions that are more than 2% off. The same holds for what closed surfaces
-/// enclose (`shells_of`). Walls keep half of their thickness, and gaps of their width, in the mean of a
-/// patch. A mesh read from a file (no feature indices) is matched to the complex by tags and position; if its
-/// tags are not the complex's, or it has no boundary triangles or curve edges, by position alone. Tets count
-/// as cells of a collar only at creases of the complex. Cancellation takes effect between groups of
-/// guarantees.
+/// Recomputes every guarantee from the mesh alone, independently of how it was made: positive volumes,
+/// conformity, watertight regions, region volumes, curves as unions of edges, facets as unions of faces with
+/// equal area, radius-edge ratio or angles, surface distance. A region may lose or gain 5% of its volume with
+/// elements of first order, 1% with those of second order, unless the bounds ask for a distance; a warning
+/// names regions that are more than 2% off. The same holds for what closed surfaces enclose (`shells_of`).
+/// Walls keep half of their thickness, and gaps of their width, in the mean of a patch. A mesh read from a
+/// file (no feature indices) is matched to the complex by tags and position; if its tags are not the
+/// complex's, or it has no boundary triangles or curve edges, by position alone. Tets count as cells of a
+/// collar only at creases of the complex. Cancellation takes effect between groups of guarantees.
 CheckReport check(const TetMesh& mesh, const Plc& plc, const CheckOptions& options = {},
                   const Execution& execution = {});
 
-/// The bounds on the angles of a surface mesh, degrees. At a sharp corner of the input, between two curves,
-/// the smallest angle may be half of the corner's.
+/// Bounds on the angles of a surface mesh, degrees. At a sharp corner of the input, between two curves, the
+/// smallest angle may be half of the corner's angle.
 inline constexpr double least_triangle_angle = 20, largest_triangle_angle = 120;
 
 /// Recomputes every guarantee of a mesh of triangles alone (`mesh_shells`): conformity (every edge has two
@@ -92,9 +94,10 @@ inline constexpr double least_triangle_angle = 20, largest_triangle_angle = 120;
 CheckReport check_shells(const TetMesh& mesh, const Plc& plc, const CheckOptions& options = {},
                          const Execution& execution = {});
 
-/// The same for a mesh of curve edges alone: every vertex and curve is there, each curve as one chain of
-/// edges from end to end, near to it in both directions, edges listed once, tags, and no folded edge of
-/// second order. Cost: linear in the edges and in the complex, times a logarithm.
+/// Recomputes every guarantee of a mesh of curve edges alone: every vertex and curve is present, each curve
+/// is one chain of edges from end to end and near the input in both directions, edges are listed once, tags
+/// are right, and no edge of second order folds. Cost: linear in the edges and in the complex, times a
+/// logarithm.
 CheckReport check_lines(const TetMesh& mesh, const Plc& plc, const CheckOptions& options = {});
 
 }  // namespace collarmesh

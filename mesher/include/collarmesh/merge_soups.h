@@ -15,17 +15,17 @@ enum class CutFacets {
 };
 
 struct MergeSoupsOptions {
-  double weld = 1e-9;  ///< relative to the bounding-box diagonal; closer points are one
+  double weld = 1e-9;  ///< relative to the bounding-box diagonal; points closer than this are merged
   CutFacets cut = CutFacets::nothing;
 };
 
 /// Counts of the changes that `merge_soups` made.
 struct MergeReport {
   Index welded_points = 0;      ///< merged with another one
-  Index unused_points = 0;      ///< no facet or segment uses them: dropped, except those of a complex
-  Index cut_facets = 0;         ///< became triangles
-  Index degenerate_facets = 0;  ///< less than three corners after welding: dropped
-  Index repeated_facets = 0;    ///< the corners of another facet in either direction: dropped
+  Index unused_points = 0;      ///< points that no facet or segment uses: dropped, except those of a complex
+  Index cut_facets = 0;         ///< facets that became triangles
+  Index degenerate_facets = 0;  ///< facets with less than three corners after welding: dropped
+  Index repeated_facets = 0;    ///< facets with the corners of another one, in either direction: dropped
 };
 
 /// Joins several soups as they are: reorients nothing, and leaves intersections and open borders. Facets

@@ -9,16 +9,16 @@
 
 namespace collarmesh {
 
-/// What a run on files has beside its mesh.
+/// The result of a run on files: the mesh, with notes on CAD shapes.
 struct FilesResult : SoupPipelineResult {
-  std::vector<std::string> notes;  ///< what was done to CAD shapes, a line each
+  std::vector<std::string> notes;  ///< changes to CAD shapes, a line each
 };
 
-/// Mesh what files bound, of all formats that the program reads: surfaces, complexes and CAD shapes, whose
-/// exact geometry the mesh follows, and certify the mesh. Link with `collarmesh::files`. `format` counts in
-/// place of the files' extensions. Of the options those of the mesh, `overlap`, `names` and `size_field_file`
-/// count; the file with names may also be its text. Throws ReadError, PlcError and OptionError, as
-/// `run_pipeline` does.
+/// Meshes the solids that files bound, and certifies the mesh. Reads all formats that the program reads:
+/// surfaces, complexes and CAD shapes, whose exact geometry the mesh follows. Link with `collarmesh::files`.
+/// `format` overrides the files' extensions. Uses the options of the mesh, `overlap`, `names` and
+/// `size_field_file`; `names` may be a path or the text itself. Throws ReadError, PlcError and OptionError,
+/// as `run_pipeline` does.
 FilesResult mesh_files(const std::vector<std::string>& paths, const RunOptions& options = {},
                        const std::string& format = {}, const Execution& execution = {});
 

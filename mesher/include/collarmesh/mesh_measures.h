@@ -13,7 +13,7 @@ namespace collarmesh {
 struct MeshMeasures {
   static constexpr std::size_t bins = 18, listed = 10;
   struct Extreme {
-    double angle;  ///< dihedral, degrees
+    double angle;  ///< dihedral angle, degrees
     Index tet;
   };
 
@@ -22,7 +22,7 @@ struct MeshMeasures {
   double max_thin_radius_edge = 0;                ///< of thin tets; 0: there are none
   double max_collar_radius_edge = 0;              ///< in collars; 0: there are none
   std::array<std::size_t, bins> min_dihedrals{};  ///< tets by their smallest dihedral angle, 10 degrees a bin
-  std::array<std::size_t, bins> max_dihedrals{};  ///< tets by their largest one
+  std::array<std::size_t, bins> max_dihedrals{};  ///< tets by their largest dihedral angle
   std::array<std::size_t, bins>
       radius_edges{};  ///< tets by radius-edge ratio, 0.25 a bin, the last one is open
   std::map<Index, double> region_volumes;

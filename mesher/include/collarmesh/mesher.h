@@ -22,28 +22,27 @@ enum class CollarCreation { in_pass, up_front };
 /// A setting for the refinement as a whole: meshes for use, or exactly what the paper's proofs assume.
 enum class Profile {
   standard,
-  /// Creases are all features that meet below 90 degrees; input comes in where it is medial, else the balls
-  /// around it are split; one bound on circumradius / shortest edge holds everywhere during the run, in
-  /// collars and outside regions, too; a crease gets its balls when it is isolated; nothing is spared where
-  /// sheets face each other, nothing is refined in blocks, coarsened or improved, and no size is asked for
-  /// unless it is given.
+  /// Exactly the assumptions of the proofs. Creases are all features that meet below 90 degrees. Input is
+  /// inserted where it is medial; otherwise the balls around it are split. One bound on circumradius /
+  /// shortest edge holds everywhere during the run, also in collars and outside regions. A crease gets its
+  /// balls when it is isolated. Sheets that face each other get no exception; nothing is refined in blocks,
+  /// coarsened or improved; sizes apply only if they are given.
   paper
 };
 
-/// Whether cells in the regions keep the bound on their radius-edge ratio between features that have no point
-/// in common and are nearer to each other than a tenth of the size, as across a thin wall. Cells may be left
-/// there in meshes that will be coarsened, where angles are bounded instead of the ratio
-/// (Bounds::thin_angle).
+/// The bound on the radius-edge ratio of cells in narrow places: between features that have no point in
+/// common and are nearer to each other than a tenth of the size, as across a thin wall. Such cells may exceed
+/// it in meshes that will be coarsened, where angles are bounded instead of the ratio (Bounds::thin_angle).
 enum class NarrowCells {
   bounded,
   left,
-  bounded_if_cheap  ///< where that takes at most about twice the vertices; else all are left
+  bounded_if_cheap  ///< bounded where that takes at most about twice the vertices; otherwise all are left
 };
 
 /// The goals of `generate`. Lengths are absolute, in input units, and are target edge lengths:
 /// the median edge of a large mesh comes out about a tenth above them, as other meshers' does.
 struct MeshOptions {
-  Profile profile = Profile::standard;  ///< sets some of the others, see `with_profile`
+  Profile profile = Profile::standard;  ///< sets some of the other options, see `with_profile`
   double size = 0;  ///< target edge length everywhere; 0: 1/20 of the diagonal, in the paper's profile all of
                     ///< it
   double size_min = 0;                     ///< smallest target edge length of sizes and fields; 0: none
@@ -53,10 +52,10 @@ struct MeshOptions {
   /// Growth of size per unit length away from a finer patch, curve or region; 0: unlimited.
   double gradation = 0;
   SizeField size_field = {};       ///< target edge length at a point; may be empty
-  double elements_per_circle = 0;  ///< number of target edge lengths on a full circle of the curvature of
+  double elements_per_circle = 0;  ///< number of target edge lengths on a full circle with the curvature of
                                    ///< smooth patches and curves; 0: any
   /// Minimum number of edges per full circle on smooth curves that turn by half a circle or more, so that
-  /// small holes stay round. It is no target edge length otherwise; 0: none.
+  /// small holes stay round. It does not change target edge lengths; 0: none.
   double edges_per_hole = 7;
   double elements_across_gap = 0;  ///< number of target edge lengths between a patch and the feature that it
                                    ///< faces across a region; 0: any
@@ -70,8 +69,8 @@ struct MeshOptions {
   double theta = 0.3;  ///< warp distance relative to a gap ball's radius (paper, Procedure 2); 0: never warp
   CollarCreation collar_creation = CollarCreation::in_pass;  ///< when collars are created
   double representation_angle = 50;  ///< bound on the tilt of collar triangles (Definition 12), degrees
-  std::uint64_t seed = 0;            ///< of the offsets; same input, options and seed: same mesh
-  std::size_t max_vertices = 0;      ///< budget; 0: none
+  std::uint64_t seed = 0;            ///< seed of the random offsets; same input, options and seed: same mesh
+  std::size_t max_vertices = 0;      ///< budget of vertices; 0: none
   /// Budget in bytes for the mesh structures (a whole run takes about 1.2 times as much); 0: none.
   std::size_t max_memory = 0;
   double time_limit = 0;    ///< budget in seconds; 0: none
@@ -85,22 +84,23 @@ MeshOptions with_profile(MeshOptions options);
 /// MeshOptions::size, or its default for this complex.
 double default_size(const Plc& plc, const MeshOptions& options);
 
-/// Options of sizes that make nothing finer, a sentence each: sizes by tag that are not below `size`, and so
-/// many elements on a circle that none is shorter. Sizes that depend on the place are not judged.
+/// Returns a sentence for each option of sizes that makes nothing finer: sizes by tag that are not below
+/// `size`, and numbers of elements per circle that shorten no edge. Sizes that depend on the place are not
+/// judged.
 std::vector<std::string> sizes_without_effect(const Plc& plc, const MeshOptions& options);
 
 /// Returns the surface distance tolerance unless another one is asked for: a tenth of the target edge length
-/// (0: of its default, as in MeshOptions), at most 1/200 of the diagonal. So a circle of about its radius
-/// gets some eight edges of the target length: the chord error is that of edges of the length asked for, and
-/// small curves may be rougher than large ones, but see MeshOptions::edges_per_hole. For cells of second
-/// order at most 1/550 of the diagonal: they are judged by the triangles of their corners, which would
-/// otherwise be too coarse to curve without inverting elements. Absolute.
+/// (0: of its default, as in MeshOptions), at most 1/200 of the diagonal. A circle with a radius near the
+/// target length then gets about eight edges: the chord error is that of edges of the length asked for. Small
+/// curves may be rougher than large ones, but see MeshOptions::edges_per_hole. For cells of second order at
+/// most 1/550 of the diagonal: they are judged by the triangles of their corners, which would otherwise be
+/// too coarse to curve without inverting elements. Absolute.
 double default_distance(double size, double diagonal, int order = 1);
 
 enum class MeshStatus {
   complete,          ///< the refinement ended; `check` certifies the mesh
   guarantee_missed,  ///< the refinement ended but could not meet a bound; `message` says which and where
-  budget_hit,        ///< vertices, memory or time; no mesh
+  budget_hit,        ///< vertices, memory or time ran out; no mesh
   cancelled          ///< no mesh
 };
 
@@ -108,14 +108,14 @@ enum class MeshStatus {
 /// them.
 struct WorkCounts {
   std::size_t located = 0;         ///< points and protective balls with a location at a mesh vertex
-  std::size_t relocated = 0;       ///< moves of one of them to a new vertex that is nearer
-  std::size_t looks = 0;           ///< inspections of one of them for a new vertex or a candidate
+  std::size_t relocated = 0;       ///< moves of such a point or ball to a new vertex that is nearer
+  std::size_t looks = 0;           ///< inspections of such a point or ball for a new vertex or a candidate
   std::size_t gap_queries = 0;     ///< queries of the gap size, with collars created in the pass
   std::size_t gap_cells = 0;       ///< Voronoi cells that these queries explored
-  std::size_t gap_interviews = 0;  ///< pieces of features whose distance they computed
+  std::size_t gap_interviews = 0;  ///< pieces of features whose distance these queries computed
   std::size_t largest_degree = 0;  ///< neighbours of a new vertex
   std::size_t largest_cavity = 0;  ///< cells that one insertion destroyed
-  /// The same, away from vertices and curves of the complex at which very many features meet.
+  /// The same, except at vertices and curves of the complex where very many features meet.
   std::size_t largest_cavity_outside_hubs = 0;
   double peak_cells_per_vertex = 0;  ///< of the whole triangulation, at any time
   std::size_t before_quality = 0;    ///< vertices inserted for another reason while a skinny cell waited
@@ -128,9 +128,9 @@ struct WorkCounts {
 
 struct MeshStatistics {
   std::size_t vertices_inserted = 0;   ///< of the whole triangulation, the box and the outside included
-  std::size_t vertices_in_blocks = 0;  ///< of these, in blocks that several threads may refine
+  std::size_t vertices_in_blocks = 0;  ///< vertices inserted in blocks that several threads may refine
   std::size_t cells = 0;
-  std::size_t exact_predicates = 0;   ///< decisions the floating-point filter left to exact arithmetic
+  std::size_t exact_predicates = 0;   ///< decisions that the floating-point filter left to exact arithmetic
   std::size_t warps = 0, yields = 0;  ///< destroy() calls that warped to input or yielded to a lower ball
   std::size_t peak_bytes = 0;         ///< of the mesh structures
   double seconds = 0;
@@ -139,22 +139,21 @@ struct MeshStatistics {
 
 struct MeshResult {
   MeshStatus status = MeshStatus::complete;
-  std::string message;  ///< for statuses other than complete: what, where (coordinates), what to do next
+  std::string message;  ///< for statuses other than complete: the problem, its place (coordinates), and a
+                        ///< remedy
   Point where;
   TetMesh mesh;
   MeshStatistics statistics;
-  bool has_narrow_cells = false;  ///< cells may have been left (MeshOptions::narrow_cells)
+  bool has_narrow_cells = false;  ///< cells with a larger ratio may have been left
+                                  ///< (MeshOptions::narrow_cells)
 };
 
-/// Mesh a complex: Sparse Voronoi Refinement (paper, Procedure 1).
-/// Preconditions: `plc` comes from `build_plc` and may have creases.
-/// Guarantee (status complete): every tet in a region and outside collars has circumradius / shortest
-/// edge <= radius_edge, every one in a collar no dihedral angle above collar_angle;
-/// curves are unions of edges, patches unions of faces, planar ones exactly up to rounding and smooth
-/// ones within `distance`.
-/// Throws OptionError when options contradict each other, PlcError where features come so near to each other
-/// that no collar fits between them.
-/// Cost: near linear in the output.
+/// Meshes a complex: Sparse Voronoi Refinement (paper, Procedure 1). Preconditions: `plc` comes from
+/// `build_plc` and may have creases. Guarantee (status complete): every tet in a region and outside collars
+/// has circumradius / shortest edge <= radius_edge, every one in a collar no dihedral angle above
+/// collar_angle; curves are unions of edges, patches unions of faces, planar ones exactly up to rounding and
+/// smooth ones within `distance`. Throws OptionError when options contradict each other, PlcError where
+/// features come so near to each other that no collar fits between them. Cost: near linear in the output.
 MeshResult generate(const Plc& plc, const MeshOptions& options = {}, const Execution& execution = {});
 
 }  // namespace collarmesh

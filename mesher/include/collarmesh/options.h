@@ -28,18 +28,18 @@ enum class ProgressStyle { automatic, json, off };
 /// The options of a run from files to a file. Strings are paths; empty: none.
 struct RunOptions : PipelineOptions {
   SolidOverlap overlap = SolidOverlap::first;
-  std::string names = {};                     ///< of features, by number or place
-  std::vector<std::string> given_names = {};  ///< of features, "fixed=11"
-  std::string size_field_file = {};           ///< where `mesh.size_field` is read from
+  std::string names = {};                     ///< names of features, by number or place: a file or its text
+  std::vector<std::string> given_names = {};  ///< names of features, "fixed=11"
+  std::string size_field_file = {};           ///< the file from which `mesh.size_field` is read
   io::GhostCells ghost_cells = io::GhostCells::none;
-  std::string cell_decomposition = {};  ///< OpenFOAM's list of partitions
-  double scale = 1;                     ///< of the coordinates that are written
+  std::string cell_decomposition = {};  ///< file for OpenFOAM's list of partitions
+  double scale = 1;                     ///< factor of the coordinates that are written
   TriangleElements triangle_elements = TriangleElements::shell;
   std::vector<std::string> reports = {};
-  std::string trace_folder = {};  ///< for the steps of the run
+  std::string trace_folder = {};  ///< folder for the steps of the run
   ProgressStyle progress = ProgressStyle::automatic;
   bool verbose = false, quiet = false;
-  std::size_t findings = 20;  ///< listed for each guarantee, by `check`
+  std::size_t findings = 20;  ///< findings that `check` lists for each guarantee
 };
 
 /// The value of an option. Words stand for enumerations.
@@ -50,8 +50,8 @@ using OptionValue =
 struct Option {
   enum class Kind { flag, choice, count, number, text, texts, sizes };
   enum class Unit { number, length, degrees, of_diagonal, ratio, seconds, bytes };
-  /// Bits of the commands that take it; `programs` are callers of the mesher such as Python and FreeCAD,
-  /// which have no options about output files and messages.
+  /// Bits of the commands that take the option. `programs` stands for callers of the mesher such as Python
+  /// and FreeCAD, which have no options about output files and messages.
   enum Command : unsigned {
     mesh = 1,
     check = 2,
@@ -63,30 +63,30 @@ struct Option {
   };
   /// The member of RunOptions that holds the value.
   struct Place {
-    Kind kind;  ///< by its type
+    Kind kind;  ///< kind of value, given by the member's type
     OptionValue (*get)(const Option&, const RunOptions&);
     void (*set)(const Option&, RunOptions&, const OptionValue&);
   };
 
-  std::string name;             ///< "size-min"
+  std::string name;             ///< long name, "size-min"
   char letter = 0;              ///< the short name, if there is one
   std::string value_name = {};  ///< the name of its value, "LENGTH"
   std::vector<std::string> words =
-      {};  ///< of a choice, in the order of the enumeration; of a bool: true, false
+      {};  ///< the words of a choice, in the order of the enumeration; of a bool: true, false
   Place place;
   Unit unit = Unit::number;
   double low = 0, high = std::numeric_limits<double>::infinity();  ///< range of a number
   bool finer = false;                                              ///< makes some elements finer than `size`
-  bool zero = false;  ///< 0 is allowed although it is out of range
-  std::string default_text =
-      {};                    ///< shown in place of 0 or nothing, if these stand for a default or for none
-  std::string group = {};    ///< a heading
-  std::string help = {};     ///< a clause without a full stop; text after a semicolon is less important
-  std::string details = {};  ///< further clauses, for pages
+  bool zero = false;              ///< 0 is allowed although it is out of range
+  std::string default_text = {};  ///< text shown in place of 0 or nothing, if these stand for a default or
+                                  ///< for none
+  std::string group = {};         ///< heading in the help
+  std::string help = {};          ///< a clause without a full stop; text after a semicolon is less important
+  std::string details = {};       ///< further clauses, for pages
   unsigned commands = 0;
 
   Kind kind() const { return place.kind; }
-  std::string key() const;  ///< the name with "_" for "-", as in Python and in reports
+  std::string key() const;  ///< Returns the name with "_" for "-", as in Python and in reports.
   OptionValue get(const RunOptions& options) const { return place.get(*this, options); }
   void set(RunOptions& options, const OptionValue& value) const { place.set(*this, options, value); }
 
@@ -97,7 +97,7 @@ struct Option {
   /// fit.
   bool read(const std::string& text, RunOptions& options) const;
   bool fits(const OptionValue& value) const;
-  /// Describes the values that fit, "a number from 0 to 0.1".
+  /// Describes the values that are allowed, "a number from 0 to 0.1".
   std::string fitting() const;
   /// Returns the default as text.
   std::string default_value() const;

@@ -8,23 +8,24 @@ namespace collarmesh {
 
 /// The balance of a partition and the size of the interfaces between its parts.
 struct PartitionMeasures {
-  std::size_t partitions = 0;             ///< number of those with tets; 0: the mesh is not partitioned
+  std::size_t partitions = 0;             ///< number of partitions that have tets; 0: the mesh is not
+                                          ///< partitioned
   std::size_t smallest = 0, largest = 0;  ///< tets of one partition
-  double imbalance = 0;                   ///< tets of the largest one / mean - 1
+  double imbalance = 0;                   ///< tets of the largest partition / mean - 1
   std::size_t cut_faces = 0;              ///< triangles between tets of two partitions
 };
 
 /// Measures the partition of a mesh. Cost: linear.
 PartitionMeasures measure_partitions(const TetMesh& mesh);
 
-/// Throws OptionError, saying what to install, where the library that partitions (Scotch) is not there.
+/// Throws OptionError, with the package to install, if the library that partitions (Scotch) is missing.
 void require_partitioner();
 
 /// Divides the tets among ranks (`TetMesh::tet_partition`), so that few faces lie between two of them. No
-/// partition is empty, and none has more tets than 1.03 times the mean, or the mean rounded up.
-/// The result is the same on any machine and with any number of threads. Throws OptionError unless
-/// there are 1 to as many partitions as tets, and as `require_partitioner` does. Cost: n log(partitions), and
-/// for each tet that Scotch gives to a partition beyond that bound, which are few, at worst n; 200 bytes per
+/// partition is empty, and none has more tets than 1.03 times the mean, or the mean rounded up. The result is
+/// the same on any machine and with any number of threads. Throws OptionError unless `partitions` is from 1
+/// to the number of tets, and as `require_partitioner` does. Cost: n log(partitions); for each tet that
+/// Scotch puts into a partition beyond that bound (these are few) at worst another n. Memory: 200 bytes per
 /// tet for a while.
 void partition(TetMesh& mesh, unsigned partitions);
 

@@ -9,8 +9,8 @@
 #include "collarmesh/plc.h"
 #include "collarmesh/tet_mesh.h"
 
-/// Periodic faces: patches of which one group is the image of another, with meshes that are images of each
-/// other, for periodic boundary conditions.
+/// Periodic faces, for periodic boundary conditions: pairs of groups of patches, one the image of the other,
+/// whose meshes are images of each other, too.
 namespace collarmesh {
 
 struct PeriodicOptions {
@@ -26,28 +26,29 @@ struct PeriodicOptions {
   bool any() const { return !pairs.empty(); }
 };
 
-/// What a run made of one pair.
+/// The result for one pair.
 struct PeriodicReport {
   struct Pair {
-    std::string text;        ///< as it was asked for
-    std::size_t nodes = 0;   ///< on the first group, mid-edge nodes included
-    std::size_t edges = 0;   ///< of curves on it
-    std::size_t faces = 0;   ///< triangles of it
-    double largest_gap = 0;  ///< absolute, between a node's image and the node that it maps to
+    std::string text;        ///< the pair as the option gives it
+    std::size_t nodes = 0;   ///< nodes on the first group, including mid-edge nodes
+    std::size_t edges = 0;   ///< edges on curves of the first group
+    std::size_t faces = 0;   ///< triangles of the first group
+    double largest_gap = 0;  ///< largest distance between a node's image and the node that it maps to,
+                             ///< absolute
   };
   std::vector<Pair> pairs;
-  std::size_t inserted_nodes = 0;  ///< to give each group the nodes of the other
-  std::size_t removed_nodes = 0;   ///< that only one group had
+  std::size_t inserted_nodes = 0;  ///< nodes inserted to give each group the nodes of the other
+  std::size_t removed_nodes = 0;   ///< nodes removed that only one group had
   std::size_t turned_edges = 0;
 };
 
 /// Throws OptionError if a pair cannot be read, a name is unknown, or the patches are not images of each
-/// other within this distance: the message names the patch, the largest distance and where.
+/// other within this distance: the message names the patch, the largest distance and its place.
 void require_periodic_patches(const PeriodicOptions& options, const Plc& plc, double distance);
 
 /// Gives the second group of each pair the nodes, edges and triangles of the first, moved. The tets beside
-/// them may be poor. Sets `mesh.periodic`, but for nodes. Patches of these groups are planar and have a
-/// region on one side only. Throws OptionError as `require_periodic_patches` does.
+/// them may be poor. Sets `mesh.periodic`, except for its nodes. Preconditions: patches of these groups are
+/// planar and have a region on one side only. Throws OptionError as `require_periodic_patches` does.
 PeriodicReport make_periodic(TetMesh& mesh, const Plc& plc, const PeriodicOptions& options, double distance);
 
 }  // namespace collarmesh

@@ -27,10 +27,10 @@
 /// coarsen, improve, project onto exact geometry, raise the order, check, split.
 namespace collarmesh {
 
-/// What a mesh of a complex begins with.
+/// The mesh that a run begins with.
 enum class Start {
   automatic,   ///< refinement; where that takes far too many vertices, the constrained tetrahedra
-  refinement,  ///< the points of features as they come in, with all guarantees
+  refinement,  ///< refinement: features are inserted one by one, with all guarantees
   /// Tetrahedra whose faces and edges are the facets and segments of the complex, which are then brought to
   /// the size. They are about as many as the facets, however near features are to each other, but some keep
   /// angles beyond their bounds.
@@ -38,13 +38,13 @@ enum class Start {
 };
 
 struct PipelineOptions {
-  PlcOptions complex = {};    ///< building a complex of facets
-  RepairOptions repair = {};  ///< repair of facets that are no complex
+  PlcOptions complex = {};    ///< how a complex is built from facets
+  RepairOptions repair = {};  ///< how facets that are no complex are repaired
   MeshOptions mesh = {};      ///< sizes, bounds and budgets; the time limit is one for all stages
   Start start = Start::automatic;
-  bool coarsen = true;      ///< make as few tets as the sizes ask for
-  unsigned improve = 2;     ///< level, 1 to 3; 0: leave the slivers
-  double min_dihedral = 0;  ///< degrees; 0: that of the level
+  bool coarsen = true;      ///< remove tets that the sizes do not need
+  unsigned improve = 2;     ///< level of improvement, 1 to 3; 0: leave the slivers
+  double min_dihedral = 0;  ///< degrees; 0: the angle of the level
   unsigned order = 1;       ///< order of the cells, 1 or 2
   /// 3: tetrahedra in the solids; 2: triangles on the patches; 1: lines on the curves (`mesh_shells`).
   unsigned dimension = 3;
@@ -56,7 +56,8 @@ struct PipelineOptions {
   SplitOptions split = {};  ///< internal patches that get nodes of their own on each side, after the check
   PeriodicOptions periodic = {};  ///< patches whose meshes are images of each other
   bool trace = false;             ///< fill in PipelineResult::trace
-  unsigned partitions = 0;        ///< number of ranks to divide the tets among (see `partition`); 0: do not
+  unsigned partitions = 0;        ///< number of ranks to divide the tets among (see `partition`); 0: no
+                                  ///< partition
   /// The geometry that the facets approximate, such as a CAD shape. The mesh keeps tighter bounds at first,
   /// so that its vertices can move onto this geometry; may be empty.
   ExactGeometry exact = {};
@@ -66,18 +67,20 @@ struct PipelineOptions {
 /// Returns the options with those that the profile of `mesh` sets.
 PipelineOptions with_profile(PipelineOptions options);
 
-/// The result of a run. There is a mesh only if `result.status` is complete or guarantee_missed.
+/// The result of a run. It has a mesh only if `result.status` is complete or guarantee_missed.
 struct PipelineResult {
-  MeshResult result;                        ///< of the refinement; its mesh has gone through all stages
-  std::optional<CoarsenReport> coarsening;  ///< nothing if it was switched off
+  MeshResult result;                        ///< the result of the refinement; its mesh has passed through all
+                                            ///< stages
+  std::optional<CoarsenReport> coarsening;  ///< nothing if coarsening was switched off
   ImproveReport improvement;
   std::optional<ProjectReport> projection;  ///< nothing without exact geometry
   SecondOrderReport second_order;
   CheckReport check;
-  std::optional<InteriorNodesReport> interior_nodes;  ///< nothing unless each tet was to have one
+  std::optional<InteriorNodesReport> interior_nodes;  ///< nothing unless each tet had to have an interior
+                                                      ///< node
   std::optional<PeriodicReport> periodic;             ///< nothing unless patches were to be periodic
   std::optional<SplitReport> split;                   ///< nothing unless something was to be split
-  Trace trace;  ///< of the run that made the mesh, or of a refinement that ended early
+  Trace trace;  ///< trace of the run that made the mesh, or of a refinement that ended early
 
   bool guarantees_hold() const { return result.status == MeshStatus::complete && check.passed(); }
   /// Returns a sentence about the first missed guarantee; empty if all hold.
@@ -103,11 +106,11 @@ class ComplexSource {
 /// Meshes the solids of a complex, and certifies the mesh against it. If a guarantee is missed, tries further
 /// repairs (`further_repairs`), then further seeds; if no mesh passes, the first one is kept. A refinement
 /// that takes far more vertices than the sizes ask for ends early, and coarser repairs are tried
-/// (`coarser_repairs`) that lose no body, region, name or tag except numbers of CAD faces; if none of their
-/// complexes does better, the first one is meshed as far as the budgets allow, or twice that many
-/// vertices where none is given; then it is made from its constrained tetrahedra (`Start`). `check.notes`
-/// lists the attempts. `execution.progress` is also called at the beginning of each stage
-/// (`ProgressReport::begins`), and its fraction is that of all stages. Cancelled or out of time, the result
+/// (`coarser_repairs`) that lose no body, region, name or tag except numbers of CAD faces. If none of these
+/// complexes does better, the first one is meshed within the budgets, or, if there are none, with up to twice
+/// that many vertices; if that fails, too, the mesh is made from the constrained tetrahedra of the complex
+/// (`Start`). `check.notes` lists the attempts. `execution.progress` is also called at the beginning of each
+/// stage (`ProgressReport::begins`); its fraction covers all stages. If cancelled or out of time, the result
 /// has that status and no mesh. Throws PlcError for facets that are no complex and cannot be repaired,
 /// OptionError for options that contradict each other and for sizes of tags that the complex does not have.
 SoupPipelineResult run_pipeline(ComplexSource& source, const PipelineOptions& options = {},

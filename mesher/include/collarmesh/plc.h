@@ -49,8 +49,8 @@ struct Plc {
     std::array<Index, 2> regions{0, 0};
     Tag tag = 0;
     std::vector<Index> curves;    ///< sorted; border and embedded curves
-    std::vector<Index> vertices;  ///< sorted; all its feature vertices, on curves or embedded alone
-    Index file = 0;               ///< the soup it came from
+    std::vector<Index> vertices;  ///< sorted; all its feature vertices, on curves or isolated inside
+    Index file = 0;               ///< index of the soup it came from
   };
 
   struct Triangle {
@@ -60,18 +60,18 @@ struct Plc {
 
   struct Region {
     Tag tag = 0;        ///< region number, or the tag of a region point
-    double volume = 0;  ///< of the complex, input units cubed
+    double volume = 0;  ///< volume in the complex, input units cubed
     double size = 0;    ///< target edge length, 0: none given
     std::string name;   ///< for messages: file name or tag
   };
 
   /// Changes of the builder that made the input a complex.
   struct Cleanup {
-    Index welded_points = 0;         ///< points that were merged with another one
+    Index welded_points = 0;         ///< points merged with another one
     Index degenerate_triangles = 0;  ///< triangles without an area, dropped
-    Index repeated_triangles = 0;    ///< duplicates in one soup, dropped
-    Index shared_triangles = 0;      ///< duplicates of several soups, which became interfaces
-    /// Of these triangles, sorted: the tag that is gone and the one in its place.
+    Index repeated_triangles = 0;    ///< duplicate triangles in one soup, dropped
+    Index shared_triangles = 0;      ///< duplicate triangles of several soups, which became interfaces
+    /// For these triangles, sorted: the tag that is gone and the one in its place.
     std::vector<std::pair<Tag, Tag>> replaced_tags;
   };
 
@@ -87,15 +87,15 @@ struct Plc {
   std::vector<Patch> patches;
   std::vector<Triangle> triangles;
   std::vector<Region> regions;  ///< regions[0] is the outside (and every hole)
-  TagNames names;               ///< that files gave to tags
+  TagNames names;               ///< names that files gave to tags
   /// The tags of all patches (curves) come from `number_untagged`, so they depend on the order of the
   /// facets.
   bool numbered_patches = false, numbered_curves = false;
 
   Box bounds;
-  double planar_tolerance = 0;  ///< absolute, input units: used to build this complex
+  double planar_tolerance = 0;  ///< absolute, input units: the tolerance that this complex was built with
   double largest_deviation =
-      0;  ///< absolute: how far merging (weld, planar, collinear) moved the input at most
+      0;  ///< absolute: the largest distance by which merging (weld, planar, collinear) moved the input
   Cleanup cleanup;
   std::vector<Warning> warnings;
 

@@ -22,7 +22,8 @@ struct PlcOptions {
   double feature_angle =
       30;  ///< degrees; edges that deviate more from flat are segments. 0: every non-coplanar edge
   double planar_tolerance = 1e-6;  ///< relative to the bounding-box diagonal; 0: the exact predicate
-  double weld = 1e-9;              ///< relative to the bounding-box diagonal; closer points are merged
+  double weld = 1e-9;              ///< relative to the bounding-box diagonal; points closer than this are
+                                   ///< merged
   bool require_solid = true;       ///< a complex that bounds no region is an error
 };
 
@@ -44,13 +45,13 @@ struct Crease {
   enum class Kind { facets, segments, segment_and_facet, facets_in_vertex, patch_fold };
   Kind kind;
   double angle;                               ///< degrees
-  Index curve = none;                         ///< the crease curve, when it is one
-  Index vertex = none;                        ///< the crease vertex, when it is one
+  Index curve = none;                         ///< the crease curve, if the features meet in a curve
+  Index vertex = none;                        ///< the crease vertex, if the features meet in a vertex
   std::array<Index, 2> features{none, none};  ///< the two features (patches or curves, by kind)
   Point where;
 };
 
-/// All creases with an angle below the threshold (degrees), smallest angle first.
+/// Returns all creases with an angle below the threshold (degrees), smallest angle first.
 std::vector<Crease> find_creases(const Plc& plc, double threshold = 60);
 
 /// Counts, angles and sizes of a complex, for people.
@@ -58,22 +59,22 @@ struct PlcSummary {
   Index points = 0, vertices = 0, curves = 0, straight_curves = 0, patches = 0, planar_patches = 0,
         triangles = 0, regions = 0;
   double diagonal = 0;
-  double smallest_angle = 180;  ///< degrees, between any two features that meet
-  double shortest_segment = 0;  ///< between adjacent feature vertices, input units
+  double smallest_angle = 180;  ///< degrees; smallest angle between any two features that meet
+  double shortest_segment = 0;  ///< smallest distance of adjacent feature vertices, input units
   double spread = 0;            ///< diagonal / shortest feature length
   double largest_deviation = 0;
-  std::vector<Crease> creases;  ///< below the threshold given
+  std::vector<Crease> creases;  ///< creases below the given threshold
 };
 PlcSummary summarize(const Plc& plc, double crease_threshold = 60);
 
 /// The patches of one tag.
 struct PatchSummary {
   Tag tag = 0;
-  std::string name;       ///< empty: none
-  std::size_t count = 0;  ///< of patches
-  bool planar = true;     ///< each of them
+  std::string name;       ///< name of the tag; empty: none
+  std::size_t count = 0;  ///< number of patches
+  bool planar = true;     ///< all of them are planar
   double area = 0;        ///< input units squared
-  Point where;            ///< a point on the first one: the centre of its largest triangle
+  Point where;            ///< centre of the largest triangle of the first patch
 };
 /// Summarizes the patches by tag. Cost: linear.
 std::vector<PatchSummary> summarize_patches(const Plc& plc);
@@ -81,13 +82,13 @@ std::vector<PatchSummary> summarize_patches(const Plc& plc);
 /// The curves of one tag.
 struct CurveSummary {
   Tag tag = 0;
-  std::string name;       ///< empty: none
-  std::size_t count = 0;  ///< of curves
-  bool straight = true;   ///< each of them
+  std::string name;       ///< name of the tag; empty: none
+  std::size_t count = 0;  ///< number of curves
+  bool straight = true;   ///< all of them are straight
   double length = 0;
-  Point where;  ///< a point on the first one: the middle of its longest segment
+  Point where;  ///< middle of the longest segment of the first curve
 };
-/// By tag. Cost: linear.
+/// Summarizes the curves by tag. Cost: linear.
 std::vector<CurveSummary> summarize_curves(const Plc& plc);
 
 /// Returns a sentence for people: the features that meet, where, and at which angle.

@@ -46,13 +46,15 @@ class PolygonSoup {
   std::vector<Index> vertices;  ///< points that are features by themselves
   /// If true, the features are the vertices, segments, borders of tags and folds above 90 degrees.
   bool given_features = false;
-  std::vector<RegionPoint> region_points;  ///< .poly: with hole_points they decide for their file
+  std::vector<RegionPoint> region_points;  ///< .poly: region_points and hole_points decide for their file
+                                           ///< which space is solid
   std::vector<Point> hole_points;          ///< the region around each is empty
-  std::vector<RegionPoint> named_regions;  ///< points that name regions, but do not decide what is a region
+  std::vector<RegionPoint> named_regions;  ///< points that give regions a name but do not decide which space
+                                           ///< is solid
   std::vector<FacetHole> facet_holes;
   TagNames tag_names;  ///< names of the file for its tags
   std::optional<Tag>
-      region_tag;  ///< of regions that this surface is the first to bound; default: their number
+      region_tag;  ///< tag of the regions that this surface is the first to bound; default: their number
 
   /// Begins a facet; the polygons added next belong to it.
   void begin_facet(Tag tag = 0) { facets_.push_back({polygon_count(), tag}); }

@@ -12,20 +12,19 @@ namespace collarmesh {
 /// Estimates of the size of a mesh and of its time; bench/README.md says how far off they are.
 struct Prediction {
   double size = 0;  ///< the target edge length, absolute, input units
-  double tets = 0;  ///< at least 1, infinite beyond what a double holds; 0 where the complex has no region
+  double tets = 0;  ///< at least 1; infinite if too many for a double; 0 if the complex has no region
   double seconds =
-      0;  ///< of all stages from the refinement to the certificate, on the machine of the benchmarks
+      0;  ///< time of all stages from the refinement to the certificate, on the machine of the benchmarks
 };
 
-/// Predicts the mesh that `run_pipeline` makes of a complex with these options at each of these target edge
-/// lengths (input units; 0: `options.mesh.size`) without making it: from the features of the complex, the
-/// widths between them and the sizes. Sizes by region, patch, curve, curvature, gap, gradation and
-/// place count; budgets do not. Precondition: the complex comes from `build_plc`.
-/// Throws OptionError for sizes that are negative or below `size_min`, for sizes of tags that the complex
-/// does not have, and where coarsening is switched off. `told` hears of each as soon as it is made, in the
-/// order of the sizes. `options.mesh.threads` count; several may ask the size field at once. Cost: near
-/// linear in the complex, and for each size two counts of vertices, 0.6 s together in the median of real
-/// parts (bench/README.md).
+/// Predicts the mesh that `run_pipeline` makes of a complex with these options, for each of these target edge
+/// lengths (input units; 0: `options.mesh.size`), without making it: from the features of the complex, the
+/// widths between them and the sizes. Sizes by region, patch, curve, curvature, gap, gradation and place
+/// count; budgets do not. Precondition: the complex comes from `build_plc`. Throws OptionError for sizes that
+/// are negative or below `size_min`, for sizes of tags that the complex does not have, and where coarsening
+/// is switched off. Calls `told` with each prediction as soon as it is made, in the order of the sizes. Uses
+/// up to `options.mesh.threads` threads, which may call the size field at once. Cost: near linear in the
+/// complex, and for each size two counts of vertices (bench/README.md has times).
 std::vector<Prediction> predict(const Plc& plc, const PipelineOptions& options, std::span<const double> sizes,
                                 const std::function<void(const Prediction&)>& told = {});
 

@@ -19,7 +19,7 @@ struct ProgressReport {
 
 /// The caller's means to watch and stop a long operation. Both members may be empty.
 struct Execution {
-  /// Called some times a second from the working thread; returning false cancels.
+  /// Called several times a second from the working thread; returning false cancels.
   std::function<bool(const ProgressReport&)> progress;
   /// Set it to true from anywhere, even from a signal handler, to cancel.
   const std::atomic<bool>* cancel = nullptr;

@@ -11,30 +11,29 @@ struct RemeshReport {
   std::size_t tets_before = 0;
   double smallest_angle_before = 0, largest_angle_before = 0;  ///< dihedral angles, degrees
   std::size_t divided_edges = 0, contracted_edges = 0;
-  std::size_t rounds = 0;  ///< of divisions
+  std::size_t rounds = 0;  ///< rounds of edge divisions
 };
 
 struct RemeshResult : SoupPipelineResult {
   RemeshReport remeshing;
 };
 
-/// Sets options that depend on the complex of the mesh, such as a size field about its features.
+/// Sets options that depend on the complex of the mesh, such as a size field defined by its features.
 using AdaptOptions = std::function<void(const Plc&, PipelineOptions&)>;
 
-/// Adapts any tetrahedral mesh to target edge lengths, finer and coarser: edges longer than sqrt 2 times
-/// the target are divided, shorter ones contracted as `coarsen` does, and poor tets improved, until the
-/// lengths fit. The surface that the result follows is the mesh's own: its boundaries, interfaces, listed
-/// faces and edges become a complex (`SoupPipelineResult::plc`), whose curves are the listed edges if
-/// these lie along all borders between tags of faces, else also the folds that
-/// `options.complex.feature_angle` tells. Regions, tags and names stay; the result tells features by tags
-/// alone, as a mesh from a file does. No operation makes the worst tet around it worse unless all are
-/// good then, so a mesh within the bounds on angles stays within them, and one that is not gets better.
-/// The result is certified against the complex. Second order: its corners are remeshed, and mid-edge
-/// nodes made anew if `options.order` is 2. Of the options those of sizes, bounds, improvement, order,
-/// partitions and budgets count. Without a size and a field the lengths stay as they are. Same mesh and
-/// options: same result, with any number of threads. Throws PlcError for a mesh whose tets do not fit
-/// each other, OptionError for sizes of tags that it does not have. Cost: near linear in the tets of the
-/// mesh and of the result.
+/// Adapts any tetrahedral mesh to target edge lengths, finer and coarser. Divides edges longer than sqrt 2
+/// times the target, collapses short ones as `coarsen` does, and improves poor tets, until the lengths fit.
+/// The result follows the mesh's own surface: its boundaries, interfaces, listed faces and edges become a
+/// complex (`SoupPipelineResult::plc`). The curves of the complex are the listed edges if these lie along all
+/// borders between tags of faces, otherwise also the folds above `options.complex.feature_angle`. Regions,
+/// tags and names stay; the result identifies features by tags alone, like a mesh from a file. No operation
+/// makes the worst tet around it worse unless all tets there are good afterwards, so a mesh within the bounds
+/// on angles stays within them, and other meshes get better. The result is certified against the complex. For
+/// a mesh of second order, its corners are remeshed, and mid-edge nodes are made anew if `options.order` is
+/// 2. Only the options of sizes, bounds, improvement, order, partitions and budgets count. Without a size and
+/// a field the lengths stay as they are. Same mesh and options: same result, with any number of threads.
+/// Throws PlcError for a mesh whose tets do not fit each other, OptionError for sizes of tags that it does
+/// not have. Cost: near linear in the tets of the mesh and of the result.
 RemeshResult remesh(const TetMesh& mesh, const PipelineOptions& options = {}, const AdaptOptions& adapt = {},
                     const Execution& execution = {});
 

@@ -10,43 +10,42 @@
 #include "collarmesh/polygon_soup.h"
 #include "collarmesh/progress.h"
 
-/// Repair of facets that are no valid complex: it stitches borders that nearly meet, collapses features
-/// below a tolerance, cuts facets that intersect or cover each other, removes facets inside solids, and
-/// fills holes.
+/// Repairs facets that are no valid complex: stitches borders that nearly meet, collapses features below a
+/// tolerance, cuts facets that intersect or cover each other, removes facets inside solids, and fills holes.
 namespace collarmesh {
 
 enum class RepairMode {
   automatic,  ///< repair facets that are no valid complex
   off,        ///< facets that are no valid complex are an error
-  wrap        ///< automatic; if that makes no solid, or none that can be meshed, wrap a closed surface around
-              ///< everything
+  wrap        ///< like `automatic`; if that makes no solid, or none that can be meshed, wraps a closed
+              ///< surface around everything
 };
 
 struct RepairOptions {
   RepairMode mode = RepairMode::automatic;
   double tolerance = 1e-5;  ///< relative to the bounding-box diagonal; smaller features are noise
   double wrap_offset =
-      5e-3;  ///< relative to the bounding-box diagonal; of the closed surface around everything
-  bool wrap_at_once = false;  ///< in `RepairMode::wrap`: even if the other steps make a solid
-  /// Maximum work before repair gives up, in pairs of facets near each other (some 0.2 microseconds each; a
-  /// cut of an intersecting pair counts 1000), so that it ends in the same place on every machine. A quarter
-  /// of this in `RepairMode::wrap`.
+      5e-3;  ///< tolerance of the closed surface around everything, relative to the bounding-box diagonal
+  bool wrap_at_once = false;  ///< in `RepairMode::wrap`: wrap even if the other steps make a solid
+  /// Maximum work before repair gives up, counted in pairs of facets near each other; a cut of an
+  /// intersecting pair counts 1000. So it ends in the same place on every machine. `RepairMode::wrap` gets a
+  /// quarter of this.
   std::size_t max_work = 200'000'000;
 };
 
 /// The number of changes of one kind, and some of their places.
 struct RepairPlaces {
   std::size_t count = 0;
-  double size = 0;           ///< the largest distance or the total area, as the field says
+  double size = 0;           ///< the largest distance, the total area or the volume, as the field says
   std::vector<Point> where;  ///< at most 100
 };
 
 /// A hole that was closed.
 struct FilledHole {
-  Tag tag = 0;            ///< of the facets that fill it
-  std::size_t edges = 0;  ///< around it
-  double length = 0;      ///< of the curve around it, input units
-  double area = 0;        ///< of the facets that fill it, input units squared
+  Tag tag = 0;            ///< tag of the facets that fill it
+  std::size_t edges = 0;  ///< number of edges around it
+  double length = 0;      ///< length of the curve around it, input units
+  double area = 0;        ///< area of the facets that fill it, input units squared
   Point where;            ///< the mean of the points around it
 };
 
@@ -54,26 +53,27 @@ struct FilledHole {
 struct RepairReport {
   bool repaired = false;
   bool wrapped = false;
-  double tolerance = 0;              ///< absolute; the one that was used
+  double tolerance = 0;              ///< absolute; the tolerance that was used
   std::size_t split_polygons = 0;    ///< polygons that were not planar, now triangles
   std::size_t dropped_polygons = 0;  ///< polygons without an area
-  RepairPlaces repeated;             ///< triangles that lay on others, dropped
+  RepairPlaces repeated;             ///< duplicate triangles, dropped
   RepairPlaces turned;               ///< components turned inside out
   RepairPlaces stitched;             ///< points of borders; size: largest distance
   RepairPlaces collapsed;        ///< points, edges and triangles below the tolerance; size: largest distance
   RepairPlaces cut;              ///< pairs of facets that intersected
-  RepairPlaces kept;             ///< left as before, because creases there would become sharper
+  RepairPlaces kept;             ///< places left as before, because creases there would become sharper
   RepairPlaces flakes;           ///< closed parts thinner than the tolerance, dropped; size: volume
   std::size_t second_sides = 0;  ///< triangles of surfaces that had two sides everywhere, dropped
   RepairPlaces merged;           ///< triangles inside solids, removed; size: area
   RepairPlaces dropped;          ///< triangles of open sheets outside of all solids, removed
-  RepairPlaces
-      thin_chambers;      ///< between facets that nearly coincide, now part of their neighbours; size: volume
-  RepairPlaces vanished;  ///< regions of valid input, as thin as the tolerance; size: volume
-  RepairPlaces united;    ///< regions of valid input less than before, besides those; places: in others
+  RepairPlaces thin_chambers;    ///< thin regions between facets that nearly coincide, now part of their
+                                 ///< neighbours; size: volume
+  RepairPlaces vanished;         ///< regions of valid input, as thin as the tolerance; size: volume
+  RepairPlaces united;  ///< number of other regions of valid input that are gone; places: in the remaining
+                        ///< ones
   std::vector<FilledHole> filled;
-  std::vector<Tag> lost_tags;     ///< tags of facets of which nothing is left
-  std::vector<Tag> lost_groups;   ///< those of them that are more than numbers of CAD faces
+  std::vector<Tag> lost_tags;     ///< tags of facets that have no facet left
+  std::vector<Tag> lost_groups;   ///< those of the lost tags that are more than numbers of CAD faces
   std::vector<Tag> lost_regions;  ///< tags that the input gives and that no region of the complex has
   /// The largest distance of the repaired facets from those of the input, absolute. Facets that fill holes do
   /// not count.
@@ -83,7 +83,7 @@ struct RepairReport {
   double largest_distance_of_input = 0;
   Point farthest_of_input;  ///< a point of the input at that distance
   bool gave_up = false;     ///< the work was more than `RepairOptions::max_work`
-  bool cancelled = false;   ///< by the execution
+  bool cancelled = false;   ///< the execution cancelled the repair
 
   /// Returns whether any facet changed.
   bool changed() const {
@@ -100,13 +100,12 @@ struct RepairResult {
 };
 
 /// Repairs the soups so that `build_plc` accepts them. Tags and features survive cutting; each soup keeps the
-/// space that it encloses and no earlier one does (winding number above 1/2). Region points, hole points and
-/// loose segments stay. `build_plc` reports faults that cannot be repaired.
-/// If repair gave up or was cancelled, as the report says, the soups are the original ones.
-/// Throws PlcError for points that are not finite and indices out of range.
-/// Cost: O(n log n), and some 0.1 ms for each pair of facets that intersect.
-/// Based on Zhou, Grinspun, Zorin, Jacobson 2016 (arrangements) and Jacobson, Kavan, Sorkine-Hornung 2013
-/// (winding numbers).
+/// space that it, and no earlier soup, encloses (winding number above 1/2). Region points, hole points and
+/// loose segments stay. `build_plc` reports faults that cannot be repaired. If repair gave up or was
+/// cancelled, as the report says, the soups are the original ones. Throws PlcError for points that are not
+/// finite and indices out of range. Cost: O(n log n), and exact constructions for each pair of facets that
+/// intersect. Based on Zhou, Grinspun, Zorin, Jacobson 2016 (arrangements) and Jacobson, Kavan,
+/// Sorkine-Hornung 2013 (winding numbers).
 RepairResult repair(std::span<const PolygonSoup> soups, const RepairOptions& options = {},
                     const PlcOptions& complex = {}, const Execution& execution = {});
 
@@ -132,13 +131,14 @@ RepairedPlc build_repaired_plc(std::span<const PolygonSoup> soups, const PlcOpti
                                const RepairOptions& repair_options = {}, const Execution& execution = {});
 
 /// Returns the repairs to try, one after the other, while no mesh of the complex keeps every guarantee. If
-/// something was repaired, the first one is three times as coarse: refinement does not end in folds about as
-/// fine as the tolerance, which a repair may leave. Then, in `RepairMode::wrap`, a surface around everything.
+/// something was repaired, the first one is three times as coarse, because refinement does not end in folds
+/// about as fine as the tolerance, which a repair may leave. Then follows, in `RepairMode::wrap`, a surface
+/// around everything.
 std::vector<RepairOptions> further_repairs(const RepairOptions& options, const RepairReport& report);
 
 /// Returns the repairs to try, one after the other, if the refinement of a complex takes far more vertices
-/// than its sizes ask for: features just above the tolerance may be resolved as if they mattered. With
-/// tolerances of 1e-4 and 1e-3 of the diagonal, none above a hundredth of `size` (absolute).
+/// than its sizes ask for: it may resolve features just above the tolerance as if they mattered. The
+/// tolerances are 1e-4 and 1e-3 of the diagonal, none above a hundredth of `size` (absolute).
 std::vector<RepairOptions> coarser_repairs(const RepairOptions& options, double size, double diagonal);
 
 /// Returns a line for each kind of change with counts, sizes and places, for people; empty without changes.

@@ -12,13 +12,13 @@ struct ShapeMeasures {
   std::vector<double> volumes;  ///< by region; [0], the outside, is 0
   std::vector<double> areas;    ///< by patch
   std::vector<double> lengths;  ///< by curve
-  std::vector<double> shells;   ///< what they enclose, in the order of `shells_of`
+  std::vector<double> shells;   ///< volumes enclosed by closed surfaces, in the order of `shells_of`
 };
 
 /// A closed surface that bounds a region or the outside but is not all of one region's boundary: around a
 /// void, around one of several bodies of a region, around several regions that touch.
 struct Shell {
-  Index region = none;  ///< that it bounds, 0: the outside
+  Index region = none;  ///< the region that it bounds, 0: the outside
   std::vector<Index> patches;
 };
 

@@ -13,17 +13,17 @@
 
 namespace collarmesh {
 
-/// A target edge length at every point, absolute, in input units; for `MeshOptions::size_field`.
+/// Returns the target edge length at a point, absolute, in input units; for `MeshOptions::size_field`.
 using SizeField = std::function<double(const Point&)>;
 
-/// Which sources of a size field made anything finer: those that asked somewhere for less than a size.
+/// Records which sources of a size field made anything finer, that is, asked somewhere for less than a size.
 class SizeFieldUse {
  public:
   explicit SizeFieldUse(double size) : size_(size) {}
 
-  /// Another source, by what it is called in messages. Returns its number.
+  /// Adds a source by its name in messages. Returns its number.
   std::size_t add(std::string source);
-  /// It asks for this size somewhere. Several threads may say so at once.
+  /// Records that a source asks for this size somewhere. Several threads may call it at once.
   void note(std::size_t source, double asked) {
     if (asked < size_ && !used_[source].load(std::memory_order_relaxed))
       used_[source].store(true, std::memory_order_relaxed);
@@ -37,9 +37,9 @@ class SizeFieldUse {
   std::deque<std::atomic<bool>> used_;
 };
 
-/// Read a size field: .json (a description, see `size_field_from_json`), or .vtu or .msh (a mesh with a
-/// scalar field of target edge lengths on its points). `use` is told of what it is asked for, and is kept.
-/// Throws ReadError or OptionError.
+/// Reads a size field: .json (a description, see `size_field_from_json`), or .vtu or .msh (a mesh with a
+/// scalar field of target edge lengths on its points). The field records in `use`, which it keeps, the sizes
+/// that each source asks for. Throws ReadError or OptionError.
 SizeField read_size_field(const std::string& path, const Plc& plc,
                           const std::shared_ptr<SizeFieldUse>& use = nullptr);
 
@@ -54,8 +54,8 @@ SizeField read_size_field(const std::string& path, const Plc& plc,
 ///       {"curves": [3, 4], "size": 0.05},
 ///       {"patches": [2], "size": 0.05, "within": 0.5}]}
 ///
-/// `size` outside the list holds everywhere; without it sources are all there is. Curves and patches are
-/// named by their tags. Throws OptionError, with the place in the text.
+/// `size` outside the list holds everywhere; without it only the sources count. Curves and patches are named
+/// by their tags. Throws OptionError, with the place in the text.
 SizeField size_field_from_json(const std::string& text, const Plc& plc,
                                const std::shared_ptr<SizeFieldUse>& use = nullptr);
 

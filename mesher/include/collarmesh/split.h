@@ -10,7 +10,7 @@
 
 namespace collarmesh {
 
-/// The way in which a solver is told to join the two sides of a split patch.
+/// How a solver joins the two sides of a split patch.
 enum class Interaction { free, tie, contact };
 
 /// Numbers of the two sides of a split patch, whose nodes coincide: the side behind its triangles and the one
@@ -24,18 +24,19 @@ struct Interfaces {
   std::vector<Sides> sides;
   Interaction interaction = Interaction::free;
   /// Cohesive elements: corners a, b, c of a triangle of the minus side, counterclockwise as seen from the
-  /// plus side, and those at the same places on the plus side.
+  /// plus side, then the corners at the same places on the plus side.
   std::vector<std::array<Index, 6>> prisms;
-  /// Of second order: the nodes amid ab, bc, ca, and those on the plus side; the edges between have none.
+  /// In second order: the mid-edge nodes of ab, bc, ca, then those on the plus side; the edges between the
+  /// sides have none.
   std::vector<std::array<Index, 6>> prism_mid_nodes;
-  std::vector<Tag> prism_tag;  ///< that of the minus side
+  std::vector<Tag> prism_tag;  ///< tag of the minus side
 };
 
 struct SplitOptions {
   std::vector<std::string> patches = {};        ///< names or numbers of internal patches
   bool keep_apart = false;                      ///< all patches between two regions
-  Interaction interaction = Interaction::free;  ///< between the sides, for formats that can say it
-  bool cohesive = false;                        ///< prisms of zero thickness between them
+  Interaction interaction = Interaction::free;  ///< for formats that can express it
+  bool cohesive = false;                        ///< make prisms of zero thickness between the sides
 
   bool any() const { return keep_apart || !patches.empty(); }
 };
@@ -43,37 +44,37 @@ struct SplitOptions {
 struct SplitReport {
   /// A patch that was cut open.
   struct Patch {
-    Tag tag = 0;             ///< before
-    std::string name;        ///< before; "patch_7" if it had none
+    Tag tag = 0;             ///< tag before the cut
+    std::string name;        ///< name before the cut; "patch_7" if it had none
     Sides sides;             ///< 0, 0 if no triangle could be opened
     std::size_t faces = 0;   ///< triangles on each side
-    double area = 0;         ///< of these, absolute, straight
-    double largest = 0;      ///< of one of them
-    Point where;             ///< the middle of that one
+    double area = 0;         ///< area of the opened triangles, absolute, straight
+    double largest = 0;      ///< area of the largest one
+    Point where;             ///< the middle of the largest one
     std::size_t closed = 0;  ///< triangles left as they are: all their corners are on the front
-    Point closed_at;         ///< the middle of one of them
+    Point closed_at;         ///< the middle of such a triangle
   };
   std::vector<Patch> patches;      ///< by tag
   std::size_t split_nodes = 0;     ///< nodes that have copies now
-  std::size_t junction_nodes = 0;  ///< those of them with two or more copies
-  std::size_t new_nodes = 0;       ///< copies
+  std::size_t junction_nodes = 0;  ///< split nodes with two or more copies
+  std::size_t new_nodes = 0;       ///< number of copies
   std::size_t front_nodes = 0;     ///< nodes of these patches without copies
   Interfaces interfaces;
 };
 
-/// Throws OptionError, with the known names, if an internal patch to be split is not there.
+/// Throws OptionError, with the known names, if an internal patch to be split does not exist.
 void require_known_patches(const SplitOptions& options, const Plc& plc);
 
 /// Gives the tets on both sides of internal patches nodes of their own. At a node the split triangles divide
-/// the tets into sectors; each sector gets a node, the first one keeps that of before. So fronts of cracks
-/// stay closed, mouths on the boundary open, and junctions have a node for each sector. The same holds for
-/// mid-edge nodes. Triangles with all their corners on a front cannot open and stay as they are.
+/// the tets into sectors; each sector gets its own node; the first sector keeps the old one. So fronts of
+/// cracks stay closed, mouths on the boundary open, and junctions have a node for each sector. The same holds
+/// for mid-edge nodes. Triangles with all their corners on a front cannot open and stay as they are.
 ///
-/// Each side becomes a boundary: the one behind the triangles (of interfaces, that of the region with the
-/// smaller index) keeps their tag, unless other triangles have it, too; the one in front gets a new tag.
-/// They are named as the patch with `_minus` and `_plus`. New nodes follow all others; tets keep their order;
-/// copies of faces and edges follow all others. Throws OptionError as `require_known_patches` does.
-/// Cost: linear, and n log n in the tets at split triangles.
+/// Each side becomes a boundary: the one behind the triangles (at interfaces, the side of the region with the
+/// smaller index) keeps their tag, unless other triangles have it, too; the one in front gets a new tag. They
+/// are named as the patch with `_minus` and `_plus`. New nodes follow all others; tets keep their order;
+/// copies of faces and edges follow all others. Throws OptionError as `require_known_patches` does. Cost:
+/// linear, and n log n in the tets at split triangles.
 SplitReport split(TetMesh& mesh, const SplitOptions& options);
 
 }  // namespace collarmesh

@@ -19,24 +19,24 @@ class SurfaceTolerance {
   /// Makes a tolerance by triangle of the complex; none of them exceeds `largest`.
   SurfaceTolerance(const Plc& plc, std::vector<double> triangles, double largest);
 
-  /// Returns whether it depends on the place.
+  /// Returns whether the tolerance depends on the place.
   bool varies() const { return places_ != nullptr; }
   double largest() const { return share_ * largest_; }
   double at_triangle(Index triangle) const {
     return share_ * (varies() ? places_->triangles[triangle] : largest_);
   }
-  /// Returns that of a point of the complex: the smallest of its triangles.
+  /// Returns the tolerance at a point of the complex: the smallest of its triangles.
   double at_point(Index point) const { return share_ * (varies() ? places_->points[point] : largest_); }
-  /// Returns that of the segment between two neighbouring points of a curve.
+  /// Returns the tolerance of the segment between two neighbouring points of a curve.
   double at_segment(Index a, Index b) const { return std::min(at_point(a), at_point(b)); }
-  /// Return the smallest at points of a patch, and the largest of its triangles.
+  /// Return the smallest tolerance at points of a patch, and the largest one of its triangles.
   double least_on_patch(Index patch) const {
     return share_ * (varies() ? places_->least_on_patch[patch] : largest_);
   }
   double largest_on_patch(Index patch) const {
     return share_ * (varies() ? places_->largest_on_patch[patch] : largest_);
   }
-  /// Return the smallest and the largest on a curve's segments.
+  /// Return the smallest and the largest tolerance on a curve's segments.
   double least_on_curve(const Plc::Curve& curve) const;
   double largest_on_curve(const Plc::Curve& curve) const;
   /// Returns this tolerance times a factor.
@@ -61,12 +61,12 @@ class SurfaceTolerance {
 /// Returns the tolerance of a run without a given distance: a tenth of the target edge length (`size`, 0: its
 /// default), at most 1/200 of the diagonal, at most a share of the thickness of the material on either side,
 /// which keeps its volume, and at most a share of the width of gaps and holes. Opposite sides of a wall that
-/// bend alike lose and gain the same volume, so they may be farther off than the sides of a rod, which both
-/// lose. With elements of second order the triangles between corners may be farther off, as the
+/// bend the same way lose and gain the same volume, so they may be farther off than the sides of a rod, which
+/// all lose volume. With elements of second order the triangles between corners may be farther off, as the
 /// elements follow the surface. Cost: near linear in the triangles.
 SurfaceTolerance default_tolerance(const Plc& plc, double size, int order = 1);
 
-/// Returns by place the largest tolerance of all sizes and orders.
+/// Returns, by place, the largest tolerance over all sizes and orders.
 SurfaceTolerance largest_default_tolerance(const Plc& plc);
 
 /// Returns the smooth patches whose triangles are farther than a quarter of the tolerance from the surfaces

@@ -7,7 +7,7 @@
 
 namespace collarmesh {
 
-/// 0xRRGGBB, as screens take it (sRGB).
+/// 0xRRGGBB, as screens use it (sRGB).
 using Colour = std::uint32_t;
 
 /// Colours that a CAD file gives to the tags of patches and regions.

@@ -15,17 +15,16 @@ enum class GroupNames {
   cad       ///< Solid1, Face7, Edge3: the sub-shapes of a CAD shape
 };
 
-/// What triangles without tets are in formats of solvers that tell elements apart.
+/// How triangles without tets are written in formats of solvers with several kinds of plane elements.
 enum class TriangleElements {
   shell,         ///< S3, S6
   plane_stress,  ///< CPS3, CPS6: in the plane z = 0
   plane_strain   ///< CPE3, CPE6: in the plane z = 0
 };
 
-/// A conforming tetrahedral mesh, or one of triangles or of curve edges alone (`mesh_shells`), with
-/// everything a solver's set-up needs to find its way back to the input: regions, tagged boundary and
-/// interface triangles, tagged curve edges. Every array of a group (tets, faces, edges, points) has the same
-/// length.
+/// A conforming tetrahedral mesh, or one of triangles or of curve edges alone (`mesh_shells`), with all that
+/// a solver's set-up needs to refer to the input: regions, tagged boundary and interface triangles, tagged
+/// curve edges. Every array of a group (tets, faces, edges, points) has the same length.
 struct TetMesh {
   /// The feature of the complex a mesh vertex lies on: the one of lowest dimension.
   struct VertexFeature {
@@ -43,7 +42,7 @@ struct TetMesh {
   std::vector<std::uint8_t> tet_collar;  ///< 0 outside collars, 1 star, 2 book
   /// 1: a thin tet, which may exceed the radius-edge bound (see `coarsen`), else 0; empty: not known.
   std::vector<std::uint8_t> tet_thin;
-  std::vector<Tag> tet_crease;  ///< in collars the tag of the crease, a curve or vertex; 0 outside
+  std::vector<Tag> tet_crease;  ///< tag of the collar's crease, a curve or vertex; 0 outside collars
   /// The rank of its partition, from 0 (see `partition`); empty: not partitioned.
   std::vector<Index> tet_partition;
 
@@ -59,14 +58,15 @@ struct TetMesh {
   std::vector<Index> edge_curve;  ///< index of the curve in the complex, none when unknown
   std::vector<Tag> edge_tag;
 
-  /// Mid-edge nodes of cells of second order, which are points like the corners: of a tet abcd those of
-  /// ab, bc, ca, ad, bd, cd; of a face abc those of ab, bc, ca; of an edge. Empty: first order.
+  /// Mid-edge nodes of cells of second order, which are points like the corners: for a tet abcd the nodes of
+  /// ab, bc, ca, ad, bd, cd; for a face abc the nodes of ab, bc, ca; for an edge its one node. Empty: first
+  /// order.
   std::vector<std::array<Index, 6>> tet_mid_nodes;
   std::vector<std::array<Index, 3>> face_mid_nodes;
   std::vector<Index> edge_mid_nodes;
 
   GroupNames group_names = GroupNames::complex;
-  TagNames names;  ///< names that replace those labels
+  TagNames names;  ///< names to write in place of those labels
   TriangleElements triangle_elements = TriangleElements::shell;
 
   /// A rigid motion: p goes to (dot(rows[0], p), dot(rows[1], p), dot(rows[2], p)) + shift.
@@ -78,12 +78,13 @@ struct TetMesh {
       return Point{dot(rows[0], p), dot(rows[1], p), dot(rows[2], p)} + shift;
     }
   };
-  /// Two groups of patches; the nodes, edges and triangles of the first, moved, are those of the second.
+  /// Two groups of patches. The motion takes the nodes, edges and triangles of the first group to those of
+  /// the second.
   struct PeriodicFaces {
     std::vector<Tag> first, second;  ///< tags of patches, sorted
     Motion motion;                   ///< takes the first to the second
-    /// A node of the first and its image, mid-edge nodes included; sorted by the first. A node on an axis of
-    /// rotation is its own image.
+    /// Pairs of a node of the first group and its image, mid-edge nodes included; sorted by the first. A node
+    /// on an axis of rotation is its own image.
     std::vector<std::array<Index, 2>> nodes;
   };
   std::vector<PeriodicFaces> periodic;  ///< empty: none
@@ -94,9 +95,9 @@ struct TetMesh {
                                      : !tet_mid_nodes.empty();
     return second ? 2 : 1;
   }
-  /// Returns whether it has triangles alone.
+  /// Returns whether the mesh has triangles but no tets.
   bool is_surface() const { return tets.empty() && !faces.empty(); }
-  /// Returns whether it has curve edges alone.
+  /// Returns whether the mesh has curve edges alone.
   bool is_curves() const { return tets.empty() && faces.empty() && !edges.empty(); }
 
   /// A ball of a collar: stars and books fill the union of the balls.

@@ -9,36 +9,36 @@
 
 namespace collarmesh {
 
-/// The reason why a ball is there.
+/// The reason why a ball was placed.
 enum class BallReason : std::uint8_t {
   unknown,
-  subsegment,          ///< protects a piece of a curve that is not split
-  up_front,            ///< of a collar: all are placed before the first vertex
-  vertex_inserted,     ///< of a collar: its crease vertex came in
-  vertex_isolated,     ///< of a collar: the cell of its crease vertex meets no other feature
-  curve_isolated,      ///< of a collar: the cells along its crease curve meet no other feature
-  curve_would_divide,  ///< of a collar: a subsegment of its crease curve would be split
-  curve_left           ///< of a collar: its crease curve had none when nothing else was left to do
+  subsegment,          ///< protects a piece of a curve that must not be split
+  up_front,            ///< a collar's: all of them are placed before the first vertex
+  vertex_inserted,     ///< a collar's: its crease vertex was inserted
+  vertex_isolated,     ///< a collar's: the cell of its crease vertex meets no other feature
+  curve_isolated,      ///< a collar's: the cells along its crease curve meet no other feature
+  curve_would_divide,  ///< a collar's: otherwise a subsegment of its crease curve would be split
+  curve_left           ///< a collar's: its crease curve had no balls yet when all other work was done
 };
 
-/// What a run has at one moment.
+/// The state of a run at one moment.
 struct TraceStep {
   enum class State : std::uint8_t {
     outside,  ///< of all regions
     region,
-    ripped,  ///< inside a collar: it goes when the collar is stitched
+    ripped,  ///< inside a collar; removed when the collar is stitched
     star,
     book,
     thin
   };
   struct Triangle {
     std::array<Index, 3> corners;
-    Tag tag;              ///< of the patch that it represents
-    bool collar = false;  ///< of the collar surface; the tag is 0
+    Tag tag;              ///< tag of the patch that it represents
+    bool collar = false;  ///< part of the collar surface; the tag is 0
   };
   struct Segment {
     std::array<Index, 2> ends;
-    Tag tag;  ///< of the curve
+    Tag tag;  ///< tag of the curve
   };
   struct Ball {
     Point centre;
@@ -49,10 +49,10 @@ struct TraceStep {
   std::string stage;                    ///< box, refine, rip, stitch, coarsen, improve, project
   std::string detail;                   ///< for people; may be empty
   std::vector<Point> points;            ///< vertices, and ends of segments that are no vertices yet
-  std::vector<std::uint8_t> dimension;  ///< of the feature that each point lies on; 3: none
+  std::vector<std::uint8_t> dimension;  ///< dimension of the feature that each point lies on; 3: none
   std::vector<std::array<Index, 4>> tets;
-  std::vector<Index> region;  ///< of each tet, 0 outside
-  std::vector<State> state;   ///< of each tet
+  std::vector<Index> region;  ///< region of each tet, 0 outside
+  std::vector<State> state;   ///< state of each tet
   std::vector<Triangle> triangles;
   std::vector<Segment> segments;
   std::vector<Ball> balls;

@@ -103,7 +103,7 @@ def convert(
             divided = found if partitions is None else found.partitioned(partitions)
             divided.write(target, kind, ghost_cells=ghost_cells)
             return
-        by_tag = numpy.argsort(found.face_tag, kind="stable")  # formats without tags number patches as they come
+        by_tag = numpy.argsort(found.face_tag, kind="stable")  # for formats that number patches
         source = (found.points, found.faces[by_tag], found.face_tag[by_tag])
     surfaces: Sequence[Any] = source if isinstance(source, list) else [source]
     if to_surface:

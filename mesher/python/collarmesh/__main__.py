@@ -12,7 +12,7 @@ def program() -> str:
     if own.exists():
         return str(own)
     command = pathlib.Path(sys.argv[0])
-    for folder in os.get_exec_path():  # the command of the package itself may stand on it
+    for folder in os.get_exec_path():  # the package's own command may be on the path
         found = shutil.which("collarmesh", path=folder)
         if found is not None and not (command.exists() and os.path.samefile(found, command)):
             return found

@@ -44,7 +44,7 @@ def _tags(mesh: Any, dimension: int, cells: Array, tags: Array) -> Any:
     mesh.topology.create_connectivity(dimension, 3)
     values = tags.astype(numpy.int32)
     distribute, of = dolfinx.io.distribute_entity_data, mesh
-    if not isinstance(distribute, types.FunctionType):  # compiled, it takes the compiled mesh; before 0.9
+    if not isinstance(distribute, types.FunctionType):  # before 0.9: a compiled function
         of = getattr(mesh, "_cpp_object", None) or mesh._mesh
     entities, local = distribute(of, dimension, numpy.ascontiguousarray(cells), values)
     if hasattr(dolfinx.graph, "adjacencylist"):

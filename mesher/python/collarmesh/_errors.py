@@ -8,7 +8,8 @@ from ._core import OptionError
 from ._inputs import Array, ArrayLike, one_for_each
 from ._mesh import Mesh
 
-# The volume of a tetrahedron of a mesh that was made for a target edge length is in the mean this share of the length's cube.
+# The mean volume of the tetrahedra of a mesh that was made for a target edge length, as a share of the
+# length's cube.
 _VOLUME_PER_CUBE = 0.125
 
 
@@ -47,7 +48,7 @@ def estimated_errors(mesh: Mesh, values: ArrayLike) -> Array:
     volumes = _volumes(mesh)
     recovered = _at_points(mesh, volumes, gradients)[mesh.tets]
     off = recovered - gradients[:, None]
-    # The exact integral of the square of what is linear between the corners.
+    # The exact integral of the square of a function that is linear between the corners.
     squares = (off**2).sum(axis=(1, 2)) + (off.sum(axis=1) ** 2).sum(axis=1)
     errors: Array = numpy.sqrt(volumes * squares / 20)
     return errors
@@ -84,14 +85,14 @@ def sizes_from_errors(
         raise OptionError(f"finest must be above 0 and at most 1, coarsest at least 1, not {finest!r} and {coarsest!r}")
     volumes = _volumes(mesh)
     lengths = numpy.cbrt(volumes / _VOLUME_PER_CUBE)
-    power = order + 1.5  # by which the error of one tetrahedron falls with its length
+    power = order + 1.5  # the error of one tetrahedron falls with this power of its length
     known = numpy.maximum(given, 1e-12 * given.max() if given.max() > 0 else 1)
 
     def factors(goal: float) -> Array:
         return numpy.clip((goal / known) ** (1 / power), finest, coarsest)
 
     def excess(goal: float) -> float:
-        """How many more tetrahedra, or how much less error, than is asked for: it falls as each one may have more error."""
+        """Returns the excess of tetrahedra, or the lack of error; it falls as each one may have more error."""
         factor = factors(goal)
         if elements is not None:
             return float((factor**-3.0).sum() - elements)

@@ -1,4 +1,4 @@
-"""What can be meshed: files, surfaces of arrays, complexes with holes and regions; and the values of options."""
+"""Inputs of the mesher: files, surfaces of arrays, complexes with holes and regions; and the values of options."""
 
 import inspect
 import os
@@ -8,7 +8,7 @@ import numpy
 
 from ._core import OptionError
 
-if TYPE_CHECKING:  # importing numpy.typing takes as long as all the rest
+if TYPE_CHECKING:  # importing numpy.typing takes as long as everything else
     import numpy.typing
 
     Array = numpy.typing.NDArray[Any]
@@ -55,7 +55,7 @@ def integers(values: ArrayLike, what: str, columns: Optional[int] = None) -> Arr
 
 
 def one_for_each(values: Array, count: int, what: str, of: str) -> Array:
-    """The values, which are as many as there are things that they are of."""
+    """Checks that there is one value for each item, and returns the values."""
     if len(values) != count:
         raise OptionError(f"{what} must be an array of shape (n,), one for each {of}: {count}, not {len(values)}")
     return values
@@ -159,7 +159,7 @@ Input = Union[Path, Complex, Tuple[ArrayLike, ArrayLike], Tuple[ArrayLike, Array
 
 
 def inputs(given: Sequence[Input]) -> List[Any]:
-    """What the compiled part takes: paths, and dicts of arrays."""
+    """Converts inputs for the compiled part: paths, and dicts of arrays."""
     if not given:
         raise OptionError("there is nothing to mesh: give files, surfaces (points, triangles) or complexes")
     result: List[Any] = []
@@ -206,7 +206,7 @@ def sampled_sizes(
     numbers = numpy.arange(len(points)).reshape(counts)
     cell = numbers[:-1, :-1, :-1].reshape(-1, 1)
     step = (counts[1] * counts[2], counts[2], 1)
-    paths = [(0, 1, 2), (1, 2, 0), (2, 0, 1), (0, 2, 1), (2, 1, 0), (1, 0, 2)]  # along the axes, six tets to a cell
+    paths = [(0, 1, 2), (1, 2, 0), (2, 0, 1), (0, 2, 1), (2, 1, 0), (1, 0, 2)]  # along the axes, six per cell
     tets = []
     for number, path in enumerate(paths):
         ends = numpy.cumsum([0, *(step[axis] for axis in path)])
@@ -215,10 +215,10 @@ def sampled_sizes(
 
 
 def takes_arrays(function: Callable[..., Any]) -> bool:
-    """Does a size field take one argument, places of shape (n, 3), rather than x, y and z?"""
+    """Returns whether a size field takes one argument, places of shape (n, 3), rather than x, y and z."""
     try:
         parameters = inspect.signature(function).parameters.values()
-    except (TypeError, ValueError):  # of a function that is compiled
+    except (TypeError, ValueError):  # compiled functions have no signature
         return False
     needed = [each for each in parameters if each.kind in (each.POSITIONAL_ONLY, each.POSITIONAL_OR_KEYWORD)
               and each.default is each.empty]
@@ -226,7 +226,7 @@ def takes_arrays(function: Callable[..., Any]) -> bool:
 
 
 def _on_points(tets: Array, values: Array, count: int) -> Array:
-    """Of values of tetrahedra: at each point the smallest of those around it. Points without a tetrahedron get the
+    """Returns at each point the smallest value of the tetrahedra around it. Points without a tetrahedron get the
     smallest of all."""
     found = numpy.full(count, values.min() if len(values) else 0.0)
     found[tets.ravel()] = numpy.inf
@@ -261,7 +261,7 @@ def _size_field(field: SizeField) -> Any:
 
 
 def given(options: Mapping[str, Any]) -> Dict[str, Any]:
-    """Options as the compiled part takes them, without those that are None."""
+    """Converts options for the compiled part, without those that are None."""
     found = {name: value for name, value in options.items() if value is not None}
     if "names" in found:
         names = found["names"]

@@ -1,4 +1,4 @@
-"""The mesh: arrays of numpy, and the ways to other programs."""
+"""The mesh: arrays of numpy, and conversions to other programs."""
 
 import os
 from typing import Any, Dict, List, Mapping, Optional, Tuple
@@ -32,8 +32,8 @@ _ARRAYS = {
     "feature_dimension": (numpy.uint8, 1),
     "feature": (numpy.int64, 1),
 }
-# The places of our nodes amid edges in meshio's and VTK's cells of second order: corners, then ab, bc, ca,
-# ad, bd, cd.
+# The places of our mid-edge nodes in meshio's and VTK's cells of second order: corners, then ab, bc, ca, ad,
+# bd, cd.
 _MESHIO_CELLS = {1: ("tetra", "triangle", "line"), 2: ("tetra10", "triangle6", "line3")}
 _VTK_CELLS = {1: 10, 2: 24}
 
@@ -41,7 +41,7 @@ _VTK_CELLS = {1: 10, 2: 24}
 # The same nodes in the order of dolfinx.
 _DOLFINX_TETS = {1: [0, 1, 2, 3], 2: [0, 1, 2, 3, 9, 8, 5, 7, 6, 4]}
 _DOLFINX_TRIANGLES = {1: [0, 1, 2], 2: [0, 1, 2, 4, 5, 3]}
-# The triangles of a tetrahedron, seen from outside, with its nodes amid their edges.
+# The triangles of a tetrahedron as seen from outside, with their mid-edge nodes.
 _SIDES = [[1, 2, 3, 5, 9, 8], [0, 3, 2, 7, 9, 6], [0, 1, 3, 4, 8, 7], [0, 2, 1, 6, 5, 4]]
 
 
@@ -175,7 +175,7 @@ class Mesh:
 
     @classmethod
     def _of(cls, arrays: Dict[str, Any]) -> "Mesh":
-        """What the compiled part gives."""
+        """Makes a mesh from the result of the compiled part."""
         mesh = cls.__new__(cls)
         mesh.__setstate__(arrays)
         return mesh
@@ -184,10 +184,10 @@ class Mesh:
         return {**self._arrays(), "check": self._check, "colours": self.colours, **self._said}
 
     def __setstate__(self, state: Dict[str, Any]) -> None:
-        arrays = {"tet_partition": numpy.empty(0, dtype=numpy.int64), **state}  # earlier versions had none
+        arrays = {"tet_partition": numpy.empty(0, dtype=numpy.int64), **state}  # missing in earlier versions
         for name in _ARRAYS:
             array = arrays[name]
-            array.setflags(write=False)  # pickle gives arrays that can be written to
+            array.setflags(write=False)  # pickle makes arrays writable
             setattr(self, name, array)
         self.names = state["names"]
         self.colours = state.get("colours", {})
@@ -219,30 +219,30 @@ class Mesh:
 
     @property
     def findings(self) -> List[str]:
-        """What does not hold: sentences with places."""
+        """The violated guarantees: sentences with places."""
         told = [f"{f['guarantee']}: {f['message']}" for f in (self._check or {}).get("findings", [])]
         return ([self._said["status_message"]] if self._said["status_message"] else []) + told
 
     @property
     def split(self) -> Optional[Dict[str, Any]]:
-        """What `split=` and `keep_apart=` did, as in reports: "patches" with the tags of their sides ("minus", "plus"),
+        """The results of `split=` and `keep_apart=`, as in reports: "patches" with the tags of their sides ("minus", "plus"),
         "triangles", "area" and "where"; "split_nodes", "junction_nodes", "new_nodes", "front_nodes". None without them."""
         found: Optional[Dict[str, Any]] = self._said["split"]
         return found
 
     @property
     def repairs(self) -> List[str]:
-        """What was done to surfaces that were no valid complex: sentences with places."""
+        """The changes that made surfaces a valid complex: sentences with places."""
         return list(self._said["repairs"])
 
     @property
     def warnings(self) -> List[str]:
-        """What the input has that is of no effect or contradicts something else."""
+        """Parts of the input that have no effect or contradict others: sentences."""
         return list(self._said["warnings"])
 
     @property
     def notes(self) -> List[str]:
-        """What was done to CAD shapes."""
+        """The changes to CAD shapes: sentences."""
         return list(self._said["notes"])
 
     @property
@@ -256,7 +256,7 @@ class Mesh:
         return float((self._check or {}).get("max_dihedral", numpy.nan))
 
     def name(self, dimension: int, tag: int) -> str:
-        """What a tag is called in formats with names: patches have dimension 2, regions 3, curves 1."""
+        """Returns the name of a tag in formats with names: patches have dimension 2, regions 3, curves 1."""
         given = self.names.get(dimension, {}).get(tag)
         if given is not None:
             return given
@@ -341,7 +341,7 @@ class Mesh:
         return result
 
     def _weights(self, shares: Array) -> Array:
-        """Of the nodes of a tetrahedron, at places with these shares of its corners."""
+        """Returns the weights of a tetrahedron's nodes at places with these shares of its corners."""
         if self.order == 1:
             return shares
         amid = [4 * shares[:, i] * shares[:, j] for i, j in ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))]
@@ -438,7 +438,7 @@ class Mesh:
                       zorder=1e6, bbox={"boxstyle": "round,pad=0.15", "facecolor": "w", "edgecolor": "none", "alpha": 0.7})
 
     def _repr_html_(self) -> str:
-        """What notebooks show: the certificate and the figures of the mesh."""
+        """HTML for notebooks: the certificate and the figures of the mesh."""
         return table_of(self.passed if self._check else None, self.findings, self.repairs, self.info()["mesh"],
                         self._check or {})
 

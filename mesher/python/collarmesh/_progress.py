@@ -1,4 +1,4 @@
-"""A bar on standard error for those who wait."""
+"""A progress bar on standard error."""
 
 import contextlib
 import shutil
@@ -10,7 +10,7 @@ Told = Callable[[str, float], Optional[bool]]
 
 @contextlib.contextmanager
 def watching(progress: Union[bool, Told, None]) -> Iterator[Optional[Told]]:
-    """What the compiled part is to call; with True a bar, which ends its line at the end."""
+    """Returns the callable for the compiled part; with True a bar, which ends its line at the end."""
     if progress is not True:
         yield progress or None
         return

@@ -1,4 +1,4 @@
-"""What the dicts have that functions return; the same as the command line prints as JSON."""
+"""The types of the dicts that functions return; they match the JSON of the command line."""
 
 from typing import Dict, List, Optional, TypedDict
 
@@ -116,7 +116,7 @@ class MeshInfo(TypedDict):
 
 
 class Info(TypedDict, total=False):
-    """Of a surface "complex" and "repair", of a mesh "mesh"."""
+    """A surface has "complex" and "repair", a mesh has "mesh"."""
 
     complex: ComplexFigures
     repair: RepairFigures

@@ -43,7 +43,7 @@ Index index(std::int64_t value, std::size_t size, const std::string& what) {
   return static_cast<Index>(value);
 }
 
-/// Rows of indices of points.
+/// Reads rows of point indices.
 template <std::size_t columns>
 std::vector<std::array<Index, columns>> rows(const py::dict& arrays, const char* key, std::size_t points) {
   const auto flat = values<std::int64_t>(arrays, key);
@@ -60,7 +60,7 @@ std::vector<T> numbers(const py::dict& arrays, const char* key) {
   return {wide.begin(), wide.end()};
 }
 
-/// An array that owns its values and is not to be written to.
+/// Returns an array that owns its values and is read-only.
 template <class T>
 py::array owned(std::vector<T> values, py::ssize_t columns) {
   auto kept = std::make_unique<std::vector<T>>(std::move(values));
@@ -77,7 +77,7 @@ template <class T>
 py::array signed_array(const std::vector<T>& items) {
   return owned(std::vector<std::int64_t>(items.begin(), items.end()), 1);
 }
-/// `none` is -1.
+/// Returns indices; `none` becomes -1.
 py::array index_array(const std::vector<Index>& items) {
   std::vector<std::int64_t> wide;
   wide.reserve(items.size());

@@ -8,25 +8,26 @@
 #include "collarmesh/tag_colours.h"
 #include "collarmesh/tet_mesh.h"
 
-/// Arrays of numpy to and from the library's types. The Python side has looked at their shapes and kinds.
+/// Converts arrays of numpy to and from the library's types. The Python side has checked their shapes and
+/// kinds.
 namespace collarmesh::python {
 
-/// Keys: name, points (n, 3); corners (c,), polygon_ends (p,), facet_ends (f,), facet_tags (f,); segments
-/// (s, 2), segment_tags (s,); holes (h, 3); regions (r, 5): place, tag, size; facet_holes (k, 4): facet,
-/// place. Throws OptionError for corners out of range.
+/// Makes a soup from a dict. Keys: name, points (n, 3); corners (c,), polygon_ends (p,), facet_ends (f,),
+/// facet_tags (f,); segments (s, 2), segment_tags (s,); holes (h, 3); regions (r, 5): place, tag, size;
+/// facet_holes (k, 4): facet, place. Throws OptionError for corners out of range.
 PolygonSoup soup_of(const pybind11::dict& arrays);
-/// A dict of dimension to a dict of tag to "#rrggbb".
+/// Returns a dict of dimension to a dict of tag to "#rrggbb".
 pybind11::dict colours_of(const TagColours& colours);
-/// The facets as triangles and polygons, in the same keys.
+/// Returns the facets as triangles and polygons, with the same keys.
 pybind11::dict arrays_of(const PolygonSoup& soup);
 
-/// Keys: the arrays of TetMesh by their names, feature_dimension and feature for those of points, `names`, a
-/// dict of dimension to a dict of tag to name, and `cad_names`.
+/// Makes a mesh from a dict. Keys: the arrays of TetMesh by their names, feature_dimension and feature for
+/// those of points, `names`, a dict of dimension to a dict of tag to name, and `cad_names`.
 TetMesh tet_mesh_of(const pybind11::dict& arrays);
 pybind11::dict arrays_of(TetMesh mesh);
-/// The tet, the shares of its corners and the nearest point of each place; -1 for none.
+/// Returns the tet, the shares of its corners and the nearest point of each place; -1 for none.
 pybind11::tuple arrays_of(const std::vector<MeshPlace>& places);
-/// `TetMesh::tet_partition` alone.
+/// Returns `TetMesh::tet_partition` alone.
 pybind11::array partition_array(const TetMesh& mesh);
 
 }  // namespace collarmesh::python

@@ -1,4 +1,4 @@
-// The mesher for Python: what collarmesh/__init__.py calls.
+// The mesher for Python: the functions that collarmesh/__init__.py calls.
 #include <fmt/format.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -35,7 +35,7 @@ namespace collarmesh::python {
 
 namespace {
 
-/// What is to be meshed: paths and surfaces of arrays, in their order.
+/// The input to mesh: paths and surfaces of arrays, in their order.
 struct Inputs {
   std::vector<std::string> paths;
   std::vector<PolygonSoup> soups;
@@ -52,7 +52,7 @@ Inputs inputs_of(const py::list& given) {
   return inputs;
 }
 
-/// A complex and where it came from; what refers to the other stays beside it.
+/// A complex and the input it came from, which must stay alive because other data refer to it.
 struct Complex {
   std::optional<files::ComplexInput> input;
   Plc plc;
@@ -87,7 +87,7 @@ py::object parsed(const nlohmann::ordered_json& json) {
   return py::module_::import("json").attr("loads")(json.dump());
 }
 
-/// What a call owns while its work runs, and afterwards what came out.
+/// The data that a call owns while its work runs, and its results afterwards.
 struct MeshCall {
   Inputs inputs;
   Options options;
@@ -95,10 +95,10 @@ struct MeshCall {
   SoupPipelineResult run;
 };
 
-/// The complexes of a call's inputs.
+/// Builds the complexes of a call's inputs.
 class InputSource : public ComplexSource {
  public:
-  /// All are kept by reference.
+  /// Keeps all by reference.
   InputSource(const Options& options, files::ComplexInput& input) : options_(options), input_(input) {}
 
   RepairedPlc build(const RepairOptions& repair, const Execution&) override {
@@ -121,7 +121,7 @@ class InputSource : public ComplexSource {
 void mesh(MeshCall& call, Watch& watch) {
   call.input.emplace(read(call.inputs, call.options, watch));
   PipelineOptions options = call.options;
-  options.mesh.time_limit = 0;  // the watch looks at it, over all that the call does
+  options.mesh.time_limit = 0;  // the watch limits the whole call
   InputSource source(call.options, *call.input);
   call.run = run_pipeline(source, options, watch.execution());
   MeshResult& result = call.run.result;
@@ -158,7 +158,7 @@ struct RemeshCall {
 void remesh(RemeshCall& call, Watch& watch) {
   watch.begin_stage("complex");
   PipelineOptions options = call.options;
-  options.mesh.time_limit = 0;  // the watch looks at it
+  options.mesh.time_limit = 0;  // the watch limits the whole call
   const auto adapt = [&](const Plc& plc, PipelineOptions& adapted) {
     if (SizeField field = size_field_for(plc, call.options)) adapted.mesh.size_field = std::move(field);
   };
@@ -279,7 +279,7 @@ struct ConvertCall {
   std::string told;
 };
 
-/// Surfaces as they are become one file. What was welded, merged and dropped is returned as text.
+/// Joins surfaces into one file as they are. Returns as text what was welded, merged and dropped.
 std::string convert_surfaces(const py::list& inputs, const std::string& output, const py::dict& options) {
   const auto call = std::make_shared<ConvertCall>();
   call->inputs = inputs_of(inputs);
@@ -302,7 +302,7 @@ py::dict read_mesh(const std::string& path, const std::string& format) {
   return arrays_of(std::move(*mesh));
 }
 
-/// None for a surface.
+/// Returns the mesh, or None for a surface.
 py::object read_mesh_if_there(const std::string& path, const std::string& format) {
   const auto mesh = std::make_shared<std::optional<TetMesh>>();
   run_watched([mesh, path, format](Watch&) { *mesh = files::read_mesh_if_there(path, format); }, py::none(),
@@ -321,21 +321,21 @@ void write_mesh(const py::dict& arrays, const std::string& path, const std::stri
               py::none(), 0);
 }
 
-/// The partition of each tet.
+/// Returns the partition of each tet.
 py::array partition_mesh(const py::dict& arrays, unsigned partitions) {
   const auto mesh = std::make_shared<TetMesh>(tet_mesh_of(arrays));
   run_watched([mesh, partitions](Watch&) { partition(*mesh, partitions); }, py::none(), 0);
   return partition_array(*mesh);
 }
 
-/// What other programs do not know is filled in.
+/// Fills in data that other programs do not provide.
 py::dict complete(const py::dict& arrays) {
   TetMesh mesh = tet_mesh_of(arrays);
   io::complete_mesh("the mesh", mesh);
   return arrays_of(std::move(mesh));
 }
 
-/// (tet or -1, shares of its corners, nearest point or -1), by point.
+/// Returns (tet or -1, shares of its corners, nearest point or -1), by point.
 py::tuple locate_points(const py::dict& arrays, const py::dict& places) {
   const auto mesh = std::make_shared<TetMesh>(tet_mesh_of(arrays));
   const auto points = std::make_shared<std::vector<Point>>(soup_of(places).points);
@@ -349,7 +349,7 @@ py::tuple locate_points(const py::dict& arrays, const py::dict& places) {
 PYBIND11_MODULE(_core, module) {
   module.attr("__version__") = COLLARMESH_VERSION;
   const auto error = py::register_exception<Error>(module, "Error", PyExc_RuntimeError);
-  // Looked at from the last one to the first: a subclass comes after what it is one of.
+  // pybind11 tries translators in reverse order, so register base classes before subclasses.
   py::register_exception<OptionError>(module, "OptionError", error.ptr());
   py::register_exception<ReadError>(module, "ReadError", error.ptr());
   py::register_exception<WriteError>(module, "WriteError", error.ptr());

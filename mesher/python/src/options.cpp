@@ -54,7 +54,7 @@ void take(const Option& option, const py::handle& given, Options& options) {
   option.set(options, value);
 }
 
-/// Keeps an object of Python, and lets it go with the lock of the interpreter held.
+/// Keeps a Python object, and releases it while holding the interpreter's lock.
 std::shared_ptr<py::object> kept(const py::object& object) {
   return {new py::object(object), [](py::object* held) {
             const py::gil_scoped_acquire acquire;
@@ -68,7 +68,7 @@ std::shared_ptr<py::object> kept(const py::object& object) {
                   p.x, p.y, p.z));
 }
 
-/// A callable of a place, called with the lock of the interpreter held.
+/// Wraps a callable of a place; calls it while holding the interpreter's lock.
 SizeField field_of(const py::object& callable) {
   return [function = kept(callable)](const Point& p) {
     const py::gil_scoped_acquire acquire;
@@ -83,7 +83,7 @@ SizeField field_of(const py::object& callable) {
   };
 }
 
-/// A callable of an array of places, one in each row, that gives an array of sizes.
+/// Wraps a callable of an array of places, one per row, that returns an array of sizes.
 SizesAt sizes_of_arrays(const py::object& callable) {
   return [function = kept(callable)](const std::vector<Point>& places) {
     const py::gil_scoped_acquire acquire;
@@ -103,7 +103,7 @@ SizesAt sizes_of_arrays(const py::object& callable) {
   };
 }
 
-/// Does it take one argument, the places, rather than x, y and z?
+/// Returns whether it takes one argument, the places, instead of x, y and z.
 bool takes_arrays(const py::object& callable) {
   return py::module_::import("collarmesh._inputs").attr("takes_arrays")(callable).cast<bool>();
 }

@@ -15,13 +15,13 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto between_looks = 30ms;     // at signals
-constexpr auto until_abandoned = 700ms;  // from the wish to stop
+constexpr auto between_looks = 30ms;     // interval of checking signals
+constexpr auto until_abandoned = 700ms;  // time to wait after a request to stop
 constexpr auto until_interpreter_ends = 10s;
 
 std::atomic<int> abandoned{0};
 
-/// May Python go on? Runs the handlers of signals that came in the meantime.
+/// Runs the handlers of signals that came in the meantime. Returns whether Python may go on.
 bool signals_handled() {
   const py::gil_scoped_acquire acquire;
   return PyErr_CheckSignals() == 0;
@@ -66,7 +66,7 @@ void run_watched(std::function<void(Watch&)> work, const py::object& progress, d
     } catch (...) {
       failure = std::current_exception();
     }
-    work = nullptr;  // what it owns goes before anybody hears of the end
+    work = nullptr;  // its data is destroyed before the end is reported
     const std::lock_guard lock(watch->mutex_);
     watch->failure_ = failure;
     watch->done_ = true;

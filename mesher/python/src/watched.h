@@ -16,23 +16,23 @@
 
 namespace collarmesh::python {
 
-/// The work ended because it was asked to.
+/// The work ended on request.
 struct Cancelled : Error {
   using Error::Error;
 };
 
-/// Vertices, memory or time are spent.
+/// The budget of vertices, memory or time is spent.
 struct BudgetSpent : Error {
   using Error::Error;
 };
 
-/// What the thread that works and the one that called it share. It outlives both: a call that is interrupted
-/// leaves work behind that does not look at the flag soon enough.
+/// The data that the working thread shares with its caller. It outlives both: an interrupted call may leave
+/// work behind that does not check the flag soon enough.
 class Watch {
  public:
-  /// For the work: reports go to the thread that called, which asks Python.
+  /// For the work: sends reports to the calling thread, which asks Python.
   Execution execution();
-  /// Throws Cancelled when the work is to end.
+  /// Throws Cancelled if the work must end.
   void stop_if_asked() const;
   const std::atomic<bool>& flag() const { return cancel_; }
   void begin_stage(std::string stage);
@@ -48,22 +48,23 @@ class Watch {
   void report(std::string phase, double fraction);
 
   std::atomic<bool> cancel_{false};
-  std::mutex mutex_;  // guards what follows
+  std::mutex mutex_;  // guards the following members
   std::condition_variable changed_;
-  std::vector<News> news_;  // since the caller looked: the last of each phase, so that none is missed
+  std::vector<News> news_;  // since the caller last looked: the last report of each phase, so that none is
+                            // missed
   std::string stage_ = "start";
   bool done_ = false;
   std::exception_ptr failure_;
 };
 
-/// Do the work in a thread of its own. Meanwhile signals are looked at, so that Ctrl-C is KeyboardInterrupt
-/// within a second, and `progress`, None or a callable, is told of what is new; what it raises ends the work,
-/// and False cancels it. It hears 1 at the end. So does the time limit, in seconds; 0: none. What the work
-/// throws is thrown here. The work must own all that it touches. Throws BudgetSpent, Cancelled, and what
-/// Python raised.
+/// Does the work in a thread of its own. Meanwhile it checks signals, so that Ctrl-C raises KeyboardInterrupt
+/// within a second, and calls `progress`, None or a callable, with new reports: an exception from it ends the
+/// work, and False cancels it. The last call reports 1. The time limit, in seconds, ends the work, too; 0:
+/// none. Rethrows exceptions of the work. The work must own all data that it uses. Throws BudgetSpent,
+/// Cancelled, and what Python raised.
 void run_watched(std::function<void(Watch&)> work, const pybind11::object& progress, double time_limit);
 
-/// Wait a while for work that was left behind; for the end of the interpreter.
+/// Waits a while for work that was left behind. Call it at the end of the interpreter.
 void wait_for_abandoned();
 
 }  // namespace collarmesh::python

@@ -10,7 +10,8 @@ namespace collarmesh::checks {
 namespace {
 
 constexpr double slack = 1e-9;  // relative
-// Of the angle between the normals of two sides of a patch, which are of the mesh: some 25 degrees.
+// Two sides of a patch face opposite ways if the cosine between the mesh's normals is below this: within some
+// 25 degrees of opposite.
 constexpr double least_cosine_of_sides = -0.9;
 
 // By point, the one of lowest dimension that the mesh shows it to be on.

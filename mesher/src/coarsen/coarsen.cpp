@@ -30,32 +30,32 @@ using improvement::Workpiece;
 using Mode = CoarseningRule::Mode;
 
 constexpr unsigned plain_passes = 4, repair_passes = 6, rounds = 12;
-// Steps that may repair a contraction. Hardly a step mends two tets, so what has more tets to mend than steps
-// left is given up.
+// Most repair steps per collapse. A step rarely fixes two tets, so repair gives up when more tets are poor
+// than steps remain.
 constexpr unsigned most_repairs = 24;
-// Vertices whose shortest edge is below this share of its target are worth repairs, which are trials that
-// fail more often than not.
+// Vertices whose shortest edge is below this share of its target are worth repairs, most of which fail.
 constexpr double repaired_below = 0.65;
-// Vertices inside regions are asked where their shortest edge is below this share. After refinement half of
-// them have one of 0.75 to 0.8, and one in 540 of these can be contracted.
+// Vertices inside regions are tried if their shortest edge is below this share. After refinement half of them
+// have one of 0.75 to 0.8, and hardly any of these can be collapsed.
 constexpr double asked_inside_below = 0.75;
 constexpr unsigned most_sweeps = 8;
-// A pass that removes a smaller share of the tets is the last one of its round; after such a round, once
-// improvement before it has ended by itself, all vertices are asked again.
+// A pass that removes a smaller share of the tets ends its round. After such a round, if improvement before
+// it found nothing more, all vertices are tried again.
 constexpr double least_share = 0.005;
 constexpr std::size_t steps_between_reports = 4096;
-// Where more vertices have changed, looking at all tets costs less than finding those at the vertices.
+// If more vertices have changed than this, looking at all tets costs less than finding the tets at the
+// vertices.
 constexpr std::size_t tets_per_logged_change = 24;
-// Proposals are made for so many items at once, or for this share of them: few of all, so that they hardly
-// meet, but several for each thread.
+// The number of items for which changes are proposed at once, or their share: few of all, so that proposals
+// rarely meet, but several for each thread.
 constexpr std::size_t most_proposals = 256, items_per_proposal = 256, proposals_per_thread = 4;
-// Items of one rank lie in so many rows, or in this share of them.
+// The number of rows that items of one rank lie in, or its share of them.
 constexpr std::size_t most_rows = 256, items_per_row = 16;
-constexpr double ranks_of_lengths = 64;  // for each unit of squared relative length
+constexpr double ranks_of_lengths = 64;  // ranks for each unit of squared relative length
 
 constexpr double square(double x) { return x * x; }
 
-// Two ranks for each factor of two.
+// Returns the rank of a quality: two ranks for each factor of two.
 int rank_of_quality(double quality) { return quality > 0 ? std::ilogb(quality * quality) : INT_MIN; }
 
 std::size_t proposals_at_once(std::size_t items) {
@@ -64,10 +64,10 @@ std::size_t proposals_at_once(std::size_t items) {
   return std::min(most_proposals, std::max(items / items_per_proposal, proposals_per_thread * threads));
 }
 
-// Sorted by rank. Items of one rank, given in the order of memory, are cut into consecutive rows; then come
-// the first of each row, the second of each row, and so on. So the proposals of one batch are far apart, and
-// those of the next batch are beside what the caches hold. (In the exact order of lengths or qualities
-// coarsening took a quarter longer.)
+// Sorts items by rank. Items of one rank, given in the order of memory, are cut into consecutive rows; then
+// come the first of each row, the second of each row, and so on. So the proposals of one batch are far apart,
+// and those of the next batch are near data that the caches hold. The exact order of lengths or qualities
+// would be slower.
 template <class Item>
 std::vector<Item> in_order(std::vector<Item> items) {
   std::stable_sort(items.begin(), items.end(), [](const Item& a, const Item& b) { return a.rank < b.rank; });
@@ -86,9 +86,9 @@ std::vector<Item> in_order(std::vector<Item> items) {
   return ordered;
 }
 
-/// Contracts and improves, items by rank, the most promising first. What is to be done at the next items is
-/// proposed by several threads at once and done one after the other; where anything that a proposal depends
-/// on has changed meanwhile, it is made again. So the result is the one that a single thread makes.
+/// Collapses edges and improves tets, by rank, the most promising first. Several threads propose changes for
+/// the next items at once; the changes are made one after the other, and proposed again if anything that they
+/// depend on has changed meanwhile. So the result is the one that a single thread makes.
 class Coarsening {
  public:
   Coarsening(Workpiece& workpiece, const MeshOptions& made_with, const Execution& execution)
@@ -104,7 +104,7 @@ class Coarsening {
         proposers_([this] { return Proposer(workpiece_, thin_, cells_, radius_edge_, sizes_, changes_); }),
         execution_(execution) {}
 
-  // Holes stay round all the same.
+  // Returns the options without `edges_per_hole`: coarsening keeps holes round without it.
   static MeshOptions sizes_asked_for(MeshOptions options) {
     options.edges_per_hole = 0;
     return options;
@@ -116,9 +116,9 @@ class Coarsening {
     workpiece_.prepare();
     for (unsigned pass = 0; pass < plain_passes && !report_.cancelled; ++pass)
       if (!contract_all(false)) break;
-    // Improvement makes room for more contractions; between the passes of a round it would have all vertices
-    // asked again. Repairs reach beyond the tets at a vertex: in the end those are asked, too, at which
-    // nothing has changed.
+    // Improvement makes room for more collapses, so between the passes of a round it would have all vertices
+    // tried again. Repairs reach beyond the tets at a vertex, so in the end vertices where nothing has
+    // changed are tried, too.
     bool ask_all = false;
     for (unsigned round = 0; round < rounds && !report_.cancelled; ++round) {
       const bool settled = improve_all();
@@ -143,7 +143,7 @@ class Coarsening {
     return rule_.squared_relative_length(squared_distance(mesh().points[a], mesh().points[b]), a, b);
   }
 
-  // Makes a proposal for each item, and uses it. False when stopped.
+  // Makes a proposal for each item, and applies it. Returns false when stopped.
   template <class Proposal, class Item, class Make, class UpToDate, class Use>
   bool for_each(const std::vector<Item>& items, const Make& make, const UpToDate& up_to_date,
                 const Use& use) {
@@ -166,7 +166,7 @@ class Coarsening {
   }
 
   struct Candidate {
-    int rank;  // by the shortest edge
+    int rank;  // by its shortest edge
     Index vertex;
     bool worth_repairs;
   };
@@ -176,8 +176,8 @@ class Coarsening {
     Index end;
   };
 
-  // The vertices with a short edge where something has changed since they were asked last by the same means,
-  // with or without repairs; those with the shortest edge first.
+  // Returns the vertices with a short edge where something has changed since they were last tried in the same
+  // way, with or without repairs; shortest edges first.
   std::vector<Candidate> find_candidates(bool repair) const {
     const std::uint32_t last = repair ? std::min(last_pass_, last_repairs_) : last_pass_;
     const auto ends = found_at_changed<ShortEdge>(last, [&](Index tet, std::vector<ShortEdge>& found) {
@@ -192,7 +192,7 @@ class Coarsening {
     return in_order(std::move(candidates));
   }
 
-  // The shortest edge at each end, in the order of ends.
+  // Returns the shortest edge at each end, in the order of ends.
   std::vector<ShortEdge> shortest_of_each(std::vector<ShortEdge> edges) const {
     constexpr std::size_t points_per_edge = 16;
     const std::size_t points = mesh().points.size();
@@ -212,7 +212,8 @@ class Coarsening {
     return found;
   }
 
-  // Those at which a vertex is asked. Most edges are found long enough without a division.
+  // Finds the short edges of a tet at which a vertex is tried. Most edges are found long enough without a
+  // division.
   void find_short_edges(Index tet, std::vector<ShortEdge>& ends) const {
     constexpr double surely = 1 + 1e-9;
     const auto& v = complex()[tet].corners;
@@ -231,13 +232,13 @@ class Coarsening {
       }
   }
 
-  // With an edge of this squared relative length?
+  // Returns whether a vertex with an edge of this squared relative length is tried.
   bool is_asked(Index vertex, double length) const {
     const unsigned dimension = mesh().features[vertex].dimension;
     return dimension != 0 && (dimension < 3 || length < square(asked_inside_below));
   }
 
-  // Every vertex once. Is another pass worthwhile?
+  // Tries every vertex once. Returns whether another pass is worthwhile.
   bool contract_all(bool repair) {
     const std::vector<Candidate> candidates = find_candidates(repair);
     last_pass_ = ++changes_.now;
@@ -320,7 +321,7 @@ class Coarsening {
     std::size_t count = 0;
     Index worst = none;
   };
-  // Of the tets that a trial made or changed those that must not stay.
+  // Returns the tets that a trial made or changed and that must not stay.
   ToMend tets_to_mend(double floor) const {
     ToMend found;
     double least = INFINITY;
@@ -337,7 +338,7 @@ class Coarsening {
     return found;
   }
 
-  // Does nothing more help? Then asking again would find the mesh as it is.
+  // Improves tets. Returns true if nothing more helps, so that another attempt would find the mesh unchanged.
   bool improve_all() {
     for (unsigned sweep = 0; sweep < most_sweeps; ++sweep)
       if (!improve_once()) return true;
@@ -347,7 +348,7 @@ class Coarsening {
   bool improve_once() {
     rule_.set_mode(Mode::final);
     struct Poor {
-      int rank;  // by the quality
+      int rank;  // by its quality
       Index tet;
       double quality;
     };
@@ -385,7 +386,7 @@ class Coarsening {
     return any && !report_.cancelled;
   }
 
-  // Infinity where there is nothing to improve.
+  // Returns the quality; infinity where there is nothing to improve.
   double quality_if_improvable(Index tet) const {
     if (!complex()[tet].alive ||
         rule_.surely_exceeds(improved_below, complex().corners(tet), complex()[tet].corners))
@@ -398,8 +399,8 @@ class Coarsening {
     return std::any_of(v.begin(), v.end(), [&](Index w) { return changes_.at_vertex[w] >= when; });
   }
 
-  // Collects what `look(tet, found)` adds to `found` for tets: all of those at which a vertex has changed at
-  // this time or later, once each in any order, and others where these are not few.
+  // Collects the items that `look(tet, found)` adds to `found`: for all tets at which a vertex has changed at
+  // this time or later, once each in any order, and for others if these are many.
   template <class Found, class Look>
   std::vector<Found> found_at_changed(std::uint32_t since, const Look& look) const {
     const std::optional<std::vector<Index>> vertices = few_changed(since);
@@ -423,7 +424,7 @@ class Coarsening {
     return all;
   }
 
-  // The least corner that has changed since.
+  // Returns the least corner that has changed since.
   Index first_changed(Index tet, std::uint32_t since) const {
     Index first = none;
     for (const Index v : complex()[tet].corners)
@@ -431,8 +432,8 @@ class Coarsening {
     return first;
   }
 
-  // The vertices that have changed since and are there, if they are few and the tets at each are joined by
-  // faces.
+  // Returns the vertices that have changed since and still exist, if they are few and the tets at each are
+  // connected by faces.
   std::optional<std::vector<Index>> few_changed(std::uint32_t since) const {
     if (since < log_begins_) return std::nullopt;
     const auto first = std::partition_point(log_.begin(), log_.end(),
@@ -454,7 +455,7 @@ class Coarsening {
   const std::vector<Index>& apply(Change change) {
     tets_ -= change.replacement.old.size();
     tets_ += change.replacement.created.size();
-    // A corner of a tet that goes may be in none of the new ones.
+    // A corner of a removed tet may be in none of the new ones.
     for (const Index t : change.replacement.old) {
       const auto& v = complex()[t].corners;
       touched_vertices_.insert(touched_vertices_.end(), v.begin(), v.end());
@@ -475,7 +476,7 @@ class Coarsening {
     touched_vertices_.clear();
   }
 
-  // What was changed stays.
+  // Keeps the changes.
   void settle() {
     ++changes_.now;
     if (log_.size() > complex().size() / tets_per_logged_change) {
@@ -497,7 +498,7 @@ class Coarsening {
     log_.push_back({changes_.now, vertex});
   }
 
-  // The cells of collars are not what they were.
+  // Marks cells again, because the cells of collars have changed.
   void finish() {
     workpiece_.complex.forget_balls();
     report_.tets_after = tets_;
@@ -510,21 +511,22 @@ class Coarsening {
   CellBounds cells_;
   CoarseningRule rule_;
   Changes changes_;
-  Proposer proposer_;  // of the thread that does it
+  Proposer proposer_;  // of the thread that applies changes
   tbb::enumerable_thread_specific<Proposer> proposers_;
   const Execution& execution_;
   std::size_t tets_ = 0;
-  std::uint32_t last_pass_ = 0, last_repairs_ = 0;  // when the last pass of any kind, and with repairs, began
-  std::uint32_t last_sweep_ = 0;                    // of improvement
+  std::uint32_t last_pass_ = 0, last_repairs_ = 0;  // when the last pass of any kind, and the last one with
+                                                    // repairs, began
+  std::uint32_t last_sweep_ = 0;                    // when the last sweep of improvement began
   struct Changed {
     std::uint32_t when;
     Index vertex;
   };
-  std::vector<Changed> log_;             // what `changes_` was told last
-  std::uint32_t log_begins_ = 1;         // since when it is complete
+  std::vector<Changed> log_;             // changes reported to `changes_` most recently
+  std::uint32_t log_begins_ = 1;         // the time from which the log is complete
   std::vector<Index> touched_;           // tets that were made or changed
-  std::vector<Index> touched_vertices_;  // of tets that went
-  std::vector<double> trial_qualities_;  // by tet, of those a trial changed
+  std::vector<Index> touched_vertices_;  // vertices of removed tets
+  std::vector<double> trial_qualities_;  // by tet, for tets that a trial changed
   std::vector<double> known_qualities_;  // by tet; infinite where good enough, NaN if not known
   CoarsenReport report_;
 };

@@ -5,8 +5,8 @@
 
 namespace collarmesh {
 
-/// As `coarsen`, of a mesh whose improvement comes next: the workpiece is not stored, thin tets are not
-/// marked, and the threads are those of the arena that runs the caller.
+/// Like `coarsen`, for a mesh that is improved next: does not write the workpiece back or mark thin tets, and
+/// runs in the caller's arena.
 CoarsenReport coarsen(improvement::Workpiece& workpiece, const MeshOptions& made_with,
                       const Execution& execution);
 

@@ -9,17 +9,17 @@ namespace collarmesh::coarsening {
 
 using improvement::Corners;
 
-/// The rule of coarsening: a tet of quality 1 or more is thin; its quality says how far its angles are within
-/// or beyond these bounds. Whatever has an angle above the largest is worse than all that has none.
+/// The rule of coarsening. A tet of quality 1 or more is thin; its quality tells how far its angles are
+/// within or beyond these bounds. A tet with an angle above the largest is worse than any tet without one.
 class CoarseningRule final : public improvement::AngleRule {
  public:
   enum class Mode {
     final,  ///< new tets keep the guarantee: they are thin or within the radius-edge bound
-    trial,  ///< they need not do so yet
-    force   ///< they only have to have a volume; quality without the last sentence above
+    trial,  ///< new tets need not keep the guarantee yet
+    force   ///< new tets only need a volume; quality ignores the last sentence above
   };
 
-  /// No operation makes an edge longer than this times the target length and than what was there.
+  /// No operation makes an edge longer than this times the target length, unless the old edge was longer.
   static constexpr double longest_new = 1.5;
 
   /// `thin`, `cells` and `sizes`, by vertex, are kept by reference.
@@ -36,7 +36,8 @@ class CoarseningRule final : public improvement::AngleRule {
     const bool fits = mode_ == Mode::force || !cells_.forbid_thin_tets() || cells_.allow(p, corners);
     return fits ? quality : improvement::CellBounds::forbidden * std::min(1.0, quality);
   }
-  /// Is the quality above this, which is at least 1? False of some that are; much cheaper.
+  /// Returns whether the quality is above this value, which is at least 1. Much cheaper than the quality; may
+  /// return false for some tets above it.
   bool surely_exceeds(double quality, const Corners& p, const std::array<Index, 4>& corners) const {
     return !cells_.lacks_interior_node(corners) && thin_.surely_exceeds(quality, p);
   }
@@ -47,7 +48,7 @@ class CoarseningRule final : public improvement::AngleRule {
     return squared_length <= squared_before ||
            squared_length <= longest_new * longest_new * squared_target(a, b);
   }
-  // Each move has contractions around asked again.
+  // Each move makes coarsening try the collapses around it again.
   double least_gain() const override { return 0.02; }
   unsigned step_lengths() const override { return 2; }
   bool dissolves_collars() const override { return true; }
@@ -57,7 +58,7 @@ class CoarseningRule final : public improvement::AngleRule {
   }
 
   void set_mode(Mode mode) { mode_ = mode; }
-  /// Squared length of an edge by the target there.
+  /// Returns the squared length of an edge relative to the target there.
   double squared_relative_length(double squared_length, Index a, Index b) const {
     return squared_length / squared_target(a, b);
   }

@@ -5,14 +5,14 @@
 
 namespace collarmesh::coarsening {
 
-/// How far the surface is from what it faces across a region, as the refinement measures it: along the
-/// normal, by what turns towards it.
+/// Measures the distance of the surface from the features that it faces across a region, as the refinement
+/// does: along the normal, among triangles turned towards it.
 class GapWidths {
  public:
-  /// Kept by reference.
+  /// Keeps the complex by reference.
   explicit GapWidths(const Plc& plc) : plc_(plc), facing_(plc) {}
 
-  /// From a point on a patch; `widest` when there is nothing nearer.
+  /// Returns the distance from a point on a patch; `widest` when there is nothing nearer.
   double from(const Point& p, Index patch, double widest);
 
  private:

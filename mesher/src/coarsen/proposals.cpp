@@ -9,10 +9,10 @@ using improvement::Change;
 
 namespace {
 
-// A contraction that makes nothing worse than this may be repaired.
+// A collapse may be repaired if it makes no tet worse than this.
 constexpr double repairable = 0.15;
 
-// The edges of a tet, longest first: removing the longest edges of a sliver helps most.
+// Returns the edges of a tet, longest first: removing the longest edges of a sliver helps most.
 std::array<std::array<unsigned, 2>, 6> longest_first(const improvement::Corners& p) {
   struct Edge {
     double squared_length;
@@ -44,7 +44,7 @@ Proposer::Proposer(const improvement::Workpiece& workpiece, const improvement::T
       stamps_(workpiece.complex.mesh().points.size(), 0),
       stayed_(stamps_) {}
 
-// Lengths rule out most neighbours, at less cost than the cone.
+// Finds the collapses of a vertex. Lengths rule out most neighbours, at less cost than shapes.
 void Proposer::contractions(Index vertex, bool repairs, VertexProposal& found) {
   found = {};
   find_neighbours(vertex);
@@ -82,7 +82,7 @@ Change Proposer::improvement_of(Index tet, Mode mode) {
     if (change.quality >= improved_below) break;
   }
   for (unsigned i = 0; i < 4 && change.kind == Change::Kind::none; ++i) {
-    // Whether a move helps depends on the tets at the vertex alone, each of which may ask.
+    // Whether a move helps depends only on the tets at the vertex, and each of these tets may propose it.
     if (mode == Mode::final && stays(corners[i])) continue;
     operations_.move_vertex(corners[i], change);
     if (mode == Mode::final && change.kind == Change::Kind::none) stayed_[corners[i]] = changes_.now;
@@ -90,7 +90,7 @@ Change Proposer::improvement_of(Index tet, Mode mode) {
   return change;
 }
 
-// Could an edge to `onto` lie in the vertex's curve or patch?
+// Returns whether an edge to `onto` could lie in the vertex's curve or patch.
 bool Proposer::may_share_feature(Index vertex, Index onto) const {
   const auto& [dimension, feature] = complex().mesh().features[vertex];
   const auto& other = complex().mesh().features[onto];
@@ -120,8 +120,8 @@ void Proposer::find_neighbours(Index vertex) {
   std::sort(neighbours_.begin(), neighbours_.end());
 }
 
-// Of the edges that a contraction makes. None may be longer than what is wanted, unless it takes the place of
-// one as long, or shorter than what there is around. The farthest neighbours rule out most.
+// Returns whether the edges that a collapse makes have allowed lengths: none longer than wanted, unless it
+// replaces one as long, and none shorter than all edges around. The farthest neighbours rule out most.
 bool Proposer::lengths_fit(Index onto) const {
   return std::all_of(neighbours_.rbegin(), neighbours_.rend(), [&](const Neighbour& n) {
     if (n.vertex == onto) return true;
@@ -131,7 +131,7 @@ bool Proposer::lengths_fit(Index onto) const {
   });
 }
 
-// By a tet at the vertex asked about?
+// Returns whether a tet at the current vertex joins them.
 bool Proposer::are_joined_here(Index a, Index b) const {
   return std::any_of(star_.begin(), star_.end(), [&](Index t) {
     return contains(complex()[t].corners, a) && contains(complex()[t].corners, b);

@@ -9,38 +9,39 @@
 
 namespace collarmesh::coarsening {
 
-/// The contractions of one vertex that the lengths of edges allow, as the mesh is.
+/// The collapses of one vertex that the lengths of edges allow in the current mesh.
 struct VertexProposal {
-  improvement::Change change;  ///< onto the nearest by the size that shapes allow, too; else none
-  std::vector<improvement::Change> to_repair;  ///< onto each one, with tets that have to be improved
-  double floor = 0;                            ///< no tet may get worse than this by repairs
-  /// The tets at the vertex and at these are all that this depends on. None inside regions, where no link
-  /// condition is asked about.
+  improvement::Change change;  ///< the collapse onto the nearest neighbour, by size, that shapes allow, too;
+                               ///< or none
+  std::vector<improvement::Change> to_repair;  ///< collapses onto each neighbour that leave tets to improve
+  double floor = 0;                            ///< repairs may make no tet worse than this
+  /// The proposal depends on the tets at the vertex and at these vertices. Empty inside regions, where the
+  /// link condition is not checked.
   std::vector<Index> read;
 };
 
-/// When vertices, or tets at them, were changed.
+/// The times at which vertices, or tets at them, were changed.
 struct Changes {
   std::uint32_t now = 0;
   std::vector<std::uint32_t> at_vertex;
 };
 
-/// Finds what can be done, and does nothing. Each thread has its own.
+/// Finds possible changes without making them. Each thread has its own.
 class Proposer {
  public:
   using Mode = CoarseningRule::Mode;
 
-  /// All but the number are kept by reference; those between are the rule's.
+  /// Keeps all but the number by reference; `thin`, `cells` and `sizes` are the rule's.
   Proposer(const improvement::Workpiece& workpiece, const improvement::ThinShape& thin,
            const improvement::CellBounds& cells, double radius_edge, std::span<const double> sizes,
            const Changes& changes);
   Proposer(const Proposer&) = delete;
   Proposer& operator=(const Proposer&) = delete;
 
-  /// Contractions of a vertex; those to repair, too, where there is no other.
+  /// Finds collapses of a vertex; also those that need repairs, if there is no other.
   void contractions(Index vertex, bool repairs, VertexProposal& found);
-  /// What makes a tet better: an edge removed (the longest that makes it good enough, else the best), or a
-  /// corner moved.
+  /// Returns a change that makes a tet better: the removal of an edge (the longest one that makes it good
+  /// enough, or else the best one), or a move of a corner.
   improvement::Change improvement_of(Index tet, Mode mode);
 
  private:
@@ -70,19 +71,19 @@ class Proposer {
   const Changes& changes_;
   CoarseningRule rule_;
   improvement::Operations operations_;
-  std::vector<Index> star_;            // tets at the vertex asked about last
-  std::vector<Neighbour> neighbours_;  // of that vertex, the nearest by the size first
-  std::vector<Index> targets_;         // those onto which lengths allow a contraction
-  double squared_shortest_ = 0;        // edge there
+  std::vector<Index> star_;            // tets at the current vertex
+  std::vector<Neighbour> neighbours_;  // neighbours of that vertex, the nearest by size first
+  std::vector<Index> targets_;         // neighbours onto which lengths allow a collapse
+  double squared_shortest_ = 0;        // squared length of its shortest edge
   std::vector<std::uint32_t> stamps_;  // by vertex
   std::uint32_t stamp_ = 0;
-  std::vector<std::uint32_t> stayed_;  // by vertex: when no move of it was an improvement; 0: not asked yet
+  std::vector<std::uint32_t> stayed_;  // by vertex: when no move of it was an improvement; 0: not tried yet
 };
 
-/// Tets below this quality are improved between the passes, and improved enough above it.
+/// Tets below this quality are improved between the passes, until they are above it.
 constexpr double improved_below = 1.3;
 
-/// Edges below this times the target length are contracted.
+/// Edges below this times the target length are collapsed.
 constexpr double contracted_below = 0.8;
 constexpr bool is_short(double squared_relative_length) {
   return squared_relative_length < contracted_below * contracted_below;

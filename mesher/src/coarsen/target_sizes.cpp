@@ -14,7 +14,7 @@ namespace {
 
 // How fast edges of meshes with a radius-edge ratio of at most 2 grow in practice.
 constexpr double natural_growth = 0.7;
-// Between the faces of a gap, as in the refinement.
+// Growth of sizes between the faces of a gap, as in the refinement.
 constexpr double growth_in_gaps = 0.25;
 
 class TargetSizes {
@@ -39,7 +39,7 @@ class TargetSizes {
  private:
   void see(Index vertex, double size) { sizes_[vertex] = std::min(sizes_[vertex], size); }
 
-  // All tets at a vertex inside are in one region.
+  // Finds the region of each vertex: all tets at a vertex inside are in one region.
   void see_regions() {
     std::vector<Index> region_of(mesh_.points.size(), none);
     for (Index t = 0; t < mesh_.tets.size(); ++t)
@@ -112,7 +112,7 @@ class TargetSizes {
     return options_.elements_across_gap > 0 ? growth_in_gaps : natural_growth;
   }
 
-  // From the smallest sizes along the edges of the mesh.
+  // Spreads the smallest sizes along the edges of the mesh.
   void grade() {
     const auto [least, largest] = std::minmax_element(sizes_.begin(), sizes_.end());
     if (least == sizes_.end() || *least == *largest) return;
@@ -135,7 +135,7 @@ class TargetSizes {
     }
   }
 
-  // Several times where tets share an edge.
+  // Finds the neighbours of each vertex, several times where tets share an edge.
   void find_neighbours() {
     first_neighbour_.assign(mesh_.points.size() + 1, 0);
     for (const auto& tet : mesh_.tets)

@@ -6,7 +6,7 @@ namespace collarmesh {
 
 namespace {
 
-// Points this close, in radii, are the same: a circle that passes the edge between two triangles gives two.
+// Points this close, in radii, are the same: a circle that crosses the edge between two triangles gives two.
 constexpr double same_point = 1e-6;
 constexpr int most_projections = 40;
 

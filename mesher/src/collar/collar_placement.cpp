@@ -1,4 +1,4 @@
-// The places and radii of balls.
+// Computes the places and radii of balls.
 #include "collar/collar_placement.h"
 
 #include <fmt/format.h>
@@ -17,22 +17,23 @@ namespace collarmesh {
 namespace {
 
 constexpr double radius_per_gap = 1.0 / 3;
-// Features this many sizes away do not affect the gap size.
+// Features farther away than this many sizes do not affect the gap size.
 constexpr double gap_per_size = 4;
 // Radii are shrunk by a random share of up to this, so that spheres are in general position.
 constexpr double largest_shrinkage = 0.02;
-// Along a curve radii change by at most this share of the way, as a third of a distance does; where
-// flatness limits them by far less, so that they are even along rims of one curvature.
+// Radii change along a curve by at most this share of the way, because a third of a distance does. Where
+// flatness limits radii, they change far less, so that they are even along rims of one curvature.
 constexpr double radius_slope = 1.0 / 3;
 constexpr double flat_radius_slope = 0.05;
 constexpr double sample_step = 0.5;  // in radii
-// Consecutive centres are at most this many radii apart: the circle of two balls is then seen from
-// both centres under less than 90 degrees, d^2 <= r1^2 + r2^2, shrunk as they may be.
+// Consecutive centres are at most this many radii apart. The circle of two balls is then seen from both
+// centres under less than 90 degrees, d^2 <= r1^2 + r2^2, even after shrinking.
 constexpr double step_per_radius = 1.2;
-// As are equal steps of more than 1.2 radii together.
+// Equal steps that together make more than 1.2 radii are at least this long.
 constexpr double least_step_per_radius = step_per_radius / 2;
 
-// Lowers values that exceed a neighbour's by more than the slope, in both directions; twice around if closed.
+// Lowers values that exceed a neighbour's by more than the slope, in both directions; goes around twice if
+// the curve is closed.
 void limit_slope(const std::vector<double>& parameters, double slope, bool closed,
                  std::vector<double>& values) {
   const std::size_t n = values.size();
@@ -47,7 +48,7 @@ void limit_slope(const std::vector<double>& parameters, double slope, bool close
   }
 }
 
-// Linear between samples; `xs` are in order.
+// Interpolates linearly between samples; `xs` are in order.
 double interpolated(const std::vector<double>& xs, const std::vector<double>& ys, double x) {
   const auto after = static_cast<std::size_t>(std::upper_bound(xs.begin() + 1, xs.end() - 1, x) - xs.begin());
   const double width = xs[after] - xs[after - 1];
@@ -140,7 +141,7 @@ CollarPlacement::Profile CollarPlacement::make_profile(Index curve, double from,
     if (s >= to) break;
     require_room(flat.back(), paths_.point(curve, s));
     s = std::min(to, s + sample_step * flat.back());
-    // Two samples to a radius, and balls 1.2 radii apart.
+    // Two samples per radius, and balls 1.2 radii apart.
     if (stopped(profile.parameters.size() / 3)) return {};
   }
   limit_slope(profile.parameters, radius_slope, closed, profile.radii);

@@ -9,20 +9,20 @@
 
 namespace collarmesh {
 
-/// Places the balls of a collar system, their circles' corner points with them. Throws PlcError where a ball
+/// Places the balls of a collar system and the corner points on their circles. Throws PlcError where a ball
 /// would be CollarOptions::too_small.
 class CollarPlacement {
  public:
-  /// Keeps all by reference. `system` knows its creases, `gap` the allowed size of balls there.
+  /// Keeps all by reference. `system` knows its creases, `gap` the largest allowed balls there.
   CollarPlacement(const Plc& plc, std::span<const Point> points, GapSize& gap, const CollarOptions& options,
                   CollarSystem& system);
   /// Places balls on all creases. Returns false if it was stopped.
   bool place_all();
-  /// Precondition: the vertex is a crease's and has no ball yet.
+  /// Places the ball at a vertex. Precondition: the vertex is a crease's and has no ball yet.
   void place_at_vertex(Index vertex);
-  /// Balls are centred on `vertices`, places of mesh vertices on the curve in their order, so that none comes
-  /// to lie just beside one; not on those that are too near to others. Precondition: the curve is a crease,
-  /// has no balls yet, and its ends have theirs.
+  /// Places the balls on a curve. They are centred on `vertices`, places of mesh vertices on the curve in
+  /// their order, so that no centre lies just beside a vertex; vertices too near to others are skipped.
+  /// Preconditions: the curve is a crease and has no balls yet, and its ends have theirs.
   void place_on_curve(Index curve, std::span<const PlaceOnCurve> vertices = {});
 
  private:

@@ -77,7 +77,7 @@ void CollarSystem::complete() {
   if (!balls_.empty()) build_over_balls(0, box);
 }
 
-// Precondition: it is not complete.
+// Adds the balls since the last call to the tree. Precondition: the system is not complete.
 void CollarSystem::index_balls(const Feature& crease) {
   assert(!branches_.empty());
   if (indexed_ == balls_.size()) return;

@@ -23,18 +23,18 @@ struct CollarBall {
   Point centre;
   double radius;
   std::uint8_t dimension;  ///< 0: at a crease vertex, 1: on a crease curve
-  Index feature;           ///< of that vertex or curve
+  Index feature;           ///< index of that vertex or curve
 };
 
 /// Two consecutive balls of a crease; their spheres meet in a circle.
 struct CollarLink {
   std::array<Index, 2> balls;
   Index curve;
-  std::array<double, 2> parameters;  ///< of the two centres on the curve, arc length
+  std::array<double, 2> parameters;  ///< positions of the two centres on the curve, arc length
 };
 
-/// A point that the mesh must have for the collar surface to follow the features: where a patch
-/// meets a circle, or where a curve that is no crease leaves a vertex ball.
+/// A point that the mesh must have for the collar surface to follow the features: where a patch meets a
+/// circle, or where a curve that is no crease leaves a vertex ball.
 struct CornerPoint {
   Point point;
   std::uint8_t dimension;  ///< 2: on a patch, 1: on a curve
@@ -45,31 +45,31 @@ struct CornerPoint {
 struct CollarOptions {
   /// Returns an upper bound on the radius of a ball at a place on this vertex or curve.
   std::function<double(const Feature&, const Point&)> size;
-  /// The allowed distance from smooth curves and patches of the cells that replace them inside a ball.
+  /// Allowed distance from smooth curves and patches of the cells that replace them inside a ball.
   SurfaceTolerance tolerance{0};
   std::uint64_t seed = 0;
   /// Called from time to time with a lower bound on the final number of balls; if it returns true, the system
   /// stays incomplete. May be empty.
   std::function<bool(std::size_t balls)> stopped = {};
-  /// Are features within this radius of a place too near to each other to be told apart? May be empty.
+  /// Returns whether features within this radius of a place are too near to each other to be told apart. May
+  /// be empty.
   std::function<bool(const Point&, double)> too_small = {};
   /// Converts a place to input coordinates, for messages. May be empty.
   std::function<Point(const Point&)> outside = {};
 };
 
-/// The union of balls that covers every crease, and its own features (paper, section 3.2).
-/// Balls of different creases are disjoint; consecutive ones overlap deeply.
+/// The union of balls that covers every crease, with the features of its surface (paper, section 3.2). Balls
+/// of different creases are disjoint; consecutive ones overlap deeply.
 class CollarSystem {
  public:
   CollarSystem() = default;
-  /// Makes a system without balls for these creases, which CollarPlacement covers. Keeps the complex and its
+  /// Makes a system without balls for these creases; CollarPlacement places them. Keeps the complex and its
   /// points by reference.
   CollarSystem(const Plc& plc, std::span<const Point> points, std::span<const Crease> creases);
-  /// Place balls on all creases: radius a third of the gap size, never more than the size allows,
-  /// shrunk by up to 2% (seeded) so that spheres are generic; on smooth curves and patches small
-  /// enough that what replaces them inside a ball stays within the distance.
-  /// Throws PlcError where a ball would be smaller than the smallest radius.
-  /// Cost: O((n + b) log n) for n elements of the complex and b balls.
+  /// Places balls on all creases: radius a third of the gap size, never more than the size allows, shrunk by
+  /// up to 2% (seeded) so that spheres are generic. On smooth curves and patches they are small enough that
+  /// the cells inside a ball stay within the distance. Throws PlcError where a ball would be smaller than the
+  /// smallest radius. Cost: O((n + b) log n) for n elements of the complex and b balls.
   CollarSystem(const Plc& plc, std::span<const Point> points, std::span<const Crease> creases,
                const CollarOptions& options);
 
@@ -85,27 +85,27 @@ class CollarSystem {
     return std::binary_search(crease_vertices_.begin(), crease_vertices_.end(), vertex);
   }
   bool is_crease_curve(Index curve) const { return !crease_curve_.empty() && crease_curve_[curve]; }
-  /// The ball at a crease vertex; none when it has none yet, and at other vertices.
+  /// Returns the ball at a crease vertex; none if it has none yet, and at other vertices.
   Index ball_at_vertex(Index vertex) const { return vertex_ball_.empty() ? none : vertex_ball_[vertex]; }
-  /// No more balls will come: a tree over all of them, whatever crease they are on.
+  /// Declares that no more balls will come: builds a tree over all of them, whatever crease they are on.
   void complete();
   bool consecutive(Index a, Index b) const { return consecutive_.count(edge_key(a, b)) > 0; }
 
-  /// Returns a ball that contains p in its interior, none if there is none. Several threads may call it at
-  /// once while no balls are added.
+  /// Returns a ball that contains p in its interior, or none. Several threads may call it at once while no
+  /// balls are added.
   Index ball_containing(const Point& p) const;
   bool contains(Index ball, const Point& p) const {
     return squared_distance(p, balls_[ball].centre) < balls_[ball].radius * balls_[ball].radius;
   }
-  /// Replace `found` by balls that meet the ball B(p, radius): all, or `most` of them.
+  /// Replaces `found` by balls that meet the ball B(p, radius): all, or `most` of them.
   void balls_meeting(const Point& p, double radius, std::size_t most, std::vector<Index>& found) const;
-  /// Replace `found` by the balls that meet the segment pq.
+  /// Replaces `found` by the balls that meet the segment pq.
   void balls_on_segment(const Point& p, const Point& q, std::vector<Index>& found) const;
 
  private:
   struct Node {
     CentredBox box;
-    Index left, right;  // a leaf has left == none and its ball in right
+    Index left, right;  // in a leaf left == none, and right is its ball
   };
   /// An item that a tree is built over.
   struct Item {
@@ -120,11 +120,12 @@ class CollarSystem {
   /// Builds a tree over creases. The trees over their balls are attached at its leaves, so that there is one
   /// tree although balls are added later.
   void plant(const Plc& plc, std::span<const Point> points);
-  /// Let queries find the balls added since, all of which are on this vertex or curve.
+  /// Lets queries find the balls added since the last call, all of which are on this vertex or curve.
   void index_balls(const Feature& crease);
   /// Builds a tree over all balls from this one on. Returns its root.
   Index build_over_balls(Index first, Box& box);
-  /// A tree over items, the numbers of which start here. Adds their boxes to the box. Returns its root.
+  /// Builds a tree over items, the numbers of which start here. Adds their boxes to the box. Returns its
+  /// root.
   Index build(std::span<Index> order, std::span<const Item> items, Index first, Box& box);
   Index leaf_of(const Feature& crease) const {
     return leaves_[crease.index + (crease.dimension == 1 ? vertex_ball_.size() : 0)];
@@ -140,9 +141,10 @@ class CollarSystem {
   std::vector<Index> vertex_ball_;
   std::vector<Index> crease_vertices_;             // sorted
   std::unordered_set<std::uint64_t> consecutive_;  // pairs
-  std::vector<Branch> branches_;  // by node: the first ones are a tree over creases; empty when complete
-  std::vector<Index> leaves_;     // of that tree, by vertex, then by curve; none where there is no crease
-  Index indexed_ = 0;             // balls
+  std::vector<Branch> branches_;  // by node: the first ones form a tree over creases; empty when complete
+  std::vector<Index> leaves_;     // leaves of that tree, by vertex, then by curve; none where there is no
+                                  // crease
+  Index indexed_ = 0;             // number of balls in the tree
   LargeVector<Node> nodes_;
 
   friend class CollarPlacement;

@@ -21,15 +21,16 @@ class CreaseSheets {
   CreaseSheets(const Plc& plc, std::span<const Point> points, std::span<const Index> vertices,
                const std::vector<bool>& is_crease_curve);
 
-  /// At a segment of a crease curve, by its two points: orthogonal to it.
+  /// Returns the sheets at a segment of a crease curve, given by its two points: orthogonal to it.
   std::vector<Sheet> at_segment(const std::array<Index, 2>& ends) const;
-  /// At a crease vertex: towards places of the opposite side of each triangle of smooth patches there.
+  /// Returns the sheets at a crease vertex: towards places on the opposite side of each triangle of smooth
+  /// patches there.
   std::vector<Sheet> at_vertex(Index vertex) const;
 
  private:
   const Plc& plc_;
   std::span<const Point> points_;
-  std::vector<std::pair<std::array<Index, 2>, Index>> segments_;  // points, triangle; sorted
+  std::vector<std::pair<std::array<Index, 2>, Index>> segments_;  // points of the segment, triangle; sorted
   std::vector<std::pair<Index, Index>> vertices_;                 // point, triangle; sorted
 };
 

@@ -16,18 +16,17 @@ struct Feature {
   friend bool operator==(const Feature&, const Feature&) = default;
 };
 
-/// Bounding-volume hierarchy over the features of a complex and, below each, over the triangles,
-/// segments or the point it consists of. A query that leaves out a feature, or asks for one alone,
-/// never looks at what the others consist of: its cost is logarithmic however finely a feature is
-/// tessellated.
+/// Bounding-volume hierarchy over the features of a complex and, below each feature, over its triangles, its
+/// segments or its point. A query that leaves out features, or asks for one alone, never visits the elements
+/// of the others, so its cost is logarithmic however finely a feature is tessellated.
 class FeatureHierarchy {
  public:
-  /// Both are kept by reference; `points` are those of the complex, possibly in another frame.
+  /// Keeps both by reference; `points` are those of the complex, possibly in another frame.
   FeatureHierarchy(const Plc& plc, std::span<const Point> points);
 
   /// A triangle, or a segment or point as a degenerate one.
   using Element = std::array<Index, 3>;
-  /// The number of an element within its feature: of a curve's segment, or a patch's triangle.
+  /// Returns the number of an element within its feature: a curve's segment or a patch's triangle.
   Index number(Index element) const { return element - first_element_[feature_of_[element]]; }
   std::array<Point, 3> corners(Index element) const {
     const Element& e = elements_[element];
@@ -35,12 +34,13 @@ class FeatureHierarchy {
   }
   const Element& element(Index index) const { return elements_[index]; }
 
-  /// Distance from p to the nearest feature that `counts` accepts, if below `bound` (else `bound`).
+  /// Returns the distance from p to the nearest feature that `counts` accepts, if below `bound` (else
+  /// `bound`).
   template <class Counts>
   double distance_to_features(const Point& p, double bound, const Counts& counts) const;
 
-  /// Distance from p to the nearest element of the feature that `counts` accepts, if below `bound`
-  /// (else `bound`, and `nearest` is none).
+  /// Returns the distance from p to the nearest element of the feature that `counts` accepts, if below
+  /// `bound` (else `bound`, and `nearest` is none).
   template <class Counts>
   double distance_within(Feature feature, const Point& p, double bound, Index& nearest,
                          const Counts& counts) const;
@@ -55,18 +55,18 @@ class FeatureHierarchy {
  private:
   struct Node {
     Box box;
-    Index left = none, right = none;  // a leaf has left == none and in right its element or feature
+    Index left = none, right = none;  // in a leaf left == none, and right is its element or feature
   };
 
   Index number_of(Feature feature) const { return first_feature_[feature.dimension] + feature.index; }
   Index build(std::span<Index> order, std::span<const Box> boxes);
   double squared_distance_to(const Point& p, Index element) const;
-  /// Nearest first; `leaf(index, bound)` lowers the bound.
+  /// Visits leaves, nearest first; `leaf(index, bound)` lowers the bound.
   template <class Leaf>
   void descend(Index root, const Point& p, double& squared_bound, const Leaf& leaf) const;
 
   std::span<const Point> points_;
-  std::array<Index, 3> first_feature_{};  // by dimension, in the numbering of all features
+  std::array<Index, 3> first_feature_{};  // by dimension: number of the first feature among all
   std::vector<Feature> features_;
   std::vector<Element> elements_;     // by feature
   std::vector<Index> feature_of_;     // by element

@@ -9,20 +9,20 @@ namespace collarmesh {
 
 namespace {
 
-// The share of the distance tolerance that chords of the length of a radius may use up, and the share
-// of the radius: a polyline may turn by 30 degrees in one point.
+// The share of the distance tolerance that chords as long as a radius may use up, and the share of the
+// radius: a polyline may turn by 30 degrees in one point.
 constexpr double deviation_per_distance = 0.5;
 constexpr double deviation_per_radius = 0.14;
 // A ball on a closed curve, or a loop, covers at most this share of it.
 constexpr double radius_per_length = 1.0 / 8;
-// Another piece of a feature counts as one that does not contain the centre: radii are a third of the
-// distance to it. A point of a curve is on another piece when it is so much farther along the curve
-// than through space.
+// Another piece of a feature counts like a feature that does not contain the centre: radii are a third of the
+// distance to it. A point of a curve is on another piece if it is this much farther away along the curve than
+// through space.
 constexpr double pieces_per_radius = 3;
 constexpr double detour = 1.5;
 // The positions at which chords are compared with the feature.
 constexpr std::array<double, 3> chord_shares{0.25, 0.5, 0.75};
-constexpr std::size_t most_spokes = 16;  // of a patch in a ball
+constexpr std::size_t most_spokes = 16;  // spokes of a patch in a ball
 constexpr double rounding = 1e-6;        // of lengths, relative to the ball
 constexpr int most_steps = 60;
 
@@ -38,7 +38,8 @@ bool Flatness::matters_on(Index curve) const {
                                     [&](Index patch) { return !plc_.patches[patch].planar; });
 }
 
-// The deviation grows with the square of the radius on a smooth feature, linearly at a bend.
+// Returns the largest radius with an allowed deviation, which grows with the square of the radius on a smooth
+// feature, and linearly at a bend.
 template <class Deviation>
 double Flatness::shrunk(double radius, double tolerance, const Deviation& deviation) {
   for (int step = 0; step < most_steps; ++step) {
@@ -77,8 +78,8 @@ double Flatness::off_spoke(Index patch, const Point& centre, const Point& end) c
   return largest;
 }
 
-// Returns the same for edges to points where the patch meets the sphere: at most `most_spokes` points where
-// sides of its triangles leave the ball.
+// Returns the same for edges to points where the patch meets the sphere: at most `most_spokes` points at
+// which sides of its triangles leave the ball.
 double Flatness::off_arc(Index patch, const Point& centre, double radius) const {
   Box box;
   box.add(centre - radius * Vector{1, 1, 1});
@@ -100,7 +101,7 @@ double Flatness::off_arc(Index patch, const Point& centre, double radius) const 
   return largest;
 }
 
-// The distance to pieces of the curve other than the one through the point, up to `reach`.
+// Returns the distance to pieces of the curve other than the one through the point, up to `reach`.
 double Flatness::other_arcs(Index curve, double parameter, double reach) const {
   const Point p = paths_.point(curve, parameter);
   const double length = paths_.length(curve);
@@ -115,8 +116,8 @@ double Flatness::other_arcs(Index curve, double parameter, double reach) const {
   });
 }
 
-// The distance to triangles of the patch that are not connected inside the ball B(centre, reach) to
-// those with the given points (one point twice at a vertex), up to `reach`.
+// Returns the distance to triangles of the patch that are not connected inside the ball B(centre, reach) to
+// those with the given points (the same point twice at a vertex), up to `reach`.
 double Flatness::other_sheets(Index patch, const Point& centre, double reach,
                               const std::array<Index, 2>& points) const {
   struct Side {
@@ -220,7 +221,7 @@ double Flatness::radius_at_vertex(Index vertex, double radius) const {
       radius = shrunk(radius, tolerance, [&](double r) {
         return at_start ? off_chord(c, 0, r) : off_chord(c, length, length - r);
       });
-      // A loop returns to the centre's surroundings legitimately.
+      // A closed loop may return to the neighbourhood of the centre.
       if (curve.ends[0] != curve.ends[1])
         radius = other_arcs(c, at_start ? 0 : length, pieces_per_radius * radius) / pieces_per_radius;
     }

@@ -7,19 +7,19 @@
 
 namespace collarmesh {
 
-/// How large a ball at a crease may be for what it holds of the curved features through its centre to
-/// be replaced by straight edges and flat triangles: inside it they leave
-/// their chords by no more than the distance tolerance, it meets its curve in one arc and each smooth
-/// patch in one piece, with a third of the distance to whatever else of them there is.
+/// Limits the radius of a ball at a crease so that straight edges and flat triangles can replace the curved
+/// features inside it. Inside the ball the features leave their chords by no more than the distance
+/// tolerance; the ball meets its curve in one arc and each smooth patch in one piece; its radius is at most a
+/// third of the distance to their other pieces.
 class Flatness {
  public:
-  /// All are kept by reference.
+  /// Keeps all by reference.
   Flatness(const Plc& plc, const FeatureHierarchy& features, const CurvePaths& paths,
            const CreaseSheets& sheets, SurfaceTolerance tolerance);
 
-  /// Does anything curved pass through the curve?
+  /// Returns whether anything curved passes through the curve.
   bool matters_on(Index curve) const;
-  /// The largest radius up to `radius`.
+  /// Returns the largest allowed radius, up to `radius`.
   double radius_on_curve(Index curve, double parameter, double radius) const;
   double radius_at_vertex(Index vertex, double radius) const;
 

@@ -13,20 +13,20 @@ class GapSize {
   GapSize& operator=(const GapSize&) = delete;
   virtual ~GapSize() = default;
 
-  /// Where it is `bound` or more, `bound` may be returned.
+  /// Returns the gap size; where it is `bound` or more, may return `bound`.
   virtual double at_vertex(Index vertex, double bound = INFINITY) = 0;
-  /// Precondition: p lies on the curve and is none of its ends.
+  /// Returns the same on a curve. Precondition: p lies on the curve and is none of its ends.
   virtual double on_curve(Index curve, const Point& p, double bound = INFINITY) = 0;
 };
 
-/// Does the other feature contain this vertex, or this curve without its ends?
+/// Returns whether the other feature contains this vertex, or this curve without its ends.
 bool contains(const Plc& plc, const Feature& other, const Feature& vertex_or_curve);
 
-/// Found in a hierarchy over all features, without a mesh.
-/// Cost: logarithmic in the number of features and in what the nearest ones consist of.
+/// The gap size by queries to a hierarchy over all features, without a mesh. Cost: logarithmic in the number
+/// of features and in the elements of the nearest ones.
 class GapInHierarchy final : public GapSize {
  public:
-  /// Both are kept by reference.
+  /// Keeps both by reference.
   GapInHierarchy(const Plc& plc, const FeatureHierarchy& features) : plc_(plc), features_(features) {}
 
   double at_vertex(Index vertex, double bound = INFINITY) override;

@@ -7,19 +7,19 @@
 
 namespace collarmesh {
 
-/// Axes along which the boxes of triangles are small: those of the coordinates, or, where most triangles are
-/// long and parallel to none of these, those of the triangles. Boxes of parallel needles meet by the million
-/// otherwise.
+/// Axes along which the boxes of triangles are small: the coordinate axes, or, if most triangles are long and
+/// parallel to none of these, the axes of the triangles. Otherwise millions of boxes of parallel needles
+/// would meet.
 class BoxFrame {
  public:
-  /// The axes of the coordinates.
+  /// Makes a frame of the coordinate axes.
   BoxFrame() = default;
-  /// Cost: O(n).
+  /// Makes a frame for these triangles. Cost: O(n).
   BoxFrame(std::span<const Point> points, std::span<const std::array<Index, 3>> triangles);
 
   bool turned() const { return turned_; }
 
-  /// Adds what lies within `reach` of a point along each axis, with all errors of rounding.
+  /// Extends the box by all points within `reach` of a point along each axis, with room for rounding errors.
   void add(Box& box, const Point& p, double reach = 0) const {
     const Point q =
         turned_ ? Point{dot(axes_[0], p - origin_), dot(axes_[1], p - origin_), dot(axes_[2], p - origin_)}

@@ -11,7 +11,8 @@ namespace collarmesh {
 /// A hierarchy of boxes that finds pairs of items whose boxes meet, and the items near a segment.
 class BoxTree {
  public:
-  /// Items may belong to groups, numbered in any way; without groups each is alone. Cost: O(n).
+  /// Builds the tree. Items may belong to groups, numbered in any way; without groups each item is a group.
+  /// Cost: O(n).
   explicit BoxTree(std::span<const Box> boxes, std::span<const Index> groups = {});
 
   /// Calls visit(i, j) once for every pair of items of different groups whose boxes meet.
@@ -28,7 +29,7 @@ class BoxTree {
           0, [&](const Box& b) { return meet(b, box); }, visit);
   }
 
-  /// Calls visit(i) for every item whose box meets the segment pq, or may.
+  /// Calls visit(i) for every item whose box meets the segment pq, and perhaps for some others.
   template <class Visit>
   void for_each_near_segment(const Point& p, const Point& q, const Visit& visit) const {
     if (!nodes_.empty())
@@ -40,7 +41,7 @@ class BoxTree {
   struct Node {
     Box box;
     Index first, count;  // items, or count 0: the children are the next node and `first`
-    Index group;         // of all its items, none if they differ
+    Index group;         // group of all its items, none if they differ
   };
   static constexpr Index leaf_size = 4;
 
@@ -48,11 +49,11 @@ class BoxTree {
     return a.min.x <= b.max.x && b.min.x <= a.max.x && a.min.y <= b.max.y && b.min.y <= a.max.y &&
            a.min.z <= b.max.z && b.min.z <= a.max.z;
   }
-  // Conservative: never false when the box and the segment meet.
+  // Tests conservatively: never returns false when the box and the segment meet.
   static bool may_meet(const Box& box, const Point& p, const Point& q);
 
   Index build(std::span<const SpatialKey> keys, Index first);
-  // Are all items below both nodes of one group?
+  // Returns whether all items below both nodes are of one group.
   static bool of_one_group(const Node& a, const Node& b) { return a.group != none && a.group == b.group; }
   bool of_one_group(Index i, Index j) const { return !groups_.empty() && groups_[i] == groups_[j]; }
   template <class Visit>

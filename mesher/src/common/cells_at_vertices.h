@@ -8,7 +8,7 @@
 
 namespace collarmesh {
 
-/// The cells of a mesh, its tets, faces or edges, that have each vertex as a corner.
+/// The cells of a mesh (tets, faces or edges) that have each vertex as a corner.
 class CellsAtVertices {
  public:
   CellsAtVertices() = default;
@@ -29,7 +29,7 @@ class CellsAtVertices {
   }
 
  private:
-  std::vector<std::size_t> first_;  // in cells_, by vertex
+  std::vector<std::size_t> first_;  // first entry in cells_, by vertex
   std::vector<Index> cells_;
 };
 

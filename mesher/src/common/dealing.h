@@ -5,13 +5,13 @@
 
 namespace collarmesh {
 
-/// Items are dealt to ranges of groups first, chunk by chunk, so that the rest happens in a processor's
-/// cache.
+/// Sizes for dealing items to ranges of groups first, chunk by chunk, so that the remaining work fits a
+/// processor's cache.
 struct Dealing {
   std::size_t chunk;   ///< items dealt by one thread
   std::size_t range;   ///< groups that are sorted at once
-  std::size_t chunks;  ///< of all items
-  std::size_t ranges;  ///< of all groups
+  std::size_t chunks;  ///< number of chunks
+  std::size_t ranges;  ///< number of ranges
 
   Dealing(std::size_t groups, std::size_t items)
       : chunk(parts_of(items, 8192, 64)),

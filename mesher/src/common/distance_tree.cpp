@@ -32,7 +32,7 @@ DistanceTree::DistanceTree(std::vector<Triangle> triangles) : triangles_(std::mo
   build(keys, 0);
 }
 
-// In place, along the cycles of the permutation.
+// Permutes the triangles in place, along the cycles of the permutation.
 void DistanceTree::put_in_order() {
   std::vector<bool> in_place(number_.size(), false);
   for (Index start = 0; start < number_.size(); ++start) {

@@ -9,20 +9,21 @@
 namespace collarmesh {
 
 /// Keeps straight curves and planar patches flat when their nodes move onto exact geometry, which may leave
-/// the line or plane by the tolerance of the shape, or by more than the tessellation's points show.
+/// the line or plane by the tolerance of the shape, or by more than the tessellation's points do.
 class FlatFeatures {
  public:
   /// Keeps the complex by reference. Cost: linear in the triangles.
   explicit FlatFeatures(const Plc& plc);
 
-  /// Returns the exact geometry restricted to straight curves and planar patches: a place off a plane by more
-  /// than the certificate permits (min(4 d, planar tolerance) plus rounding, where d is the distance of the
-  /// complex's own points), or off a straight curve by more than half of that, is moved back towards it.
-  /// Half, because the edges between nodes must be near the curve's own points, too, which are up to 2 d off
-  /// the chords. Gives no point if no such place is near. Keeps this and `exact` by reference.
+  /// Returns the exact geometry restricted to straight curves and planar patches. It moves a place back
+  /// towards a plane if it is off by more than the certificate permits (min(4 d, planar tolerance) plus
+  /// rounding, where d is the distance of the complex's own points), or towards a straight curve if it is off
+  /// by more than half of that. Half, because the edges between nodes must also be near the curve's own
+  /// points, which are up to 2 d off the chords. Gives no point if no such place is near. Keeps this and
+  /// `exact` by reference.
   ExactGeometry limit(const ExactGeometry& exact) const;
 
-  /// The same for one place on the exact geometry of a curve (dimension 1) or patch (2).
+  /// Returns the same for one place on the exact geometry of a curve (dimension 1) or patch (2).
   std::optional<Point> keep(unsigned dimension, Index feature, Point place) const;
 
  private:

@@ -12,11 +12,11 @@
 
 namespace collarmesh {
 
-/// Calls `use(group, items)` for every group that has items, whose numbers are below `groups`. `visit(i,
-/// give)` calls `give(group, item)` for each item of i, for all i below `count`, and twice: the same both
-/// times. In each group the items are in the order of i, and those of one i in the order they were given.
-/// Both are called by several threads at once. Cost: linear; memory for all items once, each with a number of
-/// 32 bits.
+/// Calls `use(group, items)` for every group that has items; group numbers are below `groups`. `visit(i,
+/// give)` must call `give(group, item)` for each item of i; it is called twice for all i below `count`, and
+/// must give the same both times. In each group the items are in the order of i, and those of one i in the
+/// order they were given. Several threads call both functions at once. Cost: linear; memory for all items
+/// once, each with a number of 32 bits.
 template <class Item, class Visit, class Use>
 void for_each_group(std::size_t groups, std::size_t count, const Visit& visit, const Use& use,
                     const recorded_costs::Place& place = {__builtin_FILE(), __builtin_LINE()}) {

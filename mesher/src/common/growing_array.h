@@ -53,7 +53,7 @@ class GrowingArray {
   }
 
  private:
-  // A block that grows without a copy needs little extra room.
+  // Returns the capacity to reserve: a block that grows without a copy needs little extra room.
   static std::size_t with_room_to_grow(std::size_t n) {
     return n + n / (grows_in_place(n * sizeof(T)) ? 8 : 2) + 64;
   }

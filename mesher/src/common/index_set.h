@@ -10,7 +10,7 @@
 
 namespace collarmesh {
 
-/// A set of numbers below `none`; small sets, which are most frequent, need no memory of their own.
+/// A set of numbers below `none`; small sets, which are most frequent, allocate no memory.
 class IndexSet {
  public:
   IndexSet() { few_.fill(none); }

@@ -7,8 +7,8 @@
 
 namespace collarmesh {
 
-/// By tet of a mesh the tets across the faces opposite its corners, as far as they are known: none at a
-/// boundary and where it is not known.
+/// For each tet of a mesh the tets across the faces opposite its corners, as far as they are known: none at a
+/// boundary and where unknown.
 using KnownNeighbours = LargeVector<std::array<Index, 4>>;
 
 }  // namespace collarmesh

@@ -14,12 +14,12 @@
 
 namespace collarmesh {
 
-/// Support of large pages, which make random access to large arrays cheaper: addresses are translated without
-/// a walk through page tables that are not in the cache themselves.
+/// Large pages make random access to large arrays cheaper, because fewer addresses need a walk through page
+/// tables that are not in the cache.
 inline constexpr std::size_t large_page = std::size_t{2} << 20U;
 inline constexpr std::size_t least_bytes_in_large_pages = large_page / 2;
 
-/// Asks the system for large pages inside this block. Nothing depends on whether it complies.
+/// Asks the system for large pages inside this block. Correctness does not depend on the answer.
 inline void prefer_large_pages([[maybe_unused]] void* block, [[maybe_unused]] std::size_t bytes) {
 #if defined(__linux__)
   if (bytes < least_bytes_in_large_pages) return;
@@ -31,7 +31,7 @@ inline void prefer_large_pages([[maybe_unused]] void* block, [[maybe_unused]] st
 #endif
 }
 
-// ThreadSanitizer does not see mremap: where the stack of a thread was before, it would report races.
+// ThreadSanitizer does not see mremap, so it would report races where the stack of a thread was before.
 #if defined(__linux__) && !defined(__SANITIZE_THREAD__)
 #define COLLARMESH_REMAPS 1
 #else

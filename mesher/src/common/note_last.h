@@ -6,8 +6,7 @@
 
 namespace collarmesh {
 
-/// `last` is none, or the largest of the items that were noted there, by several threads at once unless
-/// `alone`.
+/// Keeps in `last` the largest item noted there, or none. Several threads may call it at once unless `alone`.
 inline void note_last(Index& last, Index item, bool alone) {
   if (alone) {
     if (last == none || last < item) last = item;

@@ -12,8 +12,8 @@
 
 namespace collarmesh {
 
-/// Returns all numbers below `count` in the order of their groups, which are below `groups`, and in each
-/// group in their own order. `group_of(i)` is called several times, by several threads at once. Linear.
+/// Returns all numbers below `count` ordered by group (numbers below `groups`), and within a group in their
+/// own order. Calls `group_of(i)` several times, from several threads at once. Cost: linear.
 template <class GroupOf>
 std::vector<Index> order_by_group(std::size_t groups, std::size_t count, const GroupOf& group_of,
                                   const recorded_costs::Place& place = {__builtin_FILE(), __builtin_LINE()}) {

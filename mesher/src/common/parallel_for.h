@@ -22,8 +22,8 @@ void parallel_for(std::size_t count, const Work& work,
                   const recorded_costs::Place& place = {__builtin_FILE(), __builtin_LINE()}) {
   if (recorded_costs::on) return recorded_costs::run(count, work, place);
 #ifdef __SANITIZE_THREAD__
-  // It does not see how TBB's library, which is not built with it, orders what threads do. There are so many
-  // on any machine.
+  // ThreadSanitizer cannot see how TBB's library, which is not built with it, orders the work of threads.
+  // This many threads exist on any machine.
   constexpr int threads = 8;
   std::atomic<std::size_t> next{0};
   const auto take_turns = [&] {

@@ -17,19 +17,19 @@
 
 namespace collarmesh {
 
-/// How far a smooth patch and the mesh's faces on it are from each other, in samples. The certificate and
-/// what keeps to the tolerance look at the same ones.
+/// Measures by samples how far a smooth patch and the mesh's faces on it are from each other. The certificate
+/// and the stages that keep to the tolerance use the same samples.
 class PatchDistance {
  public:
   /// A sample of one side, with the nearest place on the other side.
   struct Sample {
     const Point& place;
-    Index face;        ///< that it lies on, or the nearest one
+    Index face;        ///< face that it lies on, or the nearest one
     double distance;   ///< exact where it is above `enough`
-    double tolerance;  ///< that holds there
+    double tolerance;  ///< tolerance at the sample
   };
 
-  /// All but the spans' contents are kept by reference. `patch_points` as in PatchPoints.
+  /// Keeps all by reference except the contents of spans. `patch_points` as in PatchPoints.
   PatchDistance(const TetMesh& mesh, const Plc& plc, const SurfaceTolerance& tolerance, Index patch,
                 std::span<const Index> faces, std::span<const Index> patch_points)
       : mesh_(mesh),
@@ -39,7 +39,7 @@ class PatchDistance {
         faces_(faces),
         patch_points_(patch_points) {}
 
-  /// Visits the corners and centres of the faces and two points on each of their sides, and the corners and
+  /// Visits the corners and centres of the faces, two points on each of their sides, and the corners and
   /// centres of the patch's triangles. `enough` returns the distance above which the exact one is wanted.
   void visit(const auto& enough, const auto& look) const {
     visit_faces(enough, look);
@@ -47,7 +47,7 @@ class PatchDistance {
   }
 
  private:
-  // The sides and corners (sides with equal ends) of faces that were seen; a cache, in which new ones replace
+  // The sides and corners (sides with equal ends) of faces seen so far; a cache, in which new ones replace
   // old ones.
   class SeenSides {
    public:

@@ -12,7 +12,7 @@ namespace collarmesh {
 /// The points of each patch's triangles: its tessellation.
 class PatchPoints {
  public:
-  /// Cost: O(n log n).
+  /// Finds the points. Cost: O(n log n).
   explicit PatchPoints(const Plc& plc) {
     std::vector<Index> seen_by(plc.points.size(), none);  // the last patch that had the point
     for (Index patch = 0; patch < plc.patches.size(); ++patch) {
@@ -26,14 +26,14 @@ class PatchPoints {
     }
   }
 
-  /// Sorted, each of them once.
+  /// Returns the points of a patch, sorted, each of them once.
   std::span<const Index> operator[](Index patch) const {
     return std::span(points_).subspan(first_[patch], first_[patch + 1] - first_[patch]);
   }
 
  private:
   std::vector<Index> points_;
-  std::vector<std::size_t> first_{0};  // in points_, by patch
+  std::vector<std::size_t> first_{0};  // first entry in points_, by patch
 };
 
 }  // namespace collarmesh

@@ -7,7 +7,7 @@
 
 namespace collarmesh {
 
-/// Where the n-th byte of a text is, counted from 1: "line 3, column 7".
+/// Returns the place of the n-th byte of a text, counted from 1: "line 3, column 7".
 inline std::string place_in(std::string_view text, std::size_t byte) {
   const std::string_view before = text.substr(0, byte > 0 ? byte - 1 : 0);
   const auto lines = std::count(before.begin(), before.end(), '\n');

@@ -26,7 +26,7 @@ double now() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-/// When the last of them is done if each worker takes the next one once it is free.
+/// Returns the time when the last piece is done if each worker takes the next one once it is free.
 double makespan(const std::vector<double>& costs, std::size_t count) {
   std::priority_queue<double, std::vector<double>, std::greater<>> free_at;
   double end = 0;
@@ -45,7 +45,7 @@ double makespan(const std::vector<double>& costs, std::size_t count) {
 /// A parallel part under way.
 struct Part {
   std::vector<double> pieces;  // costs
-  double inner = 0;            // cost of the parallel parts inside of the current piece
+  double inner = 0;            // cost of the parallel parts inside the current piece
   Spans inner_spans{}, longest{};
   bool nests = false;
 };
@@ -62,7 +62,7 @@ class Record {
   Record(const Record&) = delete;
   Record& operator=(const Record&) = delete;
 
-  // A process that started another one for the work has nothing to tell.
+  // A process that only started another one for the work records nothing.
   ~Record() {
     if (parts_ > 0) write();
   }
@@ -143,8 +143,8 @@ class Record {
 
   std::string path_, stage_ = "start";
   std::thread::id thread_ = std::this_thread::get_id();
-  std::size_t parts_ = 0;  // since the table was written
-  double last_;            // when the serial part began that is under way
+  std::size_t parts_ = 0;  // parts since the table was written
+  double last_;            // when the current serial part began
   std::vector<std::unique_ptr<Part>> under_way_;
   std::map<std::pair<std::string, std::string>, Sum> sums_;
 };

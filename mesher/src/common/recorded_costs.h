@@ -6,14 +6,14 @@
 
 namespace collarmesh {
 
-/// Costs of all that runs between and inside of parallel parts, for developers: what more threads would gain
-/// can be told on a machine that has few. With COLLARMESH_RECORD_COSTS=FILE in the environment all runs on
-/// one thread, but is divided for as many as `--threads` says (COLLARMESH_CORES allows more than there are);
-/// at the end of the program FILE gets a table (bench/schedule.py), seconds of the processor by stage and
-/// place.
+/// Records the costs of everything between and inside parallel parts, for developers: it shows on a machine
+/// with few cores how much more threads would gain. With COLLARMESH_RECORD_COSTS=FILE in the environment the
+/// program runs on one thread, but divides the work for as many as `--threads` says (COLLARMESH_CORES allows
+/// more than there are). At the end of the program FILE gets a table (bench/schedule.py): CPU seconds by
+/// stage and place.
 namespace recorded_costs {
 
-/// Are they recorded?
+/// True if costs are recorded.
 extern const bool on;
 
 /// A place in the code.
@@ -25,11 +25,10 @@ struct Place {
 /// Calls `work(i)` for all i below `count`, in order, and notes what each call costs.
 void run(std::size_t count, const std::function<void(std::size_t)>& work, const Place& place);
 
-/// What follows belongs to this stage.
+/// Begins a stage: later costs belong to it.
 void begin_stage(std::string_view stage);
 
-/// Writes the table, which also happens at the end of the program, unless that is a process that ends at
-/// once.
+/// Writes the table. The end of the program writes it, too, unless the process ends without cleaning up.
 void write();
 
 }  // namespace recorded_costs

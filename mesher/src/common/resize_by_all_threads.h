@@ -7,8 +7,8 @@
 
 namespace collarmesh {
 
-/// Resizes a vector. If it is large, threads of the caller's arena have the system give it its pages first,
-/// which takes longer than to fill these with zeros.
+/// Resizes a vector. If it is large, threads of the caller's arena touch its pages first, because getting
+/// pages from the system takes longer than filling them with zeros.
 template <class Values>
 void resize_by_all_threads(Values& values, std::size_t count) {
   using Value = typename Values::value_type;

@@ -8,7 +8,7 @@ namespace collarmesh {
 
 namespace {
 
-// A half circle's polyline turns by less than it.
+// The polyline of a half circle turns by at least this angle.
 constexpr double least_turn = 0.85 * std::numbers::pi;
 
 }  // namespace

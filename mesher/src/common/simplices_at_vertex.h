@@ -16,10 +16,10 @@
 
 namespace collarmesh {
 
-/// Calls `use(vertex, cells)` for the vertices of a mesh, by several threads at once and in no particular
-/// order. `cells` are the tets that have the vertex as a corner and another one with a larger number, then
-/// the listed faces of which it is the smallest corner, each in their order; faces are numbered after all
-/// tets. Precondition: corners are points of the mesh. Cost: linear; 24 bytes a tet.
+/// Calls `use(vertex, cells)` for the vertices of a mesh, from several threads at once and in no particular
+/// order. `cells` are first the tets that have the vertex and a corner with a larger number, then the listed
+/// faces of which it is the smallest corner, each in their order; faces are numbered after all tets.
+/// Precondition: corners are points of the mesh. Cost: linear; 24 bytes per tet.
 template <class Use>
 void for_each_vertex_with_cells(const TetMesh& mesh, const Use& use) {
   const std::size_t tets = mesh.tets.size();
@@ -38,10 +38,10 @@ void for_each_vertex_with_cells(const TetMesh& mesh, const Use& use) {
   for_each_group<Index>(mesh.points.size(), tets + mesh.faces.size(), visit, use);
 }
 
-/// The edges from a vertex to larger ones.
+/// The edges from a vertex to vertices with larger numbers.
 class EdgesAtVertex {
  public:
-  /// `cells` as `for_each_vertex_with_cells` gives them.
+  /// Finds the edges. `cells` as from `for_each_vertex_with_cells`.
   void find(const TetMesh& mesh, Index vertex, std::span<const Index> cells) {
     clear(cells.size());
     for (const Index cell : cells)
@@ -50,7 +50,7 @@ class EdgesAtVertex {
           if (v > vertex) number_of(v);
   }
 
-  /// The other ends, each once.
+  /// Returns the other ends, each once.
   std::span<const Index> ends() const { return ends_; }
 
  protected:
@@ -59,7 +59,7 @@ class EdgesAtVertex {
     table_.assign(std::bit_ceil(std::max(least_slots, 4 * cells)), none);
   }
 
-  /// Among the ends; of a new one the next number.
+  /// Returns the number of an end; a new end gets the next number.
   Index number_of(Index end) {
     Index& number = find_slot(table_, end * 0x9e3779b1U >> 8U, [&](Index n) { return ends_[n] == end; });
     if (number == none) {
@@ -76,10 +76,11 @@ class EdgesAtVertex {
   std::vector<Index> table_;  // numbers of ends by hash
 };
 
-/// The edges from a vertex to larger ones, and whether the tets at it fit together.
+/// The edges from a vertex to vertices with larger numbers, and whether the tets at it fit together.
 class FittingTetsAtVertex : public EdgesAtVertex {
  public:
-  /// `cells` as `for_each_vertex_with_cells` gives them. Precondition: no tet has a corner twice.
+  /// Finds the edges and checks the tets. `cells` as from `for_each_vertex_with_cells`. Precondition: no tet
+  /// has a corner twice.
   void find(const TetMesh& mesh, Index vertex, std::span<const Index> cells) {
     clear(cells.size());
     fit_ = cells.size() < counterclockwise;
@@ -95,8 +96,9 @@ class FittingTetsAtVertex : public EdgesAtVertex {
     fit_ &= take_counts();
   }
 
-  /// Is every triangle of which the vertex is the smallest corner a side of two tets, one on either side, in
-  /// one region, and no listed face? False also where that was not found out: at more than 32 edges.
+  /// Returns whether every triangle of which the vertex is the smallest corner is a side of two tets, one on
+  /// either side, in one region, and no listed face. Also false if that was not checked: with more than 32
+  /// edges.
   bool fit() const { return fit_; }
 
  private:
@@ -107,7 +109,7 @@ class FittingTetsAtVertex : public EdgesAtVertex {
     std::array<Index, 3> number{};
     const auto others = side_corners(tet, place_of(vertex, tet));
     for (unsigned i = 0; i < 3; ++i) number[i] = others[i] > vertex ? number_of(others[i]) : none;
-    // Seen from outside the tet the vertex, a and b are clockwise.
+    // The vertex, a and b are clockwise as seen from outside the tet.
     for (unsigned i = 0; i < 3; ++i) {
       const Index a = number[i], b = number[(i + 1) % 3];
       if (std::max(a, b) >= most_counted) continue;
@@ -115,7 +117,7 @@ class FittingTetsAtVertex : public EdgesAtVertex {
     }
   }
 
-  // Does each triangle have a tet on either side? All is zero afterwards.
+  // Returns whether each triangle has a tet on either side. Resets all counts to zero.
   bool take_counts() {
     unsigned amiss = 0;
     for (std::size_t row = 0; row < std::min(ends().size(), most_counted); ++row)
@@ -134,19 +136,19 @@ class FittingTetsAtVertex : public EdgesAtVertex {
 struct TriangleUse {
   static constexpr std::uint8_t listed_face = 4;
 
-  std::uint64_t larger_corners;  ///< the middle one above 32 bits, and the largest
+  std::uint64_t larger_corners;  ///< the middle corner above 32 bits, and the largest corner
   Index cell;                    ///< the tet, or the face
-  std::uint8_t corner;           ///< of the tet, opposite the side; or listed_face
-  bool odd;  ///< is the order from smallest to largest an odd permutation of counterclockwise, seen from
-             ///< outside the tet or from where the face's normal points?
+  std::uint8_t corner;           ///< the tet's corner opposite the side; or listed_face
+  bool odd;  ///< whether the order from smallest to largest is an odd permutation of counterclockwise, as
+             ///< seen from outside the tet or from where the face's normal points
 
   bool listed() const { return corner == listed_face; }
   Index middle() const { return static_cast<Index>(larger_corners >> 32U); }
   Index largest() const { return static_cast<Index>(larger_corners); }
 };
 
-/// The smallest corner, and the use of the triangle by `cell`. Corners: counterclockwise seen from outside
-/// the tet or from where the face's normal points.
+/// Returns the smallest corner, and the use of the triangle by `cell`. Corners: counterclockwise as seen from
+/// outside the tet or from where the face's normal points.
 inline std::pair<Index, TriangleUse> triangle_use(std::array<Index, 3> c, Index cell, std::uint8_t corner) {
   bool odd = false;
   const auto sort_pair = [&](unsigned i, unsigned j) {
@@ -158,11 +160,11 @@ inline std::pair<Index, TriangleUse> triangle_use(std::array<Index, 3> c, Index 
   return {c[0], {std::uint64_t{c[1]} << 32U | c[2], cell, corner, odd}};
 }
 
-/// The triangles of points of which a vertex is the smallest, each with the tets and listed faces that use
-/// it.
+/// The triangles of which a vertex is the smallest corner, each with the tets and listed faces that use it.
 class TrianglesAtVertex {
  public:
-  /// `cells` as `for_each_vertex_with_cells` gives them. Precondition: no tet has a corner twice.
+  /// Finds the triangles. `cells` as from `for_each_vertex_with_cells`. Precondition: no tet has a corner
+  /// twice.
   void find(const TetMesh& mesh, Index vertex, std::span<const Index> cells) {
     clear(3 * cells.size());
     for (const Index cell : cells) {
@@ -179,7 +181,7 @@ class TrianglesAtVertex {
     for (const TriangleUse& use : uses) add(use);
   }
 
-  /// Calls `visit(uses)` for each; uses of one triangle are in the order in which they were given.
+  /// Calls `visit(uses)` for each triangle; its uses are in the order in which they were given.
   template <class Visit>
   void for_each(const Visit& visit) {
     for (const Listed& list : lists_) {
@@ -193,7 +195,7 @@ class TrianglesAtVertex {
   static constexpr std::size_t least_slots = 64;
   struct Linked {
     TriangleUse use;
-    Index next;  // of the same triangle
+    Index next;  // next use of the same triangle
   };
   struct Listed {  // uses of one triangle
     Index first, last;
@@ -205,14 +207,14 @@ class TrianglesAtVertex {
     table_.assign(std::bit_ceil(std::max(least_slots, 2 * most_uses)), none);
   }
 
-  // How corners compare cannot be foreseen: as few branches as possible depend on it.
+  // The order of corners is unpredictable, so as few branches as possible depend on it.
   void add_sides(const std::array<Index, 4>& tet, Index cell, Index vertex) {
     const auto& places = opposite_places[place_of(vertex, tet)];
     for (unsigned i = 0; i < 3; ++i) {
       const Index a = tet[places[i]], b = tet[places[(i + 1) % 3]];
       const Index middle = std::min(a, b), largest = std::max(a, b);
       if (middle < vertex) continue;
-      // Seen from outside the tet the vertex, a and b are clockwise.
+      // The vertex, a and b are clockwise as seen from outside the tet.
       add({std::uint64_t{middle} << 32U | largest, cell, places[(i + 2) % 3], a < b});
     }
   }

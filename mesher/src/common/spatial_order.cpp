@@ -16,7 +16,7 @@ namespace {
 
 constexpr double cells_per_axis = 1 << 21;
 
-// The lower 21 bits of n, two zeros before each.
+// Returns the lower 21 bits of n with two zeros before each.
 std::uint64_t spread_bits(std::uint64_t n) {
   n = (n | n << 32) & 0x001f00000000ffff;
   n = (n | n << 16) & 0x001f0000ff0000ff;
@@ -35,7 +35,7 @@ std::uint64_t place_in(const Box& bounds, double scale, const Point& p) {
 
 void put_in_order(std::span<SpatialKey> keys, std::span<const Point> points);
 
-// Those that share a cell in the order of the curve through cells of their own box.
+// Sorts items that share a cell in the order of the curve through cells of their own box.
 void sort_by_places(std::span<SpatialKey> keys, std::span<const Point> points) {
   boost::sort::spreadsort::integer_sort(
       keys.begin(), keys.end(), [](const SpatialKey& key, unsigned shift) { return key.place >> shift; },
@@ -52,15 +52,15 @@ void sort_by_places(std::span<SpatialKey> keys, std::span<const Point> points) {
   }
 }
 
-// Of the cells along an axis there are so many to a unit of length. None for one point, or an extent that has
-// no cells.
+// Returns the number of cells per unit of length along an axis. Nothing for one point, or an extent that
+// cannot be divided into cells.
 std::optional<double> scale_of(const Box& bounds) {
   const Vector sides = bounds.max - bounds.min;
   const double scale = cells_per_axis / std::max({sides.x, sides.y, sides.z});
   return scale > 0 && std::isfinite(scale) ? std::optional(scale) : std::nullopt;
 }
 
-// Along the curve through the cells of their own box.
+// Orders the items along the curve through the cells of their own box.
 void put_in_order(std::span<SpatialKey> keys, std::span<const Point> points) {
   Box bounds;
   for (const SpatialKey& key : keys) bounds.add(points[key.item]);
@@ -98,7 +98,7 @@ std::vector<SpatialKey> spatial_order(std::span<const Point> points) {
   return keys;
 }
 
-// The cells of the highest bits first, then what is in each of them.
+// Sorts by the cells of the highest bits first, then within each of these cells.
 std::vector<SpatialKey> spatial_order_by_all_threads(std::span<const Point> points) {
   constexpr std::size_t many = 32768;
   if (points.size() < many) return spatial_order(points);

@@ -15,15 +15,15 @@ struct SpatialKey {
   Index item;
 };
 
-/// The items 0, 1, ... at these points in the order of the curve. Items in one cell, of which there are 2^21
-/// along each axis, are ordered by finer cells, and items at one point by number; so are all items if their
-/// extent is out of a double's range.
-/// Cost: O(n) for every 2^21 in the ratio of the extent and the least distance.
+/// Returns the items 0, 1, ... at these points in the order of the curve. Each axis has 2^21 cells; items in
+/// one cell are ordered by finer cells, and items at one point by number. If the extent is out of a double's
+/// range, all items are ordered by number. Cost: O(n) for every factor of 2^21 in the ratio of the extent to
+/// the least distance.
 std::vector<SpatialKey> spatial_order(std::span<const Point> points);
 
 /// Returns the item at which a hierarchy over ordered items splits them: the first one in the upper half of
-/// the smallest octree cell that holds them all, or the middle when they have one place. Precondition: there
-/// are at least two.
+/// the smallest octree cell that holds them all, or the middle one if all are at one place. Precondition:
+/// there are at least two.
 std::size_t spatial_split(std::span<const SpatialKey> keys);
 
 /// The maximum depth of a hierarchy made of such splits.

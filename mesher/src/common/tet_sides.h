@@ -7,16 +7,16 @@
 
 namespace collarmesh {
 
-/// The places of the corners opposite each corner of a tet, counterclockwise from outside.
+/// Positions of the corners opposite each corner of a tet, counterclockwise as seen from outside.
 inline constexpr std::array<std::array<std::uint8_t, 3>, 4> opposite_places{
     {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
 
-/// Where one of a tet's corners stands.
+/// Returns the position of a corner in a tet.
 inline unsigned place_of(Index corner, const std::array<Index, 4>& tet) {
   return (tet[1] == corner ? 1U : 0U) + (tet[2] == corner ? 2U : 0U) + (tet[3] == corner ? 3U : 0U);
 }
 
-/// The corners of a tet's side opposite a corner, seen counterclockwise from outside.
+/// Returns the corners of a tet's side opposite a corner, counterclockwise as seen from outside.
 inline std::array<Index, 3> side_corners(const std::array<Index, 4>& tet, unsigned corner) {
   const auto& [a, b, c] = opposite_places[corner];
   return {tet[a], tet[b], tet[c]};

@@ -7,7 +7,7 @@
 
 namespace collarmesh {
 
-/// A mesh as a step of a trace.
+/// Returns a mesh as a step of a trace.
 TraceStep traced_mesh(const TetMesh& mesh, std::string stage);
 
 }  // namespace collarmesh

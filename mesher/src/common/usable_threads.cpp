@@ -20,7 +20,7 @@ namespace collarmesh {
 
 namespace {
 
-/// How many threads there can be at once, this one included, up to `most`.
+/// Returns how many threads there can be at once, including this one, up to `most`.
 int count_threads(int most) {
   std::latch counted(1);
   std::vector<std::jthread> threads;  // joined before the latch ends
@@ -28,13 +28,13 @@ int count_threads(int most) {
   try {
     while (static_cast<int>(threads.size()) + 1 < most) threads.emplace_back([&counted] { counted.wait(); });
   } catch (const std::system_error&) {
-    // There are no more.
+    // The system allows no more threads.
   }
   counted.count_down();
   return static_cast<int>(threads.size()) + 1;
 }
 
-/// TBB makes its threads when there is work.
+/// Returns whether TBB could create its threads, which it does when there is work.
 bool tbb_has_its_threads(int threads) {
   constexpr std::size_t pieces = 256;
   try {
@@ -46,7 +46,7 @@ bool tbb_has_its_threads(int threads) {
   return true;
 }
 
-/// COLLARMESH_CORES in the environment takes the place of the number of cores, for tests on small machines.
+/// Returns the number of cores. COLLARMESH_CORES in the environment replaces it, for tests on small machines.
 int cores_to_use(int there) {
   constexpr int most = 1024;
   const char* const wanted = std::getenv("COLLARMESH_CORES");

@@ -14,15 +14,16 @@ namespace collarmesh::constrained {
 
 namespace {
 
-// Edges around an edge are removed first, at most so many times in a row.
+// Before an edge is removed, edges around it may be removed first, at most this deep.
 constexpr unsigned most_depth = 2;
-constexpr std::size_t most_rings = 1000;  // triangulated before edges are removed first
-// Points added: at most so many times those of the complex, and some.
+constexpr std::size_t most_rings = 1000;  // rings triangulated before edges around are removed first
+// Points added: at most this many times the points of the complex, and some.
 constexpr std::size_t most_times = 20, some = 1000;
 
 bool same_sign(int a, int b, int c) { return (a >= 0 && b >= 0 && c >= 0) || (a <= 0 && b <= 0 && c <= 0); }
 
-/// Does the line from one vertex to another pass through a triangle, or its border, from side to side?
+/// Returns whether the line from one vertex to another passes through a triangle, or its border, from side to
+/// side.
 bool crosses(const Tetrahedra& mesh, Index from, Index to, const std::array<Index, 3>& triangle) {
   const auto& [a, b, c] = triangle;
   return mesh.orientation(a, b, c, from) * mesh.orientation(a, b, c, to) < 0 &&
@@ -30,7 +31,7 @@ bool crosses(const Tetrahedra& mesh, Index from, Index to, const std::array<Inde
                    mesh.orientation(from, to, c, a));
 }
 
-/// Faces that an edge to come passes through.
+/// Faces that a missing edge passes through.
 class InTheWayOfEdge final : public Obstacles {
  public:
   InTheWayOfEdge(const Tetrahedra& mesh, Index a, Index b) : mesh_(mesh), a_(a), b_(b) {}
@@ -47,7 +48,7 @@ class InTheWayOfEdge final : public Obstacles {
   Index a_, b_;
 };
 
-/// Edges that pass through a triangle to come.
+/// Edges that pass through a missing triangle.
 class InTheWayOfFacet final : public Obstacles {
  public:
   InTheWayOfFacet(const Tetrahedra& mesh, const std::array<Index, 3>& corners)
@@ -72,8 +73,8 @@ double angle(const Point& a, const Point& at, const Point& b) {
   return std::atan2(norm(cross(a - at, b - at)), dot(a - at, b - at));
 }
 
-/// Does the line cd part a from b, which lie in one plane with it? Exact in the projection along the axis
-/// that is nearest to the normal; where all lie in a line there, in the next one.
+/// Returns whether the line cd separates a from b; all lie in one plane. Exact, in the projection along the
+/// axis nearest to the normal; if all lie in a line there, in the next projection.
 bool parts(const Point& c, const Point& d, const Point& a, const Point& b) {
   const Vector normal = cross(d - c, a - c);
   std::array<unsigned, 3> axes{0, 1, 2};
@@ -89,7 +90,7 @@ bool parts(const Point& c, const Point& d, const Point& a, const Point& b) {
   return false;
 }
 
-/// Where the line ab meets the plane pqr, as a share of the way from a to b.
+/// Returns the place where the line ab meets the plane pqr, as a share of the way from a to b.
 double share_to_plane(const Point& a, const Point& b, const Point& p, const Point& q, const Point& r) {
   const double from = std::fabs(six_volume(p, q, r, a)), to = std::fabs(six_volume(p, q, r, b));
   return from + to > 0 ? from / (from + to) : 0.5;
@@ -108,7 +109,7 @@ BoundaryRecovery::BoundaryRecovery(Tetrahedra& mesh, const Plc& plc)
   make_planar_facets_delaunay();
 }
 
-/// Turns edges between facets in one plane, so that most of them are edges of Delaunay tetrahedra.
+/// Flips edges between facets in one plane, so that most of them are edges of Delaunay tetrahedra.
 void BoundaryRecovery::make_planar_facets_delaunay() {
   std::vector<std::uint64_t> to_do;
   to_do.reserve(edges_to_do_.size());
@@ -121,8 +122,8 @@ void BoundaryRecovery::make_planar_facets_delaunay() {
   std::erase_if(edges_to_do_, [&](const EdgeToDo& e) { return !required_.contains(edge_key(e.a, e.b)); });
 }
 
-/// Turns an edge between two facets in one plane if the angles across it are so large together, and adds the
-/// edges around it to those that have changed.
+/// Flips an edge between two facets in one plane if the sum of the angles opposite it is large enough, and
+/// adds the edges around it to the changed ones.
 bool BoundaryRecovery::turn_edge(std::uint64_t key, double least_angles,
                                  std::vector<std::uint64_t>& changed) {
   const auto at = edges_.find(key);
@@ -173,7 +174,7 @@ void BoundaryRecovery::remove_facet(Index facet) {
     std::erase(edges_[edge_key(f.corners[i], f.corners[(i + 1) % 3])].facets, facet);
 }
 
-/// Two edges, and two triangles for each one at it, take the place of a required edge.
+/// Replaces a required edge by two edges, and each triangle at it by two.
 void BoundaryRecovery::divide_required(Index a, Index b, Index x) {
   const auto at = edges_.find(edge_key(a, b));
   const RequiredEdge edge = at->second;
@@ -207,7 +208,7 @@ bool BoundaryRecovery::run(const std::function<bool()>& go_on) {
   return true;
 }
 
-/// Keeps a change if it leaves less in the way.
+/// Keeps a change if it leaves fewer obstacles.
 bool BoundaryRecovery::reduce(const std::function<std::optional<int>()>& change) {
   const std::size_t before = mesh_.mark();
   const std::optional<int> gain = change();
@@ -219,7 +220,7 @@ bool BoundaryRecovery::reduce(const std::function<std::optional<int>()>& change)
   return false;
 }
 
-/// Makes an edge one of the mesh. Where that takes more than others of its kind, these come first.
+/// Makes an edge one of the mesh. Edges that need more than others of their kind come later.
 void BoundaryRecovery::recover_edge(const EdgeToDo& edge) {
   const auto [a, b, depth] = edge;
   const InTheWayOfEdge obstacles(mesh_, a, b);
@@ -290,7 +291,7 @@ Index BoundaryRecovery::find_crossed(Index a, Index b, std::vector<CrossedFace>&
   return none;
 }
 
-/// Changes the mesh at faces that are crossed; tells whether it did.
+/// Changes the mesh at faces that are crossed; returns whether it did.
 bool BoundaryRecovery::clear_edge(const std::vector<CrossedFace>& crossed, const Obstacles& obstacles,
                                   unsigned depth) {
   bool changed = false;
@@ -323,7 +324,7 @@ Index BoundaryRecovery::divide_at_crossing(Index a, Index b, std::vector<Crossed
   return none;
 }
 
-/// Adds a point inside a tetrahedron in the way, so that others can be made there.
+/// Adds a point inside a tetrahedron in the way, so that other tetrahedra can be made there.
 bool BoundaryRecovery::add_room(const std::vector<CrossedFace>& crossed) {
   for (const CrossedFace& c : crossed) {
     Point sum;
@@ -381,7 +382,7 @@ std::vector<BoundaryRecovery::Ends> BoundaryRecovery::find_piercing(const Facet&
   return found;
 }
 
-/// Three triangles at a point where an edge passes through it take the place of one.
+/// Replaces a triangle by three at a point where an edge passes through it.
 void BoundaryRecovery::divide_facet(Index facet, const std::vector<Ends>& piercing) {
   const Facet f = facets_[facet];
   const auto& [a, b, c] = f.corners;

@@ -18,21 +18,22 @@ namespace collarmesh::constrained {
 struct Facet {
   std::array<Index, 3> corners;
   Index patch;
-  bool alive = true;  ///< else others, which it was divided into, stand for it
+  bool alive = true;  ///< false: divided into other facets, which replace it
 };
 
-/// Makes edges and triangles of a complex edges and faces of a mesh: by changes of the tetrahedra in their
-/// way, one that leaves less in the way after the other, and, where there is none, by a point where something
-/// crosses them.
+/// Makes the edges and triangles of a complex edges and faces of a mesh: by local changes of the tetrahedra
+/// that obstruct them, each of which leaves fewer obstacles, and, if no change does, by inserting a point at
+/// a crossing.
 ///
-/// The edges come first. As no two features cross, whatever is in the way of a triangle whose edges are there
-/// is an edge that passes through its inside. Each change or point leaves less in the way, so this ends.
+/// Edges come first. Features do not cross, so only edges through its inside can obstruct a triangle whose
+/// own edges exist. Each change or point leaves fewer obstacles, so this ends.
 class BoundaryRecovery {
  public:
   /// Keeps both by reference. The mesh's first points are those of the complex.
   BoundaryRecovery(Tetrahedra& mesh, const Plc& plc);
 
-  /// Returns false if `go_on` did. Throws PlcError where rounded points leave no way, with the place.
+  /// Recovers all features. Returns false if `go_on` did. Throws PlcError, with the place, where rounded
+  /// points make recovery impossible.
   bool run(const std::function<bool()>& go_on);
 
   const std::vector<Facet>& facets() const { return facets_; }
@@ -52,11 +53,11 @@ class BoundaryRecovery {
   };
   struct CrossedFace {
     Tetrahedra::Face face;
-    Tetrahedra::Corners corners;  // of its tetrahedron
-    double place;                 // from 0 at the first end to 1 at the other
+    Tetrahedra::Corners corners;  // corners of its tetrahedron
+    double place;                 // position on the edge, from 0 at the first end to 1 at the other
   };
   using Ends = std::array<Index, 2>;
-  /// An edge that is not there yet, and how many times in a row others are removed for it.
+  /// An edge that is still missing, and how many times in a row other edges are removed for it.
   struct EdgeToDo {
     Index a, b;
     unsigned depth;
@@ -87,7 +88,7 @@ class BoundaryRecovery {
   std::vector<Facet> facets_;
   std::deque<EdgeToDo> edges_to_do_;
   std::deque<Index> facets_to_do_;
-  std::unordered_set<std::uint64_t> turned_;  // where there was no other way
+  std::unordered_set<std::uint64_t> turned_;  // edges flipped where nothing else helped
   std::size_t added_ = 0, most_added_;
 };
 

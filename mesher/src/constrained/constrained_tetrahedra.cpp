@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t steps_between_reports = 1024;
 
-/// The mesh's regions: tetrahedra that are connected without passing through a facet are of one.
+/// The mesh's regions: tetrahedra that are connected without passing through a facet are in one region.
 class Labels {
  public:
   Labels(const Tetrahedra& mesh, const std::vector<Facet>& facets, const Plc& plc)
@@ -128,7 +128,7 @@ class Extraction {
     for (const Index v : corners) made_.features[v] = {2, facet.patch};
   }
 
-  /// Those of tetrahedra that are kept: curves outside of all regions have none.
+  /// Adds the edges on curves of tetrahedra that are kept: curves outside all regions have none.
   void add_edges() {
     std::vector<std::uint64_t> of_tets;
     of_tets.reserve(6 * made_.tets.size());
@@ -136,14 +136,14 @@ class Extraction {
       for (unsigned i = 0; i < 4; ++i)
         for (unsigned j = i + 1; j < 4; ++j) of_tets.push_back(edge_key(tet[i], tet[j]));
     std::ranges::sort(of_tets);
-    std::vector<std::array<Index, 3>> edges;  // their ends and curve
+    std::vector<std::array<Index, 3>> edges;  // ends and curve of each edge
     recovery_.for_each_curve_edge([&](Index a, Index b, Index curve) {
       const std::array<Index, 2> ends{number_[a], number_[b]};
       if (ends[0] != none && ends[1] != none &&
           std::ranges::binary_search(of_tets, edge_key(ends[0], ends[1])))
         edges.push_back({ends[0], ends[1], curve});
     });
-    std::ranges::sort(edges);  // which come in any order
+    std::ranges::sort(edges);  // edges come in any order
     for (const auto& [a, b, curve] : edges) {
       made_.edges.push_back({a, b});
       made_.edge_curve.push_back(curve);

@@ -6,16 +6,16 @@
 
 namespace collarmesh {
 
-/// A mesh whose faces and edges on features are those of a complex, as they are.
+/// A mesh whose faces and edges on features are those of a complex, undivided where possible.
 struct ConstrainedTetrahedra {
   TetMesh mesh;                  ///< empty if the run was cancelled
-  std::size_t added_points = 0;  ///< where features could not be had otherwise
+  std::size_t added_points = 0;  ///< points added because features could not be recovered otherwise
 };
 
-/// Makes tetrahedra with the facets and segments of a complex from its points: the Delaunay ones, changed
-/// where facets or segments are not among their faces and edges. Their shapes and sizes are whatever the
-/// complex dictates. Their number is about that of the complex's triangles however near features are to each
-/// other. Throws PlcError where features intersect, or are too near each other for rounded points.
+/// Makes tetrahedra from a complex's points, with its facets and segments as faces and edges: the Delaunay
+/// tetrahedra, changed where facets or segments are missing. The complex dictates their shapes and sizes;
+/// their number is about that of its triangles, however near features are to each other. Throws PlcError
+/// where features intersect, or are too near each other for rounded points.
 ConstrainedTetrahedra constrained_tetrahedra(const Plc& plc, const Execution& execution = {});
 
 }  // namespace collarmesh

@@ -46,7 +46,7 @@ std::optional<int> LocalChanges::remove_edge(Index a, Index b, unsigned depth, c
   if (const auto gain = triangulate_ring(a, b, ring, obstacles, most)) return gain;
   if (depth == 0 || budget_ == 0) return {};
   int sum = 0;
-  // Each edge between an end and the ring that goes may make the ring smaller.
+  // Removing an edge between an end and the ring may make the ring smaller.
   const std::vector<Index> link = ring.link;
   for (const Index p : link)
     for (const Index end : {a, b}) {
@@ -73,7 +73,7 @@ int LocalChanges::cost_of_diagonal(Index a, Index b, Index p, Index q, const Obs
   return obstacles.edge(p, q) + obstacles.face(a, p, q) + obstacles.face(b, p, q);
 }
 
-// By Klincsek's dynamic program (Minimal triangulations of polygonal domains, 1980).
+// Triangulates the ring by Klincsek's dynamic program (Minimal triangulations of polygonal domains, 1980).
 std::optional<int> LocalChanges::triangulate_ring(Index a, Index b, const Tetrahedra::Ring& ring,
                                                   const Obstacles& obstacles, int most) {
   if (budget_ > 0) --budget_;
@@ -139,7 +139,8 @@ Index LocalChanges::insert(const Point& p, std::vector<Index> cavity) {
   return none;
 }
 
-/// Adds tetrahedra until all sides of the cavity are seen from a point inside; false if that is not possible.
+/// Adds tetrahedra until all sides of the cavity are visible from a point inside; returns false if that is
+/// not possible.
 bool LocalChanges::grow(Index x, std::vector<Index>& cavity) const {
   for (std::size_t i = 0; i < cavity.size(); ++i)
     for (unsigned k = 0; k < 4; ++k) {
@@ -154,7 +155,8 @@ bool LocalChanges::grow(Index x, std::vector<Index>& cavity) const {
   return true;
 }
 
-/// Are all vertices, facets and required edges of the cavity among those of the new tetrahedra?
+/// Returns whether all vertices, facets and required edges of the cavity are among those of the new
+/// tetrahedra.
 bool LocalChanges::keeps_features(const std::vector<Index>& cavity,
                                   const std::vector<Tetrahedra::Corners>& created) const {
   std::unordered_set<std::uint64_t> edges;

@@ -8,7 +8,7 @@
 
 namespace collarmesh::constrained {
 
-/// Counts what stands in the way of an edge or a triangle that is to become one of the mesh.
+/// Counts the obstacles to a missing edge or triangle.
 class Obstacles {
  public:
   virtual ~Obstacles() = default;
@@ -18,32 +18,32 @@ class Obstacles {
   virtual int edge(Index a, Index b) const = 0;
 };
 
-/// Changes of the connections of a few tetrahedra, and insertions, which keep edges that are required and
+/// Makes local changes of a few tetrahedra's connections, and insertions. They preserve required edges and
 /// faces that carry a facet.
 class LocalChanges {
  public:
-  /// Keeps both by reference. Required edges are known by their keys.
+  /// Keeps both by reference. Required edges are given by their keys.
   LocalChanges(Tetrahedra& mesh, const std::unordered_set<std::uint64_t>& required)
       : mesh_(mesh), required_(required) {}
 
-  /// Each of these returns how many obstacles more there are now, or nothing if the change is not possible.
+  /// Each of these returns the increase of the number of obstacles, or nothing if the change is not possible.
 
   /// Replaces the two tetrahedra at a face by three at the edge that joins the corners beyond it.
   std::optional<int> remove_face(const Tetrahedra::Face& face, const Obstacles& obstacles);
-  /// Triangulates the ring of an edge anew, with the fewest obstacles. If no way leaves positive tetrahedra
-  /// and at most so many obstacles more, edges around it are removed first, `depth` times in a row.
+  /// Triangulates the ring of an edge again, with the fewest obstacles. If no triangulation leaves positive
+  /// tetrahedra and few enough additional obstacles, edges around it are removed first, up to `depth` deep.
   std::optional<int> remove_edge(Index a, Index b, unsigned depth, const Obstacles& obstacles, int most);
 
-  /// From now on so many rings are triangulated before others are removed first; then no more.
+  /// Allows this many rings to be triangulated before other edges are removed first; after that, none.
   void set_budget(std::size_t rings) { budget_ = rings; }
 
-  /// Inserts a point in or near some tetrahedra: those, and as many beside them as it takes, are replaced by
-  /// others with that point. Returns its number, or none if a required edge or a facet is in the way.
+  /// Inserts a point in or near some tetrahedra: replaces them, and as many beside them as necessary, by
+  /// tetrahedra with that point. Returns its number, or none if a required edge or a facet is in the way.
   Index insert(const Point& p, std::vector<Index> cavity);
 
  private:
   static constexpr int any_number = 1 << 20;
-  // Larger rings are not triangulated.
+  // Larger rings are not triangulated, and larger cavities not filled.
   static constexpr std::size_t largest_ring = 40, largest_cavity = 200;
 
   std::optional<int> triangulate_ring(Index a, Index b, const Tetrahedra::Ring& ring,
@@ -59,8 +59,8 @@ class LocalChanges {
   Tetrahedra& mesh_;
   const std::unordered_set<std::uint64_t>& required_;
   std::size_t budget_ = 0;
-  std::vector<int> least_;          // by i * n + j: the obstacles of the ring's part from i to j
-  std::vector<std::size_t> third_;  // the corner of the triangle on ij there
+  std::vector<int> least_;          // by i * n + j: least obstacles of the ring's part from i to j
+  std::vector<std::size_t> third_;  // the corner of the triangle on ij in that triangulation
 };
 
 }  // namespace collarmesh::constrained

@@ -12,7 +12,7 @@ namespace collarmesh::constrained {
 
 namespace {
 
-// The box is that much larger than the points' own, so that its corners stay out of the way.
+// The box is larger than the points' own box by this share, so that its corners stay out of the way.
 constexpr double box_margin = 1;
 constexpr Index box_corners = 8;
 
@@ -25,7 +25,7 @@ Box box_around(const std::vector<Point>& points) {
   return box;
 }
 
-/// Walks from a cell to one that holds a point, across faces that part the two.
+/// Walks from a cell to one that contains a point, across faces that separate the two.
 Index cell_with(const Triangulation& mesh, const Point& p, Index start) {
   Index cell = start, from = none;
   unsigned turn = 0;
@@ -49,7 +49,7 @@ Index cell_with(const Triangulation& mesh, const Point& p, Index start) {
 
 Tetrahedra::Tetrahedra(const std::vector<Point>& points) : points_(points) {
   Triangulation mesh(box_around(points));
-  std::vector<Index> number(points.size() + box_corners);  // of the point, by the mesh's vertex
+  std::vector<Index> number(points.size() + box_corners);  // number of the point, by the mesh's vertex
   for (Index i = 0; i < box_corners; ++i) {
     number[i] = static_cast<Index>(points.size()) + i;
     points_.push_back(mesh.point(i));
@@ -110,7 +110,7 @@ Tetrahedra::Face Tetrahedra::face_of(Index a, Index b, Index c) const {
 bool Tetrahedra::ring(Index tet, Index a, Index b, Ring& ring) const {
   ring.tets.clear();
   ring.link.clear();
-  // Of the other two corners, the one that comes first where a, b, first, second is positive.
+  // Returns the other two corners in the order in which a, b, first, second is positive.
   const auto ordered = [&](Index t) {
     const Corners& v = corners(t);
     const unsigned i = place_of(a, v);

@@ -12,20 +12,20 @@ namespace collarmesh::constrained {
 
 /// Tetrahedra that fill a box around some points, with exact decisions, for changes that keep the box filled.
 ///
-/// The box's corners are the last eight of the points that it begins with. A face of a tetrahedron may carry
+/// The box's corners are the last eight of the points that it starts with. A face of a tetrahedron may carry
 /// the number of a facet, which it keeps until `set_facet` changes it; no change may remove such a face.
 class Tetrahedra {
  public:
   using Corners = std::array<Index, 4>;
 
-  /// A face as one of its tetrahedra sees it: the one opposite a corner.
+  /// A face as seen from one of its tetrahedra: the one opposite a corner.
   struct Face {
     Index tet = none;
     unsigned corner = 0;
   };
 
-  /// The tetrahedra around an edge ab in order: number i has the corners a, b, link[i] and link[i + 1], the
-  /// last one link[0] again.
+  /// The tetrahedra around an edge ab in order: tetrahedron i has the corners a, b, link[i] and link[i + 1];
+  /// the last one has link[0] again.
   struct Ring {
     std::vector<Index> tets, link;
   };
@@ -58,17 +58,17 @@ class Tetrahedra {
   /// Finds the ring of an edge of a tetrahedron; false at the box, where there is no whole ring.
   bool ring(Index tet, Index a, Index b, Ring& ring) const;
 
-  /// Adds a point, which is no corner yet.
+  /// Adds a point, which is no corner yet. Returns its number.
   Index add_point(const Point& p);
-  /// Forgets the last point, which is no corner.
+  /// Removes the last point, which is no corner.
   void drop_point() { points_.pop_back(), tet_at_.pop_back(); }
-  /// Replaces tetrahedra by others that fill the same room. Their faces on its border stay.
+  /// Replaces tetrahedra by others that fill the same space. Their faces on its border stay.
   void replace(std::span<const Index> old, std::span<const Corners> created);
 
-  /// Changes after a mark can be undone, the last ones first, until they are kept.
+  /// Returns a mark. Changes after it can be undone, the last ones first, until they are kept.
   std::size_t mark() const { return journal_.size(); }
   void undo_to(std::size_t mark);
-  /// All changes stay.
+  /// Makes all changes permanent.
   void keep();
 
  private:
@@ -80,7 +80,7 @@ class Tetrahedra {
   };
   struct Side {
     std::array<Index, 3> corners;  // sorted
-    Face face;                     // the one to link to
+    Face face;                     // the face to link to
     Index facet;
     bool border;
   };
@@ -88,7 +88,7 @@ class Tetrahedra {
     std::vector<Index> old, created;
   };
 
-  /// Finds tetrahedra at a vertex until it is enough.
+  /// Finds tetrahedra at a vertex until `enough` returns true.
   template <class Enough>
   void find_star(Index vertex, std::vector<Index>& tets, const Enough& enough) const {
     tets.clear();
@@ -117,7 +117,7 @@ class Tetrahedra {
 
   std::vector<Point> points_;
   std::vector<Tet> tets_;
-  std::vector<Index> tet_at_;  // by vertex; none: it is a corner of none
+  std::vector<Index> tet_at_;  // by vertex; none: it is no corner
   std::vector<Index> free_;
   std::vector<Step> journal_;
   std::vector<Side> sides_;

@@ -5,24 +5,23 @@
 
 #include "collarmesh/geometry.h"
 
-/// Exact geometric decisions. Each is answered in floating point when an error bound allows it and
-/// by CGAL's exact arithmetic otherwise, so the answer is always that of real arithmetic on the
-/// given doubles.
+/// Exact geometric decisions. Each is made in floating point when an error bound allows it and by CGAL's
+/// exact arithmetic otherwise, so the result is always that of real arithmetic on the given doubles.
 namespace collarmesh::predicates {
 
-/// Sign of six_volume(a, b, c, d), by exact arithmetic.
+/// Returns the sign of six_volume(a, b, c, d), by exact arithmetic.
 int orientation_exact(const Point& a, const Point& b, const Point& c, const Point& d);
 
-/// Is p strictly inside the circumsphere of the positively oriented tetrahedron abcd? Exact.
+/// Returns whether p is strictly inside the circumsphere of the positively oriented tetrahedron abcd. Exact.
 bool in_sphere_exact(const Point& a, const Point& b, const Point& c, const Point& d, const Point& p);
 
-/// Circumcentre of a tetrahedron that is not flat, computed exactly, then rounded.
+/// Returns the circumcentre of a tetrahedron that is not flat, computed exactly, then rounded.
 Point circumcentre_exact(const Point& a, const Point& b, const Point& c, const Point& d);
 
-/// Sign of the first non-zero coordinate of (q - p) x (b - a), 0 if all vanish. Exact.
+/// Returns the sign of the first non-zero coordinate of (q - p) x (b - a), 0 if all vanish. Exact.
 int cross_product_sign_exact(const Point& p, const Point& q, const Point& a, const Point& b);
 
-/// Sign of six_volume(a, b, c, d). The filter's bound is Shewchuk's (Adaptive precision
+/// Returns the sign of six_volume(a, b, c, d). The filter's bound is Shewchuk's (Adaptive precision
 /// floating-point arithmetic, 1997, orient3d stage A).
 inline int orientation(const Point& a, const Point& b, const Point& c, const Point& d) {
   const Vector u = b - a, v = c - a, w = d - a;

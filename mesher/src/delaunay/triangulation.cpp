@@ -81,11 +81,10 @@ bool Triangulation::in_conflict_exact(Index cell, const Point& p) const {
   return predicates::in_sphere_exact(point(v[0]), point(v[1]), point(v[2]), point(v[3]), p);
 }
 
-// The bound: with e = 2^-53, L the longest edge from the first corner and
-// k = 16 e L^3 / |det|, the centre and the radius are off by at most d = k (r + L) + 2 e |c| + 4 e r.
-// |p c|^2 is then right when it differs from r^2 by more than 2 d (r + |pc| + d) + 8 e (r^2 + |pc|^2),
-// which is at most margin * (r^2 + |pc|^2) with the margin below, because r + |pc| is at most
-// sqrt(2) (r^2 + |pc|^2) / r.
+// Computes the sphere and its margin. With e = 2^-53, L the longest edge from the first corner and k = 16 e
+// L^3 / |det|, the centre and the radius are off by at most d = k (r + L) + 2 e |c| + 4 e r. |p c|^2 is then
+// right when it differs from r^2 by more than 2 d (r + |pc| + d) + 8 e (r^2 + |pc|^2), which is at most
+// margin * (r^2 + |pc|^2) with the margin below, because r + |pc| is at most sqrt(2) (r^2 + |pc|^2) / r.
 Triangulation::Sphere Triangulation::circumsphere(const std::array<Index, 4>& corners) const {
   constexpr double e = 0x1p-53;
   const Point& a = point(corners[0]);
@@ -124,7 +123,8 @@ void Triangulation::prefetch_neighbours(Index cell) const {
   }
 }
 
-/// False when a cell in conflict may not be entered; then the zone is not complete.
+/// Collects the cells in conflict. Returns false when a cell in conflict may not be entered; the zone is then
+/// incomplete.
 template <class MayEnter>
 bool Triangulation::find_zone(const Point& p, Index start, ConflictZone& zone, Workspace& workspace,
                               const MayEnter& may_enter) {
@@ -176,8 +176,8 @@ Index Triangulation::conflicting_cell_around(Index vertex, const Point& p) {
   return none;
 }
 
-// Are the new cells as an insertion leaves them: positively oriented around the vertex, joined to their
-// neighbours from both sides, and Delaunay?
+// Checks the new cells after an insertion: positively oriented around the vertex, linked to their neighbours
+// from both sides, and Delaunay.
 [[maybe_unused]] static bool consistent(const Triangulation& mesh, const ConflictZone& zone, Index vertex) {
   for (std::size_t i = 0; i < zone.created.size(); ++i) {
     const Index cell = zone.created[i];
@@ -207,8 +207,8 @@ void Triangulation::replace_zone(ConflictZone& zone, Index vertex, Workspace& wo
   for (std::size_t i = 0; i < zone.vertices.size(); ++i)
     vertices_[zone.vertices[i]].local = static_cast<std::uint32_t>(i);
 
-  // Build the new cells in fresh or recycled slots; the zone's own are still read meanwhile, so
-  // those are recycled for the next insertion.
+  // Build the new cells in fresh or recycled slots. The zone's own cells are still read here, so the next
+  // insertion recycles them.
   zone.created.clear();
   zone.outer.clear();
   for (const FaceId border : zone.border) {
@@ -245,7 +245,8 @@ Index Triangulation::insert(ConflictZone& zone) {
   return vertex;
 }
 
-// Each directed edge of the border is written once and read once, so the table needs no clearing.
+// Links the new cells. Each directed edge of the border is written once and read once, so the table needs no
+// clearing.
 void Triangulation::link_created(ConflictZone& zone, std::vector<FaceId>& edge_table) {
   const std::size_t n = zone.vertices.size();
   if (edge_table.size() < n * n) edge_table.resize(n * n);

@@ -20,14 +20,14 @@ inline Index cell_of(FaceId face) { return face >> 2; }
 inline unsigned corner_of(FaceId face) { return face & 3U; }
 inline FaceId face_id(Index cell, unsigned corner) { return 4 * cell + corner; }
 
-/// The cells whose circumspheres hold a point, with their border: what its insertion replaces.
-/// A caller keeps one and reuses it: no allocation in the steady state.
+/// The cells whose circumspheres contain a point, with their border: insertion of the point replaces them. A
+/// caller keeps one and reuses it, so that insertions allocate nothing after a while.
 struct ConflictZone {
   Point point;
   std::vector<Index> cells;
   std::vector<FaceId> border;   ///< faces of zone cells towards cells outside the zone (or the hull)
-  std::vector<Index> vertices;  ///< of the zone's cells: the new vertex's neighbours
-  std::vector<Index> created;   ///< after insert: the new cell over border[i], the new vertex in the corner
+  std::vector<Index> vertices;  ///< vertices of the zone's cells: the new vertex's neighbours
+  std::vector<Index> created;   ///< after insert: the new cell over border[i]; the new vertex is its corner
                                 ///< opposite that face
   std::vector<FaceId>
       outer;  ///< after insert: the face beyond border[i], seen from outside; no_face on the hull
@@ -47,11 +47,11 @@ struct LargestZone {
 /// The new numbers of vertices after blocks have been joined.
 struct Renumbering {
   struct Moved {
-    Index first, end;  ///< vertices that were numbered so
-    Index shift;       ///< and whose numbers are smaller by this now
+    Index first, end;  ///< a range of old numbers
+    Index shift;       ///< the new numbers are smaller by this
   };
-  std::vector<Moved> moved;  ///< in their order
-  Index count;               ///< of all vertices
+  std::vector<Moved> moved;  ///< ranges, in their order
+  Index count;               ///< number of all vertices
 
   /// Renumbers an array with an entry for each vertex.
   template <class T>
@@ -118,26 +118,26 @@ class Triangulation {
     return in_conflict_exact(cell, p);
   }
 
-  /// Find all cells in conflict with p. Precondition: `start` is in conflict with p.
-  /// Cost: linear in the zone. The zone stays valid until the next insertion.
+  /// Finds all cells in conflict with p. Precondition: `start` is in conflict with p. Cost: linear in the
+  /// zone. The zone stays valid until the next insertion.
   void find_conflict_zone(const Point& p, Index start, ConflictZone& zone);
 
   /// Returns a cell around `vertex` that is in conflict with p; none if there is none. If `vertex` is a
   /// nearest vertex of p there always is one, unless p is a vertex.
   Index conflicting_cell_around(Index vertex, const Point& p);
 
-  /// Replace the zone's cells by those that join its border to zone.point.
-  /// Returns the new vertex; fills zone.created and zone.outer.
+  /// Replaces the zone's cells by those that join its border to zone.point. Returns the new vertex; fills
+  /// zone.created and zone.outer.
   Index insert(ConflictZone& zone);
 
-  /// Blocks of vertices, each with room for so many insertions. Until they are joined, nothing else may be
-  /// done with the triangulation than to insert into blocks, and to read what no other block changes: points;
-  /// the corners and spheres of cells with a vertex of the reader's own block, and their neighbours across
-  /// faces with such a vertex. `owners` tells the block of each vertex, below `insertions.size()`, or
-  /// `no_owner`; it grows by the vertices to come, and must stay as it is until the blocks are joined.
-  /// The result does not depend on the threads, nor on their timing.
+  /// Divides the triangulation into blocks of vertices, each with room for a number of insertions. Until the
+  /// blocks are joined, callers may only insert into blocks, and read data that no other block changes:
+  /// points; the corners and spheres of cells with a vertex of the reader's own block, and their neighbours
+  /// across faces with such a vertex. `owners` gives the block of each vertex, below `insertions.size()`, or
+  /// `no_owner`; it grows with new vertices, and must otherwise not change until the blocks are joined. The
+  /// result does not depend on the threads, nor on their timing.
   std::vector<Block> divide(std::span<const Index> insertions, Owners& owners);
-  /// The blocks' vertices are numbered, block by block.
+  /// Joins the blocks and numbers their vertices, block by block.
   Renumbering join(std::vector<Block>& blocks);
 
   /// Finds the cells with this vertex, in no particular order.
@@ -145,7 +145,7 @@ class Triangulation {
   /// Finds the vertices joined to this one by an edge.
   void adjacent_vertices(Index vertex, std::vector<Index>& adjacent);
 
-  /// A fresh stamp for marking vertices, and the marks.
+  /// Returns a fresh stamp for marking vertices, and the marks.
   std::uint32_t new_vertex_stamp() { return ++workspace_.vertex_stamp; }
   bool stamp_vertex(Index vertex, std::uint32_t stamp) {
     if (vertices_[vertex].stamp == stamp) return false;
@@ -177,7 +177,7 @@ class Triangulation {
     std::uint32_t generation;
   };
 
-  /// The marks of one thread that searches and inserts; they are numbered upwards.
+  /// The marks of one thread that searches and inserts; their values only increase.
   struct Workspace {
     std::uint32_t search = 0;
     std::uint32_t vertex_stamp = 0;
@@ -208,21 +208,22 @@ class Triangulation {
   std::vector<Index> scratch_;
 };
 
-/// A block of vertices, between which one thread may insert while others insert in other blocks.
+/// A block of vertices. One thread may insert into it while others insert into other blocks.
 ///
-/// A zone lies in a block when all its vertices belong to it. An insertion then writes the zone's
-/// cells, the faces towards cells beyond its border, and marks of these. A cell beyond has three vertices of
-/// the block, so that no other block's zone borders on it: no thread reads or writes data that
+/// A zone lies in a block when all its vertices belong to it. An insertion then writes the zone's cells, the
+/// faces towards cells beyond its border, and marks of these cells. A cell beyond the border has three
+/// vertices of the block, so that no other block's zone borders on it: no thread reads or writes data that
 /// another one writes.
 class Triangulation::Block {
  public:
-  /// Find all cells in conflict with p, as Triangulation::find_conflict_zone does. False when the zone has a
-  /// vertex of others, or when there is no more room.
+  /// Finds all cells in conflict with p, as Triangulation::find_conflict_zone does. Returns false if the zone
+  /// has a vertex of another block, or if there is no more room.
   bool find_conflict_zone(const Point& p, Index start, ConflictZone& zone);
-  /// Precondition: the zone is one of this block's. The vertex gets another number when blocks are joined.
+  /// Inserts the zone's point. Precondition: the zone lies in this block. The vertex gets another number when
+  /// blocks are joined.
   Index insert(ConflictZone& zone);
-  /// The cells that a vertex of this block has. It leaves no marks on them: others may have vertices of these
-  /// cells, too.
+  /// Finds the cells with a vertex of this block. Leaves no marks on them, because other blocks may have
+  /// vertices of these cells, too.
   void incident_cells(Index vertex, std::vector<Index>& cells) const;
 
  private:
@@ -237,7 +238,7 @@ class Triangulation::Block {
   const Owners* owners_;
   std::uint16_t number_;
   Index first_vertex_, next_vertex_, end_vertex_;
-  Index next_cell_, end_cell_;  // never used before
+  Index next_cell_, end_cell_;  // cells that were never used before
   Workspace workspace_;
   std::vector<Created> created_;
 };

@@ -10,10 +10,10 @@
 
 namespace collarmesh::facets {
 
-/// Join the triangle sides that see each other around an edge: by exact angle where three or more
-/// triangles meet, around the border where there is one. The sets are the shells of the complex.
-/// They are over the sides 2 t and 2 t + 1, and one more element for the space far outside.
-/// Precondition: triangles meet in common edges and corners only.
+/// Joins the triangle sides that see each other around an edge: by exact angle where three or more triangles
+/// meet, around the border where there is one. The sets are the shells of the complex. They are over the
+/// sides 2 t and 2 t + 1, and one more element for the space far outside. Precondition: triangles meet in
+/// common edges and corners only.
 DisjointSets find_shells(const Draft& draft, const EdgeTable& edges);
 
 /// Where straight lines meet the triangles.

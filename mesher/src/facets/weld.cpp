@@ -21,7 +21,7 @@ struct UsedPoints {
 
 bool is_finite(const Point& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
-// Mark a corner as used; a fault if there is no such point.
+// Marks a corner as used; a fault if there is no such point.
 void use(const PolygonSoup& soup, Index point, const char* what, Index number, std::vector<Index>& used,
          Faults& faults) {
   if (point < used.size()) {

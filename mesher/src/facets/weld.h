@@ -18,11 +18,10 @@ struct PointMap {
 /// hole point is a region, and points that no facet uses are vertices.
 bool is_complex(const PolygonSoup& soup);
 
-/// Put the used points of all soups into the draft, those closer than `distance` (relative to the
-/// diagonal of them all) as one; chains of close points merge too. A merged point lies where the
-/// first of its points did. Sets the bounds and the draft's deviation. Points that are not finite
-/// and corners out of range become faults.
-/// Cost: O(n log n) unless many points lie within `distance` of one plane.
+/// Puts the used points of all soups into the draft, those closer than `distance` (relative to the diagonal
+/// of them all) as one; chains of close points merge too. A merged point lies where the first of its points
+/// did. Sets the bounds and the draft's deviation. Points that are not finite and corners out of range become
+/// faults. Cost: O(n log n) unless many points lie within `distance` of one plane.
 PointMap weld_points(std::span<const PolygonSoup> soups, double distance, Draft& draft, Faults& faults);
 
 }  // namespace collarmesh::facets

@@ -1,4 +1,4 @@
-// Insertion of a vertex inside a region, into a cavity that grows around a tet.
+// Inserts a vertex inside a region, into a cavity that grows around a tet.
 #include <algorithm>
 
 #include "improve/operations.h"
@@ -25,7 +25,7 @@ void Operations::insert_in_cavity(Index tet, double least, Change& change) {
   }
 }
 
-// Takes in the tet across the worst new one as long as that makes the worst one better.
+// Extends the cavity by the tet behind the worst new one as long as that makes the worst one better.
 void Operations::grow_and_insert(std::vector<Index> cavity, double least, Change& change) {
   if (!find_cone_of_cavity(cavity)) return;
   auto [place, quality] = best_place(centre_of_hull(), none, everywhere, -1);
@@ -50,7 +50,7 @@ void Operations::grow_and_insert(std::vector<Index> cavity, double least, Change
   fill(Change::inserted, change);
 }
 
-// False where a vertex, a curve or a face of the mesh lies inside.
+// Finds the cone of a cavity. Returns false if a vertex, a curve or a face of the mesh lies inside.
 bool Operations::find_cone_of_cavity(const std::vector<Index>& cavity) {
   cone_.clear();
   cone_.tets = cavity;
@@ -88,7 +88,7 @@ Point Operations::centre_of_hull() const {
   return first + sum / (3.0 * static_cast<double>(cone_.hull.size()));
 }
 
-// The tet that the worst one around this apex has beyond its face of the hull; none at a face of the mesh.
+// Returns the tet behind the hull face of the worst tet around this apex; none at a face of the mesh.
 Index Operations::beyond_worst_of_hull(const Point& apex) const {
   double worst = INFINITY;
   std::size_t at = 0;

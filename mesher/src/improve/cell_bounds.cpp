@@ -10,10 +10,10 @@ namespace collarmesh::improvement {
 
 namespace {
 
-// As for thin tets.
+// The same value as for thin tets.
 constexpr double least_cosine_of_sides = -0.92;
-// The narrow places of the certificate are wider by this share, as vertices move afterwards; where they move
-// onto exact geometry, by the reserve, too.
+// Narrow places are narrower than the certificate's by this share, because vertices move afterwards; where
+// they move onto exact geometry, by the reserve, too.
 constexpr double narrower = 0.98;
 constexpr std::uint8_t star = 1, book = 2;
 constexpr std::size_t tets_at_once = 4096;
@@ -44,7 +44,7 @@ class CreaseEdges {
     std::sort(edges_.begin(), edges_.end());
   }
 
-  /// Returns the tag of one of a tet's edges that is among them; null if none is.
+  /// Returns the tag of one of a tet's edges that lie on creases; null if none does.
   const Tag* tag_in(const std::array<Index, 4>& corners) const {
     for (unsigned i = 0; i < 4; ++i)
       for (unsigned j = 0; j < i; ++j) {

@@ -10,11 +10,11 @@
 
 namespace collarmesh::improvement {
 
-/// The vertices of a mesh that lie on creases of the complex. The cells that touch these are the
-/// collars of a coarsened mesh.
+/// The vertices of a mesh that lie on creases of the complex. The cells that touch them are the collars of a
+/// coarsened mesh.
 class CreaseCells {
  public:
-  /// Of the vertices that there are now, which know their features.
+  /// Finds these vertices among the current ones, by their features.
   CreaseCells(const Plc& plc, const std::vector<TetMesh::VertexFeature>& features, double crease_angle);
 
   bool touch(const std::array<Index, 4>& corners) const {
@@ -30,29 +30,30 @@ class CreaseCells {
   bool any_ = false;
 };
 
-/// Stands for a vertex that is to be inserted on a patch or a curve of one.
+/// Stands for a vertex that will be inserted on a patch or on a curve of one.
 inline constexpr Index inserted_on_surface = none - 1;
 
 /// The bounds of a coarsened mesh that depend on the place: the largest dihedral angle of cells that touch a
 /// crease, and, if a radius-edge ratio was asked for, the ratio away from creases and narrow places. Other
-/// rules know the bounds of thin tets and the ratio as such.
+/// rules contain the bounds of thin tets and the ratio itself.
 class CellBounds {
  public:
-  /// A tet that `allow` forbids counts this share of its quality, so that others in its place are better.
+  /// A tet that `allow` forbids counts with this share of its quality, so that others in its place are
+  /// better.
   static constexpr double forbidden = 1e-3;
 
   /// Keeps the mesh by reference if each tet needs an interior node.
   CellBounds(const Plc& plc, const TetMesh& mesh, const Bounds& bounds);
 
-  /// May a tet be made here? Thin ones of a default run always.
+  /// Returns whether a tet may be made here. In a default run thin ones always may.
   bool allow(const Corners& p, const std::array<Index, 4>& corners) const {
     if (lacks_interior_node(corners)) return false;
     if (creases_.touch(corners)) return dihedral_cosines(p).largest_angle >= cosine_;
     return !narrow_ || ratio_holds(p) || narrow_->contain(p, corners);
   }
-  /// Is there a thin tet that `allow` forbids?
+  /// Returns whether `allow` forbids any thin tets.
   bool forbid_thin_tets() const { return narrow_.has_value() || tight_ || mesh_ != nullptr; }
-  /// Is one needed, and are all corners on surfaces?
+  /// Returns whether the tet needs an interior node and has all corners on surfaces.
   bool lacks_interior_node(const std::array<Index, 4>& corners) const {
     return mesh_ != nullptr &&
            std::all_of(corners.begin(), corners.end(), [this](Index v) { return on_surface(v); });
@@ -61,7 +62,7 @@ class CellBounds {
  private:
   bool on_surface(Index vertex) const {
     if (vertex == inserted_on_surface) return true;
-    if (vertex == none) return false;  // inserted inside a region
+    if (vertex == none) return false;  // it is inserted inside a region
     const auto& [dimension, feature] = mesh_->features[vertex];
     if (dimension >= 2 || feature == none) return dimension < 3;
     return dimension == 1 ? curve_on_surface_[feature] : vertex_on_surface_[feature];
@@ -73,15 +74,16 @@ class CellBounds {
 
   CreaseCells creases_;
   double cosine_;  // of the largest angle at creases, a signed square
-  bool tight_;     // is it below that of thin tets?
+  bool tight_;     // the largest angle at creases is below that of thin tets
   double squared_ratio_;
   std::optional<NarrowPlaces> narrow_;                      // nothing if tets may be thin anywhere
   const TetMesh* mesh_ = nullptr;                           // null unless each tet needs an interior node
-  std::vector<bool> curve_on_surface_, vertex_on_surface_;  // of the complex; empty unless it does
+  std::vector<bool> curve_on_surface_, vertex_on_surface_;  // of the complex; empty unless each tet needs an
+                                                            // interior node
 };
 
-/// Marks the cells that touch a crease as its collar: 2 with an edge on it, else 1. A mesh that knows the
-/// balls of its collars keeps its marks. Then marks thin tets.
+/// Marks the cells that touch a crease as its collar: 2 if they have an edge on it, else 1. A mesh with
+/// collar balls keeps its marks. Then marks thin tets.
 void mark_cells(TetMesh& mesh, const Plc& plc, const Bounds& bounds);
 
 }  // namespace collarmesh::improvement

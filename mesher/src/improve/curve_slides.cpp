@@ -123,7 +123,7 @@ void CurveSlides::skipped(Index vertex) {
   join(after, 0, before);
 }
 
-// Is this the vertex that comes next on the curve? Precondition: a mesh edge on it joins both.
+// Returns whether this vertex comes next on the curve. Precondition: a mesh edge on the curve joins both.
 bool CurveSlides::follows(Index curve, Index vertex, Index next) const {
   if (mesh_.features[vertex].dimension == 1) return places_[vertex].neighbours[1] == next;
   if (mesh_.features[next].dimension == 1) return places_[next].neighbours[0] == vertex;
@@ -156,7 +156,7 @@ void CurveSlides::divided(Index vertex, const Middle& middle) {
   }
 }
 
-// The edge ab and the part of a curve that starts at `from` and is `way` long.
+// Returns whether the edge ab fits the part of a curve that starts at `from` and has the length `way`.
 bool CurveSlides::edge_fits(Index curve, double from, double way, const Point& a, const Point& b) const {
   const auto& lengths = paths_.lengths(curve);
   const double length = lengths.back();

@@ -13,9 +13,9 @@
 
 namespace collarmesh::improvement {
 
-/// The curves of a complex and the mesh edges on them: decides where else on its curve a vertex may lie.
-/// A curve and its edges are within the tolerance of each other: the polyline's corners from
-/// their edges, points of the edges from their parts of the polyline.
+/// The curves of a complex and the mesh edges on them: decides where else on its curve a vertex may lie. A
+/// curve and its edges are within the tolerance of each other: corners of the polyline are near their edges,
+/// and points of an edge are near its part of the polyline.
 class CurveSlides {
  public:
   /// Keeps the complex and the mesh by reference. Several threads may query it at once.
@@ -23,34 +23,34 @@ class CurveSlides {
 
   /// Returns whether this vertex on a curve can move at all.
   bool movable(Index vertex) const;
-  /// Returns the point of its curve at this arc length ahead of it.
+  /// Returns the point of its curve at this arc length ahead of the vertex.
   Point ahead(Index vertex, double way) const;
-  /// Returns whether the vertex may move there.
+  /// Returns whether the vertex may slide by this arc length.
   bool fits(Index vertex, double way) const;
-  /// Records that the vertex moved there.
+  /// Records that the vertex slid by this arc length.
   void moved(Index vertex, double way) {
     old_places_.note(places_, vertex);
     places_[vertex].parameter += way;
   }
-  /// Returns the mesh vertices before and after it. Precondition: it is movable.
+  /// Returns the mesh vertices before and after the vertex. Precondition: it is movable.
   const std::array<Index, 2>& neighbours(Index vertex) const { return places_[vertex].neighbours; }
-  /// Returns whether one edge could join its neighbours.
+  /// Returns whether a single edge could join the vertex's neighbours.
   bool may_skip(Index vertex) const;
-  /// Records that one edge joins its neighbours.
+  /// Records that a single edge joins the vertex's neighbours.
   void skipped(Index vertex);
 
   /// The middle of an edge on a curve.
   struct Middle {
-    std::array<Index, 2> ends{none, none};  ///< of the edge, in the order of the curve
+    std::array<Index, 2> ends{none, none};  ///< ends of the edge, in the order of the curve
     double parameter = 0;
   };
   /// Returns the middle of this mesh edge, by arc length; nothing where the edge's place is not known.
   std::optional<Middle> middle(Index curve, Index a, Index b) const;
   Point place(Index curve, const Middle& middle) const { return paths_.point(curve, middle.parameter); }
-  /// Records that a new vertex there divides the edge.
+  /// Records that a new vertex at its middle divides the edge.
   void divided(Index vertex, const Middle& middle);
 
-  /// Finds the places of all vertices now.
+  /// Finds the places of all vertices now instead of at the first query.
   void prepare() const {
     std::call_once(prepared_, [this] { find_all_places(); });
   }
@@ -76,8 +76,8 @@ class CurveSlides {
   SurfaceTolerance tolerance_;
   CurvePaths paths_;
   mutable std::once_flag prepared_;
-  mutable std::vector<Place> places_;        // of every vertex there was then; made when first asked for
-  std::vector<std::ptrdiff_t> spare_edges_;  // of every curve: more than it has to have
+  mutable std::vector<Place> places_;        // by vertex that existed then; computed when first asked for
+  std::vector<std::ptrdiff_t> spare_edges_;  // by curve: the number of edges beyond its minimum
   UndoLog<Place> old_places_;
   UndoLog<std::ptrdiff_t> old_spare_edges_;
 };

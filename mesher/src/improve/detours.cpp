@@ -89,9 +89,9 @@ void Detours::note_changes(std::vector<Index>& tets) {
   }
 }
 
-// Improves a tet by a single operation if one helps now, else by the first detour that makes all tets good
-// and no more of them thin than before, else by the one with the best worst tet. Returns whether `changed_`
-// changed.
+// Improves a tet by a single operation if one helps now. Otherwise takes the first detour that makes all tets
+// good and no more of them thin than before, or else the detour with the best worst tet. Returns whether
+// `changed_` changed.
 bool Detours::help(Index tet, Effort effort) {
   if (Change change = remedies_.propose(operations_, tet); change.kind != Change::Kind::none) {
     ++trials_;
@@ -126,7 +126,7 @@ bool Detours::help(Index tet, Effort effort) {
   return true;
 }
 
-// Else thin tets are worth it only where all others are good then.
+// Additional thin tets are worth it only if all others are good afterwards.
 bool Detours::is_worth_it(const Result& result, Effort effort) const {
   return effort == Effort::last_resort || !result.more_thin || result.worst >= remedies_.wanted();
 }

@@ -18,11 +18,11 @@ namespace collarmesh::improvement {
 /// One thread. Precondition: `Remedies::forget` was called; so a repeated trial has the same result.
 class Detours {
  public:
-  /// Keeps all by reference. Tries at most `most_trials` operations, and finishes those at one tet.
+  /// Keeps all by reference. Starts no detour after `most_trials` operations, but completes the current tet.
   Detours(Workpiece& workpiece, Remedies& remedies, Operations& operations, std::size_t most_trials);
 
-  /// Takes detours for these tets, and for poor ones that detours leave, if the number of vertices may
-  /// change there: worst first, at each tet itself before beside any, and again after a change at a
+  /// Takes detours for these tets, and for poor ones that detours leave if the number of vertices may change
+  /// there. Takes the worst first, at each tet itself before beside any, and again after a change at a
   /// corner, until nothing helps. Returns the number of detours taken. Calls `stopped` between tets.
   /// Precondition: the workpiece is prepared for trials.
   std::size_t take_all(std::vector<Index> tets, const std::function<bool()>& stopped);
@@ -41,13 +41,13 @@ class Detours {
   /// The result of a trial.
   struct Result {
     bool better = false;
-    bool more_thin = false;  ///< are there more thin tets than before?
-    double worst = 0;        ///< of the tets that it has changed, at most the wanted quality
+    bool more_thin = false;  ///< more tets are thin than before
+    double worst = 0;        ///< smallest quality of the changed tets, at most the wanted quality
   };
-  /// First steps are tried at the tet itself, then at those across its faces and its edges, then anywhere
-  /// there though more tets are thin and not all others are good afterwards.
+  /// First steps are tried at the tet itself, then across its faces and edges, then anywhere there even if
+  /// more tets are thin and not all others are good afterwards.
   enum class Effort : std::uint8_t { at_tet, beside, last_resort };
-  /// By tet: how many detours had been taken when it was asked, plus 1; 0: not asked.
+  /// By tet: the number of detours that had been taken when it was last tried, plus 1; 0: not tried.
   using Asked = std::vector<std::uint32_t>;
 
   bool exhausted() const;
@@ -72,15 +72,16 @@ class Detours {
   Operations& operations_;
   std::size_t most_trials_, trials_ = 0;
   std::uint32_t taken_ = 0;
-  bool ended_ = false;                         // all trials are spent, or it was stopped
-  std::vector<std::uint32_t> last_detour_at_;  // by vertex: that changed a tet there
+  bool ended_ = false;                         // no trials remain, or the caller stopped it
+  std::vector<std::uint32_t> last_detour_at_;  // by vertex: the last detour that changed a tet there
   std::array<Asked, 3> asked_;                 // by Effort
 
   // State of the current trial.
   std::uint32_t trial_ = 0;
-  std::vector<std::uint32_t> last_trial_of_;  // by tet: that changed it
+  std::vector<std::uint32_t> last_trial_of_;  // by tet: the last trial that changed it
   std::vector<Index> changed_;                // tets, some of them gone again
-  std::vector<double> before_;                // qualities of the tets that were there, at most the wanted one
+  std::vector<double> before_;                // qualities of the tets before the trial, at most the wanted
+                                              // one
   std::size_t thin_before_ = 0;
   std::vector<Index> to_improve_;
 };

@@ -13,7 +13,8 @@ constexpr double flat_volume = 1e-13;
 
 }  // namespace
 
-// A result that is not above `above` counts as worthless, whatever its value.
+// Returns the quality of a new tet. A result that is not above `above` counts as worthless, whatever its
+// value.
 double Operations::new_quality(const std::array<Index, 4>& v, double above) const {
   const auto& points = mesh_.points;
   const Corners p{points[v[0]], points[v[1]], points[v[2]], points[v[3]]};
@@ -21,8 +22,8 @@ double Operations::new_quality(const std::array<Index, 4>& v, double above) cons
   return quality > above && rule_.allows(p, v, quality) ? quality : -1;
 }
 
-// Triangulate the polygon around the edge ab so that the worst of the two tets on each triangle is as
-// good as possible (Klincsek 1980). Cost: the polygon's vertices cubed.
+// Triangulates the polygon around the edge ab so that the worst of the two tets on each triangle is as good
+// as possible (Klincsek 1980). Cost: the polygon's vertices cubed.
 double Operations::triangulate(Index a, Index b, const Polygon& polygon, bool closed, double above) {
   const std::size_t n = polygon.size();
   const auto& points = mesh_.points;
@@ -79,7 +80,8 @@ void Operations::remove_edge_anyhow(Index tet, unsigned i, unsigned j, double le
   remove_edge_above(tet, i, j, least, change);
 }
 
-// All new tets are better than `least`; without it, than the worst one at the edge and than `change`.
+// Removes an edge if all new tets are better than `least`; without `least`, better than the worst one at the
+// edge and than `change`.
 void Operations::remove_edge_above(Index tet, unsigned i, unsigned j, std::optional<double> least,
                                    Change& change) {
   const Index a = complex_[tet].corners[i], b = complex_[tet].corners[j];
@@ -89,7 +91,7 @@ void Operations::remove_edge_above(Index tet, unsigned i, unsigned j, std::optio
   if (n > largest_ring || (ring_.closed && m < 3)) return;
   // Finds the link vertices at which faces that must be preserved leave the edge.
   std::vector<std::pair<std::size_t, Index>> kept;
-  // A quality above that of this tet is above that of the worst one at the edge.
+  // If the quality is above that of this tet, it is above that of the worst one at the edge.
   const bool known = least || (change.kind != Change::Kind::none && change.quality >= quality(tet));
   double worst = known ? -INFINITY : INFINITY;
   for (std::size_t k = 0; k < n; ++k) {
@@ -146,7 +148,7 @@ void Operations::remove_edge_above(Index tet, unsigned i, unsigned j, std::optio
   }
   made.replacement.old = ring_.tets;
   made.kind = kept.empty() ? Change::Kind::edge_removal : Change::Kind::boundary_flip;
-  made.read = std::move(change.read);  // a refusal depends on what was read, too
+  made.read = std::move(change.read);  // a refusal also depends on the tets that were read
   if (kept.empty() || may_turn(made))
     change = std::move(made);
   else
@@ -182,7 +184,7 @@ bool Operations::may_turn(Change& change) {
   change.read.insert(change.read.end(), star_.begin(), star_.end());
   if (complex_.on_faces(shared[0], shared[1])) return false;
   const Index patch = mesh_.face_patch[turned[0].like];
-  if (plc_.patches[patch].planar) return true;  // the tets' volumes have told
+  if (plc_.patches[patch].planar) return true;  // the volumes of the tets have decided already
   faces_.clear();
   for (const TetComplex::NewFace& face : turned)
     faces_.push_back(

@@ -9,16 +9,16 @@
 
 namespace collarmesh::improvement {
 
-/// The faces of a hull. It measures their tets with an apex two at a time: `extreme_cosines` for each, in
-/// half the time. Terms that do not depend on the apex are computed once.
+/// The faces of a hull. Measures the tets on them with an apex, two at a time: gives `extreme_cosines` for
+/// each in half the time. Terms that do not depend on the apex are computed once.
 class HullShapes {
  public:
   static constexpr std::size_t at_once = 2;
 
   void clear() { pairs_.clear(); }
   bool empty() const { return pairs_.empty(); }
-  /// Each face makes a tet of positive volume with an apex inside. The last face of an odd number
-  /// is repeated.
+  /// Sets the faces. Each face makes a tet of positive volume with an apex inside. The last face of an odd
+  /// number is repeated.
   void assign(std::span<const std::array<Index, 3>> faces, const std::vector<Point>& points);
 
   std::size_t pairs() const { return pairs_.size(); }
@@ -35,7 +35,7 @@ class HullShapes {
     std::array<TwoVectors, 3> corners;
     TwoVectors normal;
     Two inverse_squared_normal;
-    std::array<Two, 3> squared_sides;  ///< opposite the corners
+    std::array<Two, 3> squared_sides;  ///< of the sides opposite the corners
     Two least_cosine;                  ///< of the face's angles, squared with its sign
   };
 

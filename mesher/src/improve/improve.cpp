@@ -22,22 +22,22 @@ namespace collarmesh {
 namespace improvement {
 namespace {
 
-// Changes are proposed for so many tets at once: few of all, so that they hardly meet.
+// The number of tets for which changes are proposed at once: few of all, so that proposals rarely meet.
 constexpr std::size_t tets_per_proposal = 2000;
 constexpr std::size_t most_proposals = 1024;
 constexpr std::size_t steps_between_reports = 1024;
-constexpr std::size_t tets_at_once = 4096;  // that a thread looks at
-// Tets at walls stay poor however often their vertices move a little. Small moves
-// may help the few tets that detours work on.
+constexpr std::size_t tets_at_once = 4096;  // tets in a chunk of one thread
+// The least gain of a move. Tets at walls stay poor however often their vertices move a little, so small
+// gains are not worth it. Small moves may help the few tets that detours work on.
 constexpr double least_gain = 0.02, least_gain_in_detours = 1e-3;
-// Detours are taken if at most `few` of the tets and 2% need them; else the bound is out of reach.
+// Detours are taken if at most `few` and 2% of the tets need them; otherwise the bound is out of reach.
 constexpr std::size_t few = 50, tets_per_few = 50;
-// At most so many operations are tried in them, and one for so many tets.
+// The number of operations to try in detours: at most `trials` and one for this many tets.
 constexpr std::size_t trials = 4000, tets_per_trial = 50;
 
-/// Works on the tets below a quality, worst first. Changes are proposed for the worst few of them at once, by
-/// several threads, and made one after the other; what met an earlier one is proposed again. So the result
-/// does not depend on the number of threads.
+/// Improves the tets below a quality, worst first. Several threads propose changes for the worst few tets;
+/// the changes are made one after the other, and proposals that touch an earlier change are made again. So
+/// the result does not depend on the number of threads.
 class Improvement {
  public:
   Improvement(Workpiece& workpiece, const ImproveOptions& options, const Execution& execution)
@@ -95,8 +95,8 @@ class Improvement {
     find_poor_of(all);
   }
 
-  // As find_poor_tets, when tets have changed only in batches after this one. `poor_` is in the order of
-  // tets.
+  // Does the same as find_poor_tets if tets have changed only in batches after this one. `poor_` is in the
+  // order of tets.
   void find_poor_tets_again(std::uint32_t batch) {
     std::vector<Index> asked;
     auto poor = poor_.begin();
@@ -126,7 +126,7 @@ class Improvement {
   bool is_up_to_date(const Item& item) const {
     const auto& tet = complex()[item.tet];
     return tet.alive && tet.generation == item.generation &&
-           remedies_.quality(item.tet) == item.quality;  // else a vertex has moved since
+           remedies_.quality(item.tet) == item.quality;  // otherwise a vertex has moved since
   }
 
   void work_off() {
@@ -168,7 +168,8 @@ class Improvement {
             !execution_.progress({"improve", 0, complex().mesh().points.size(), complex().size()}));
   }
 
-  // Precondition: `poor_` is up to date. False when no detour was tried, so that it still is.
+  // Takes detours. Returns false if none was tried, so that `poor_` is still up to date. Precondition:
+  // `poor_` is up to date.
   bool take_detours() {
     std::vector<Index> poor;
     for (const Item& item : poor_) poor.push_back(item.tet);
@@ -183,9 +184,9 @@ class Improvement {
     return true;
   }
 
-  // Is all that the change depends on as it was when the batch was begun? That is in the tets that it
-  // replaces or has read, with their corners' places and the mesh's faces, samples and curve edges there,
-  // since stars are complete: nothing is proposed where they are not.
+  // Returns whether everything that the change depends on is as it was when the batch began: the tets that it
+  // replaces or has read, and with them the places of their corners and the mesh's faces, samples and curve
+  // edges there. This suffices because all stars are complete; no change is proposed elsewhere.
   bool is_untouched(const Change& change) const {
     const auto untouched = [&](Index t) { return complex()[t].alive && changed_in_[t] != batch_number_; };
     return std::all_of(change.replacement.old.begin(), change.replacement.old.end(), untouched) &&
@@ -199,7 +200,7 @@ class Improvement {
       case Change::Kind::boundary_flip: ++report_.boundary_flips; break;
       case Change::Kind::move: ++report_.moved_vertices; break;
       case Change::Kind::contraction:
-        if (!workpiece_.curve_can_spare(change)) return;  // another one took the curve's last edge to spare
+        if (!workpiece_.curve_can_spare(change)) return;  // another change took the curve's last spare edge
         ++report_.contracted_edges;
         break;
       case Change::Kind::insertion:
@@ -224,12 +225,12 @@ class Improvement {
   const Execution& execution_;
   bool move_vertices_;
   unsigned passes_;
-  std::vector<Item> poor_;  // as find_poor_tets found them last
+  std::vector<Item> poor_;  // as found by find_poor_tets
   std::priority_queue<Item> queue_;
   std::vector<Item> batch_;
   std::vector<Change> proposals_;
   std::uint32_t batch_number_ = 0;
-  std::vector<std::uint32_t> changed_in_;  // the batch that changed a tet last
+  std::vector<std::uint32_t> changed_in_;  // by tet: the batch that changed it last
   ImproveReport report_;
 };
 

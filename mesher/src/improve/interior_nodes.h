@@ -6,13 +6,13 @@
 
 namespace collarmesh::improvement {
 
-/// Gives each tet a corner inside a region, in a mesh that is to be coarsened and improved: removes an edge,
-/// or inserts a vertex on an edge or into a cavity, where that leaves the best tets. They may be poor. Cells
+/// Gives each tet a corner inside a region, in a mesh that will be coarsened and improved: removes an edge,
+/// or inserts a vertex on an edge or into a cavity, whichever leaves the best tets. They may be poor. Cells
 /// of collars become ordinary tets. Precondition: the mesh has `features`.
 void insert_interior_nodes(Workpiece& workpiece, const Bounds& bounds, InteriorNodesReport& report);
 
-/// The same for a finished mesh: all tets are within the bounds afterwards; a tet stays if that cannot be
-/// reached (see `replace_tets`).
+/// Does the same for a finished mesh: all tets are within the bounds afterwards; a tet stays if that cannot
+/// be reached (see `replace_tets`).
 void complete_interior_nodes(Workpiece& workpiece, const Bounds& bounds, InteriorNodesReport& report);
 
 }  // namespace collarmesh::improvement

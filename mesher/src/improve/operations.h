@@ -12,7 +12,7 @@
 namespace collarmesh::improvement {
 
 /// The local operations. Each writes its proposal into `change` if it raises the smallest quality in its
-/// cavity above that of `change` and keeps every guarantee; those named "anyhow" need not raise it. Each
+/// cavity above that of `change` and keeps every guarantee; operations named "anyhow" need not raise it. Each
 /// thread has its own.
 class Operations {
  public:
@@ -26,72 +26,72 @@ class Operations {
         curves_(workpiece.curves),
         rule_(rule) {}
 
-  /// Remove the edge between two corners of a tet: its ring is triangulated anew, as well as possible.
-  /// An edge inside a patch is removed together with its two triangles there, and a sliver that has both
-  /// of them goes to the other side.
+  /// Removes the edge between two corners of a tet by retriangulating its ring as well as possible. An edge
+  /// inside a patch is removed together with its two triangles there, and a sliver that has both of them goes
+  /// to the other side.
   void remove_edge(Index tet, unsigned i, unsigned j, Change& change);
   /// Does the same, however good the tets at the edge are now; all new ones are better than `least`.
   void remove_edge_anyhow(Index tet, unsigned i, unsigned j, double least, Change& change);
-  /// Remove an edge of a tet and another one beside it: the room of all tets at these is filled anew. Helps
-  /// where no way to remove one edge leaves positive tets, as between two prisms of a thin wall.
+  /// Removes an edge of a tet and another one beside it by filling the space of all tets at these again.
+  /// Helps where the removal of a single edge leaves inverted tets, as between two prisms of a thin wall.
   void reconnect(Index tet, Change& change);
-  /// Move a vertex within its feature to where the worst tet around it is better.
+  /// Moves a vertex within its feature to a place where the worst tet around it is better.
   void move_vertex(Index vertex, Change& change);
-  /// Insert a vertex on an edge inside a region or a patch, at the best place, if the tets around it
-  /// are all better than `least`.
+  /// Inserts a vertex on an edge inside a region or a patch, at the best place, if the tets around it are all
+  /// better than `least`.
   void split_edge(Index a, Index b, double least, Change& change);
-  /// The same, however good the tets at the edge are now.
+  /// Does the same, however good the tets at the edge are now.
   void split_edge_anyhow(Index a, Index b, double least, Change& change);
-  /// Insert a vertex inside a region, in place of a tet or an edge of it and of tets around, as many as is
-  /// best, if all new ones are better than `least` and than `change`.
+  /// Inserts a vertex inside a region, replacing a tet or one of its edges and as many tets around as is
+  /// best, if all new tets are better than `least` and than `change`.
   void insert_in_cavity(Index tet, double least, Change& change);
-  /// Insert a vertex in the middle of an edge, inside a region, in a patch or on a curve, however many tets
-  /// are there, if all new ones are better than `least`.
+  /// Inserts a vertex in the middle of an edge, inside a region, in a patch or on a curve, however many tets
+  /// are there, if all new tets are better than `least`.
   void divide_edge(Index a, Index b, double least, Change& change);
-  /// Move a vertex along an edge within its feature onto the other end, so that the tets at the edge vanish.
+  /// Moves a vertex along an edge within its feature onto the other end, so that the tets at the edge vanish.
   /// No edge becomes longer than the longest one of the cavity.
   void contract_edge(Index vertex, Index onto, Change& change);
-  /// The same, though edges may become longer than those before.
+  /// Does the same, though edges may become longer than those before.
   void contract_edge_to_any_length(Index vertex, Index onto, Change& change);
 
-  /// The same, however good the tets around are now; all new ones are better than `least`.
+  /// Does the same, however good the tets around are now; all new ones are better than `least`.
   void contract_edge_anyhow(Index vertex, Index onto, double least, Change& change);
 
   /// Begins queries about collapses of edges at this vertex, whose star is given. Returns false if it has to
   /// stay.
   bool begin_contractions(Index vertex, std::span<const Index> star);
-  /// Proposes the same collapse for fewer tets: the rule allows all new ones, and they are no worse than
-  /// `least`, nor, if below `enough`, than the worst tet of the cavity.
+  /// Proposes the same collapse more strictly: only if the rule allows all new tets and none is worse than
+  /// `least`, nor, if below `enough`, worse than the worst tet of the cavity.
   void contract_onto(Index onto, double least, double enough, Change& change);
   /// Returns the quality of the worst tet at the vertex of these queries.
   double worst_at_vertex() { return worst_at_vertex(vertex_); }
 
  private:
-  /// Larger rings are hardly ever improved by an operation at their edge.
+  /// An operation at an edge with a larger ring hardly ever improves it.
   static constexpr std::size_t largest_ring = 9;
 
   static constexpr std::size_t all_passed = SIZE_MAX;
 
   using Polygon = std::vector<Index>;
-  /// The directions a vertex may be moved in, and the patch it has to stay on, if any.
+  /// The directions in which a vertex may be moved, and the patch that it has to stay on, if any.
   struct Freedom {
     std::array<Vector, 3> directions;
     unsigned count;
     Index patch;  ///< planar or smooth
   };
   static constexpr Freedom everywhere{{Vector{1, 0, 0}, Vector{0, 1, 0}, Vector{0, 0, 1}}, 3, none};
-  /// A cavity whose tets, and the mesh's faces in it, are cones that share an apex: a vertex that is there
-  /// or would be.
+  /// A cavity whose tets and mesh faces are cones that share an apex: a present or a future vertex.
   struct Cone {
     std::vector<Index> tets;
-    double worst = INFINITY;                 ///< of their qualities; not known yet: infinite
-    std::vector<std::array<Index, 3>> hull;  ///< make positive tets with the apex
-    std::vector<Index> hull_tet;             ///< where each of these comes from
-    HullShapes shapes;                       ///< of the hull; empty: not known yet
-    std::size_t decisive = 0;                ///< of their pairs the one that ruled out the last apex
+    double worst = INFINITY;                 ///< worst quality of the tets; infinite if not known yet
+    std::vector<std::array<Index, 3>> hull;  ///< faces that make positive tets with the apex
+    std::vector<Index> hull_tet;             ///< the tet behind each face of the hull
+    HullShapes shapes;                       ///< shapes of the hull's faces; empty if not known yet
+    std::size_t decisive = 0;                ///< the pair of faces that ruled out the last apex
     std::vector<Index> faces;
-    double agreement = NAN;                 ///< of the faces with their patches; not known yet: NaN
-    std::vector<std::array<Index, 2>> rim;  ///< make faces with the apex
+    double agreement = NAN;                 ///< agreement of the faces with their patches; NaN if not known
+                                            ///< yet
+    std::vector<std::array<Index, 2>> rim;  ///< edges that make faces with the apex
     std::vector<Index> rim_face;
 
     void clear() {
@@ -104,7 +104,7 @@ class Operations {
 
   double new_quality(const std::array<Index, 4>& corners, double above) const;
 
-  // Edge removal.
+  // Edge removal
   void remove_edge_above(Index tet, unsigned i, unsigned j, std::optional<double> least, Change& change);
   double triangulate(Index a, Index b, const Polygon& polygon, bool closed, double above);
   bool edges_allowed(Index vertex, const Point& from, const Point& to) const;
@@ -114,11 +114,11 @@ class Operations {
   bool may_turn(Change& change);
   bool may_lose(Index tet, Index a, Index b) const;
 
-  // Reconnection.
+  // Reconnection
   std::optional<std::vector<std::array<Index, 3>>> hull_of(std::span<const Index> cavity) const;
   void refill(const std::vector<Index>& cavity, Change& change) const;
 
-  // Cones.
+  // Cones
   bool find_cone_of_vertex(Index vertex);
   bool make_cone_of_vertex(Index vertex);
   void grow_and_insert(std::vector<Index> cavity, double least, Change& change);
@@ -162,7 +162,7 @@ class Operations {
   static Index inserted_in(Index patch) { return patch == none ? none : inserted_on_surface; }
   bool is_there(Index vertex) const { return vertex < mesh_.points.size(); }
 
-  /// Is this one of the mesh's faces that stay as they are?
+  /// Returns whether the triangle belongs to a patch whose faces stay as they are.
   bool stays(Index face) const { return workpiece_.keeps(mesh_.face_patch[face]); }
 
   const Workpiece& workpiece_;
@@ -174,12 +174,13 @@ class Operations {
   const ShapeRule& rule_;
   TetComplex::Ring ring_;
   Cone cone_;
-  Index vertex_ = none;  // that contractions were begun with
+  Index vertex_ = none;  // the vertex of the current collapse queries
   bool ask_surfaces_ = true;
   std::vector<Index> star_;
-  std::vector<SmoothSurfaces::Face> faces_;  // that would be created
-  std::vector<double> best_;                 // of the polygon's parts from vertex i to j
-  std::vector<std::size_t> apex_;            // the third vertex of the triangle on ij there
+  std::vector<SmoothSurfaces::Face> faces_;  // faces that would be created
+  std::vector<double> best_;                 // by vertices i and j: best quality of the polygon's part
+                                             // between them
+  std::vector<std::size_t> apex_;            // the third vertex of the triangle on ij in that part
 };
 
 }  // namespace collarmesh::improvement

@@ -9,7 +9,7 @@ namespace {
 using Triangle = std::array<Index, 3>;
 using Tet = std::array<Index, 4>;
 
-// The smallest corner comes first, and the turn stays.
+// Rotates the triangle so that its smallest corner comes first; the orientation stays.
 Triangle begun_with_smallest(Triangle t) {
   std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
   return t;
@@ -35,7 +35,7 @@ class Filling {
   }
 
  private:
-  // Puts a tet on a triangle of the front in every possible way. `worst`: the quality of those there.
+  // Puts a tet on a triangle of the front in every possible way. `worst` is the worst quality so far.
   void go_on(double worst) {
     if (front_.empty()) {
       best_ = tets_;
@@ -79,7 +79,7 @@ class Filling {
   double above_;
   std::size_t steps_left_;
   std::vector<Index> vertices_;
-  std::vector<Triangle> front_;  // what is still to be filled lies above these
+  std::vector<Triangle> front_;  // the space above these is still to be filled
   std::vector<Tet> tets_, best_;
 };
 

@@ -8,18 +8,18 @@
 
 namespace collarmesh::improvement {
 
-/// Proposes operations that may improve a poor tet, in the order in which to try them.
-/// State: for each vertex whether moving it is known to be useless. It only reads the mesh; several
-/// threads may call it at once, each with operations of its own.
+/// Proposes operations that may improve a poor tet, in the order in which to try them. State: for each vertex
+/// whether moving it is known to be useless. It only reads the mesh; several threads may call it at once,
+/// each with operations of its own.
 class Remedies {
  public:
   /// Keeps both by reference.
   Remedies(const Workpiece& workpiece, const SliverRule& rule, const ImproveOptions& options);
 
-  /// The sine of the angle that tets are improved to.
+  /// Returns the sine of the angle up to which tets are improved.
   double wanted() const { return wanted_; }
   double quality(Index tet) const { return rule_.quality(complex_.corners(tet), complex_[tet].corners); }
-  /// Quality of a tet that is to be improved; infinite for others.
+  /// Returns the quality of a tet that needs improvement; infinite for others.
   double poor_quality(Index tet) const;
 
   /// Returns the first operation that helps: removal of an edge, move of a corner, edge collapse, insertion.
@@ -27,11 +27,11 @@ class Remedies {
   /// Returns whether the tet counts as thin.
   bool is_thin(Index tet) const { return !thin_above_.holds(complex_.corners(tet)); }
   /// Returns whether the number of vertices may change at this tet. In a coarsened mesh walls are one element
-  /// thick, which makes their tets poor; new vertices would undo coarsening. So only tets beyond the largest
-  /// angle of thin ones may change the number there, and all tets where no thin one is near.
+  /// thick, which makes their tets poor, but new vertices would undo coarsening. So the number may change
+  /// only at tets beyond the largest angle of thin ones, and at all tets that are not near a thin one.
   bool may_change_vertices(Index tet) const;
 
-  /// Records that nothing helps this tet as long as nothing changes at its vertices.
+  /// Records that no operation helps this tet until something changes at its vertices.
   void nothing_helps(Index tet) { set_stays(tet, move_vertices_); }
   /// Records that the tet is new or that a corner of it has moved.
   void changed(Index tet) { set_stays(tet, false); }
@@ -40,7 +40,7 @@ class Remedies {
   void forget() { stays_.clear(); }
 
  private:
-  // Whether a move helps depends on the tets at the vertex alone, each of which may ask.
+  // Whether a move helps depends only on the tets at the vertex, and each of these tets may propose it.
   bool stays(Index vertex) const { return vertex < stays_.size() && stays_[vertex]; }
   void set_stays(Index tet, bool stays);
 

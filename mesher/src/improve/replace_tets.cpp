@@ -74,7 +74,7 @@ class Replacing {
     return is_as_good_as(mendable * least_, insertion) && mended(std::move(insertion));
   }
 
-  // The longest first.
+  // Returns the edges to split, longest first.
   std::vector<std::array<Index, 2>> edges_to_split(const std::array<Index, 4>& corners) const {
     std::vector<std::array<Index, 2>> edges;
     for (unsigned i = 0; i < 4; ++i)
@@ -87,7 +87,7 @@ class Replacing {
     return edges;
   }
 
-  // Make a change and mend what it leaves too poor; what cannot be mended is undone.
+  // Makes a change and repairs the tets that it leaves too poor; undoes all if that fails.
   bool mended(Change change) {
     workpiece_.begin_trial();
     touched_.clear();
@@ -168,7 +168,8 @@ std::size_t replace_tets(Workpiece& workpiece, std::span<const UnwantedTet> unwa
   std::size_t gone = 0;
   for (std::size_t i = 0; i < unwanted.size(); ++i) {
     const auto& tet = workpiece.complex[unwanted[i].tet];
-    const bool is_there = tet.alive && sorted(tet.corners) == corners[i];  // else another one took it along
+    const bool is_there = tet.alive && sorted(tet.corners) == corners[i];  // otherwise another removal has
+                                                                           // removed it, too
     if (!is_there || replacing.replace(unwanted[i])) ++gone;
   }
   return gone;

@@ -10,19 +10,19 @@ namespace collarmesh::improvement {
 
 using Corners = std::array<Point, 4>;
 
-/// The factor by which the sine of an obtuse dihedral angle counts less.
+/// The sine of an obtuse dihedral angle is multiplied by this factor.
 constexpr double obtuse_weight = 0.7;
 
-/// The smallest sine of a tet's dihedral angles, obtuse ones weighted: from 0 to about 0.94;
-/// not positive for a flat or an inverted tet.
+/// Returns the smallest sine of a tet's dihedral angles, obtuse ones weighted: from 0 to about 0.94; not
+/// positive for a flat or an inverted tet.
 inline double shape_quality(const Corners& p) {
   const Vector ab = p[1] - p[0], ac = p[2] - p[0], ad = p[3] - p[0], bc = p[2] - p[1], bd = p[3] - p[1],
                cd = p[3] - p[2];
   const std::array<Vector, 4> normals{cross(bc, bd), cross(ad, ac), cross(ab, ad), cross(ac, ab)};
   const double six_volume = -dot(normals[3], ad);
   if (six_volume <= 0) return six_volume < 0 ? -1 : 0;
-  // Beside the edge between corners i and j lie the faces opposite the other two, k and l; the sine
-  // there is 6V |ij| / (2A_k 2A_l).
+  // The edge between corners i and j lies in the faces opposite the other two, k and l; the sine there is 6V
+  // |ij| / (2A_k 2A_l).
   double worst = INFINITY;
   const auto see = [&](const Vector& edge, const Vector& k, const Vector& l) {
     double squared_sine = squared_norm(edge) / (squared_norm(k) * squared_norm(l));

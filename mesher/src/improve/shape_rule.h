@@ -10,7 +10,7 @@ namespace collarmesh::improvement {
 
 class AngleRule;
 
-/// The quality of tets, and the tets that operations may make. Several threads may query it at once.
+/// Defines the quality of tets, and which tets operations may make. Several threads may query it at once.
 class ShapeRule {
  public:
   ShapeRule() = default;
@@ -18,10 +18,10 @@ class ShapeRule {
   ShapeRule& operator=(const ShapeRule&) = delete;
   virtual ~ShapeRule() = default;
 
-  /// The larger the better; not positive for a flat or an inverted tet.
+  /// Returns the quality: the larger the better; not positive for a flat or an inverted tet.
   virtual double quality(const Corners& p, const std::array<Index, 4>& corners) const = 0;
-  /// Returns this rule if it depends on the extreme angles of tets alone, which are measured faster in pairs;
-  /// else null.
+  /// Returns this rule if it depends only on the extreme angles of tets, which can be measured faster in
+  /// pairs; else null.
   virtual const AngleRule* by_angles() const { return nullptr; }
   /// Returns whether an operation may make this tet, of positive quality.
   virtual bool allows(const Corners& p, const std::array<Index, 4>& corners, double quality) const = 0;
@@ -29,9 +29,9 @@ class ShapeRule {
   virtual bool allows_edge(Index, Index, double /*squared_length*/, double /*squared_before*/) const {
     return true;
   }
-  /// The share by which a move of a vertex must raise the quality to be worth it.
+  /// Returns the share by which a move of a vertex must raise the quality to be worth it.
   virtual double least_gain() const { return 1e-3; }
-  /// The number of step lengths that a move tries, each half of the last.
+  /// Returns the number of step lengths that a move tries, each half of the last.
   virtual unsigned step_lengths() const { return 4; }
   /// Returns whether operations may replace cells of collars.
   virtual bool dissolves_collars() const { return false; }
@@ -65,7 +65,7 @@ class RadiusEdgeBound {
 /// tets may be made.
 class ThinRule final : public AngleRule {
  public:
-  /// Both are kept by reference.
+  /// Keeps both by reference.
   ThinRule(const ThinShape& thin, const CellBounds& bounds) : thin_(thin), bounds_(bounds) {}
 
   double quality_of(const ExtremeCosines& cosines, const Corners& p,
@@ -84,10 +84,10 @@ class ThinRule final : public AngleRule {
 };
 
 /// The rule of improvement: the smallest sine of the dihedral angles, within the bound. Where tets may be
-/// thin those with an angle above the largest of thin ones are worse than all others.
+/// thin, tets with an angle above the largest of thin ones are worse than all others.
 class SliverRule final : public ShapeRule {
  public:
-  /// `thin` and `cells` are kept by reference; null: no tet exceeds the bound.
+  /// Keeps `thin` and `cells` by reference; null: no tet exceeds the bound.
   explicit SliverRule(double radius_edge, const ThinShape* thin = nullptr, const CellBounds* cells = nullptr)
       : bound_(radius_edge), thin_(thin), cells_(cells) {}
 
@@ -102,7 +102,8 @@ class SliverRule final : public ShapeRule {
            (cells_ == nullptr || cells_->allow(p, corners));
   }
 
-  /// Is the quality above this, which is positive? False of some that are; much cheaper.
+  /// Returns whether the quality is above this value, which is positive. Much cheaper than the quality; may
+  /// return false for some tets above it.
   bool surely_exceeds(double quality, const Corners& p) const {
     if (forbids_thin_tets()) return false;
     const double of_obtuse = quality / obtuse_weight;
@@ -111,15 +112,15 @@ class SliverRule final : public ShapeRule {
            surely_between(p, 1 - quality * quality, std::min(1 - of_obtuse * of_obtuse, of_largest));
   }
 
-  /// Is nothing better to be had, as the input forces an edge to be short?
+  /// Returns whether no better tet is possible, because the input forces an edge to be short.
   bool is_as_forced(const Corners& p, const std::array<Index, 4>& corners) const {
     return thin_ != nullptr && thin_->is_as_forced(p, corners);
   }
   double least_gain() const override { return least_gain_; }
   /// Sets `least_gain` for later operations.
   void set_least_gain(double share) { least_gain_ = share; }
-  /// Has a tet of this quality an angle above the largest of thin ones, or none above 0.06 degrees? False
-  /// where no tet may be thin.
+  /// Returns whether a tet of this quality has an angle above the largest of thin ones, or none above 0.06
+  /// degrees. False where no tet may be thin.
   bool is_blunt(double quality) const { return thin_ != nullptr && quality < beyond; }
 
  private:

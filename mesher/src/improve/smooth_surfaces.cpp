@@ -10,7 +10,8 @@ namespace collarmesh::improvement {
 
 namespace {
 
-// The cosine between a face and its patch that is good enough, however good it was before.
+// A face whose normal has at least this cosine with its patch's agrees well enough, however well the old one
+// agreed.
 constexpr double enough_agreement = 0.8;
 
 double squared_distance_to(const Point& p, const SmoothSurfaces::Triangle& t) {
@@ -19,7 +20,7 @@ double squared_distance_to(const Point& p, const SmoothSurfaces::Triangle& t) {
 
 Vector normal(const SmoothSurfaces::Triangle& t) { return cross(t[1] - t[0], t[2] - t[0]); }
 
-// Does the triangle have p straight above or below it?
+// Returns whether the foot of the perpendicular from p lies in the triangle.
 bool has_foot(const Point& p, const SmoothSurfaces::Triangle& t) {
   const Vector n = normal(t);
   if (!(squared_norm(n) > 0)) return false;
@@ -28,7 +29,8 @@ bool has_foot(const Point& p, const SmoothSurfaces::Triangle& t) {
   return true;
 }
 
-// Does p lie straight above or below the triangle, nearer to its plane than the square root of the bound?
+// Returns whether the foot of the perpendicular from p lies in the triangle, and p is nearer to its plane
+// than the square root of the bound.
 bool lies_over(const Point& p, const SmoothSurfaces::Triangle& t, double squared_bound) {
   const Vector n = normal(t);
   const double height = dot(p - t[0], n);
@@ -58,8 +60,8 @@ SmoothSurfaces::Surface& SmoothSurfaces::surface(Index patch) const {
   return surface;
 }
 
-// The corners and centres of the patch's triangles go to faces that they are near to: mostly the nearest
-// ones, but one that they lie straight above or below serves, too.
+// Assigns the corners and centres of the patch's triangles to faces that they are near to: mostly the nearest
+// ones, but a face that they lie straight above or below serves, too.
 void SmoothSurfaces::share_out(Index patch, Surface& surface) const {
   std::vector<Index> faces;
   std::vector<std::array<Index, 3>> corners;
@@ -73,7 +75,7 @@ void SmoothSurfaces::share_out(Index patch, Surface& surface) const {
   Index nearest = none;  // the next point is often near the same face
   const auto add = [&](const Point& p, double tolerance) {
     const Index hint = std::exchange(nearest, hierarchy.triangle_within(p, tolerance * tolerance, nearest));
-    if (nearest == none) return;  // nothing to keep
+    if (nearest == none) return;  // no samples to keep
     const Triangle found = hierarchy.corners(nearest);
     if (nearest != hint || !has_foot(p, found))
       hierarchy.squared_distance_to(p, squared_distance_to(p, found), &nearest);
@@ -102,7 +104,7 @@ SmoothSurfaces::Nearest SmoothSurfaces::nearest(Index patch, const Point& p, dou
   return {nearest_point_on_triangle(p, t[0], t[1], t[2]), normal(t)};
 }
 
-// Some triangle of the patch that p is near to; the hint, when it is.
+// Returns some triangle of the patch that p is near to; the hint, if p is near it.
 Index SmoothSurfaces::triangle_near(Index patch, const Point& p, Index hint) const {
   const Index first = plc_.patches[patch].first_triangle;
   return triangle_within_tolerance(
@@ -111,8 +113,8 @@ Index SmoothSurfaces::triangle_near(Index patch, const Point& p, Index hint) con
       [](Index) { return true; });
 }
 
-// At the ends, thirds and the middle. The distance to one triangle is convex: when both ends are near it, all
-// are.
+// Tests the ends, the thirds and the middle. The distance to one triangle is convex: when both ends are near
+// it, all points between them are.
 bool SmoothSurfaces::edge_near(Index patch, const Point& a, const Point& b, Index hint) const {
   const Index near_a = triangle_near(patch, a, hint);
   if (near_a == none) return false;
@@ -123,7 +125,7 @@ bool SmoothSurfaces::edge_near(Index patch, const Point& a, const Point& b, Inde
          triangle_near(patch, (a + 2 * b) / 3, near_b) != none;
 }
 
-// Edges that the old faces have are as near as they were, and of an edge that two faces share one asks.
+// Edges that the old faces have are as near as they were. An edge that two faces share is tested once.
 bool SmoothSurfaces::edges_near(std::span<const Index> old, std::span<const Face> created, std::size_t i,
                                 Index hint) const {
   const auto has_edge = [](const Triangle& t, const Point& a, const Point& b) {
@@ -145,7 +147,7 @@ bool SmoothSurfaces::edges_near(std::span<const Index> old, std::span<const Face
   return true;
 }
 
-// The cosine of the angle between a face and a triangle of the patch, whichever way they are turned.
+// Returns the cosine of the angle between a face and a triangle of the patch, regardless of orientation.
 double SmoothSurfaces::agreement(Index patch, const Triangle& t, Index triangle) const {
   const Vector n = normal(t), m = normal(triangles(patch).corners(triangle));
   const double lengths = norm(n) * norm(m);
@@ -237,7 +239,8 @@ void SmoothSurfaces::take_samples(std::span<const Index> faces) {
   }
 }
 
-// To the nearest one, or to one that they lie straight above or below, most often that of the last sample.
+// Gives each sample to the nearest face, or to one that it lies straight above or below, most often that of
+// the last sample.
 void SmoothSurfaces::give_samples(std::span<const Index> faces) {
   first_sample_.resize(mesh_.faces.size(), none);
   std::size_t last = 0;
@@ -261,7 +264,7 @@ void SmoothSurfaces::give_samples(std::span<const Index> faces) {
         nearest = face;
       }
     }
-    assert(nearest != none);  // some face of the patch takes the place of those that the samples had
+    assert(nearest != none);  // some face of the patch replaces those that had the samples
     if (on_trial_) old_links_.push_back({patch, s, of.next_sample[s]});
     old_first_samples_.note(first_sample_, nearest);
     of.next_sample[s] = first_sample_[nearest];

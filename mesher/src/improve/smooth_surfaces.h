@@ -17,10 +17,10 @@
 
 namespace collarmesh::improvement {
 
-/// The smooth patches of a complex and the mesh faces on them: decides whether other faces fit them, too.
-/// A patch and its faces are within the tolerance of each other, in samples: centres and edges of
-/// the faces are near the patch; points of the patch belong to faces that they are near to.
-/// Several threads may query it at once.
+/// The smooth patches of a complex and the mesh faces on them: decides whether other faces fit them, too. A
+/// patch and its faces are within the tolerance of each other, in samples: centres and edges of the faces are
+/// near the patch, and each sampled point of the patch belongs to a face that it is near to. Several threads
+/// may query it at once.
 class SmoothSurfaces {
  public:
   using Triangle = std::array<Point, 3>;
@@ -36,7 +36,7 @@ class SmoothSurfaces {
 
   struct Nearest {
     Point point;
-    Vector normal;  ///< of the patch's triangle there; of any length
+    Vector normal;  ///< normal of the patch's triangle there; of any length
   };
   /// Returns the point of a smooth patch that is nearest to p. A known point near p makes it faster.
   Nearest nearest(Index patch, const Point& p, double near = INFINITY) const;
@@ -44,20 +44,21 @@ class SmoothSurfaces {
     Triangle corners;
     Index patch;
   };
-  /// Returns whether these can replace the mesh's faces `old`, oriented like the patch as far as the old ones
-  /// are. Faces on planar patches always fit. The orientation of the old ones is computed if it is NaN, for a
-  /// caller who asks about the same ones again.
+  /// Returns whether these can replace the mesh's faces `old`: they must be oriented like the patch at least
+  /// as well as the old ones. Faces on planar patches always fit. Computes the orientation of the old ones if
+  /// it is NaN, for a caller who asks about the same ones again.
   bool fit(std::span<const Index> old, std::span<const Face> created, double& agreement_of_old) const;
   bool fit(std::span<const Index> old, std::span<const Face> created) const {
     double agreement_of_old = NAN;
     return fit(old, created, agreement_of_old);
   }
-  /// Takes the patches' points from these faces of the mesh; call it before they are replaced or moved.
+  /// Takes the patches' sampled points from these faces of the mesh; call it before the faces are replaced or
+  /// moved.
   void take_samples(std::span<const Index> faces);
-  /// Gives the points to those faces that `fit`; call it afterwards.
+  /// Gives the points to faces that `fit`; call it afterwards.
   void give_samples(std::span<const Index> faces);
 
-  /// Assigns all points of patches to faces now.
+  /// Assigns all points of patches to faces now instead of at the first query.
   void prepare() const;
   /// Begins a trial: later changes can be undone until `keep`.
   void begin_trial();
@@ -65,13 +66,13 @@ class SmoothSurfaces {
   void undo();
 
  private:
-  /// Built on first use, by any thread.
+  /// The data of a patch; built on first use, by any thread.
   struct Surface {
     std::once_flag once;
     std::unique_ptr<TriangleHierarchy> triangles;
     std::vector<Point> samples;
-    std::vector<Index> next_sample;          // of the same face
-    std::vector<double> squared_tolerances;  // of the samples, where the tolerance varies
+    std::vector<Index> next_sample;          // next sample of the same face
+    std::vector<double> squared_tolerances;  // tolerances of the samples, where the tolerance varies
   };
 
   const TriangleHierarchy& triangles(Index patch) const { return *surface(patch).triangles; }
@@ -94,7 +95,7 @@ class SmoothSurfaces {
   PatchPoints patch_points_;
   SurfaceTolerance tolerance_;
   mutable std::vector<Surface> surfaces_;
-  mutable std::vector<Index> first_sample_;   // of every face, among those of its patch
+  mutable std::vector<Index> first_sample_;   // by face: its first sample among those of its patch
   std::vector<std::array<Index, 2>> moving_;  // patch and sample
   bool on_trial_ = false;
   UndoLog<Index> old_first_samples_;

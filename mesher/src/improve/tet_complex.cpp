@@ -26,7 +26,7 @@ std::array<Index, 3> sorted(std::array<Index, 3> face) {
   return face;
 }
 
-// As ==, which calls memcmp.
+// Does the same as ==, which calls memcmp.
 bool equal(const std::array<Index, 3>& a, const std::array<Index, 3>& b) {
   return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }
@@ -36,13 +36,13 @@ bool has_face(const std::array<Index, 4>& tet, const std::array<Index, 3>& face)
                        [&](Index v) { return v == face[0] || v == face[1] || v == face[2]; }) == 3;
 }
 
-constexpr std::size_t tets_at_once = 8192;  // that a thread looks at
+constexpr std::size_t tets_at_once = 8192;  // tets in a chunk of one thread
 
 // Marks of deleted faces and edges, until `store`.
 constexpr std::array<Index, 3> lost_face{none, none, none};
 constexpr std::array<Index, 2> lost_edge{none, none};
 
-// Drop the cells that are `lost`, and what belongs to them in arrays of the same length.
+// Drops the cells that are `lost`, and what belongs to them in arrays of the same length.
 template <class Cell, class... Of>
 void drop(const Cell& lost, std::vector<Cell>& cells, std::vector<Of>&... of_cells) {
   std::size_t kept = 0;
@@ -79,7 +79,7 @@ TetComplex::TetComplex(TetMesh& mesh, const KnownNeighbours& neighbours) : mesh_
     curve_edges_.emplace(edge_key(mesh.edges[e][0], mesh.edges[e][1]), e);
 }
 
-// Where some neighbours are known only sides are looked at that have none, and those that may be faces of the
+// Links neighbours. If some are known, looks only at sides without one, and at those that may be faces of the
 // mesh, between three points of such faces.
 void TetComplex::link(bool some_are_known) {
   std::vector<std::uint8_t> on_faces(some_are_known ? mesh_.points.size() : 0, 0);
@@ -123,7 +123,7 @@ void TetComplex::link(bool some_are_known) {
                               });
 }
 
-// Bodies touch in vertices and curves of the complex only.
+// Finds pinched vertices. Bodies touch in vertices and curves of the complex only.
 void TetComplex::find_pinched_vertices() {
   const auto corners = found_in_ranges<Index>(tets_.size(), [&](std::size_t t, std::vector<Index>& found) {
     for (const Index v : tets_[t].corners)
@@ -144,7 +144,7 @@ std::array<Point, 4> TetComplex::corners(Index tet) const {
   return {mesh_.points[v[0]], mesh_.points[v[1]], mesh_.points[v[2]], mesh_.points[v[3]]};
 }
 
-// Stars are small, so a small table of the tets found is faster than marks.
+// Finds the star. Stars are small, so a small table of the tets found is faster than marks.
 void TetComplex::star(Index vertex, std::vector<Index>& found) const {
   IndexSet known;
   found.assign(1, vertex_tet_[vertex]);
@@ -162,7 +162,7 @@ void TetComplex::star(Index vertex, std::vector<Index>& found) const {
 void TetComplex::ring(Index tet, Index a, Index b, Ring& ring) const {
   ring.tets.clear();
   ring.link.clear();
-  // The two other corners of a tet, in the order that makes (a, b, c, d) positive.
+  // Returns the two other corners of a tet, in the order that makes (a, b, c, d) positive.
   const auto others = [&](Index t) {
     const auto& v = tets_[t].corners;
     unsigned ia = 0, ib = 0;
@@ -180,7 +180,7 @@ void TetComplex::ring(Index tet, Index a, Index b, Ring& ring) const {
     const auto& v = tets_[t].corners;
     return tets_[t].neighbours[static_cast<unsigned>(std::find(v.begin(), v.end(), opposite) - v.begin())];
   };
-  // Back to the first tet at a boundary, if there is one.
+  // Go back to the first tet at a boundary, if there is one.
   Index start = tet;
   for (Index t = across(tet, others(tet)[1]); t != none && t != tet; t = across(t, others(t)[1])) start = t;
   if (across(start, others(start)[1]) != none) start = tet;
@@ -334,7 +334,7 @@ void TetComplex::make_faces(const Replacement& replacement) {
   }
 }
 
-// Tell the tets at a face of the last cavity what it is among the mesh's faces.
+// Sets, for the tets at a face of the last cavity, its index among the mesh's faces.
 void TetComplex::set_face(const std::array<Index, 3>& corners, Index face) {
   const auto key = sorted(corners);
   for (const OpenFace& open : open_)
@@ -371,7 +371,7 @@ void TetComplex::divide_curve_edge(Index before, Index vertex, Index after) {
   if (on_trial_)
     old_edges_.push_back(
         {false, edge_key(before, vertex), edge_key(vertex, after), whole, kept, added, ends, {}});
-  // Both keep its direction.
+  // Both edges keep its direction.
   mesh_.edges[kept] = {ends[0], vertex};
   mesh_.edges.push_back({vertex, ends[1]});
   mesh_.edge_curve.push_back(Index{mesh_.edge_curve[kept]});

@@ -25,21 +25,22 @@ class TetComplex {
   struct Tet {
     std::array<Index, 4> corners;
     std::array<Index, 4> neighbours;  ///< across the face opposite each corner; none at a boundary
-    std::array<Index, 4> faces;       ///< that face among the mesh's faces; none when it is not one
+    std::array<Index, 4> faces;       ///< index of that face among the mesh's faces; none if it is no mesh
+                                      ///< face
     Index region;
     std::uint32_t generation;
     bool alive, collar;
   };
   struct NewTet {
     std::array<Index, 4> corners;
-    Index like;  ///< a tet of the cavity whose region and tags it takes
+    Index like;  ///< a tet of the cavity whose region and tags are copied
   };
   struct NewFace {
     std::array<Index, 3> corners;
-    Index like;  ///< one of the mesh's faces whose patch, regions and tag it takes
+    Index like;  ///< a face of the mesh whose patch, regions and tag are copied
   };
-  /// Tets that take the place of others and fill the same cavity, or less of it at a boundary, with the
-  /// mesh's faces inside the cavity or on its border that change.
+  /// Tets that replace others and fill the same cavity, or less of it at a boundary, with the mesh's faces
+  /// inside the cavity or on its border that change.
   struct Replacement {
     std::vector<Index> old;
     std::vector<NewTet> created;
@@ -53,8 +54,8 @@ class TetComplex {
     bool closed;
   };
 
-  /// Keeps the mesh, whose tets are out of date until `store`. `neighbours`: empty, or one entry for each
-  /// tet; then neighbours are looked for only where it says none.
+  /// Keeps the mesh, whose tets are out of date until `store`. `neighbours` is empty or has an entry for each
+  /// tet; neighbours are then searched for only where it has none.
   explicit TetComplex(TetMesh& mesh, const KnownNeighbours& neighbours = {});
 
   Index size() const { return static_cast<Index>(tets_.size()); }
@@ -63,13 +64,13 @@ class TetComplex {
   const TetMesh& mesh() const { return mesh_; }
   std::array<Point, 4> corners(Index tet) const;
   bool on_curve(Index a, Index b) const { return curve_edges_.contains(edge_key(a, b)); }
-  /// Returns whether ab is an edge of a mesh face. At a pinched vertex a: always.
+  /// Returns whether ab is an edge of a mesh face. Always true at a pinched vertex a.
   bool on_faces(Index a, Index b) const;
 
   /// Returns whether the vertex is a corner of any tet.
   bool in_use(Index vertex) const { return vertex_tet_[vertex] != none; }
-  /// Returns whether some tets at the vertex share only the vertex or edges, as where bodies touch. Then its
-  /// star is not complete.
+  /// Returns whether some tets at the vertex share only the vertex or edges, as where bodies touch. Its star
+  /// is then incomplete.
   bool pinched(Index vertex) const { return pinched_.contains(vertex); }
   /// Replaces `found` by the tets around a vertex that are connected by faces.
   void star(Index vertex, std::vector<Index>& found) const;
@@ -80,7 +81,7 @@ class TetComplex {
 
   /// Adds a vertex on a feature, which is in no tet yet.
   Index add_vertex(const Point& p, const TetMesh::VertexFeature& feature);
-  /// Returns the new tets' indices until the next call.
+  /// Replaces tets. Returns the new tets' indices, valid until the next call.
   std::span<const Index> replace(const Replacement& replacement);
   /// Returns the mesh faces that the last replacement made.
   std::span<const Index> created_faces() const { return created_faces_; }
@@ -104,11 +105,11 @@ class TetComplex {
 
   /// Writes the tets back to the mesh, without removed vertices and faces.
   void store();
-  /// Returns what `store` would write, and leaves the mesh as it is.
+  /// Returns the mesh that `store` would write, and leaves the mesh as it is.
   TetMesh stored() const;
 
  private:
-  /// Makes one of another mesh's copy that can be stored, and nothing else.
+  /// Makes a complex of a copy of another one's mesh, which can only be stored.
   TetComplex(TetMesh& copy, const TetComplex& of)
       : mesh_(copy), tets_(of.tets_), origin_(of.origin_), lost_vertices_(of.lost_vertices_) {}
 
@@ -126,10 +127,10 @@ class TetComplex {
     Tag tag;
     std::array<Index, 2> regions;
   };
-  // Two edges on a curve that became one, or one that became two.
+  // Two edges on a curve that became one, or one edge that became two.
   struct CurveEdges {
     bool joined;
-    std::uint64_t first, second, whole;  // keys
+    std::uint64_t first, second, whole;  // edge keys
     Index kept, other;                   // edges of the mesh
     std::array<Index, 2> kept_ends, other_ends;
   };
@@ -150,21 +151,21 @@ class TetComplex {
 
   TetMesh& mesh_;
   LargeVector<Tet> tets_;
-  std::vector<Index> origin_;  // of every tet: one of the mesh it takes its tags from
+  std::vector<Index> origin_;  // by tet: a tet of the mesh from which it takes its tags
   std::vector<Index> vertex_tet_;
   std::unordered_set<Index> pinched_;
   std::vector<std::uint32_t> stamps_;
   std::uint32_t stamp_ = 0;
-  std::unordered_map<std::uint64_t, Index> curve_edges_;  // among the mesh's edges, by their ends
+  std::unordered_map<std::uint64_t, Index> curve_edges_;  // indices among the mesh's edges, by edge key
   std::vector<Index> free_, free_faces_;
   std::vector<Index> created_, created_faces_;
-  std::vector<std::pair<Index, Index>> tags_;  // region and origin of the tets being made
+  std::vector<std::pair<Index, Index>> tags_;  // region and origin of the new tets
   struct FaceTags {
     Index patch;
     Tag tag;
     std::array<Index, 2> regions;
   };
-  std::vector<FaceTags> face_tags_;  // of the faces being made
+  std::vector<FaceTags> face_tags_;  // tags of the new faces
   std::vector<Index> cavity_vertices_;
   std::vector<Index> lost_vertices_;
   std::vector<OpenFace> open_;

@@ -9,14 +9,14 @@ namespace {
 
 constexpr double radians = std::numbers::pi / 180;
 
-// A little below the one that the certificate judges by, as normals turn while vertices move.
+// A little below the value of the certificate, because normals turn while vertices move.
 constexpr double least_cosine_of_sides = -0.92;
 
 double sine_above(double degrees) { return std::sin((degrees + 2 * ThinShape::rounding) * radians); }
 
-// True for most tets, and much cheaper than `measure`. The relative error of the squared radius is some units
-// of 2^-53 times longest^3 / six times the volume, here below 1e-9, as the radius is at least half the
-// longest edge.
+// Returns true for most tets within the bound, and is much cheaper than `measure`. The relative error of the
+// squared radius is some units of 2^-53 times longest^3 / six times the volume, here below 1e-9, because the
+// radius is at least half the longest edge.
 bool well_within(const Corners& p, double radius_edge) {
   constexpr double margin = 1e-6, least_volume = 1e-4;
   const Circumsphere sphere = circumsphere(p);

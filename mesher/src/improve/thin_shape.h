@@ -15,12 +15,12 @@
 
 namespace collarmesh::improvement {
 
-/// A tet's extreme angles as the squares of their cosines, with the signs of the cosines: they fall as angles
-/// grow, as cosines do, and need no roots.
+/// A tet's extreme angles as the squares of their cosines, with the signs of the cosines: like cosines they
+/// decrease as angles grow, but they need no roots.
 struct ExtremeCosines {
   double smallest_angle;  ///< of the smallest dihedral angle
-  double largest_angle;   ///< of the largest one, of those of faces, too
-  bool positive;          ///< volume
+  double largest_angle;   ///< of the largest dihedral or face angle
+  bool positive;          ///< the volume is positive
 };
 
 inline double signed_square(double x) { return x * std::fabs(x); }
@@ -30,7 +30,7 @@ inline double sine(double signed_square_of_cosine) {
   return std::sqrt(squared_sine(signed_square_of_cosine));
 }
 
-/// Returns the signed squared cosine of the largest angle of its faces.
+/// Returns the signed squared cosine of the largest angle of the tet's faces.
 inline double least_cosine_of_faces(const Corners& p) {
   const double ab = squared_distance(p[0], p[1]), ac = squared_distance(p[0], p[2]),
                ad = squared_distance(p[0], p[3]), bc = squared_distance(p[1], p[2]),
@@ -78,8 +78,8 @@ inline ExtremeCosines extreme_cosines(const Corners& p) {
   return cosines;
 }
 
-/// Returns whether all dihedral angles lie between the two whose squared cosines are given, the second one
-/// obtuse, and face angles are below the second. It has no divisions, and returns false in close cases.
+/// Returns whether all dihedral angles lie between the two with these squared cosines, the second one obtuse,
+/// and face angles are below the second. Has no divisions, and returns false in close cases.
 inline bool surely_between(const Corners& p, double squared_cosine, double squared_obtuse_cosine) {
   constexpr double rounding = 1e-9;
   const double sharp = squared_cosine * (1 - rounding), blunt = squared_obtuse_cosine * (1 - rounding);
@@ -87,10 +87,10 @@ inline bool surely_between(const Corners& p, double squared_cosine, double squar
                cd = p[3] - p[2];
   const Vector n_a = cross(bc, bd), n_b = cross(ad, ac), n_c = cross(ab, ad), n_d = cross(ac, ab);
   const double a = squared_norm(n_a), b = squared_norm(n_b), c = squared_norm(n_c), d = squared_norm(n_d);
-  // Without branches; what is not a number is within no bound.
+  // There are no branches; NaN is within no bound.
   unsigned beyond = 0;
   const auto require = [&beyond](bool holds) { beyond |= holds ? 0U : 1U; };
-  // Minus the product of outward normals has the sign of the cosine.
+  // The negated product of outward normals has the sign of the cosine.
   const auto see_edge = [&](const Vector& m, const Vector& n, double squares) {
     const double product = dot(m, n);
     require(product * product < (product < 0 ? sharp : blunt) * squares);
@@ -136,16 +136,16 @@ inline ExtremeAngles extreme_angles(const Corners& p) {
   return {angle(cosines.smallest_angle), angle(cosines.largest_angle)};
 }
 
-/// The shape of thin tets: dihedral angles are bounded from below and above and face angles from above, which
-/// is as good as thin places permit. Where features meet at less than twice the smallest angle, the lower
-/// bound is half the angle between them. Where a tet has an edge that the input
-/// forces to be short, it is half the angle that this leaves.
+/// The shape of thin tets: dihedral angles are bounded from below and above and face angles from above, as
+/// tightly as thin places permit. Where features meet at less than twice the smallest angle, the lower bound
+/// is half the angle between them. Where the input forces an edge of the tet to be short, the lower bound is
+/// half the angle that the edge leaves.
 class ThinShape {
  public:
   static constexpr double largest_angle = 150;  ///< degrees
   static constexpr double rounding = 1e-6;      ///< degrees, kept free for other ways to compute an angle
 
-  /// `smallest_angle` in degrees; 0: no tet is thin. Vertices are those that the mesh has now. `reserve` is
+  /// `smallest_angle` is in degrees; 0: no tet is thin. Vertices are the mesh's current ones. `reserve` is
   /// the share of the bounds, counted from 0 and from 180 degrees, that is kept free. `forced`: see
   /// forced_edges_of. `tets_across`: see Bounds.
   ThinShape(const Plc& plc, const TetMesh& mesh, double smallest_angle, double reserve,
@@ -153,7 +153,7 @@ class ThinShape {
 
   bool empty() const { return !(smallest_ > 0); }
   double squared_cosine_of_largest() const { return -cosine_; }
-  /// The sine of the lower bound on the dihedral angles of a tet, with room for rounding.
+  /// Returns the sine of the lower bound on the dihedral angles of a tet, with room for rounding.
   double smallest_sine(const Corners& p, const std::array<Index, 4>& corners) const {
     return std::min(smallest_sine_at(corners), forced_sine(p, corners));
   }
@@ -163,8 +163,8 @@ class ThinShape {
     return shape > obtuse_weight * least_blunt_ + rounding ? least_cosine_of_faces(p) < cosine_
                                                            : extreme_cosines(p).largest_angle < cosine_;
   }
-  /// Squares of the sines of the smallest angle and of what the largest lacks to 180 degrees, over those of
-  /// their bounds: both are at least 1 where a tet is thin. Negative for a flat or an inverted tet.
+  /// The squared sines of the smallest angle and of 180 degrees minus the largest angle, relative to those of
+  /// their bounds: both are at least 1 if a tet is thin. Negative for a flat or an inverted tet.
   struct SquaredMargins {
     double sharp, blunt;
   };
@@ -179,8 +179,9 @@ class ThinShape {
         margin = std::max(margin, std::min(good_enough, sharp / (forced * forced)));
     return {margin, blunt * inverse_squared_least_blunt_};
   }
-  /// The quality of a tet of positive volume, `sine` by its angles alone (shape_quality). Where edges are
-  /// forced, small angles count by what they leave, so that large ones decide.
+  /// Returns the quality of a tet of positive volume; `sine` is its quality by angles alone (shape_quality).
+  /// Where edges are forced, small angles count relative to what the edges permit, so that large angles
+  /// decide.
   double shape_quality_where_forced(const Corners& p, const std::array<Index, 4>& corners,
                                     double sine) const {
     const double forced = sine < largest_forced_sine ? forced_sine(p, corners) : 1;
@@ -191,19 +192,19 @@ class ThinShape {
                ? std::min(sharp, obtuse_weight * improvement::sine(cosines.largest_angle))
                : sharp;
   }
-  /// Is a tet of positive volume about as good as its forced edges let it be?
+  /// Returns whether a tet of positive volume is about as good as its forced edges permit.
   bool is_as_forced(const Corners& p, const std::array<Index, 4>& corners) const {
     if (empty() || !forced_ || forced_sine(p, corners) >= deep) return false;
     const SquaredMargins margins = squared_margins(extreme_cosines(p), p, corners);
     return std::min(margins.sharp, margins.blunt) >= good_enough;
   }
-  /// Returns true only if both margins are above this, which is at least 1. False for some others, too, but
-  /// much cheaper.
+  /// Returns true only if both margins are above this value, which is at least 1. Much cheaper than the
+  /// margins; may return false for some tets above it.
   bool surely_exceeds(double margin, const Corners& p) const {
     const double sharp = margin * sine_, blunt = margin * least_blunt_;
     return blunt < 1 && surely_between(p, 1 - sharp * sharp, 1 - blunt * blunt);
   }
-  /// Is it thin, and only because the input forces an edge to be short?
+  /// Returns whether the tet is thin only because the input forces an edge to be short.
   bool is_thin_by_force(const Corners& p, const std::array<Index, 4>& corners) const {
     return !empty() && forced_ && forced_sine(p, corners) < sine_ && contains(p, corners);
   }
@@ -216,10 +217,10 @@ class ThinShape {
   }
 
  private:
-  // The sine of 1.7 degrees: where edges are forced to leave less, nothing is gained by trying for more.
-  // Where they leave more, tets are made as if they were not forced, but need not be.
+  // The sine of 1.7 degrees. Where forced edges permit less, trying for more gains nothing. Where they permit
+  // more, tets are made as if their edges were not forced, but need not be.
   static constexpr double deep = 0.03;
-  // Squared margin: a tet there is no better than that.
+  // Largest squared margin that forced edges can give a tet.
   static constexpr double good_enough = 2;
   // Tets with a larger smallest angle are good anyway.
   static constexpr double largest_forced_sine = 0.35;
@@ -234,13 +235,13 @@ class ThinShape {
   double forced_sine(const Corners& p, const std::array<Index, 4>& corners) const;
 
   double smallest_, sine_, cosine_, least_blunt_, inverse_squared_least_blunt_;
-  double share_;                        // of what is forced: one and the reserve
-  std::vector<double> sine_at_vertex_;  // empty where no crease is that sharp
+  double share_;                        // share of the forced angle to keep, including the reserve
+  std::vector<double> sine_at_vertex_;  // empty if no crease is that sharp
   std::shared_ptr<const ForcedEdges> forced_;
 };
 
-/// Those of a mesh as it is now: its faces must be there.
-/// None unless they may lower the bounds.
+/// Returns the forced edges of a mesh in its current state, whose faces must be set. Null unless they may
+/// lower the bounds.
 std::shared_ptr<const ForcedEdges> forced_edges_of(const Plc& plc, const TetMesh& mesh, bool lower_bounds);
 
 /// Marks the tets outside collars whose circumradius / shortest edge is above the bound.

@@ -6,7 +6,7 @@
 
 namespace collarmesh::improvement {
 
-/// The previous values of entries of an array that changed while it is on, so that they can be restored.
+/// Previous values of an array's entries that changed while the log is on, so that they can be restored.
 template <class Value, class Values = std::vector<Value>>
 class UndoLog {
  public:
@@ -20,7 +20,7 @@ class UndoLog {
   void note(const Values& values, std::size_t i) {
     if (on_ && i < size_) entries_.emplace_back(i, values[i]);
   }
-  /// Restores all entries of the beginning, drops those added since, and ends.
+  /// Restores all entries present at the beginning, drops those added since, and ends.
   void undo(Values& values) {
     for (auto entry = entries_.rbegin(); entry != entries_.rend(); ++entry)
       values[entry->first] = entry->second;

@@ -11,14 +11,15 @@ namespace collarmesh::improvement {
 
 namespace {
 
-// Vertices move by steps from this share of their shortest edge down.
+// Vertices move by steps that start from this share of their shortest edge and shrink.
 constexpr double first_step = 0.4;
 
 bool contains(const auto& range, Index v) { return std::find(range.begin(), range.end(), v) != range.end(); }
 
 }  // namespace
 
-// The tets and the mesh's faces at a vertex; false at a collar and where they do not hang together.
+// Finds the tets and the mesh's faces at a vertex; returns false at a collar and where they are not
+// connected.
 bool Operations::find_cone_of_vertex(Index vertex) {
   cone_.clear();
   if (complex_.pinched(vertex) || workpiece_.is_fixed(vertex)) return false;
@@ -26,7 +27,7 @@ bool Operations::find_cone_of_vertex(Index vertex) {
   return make_cone_of_vertex(vertex);
 }
 
-// From its tets.
+// Makes the cone from the vertex's tets.
 bool Operations::make_cone_of_vertex(Index vertex) {
   const bool on_feature = mesh_.features[vertex].dimension < 3;
   for (const Index t : cone_.tets) {
@@ -45,7 +46,8 @@ bool Operations::make_cone_of_vertex(Index vertex) {
   return true;
 }
 
-// The tets at an edge inside a region or a patch, and the two faces there; false where no vertex may go in.
+// Finds the tets at an edge inside a region or a patch, and the two faces there; returns false where no
+// vertex may be inserted.
 bool Operations::find_cone_of_edge(Index a, Index b) {
   if (complex_.on_curve(a, b)) return false;
   const Index at = complex_.tet_at_edge(a, b);
@@ -55,7 +57,7 @@ bool Operations::find_cone_of_edge(Index a, Index b) {
   return ring_.tets.size() <= largest_ring && make_cone_of_edge(a, b) && faces_are_of_one_patch();
 }
 
-// From its ring.
+// Makes the cone from the edge's ring.
 bool Operations::make_cone_of_edge(Index a, Index b) {
   const std::size_t n = ring_.tets.size(), m = ring_.link.size();
   cone_.clear();
@@ -80,7 +82,7 @@ bool Operations::make_cone_of_edge(Index a, Index b) {
   return true;
 }
 
-// Or is there none, inside a region?
+// Returns whether the faces of the cone lie on one patch, or there are none.
 bool Operations::faces_are_of_one_patch() const {
   if (cone_.faces.empty()) return ring_.closed;
   const auto& patches = mesh_.face_patch;
@@ -88,7 +90,7 @@ bool Operations::faces_are_of_one_patch() const {
          patches[cone_.faces[0]] == patches[cone_.faces[1]];
 }
 
-// The edge of a face opposite a corner, turned like it.
+// Adds the edge of a face opposite a corner to the rim, oriented like the face.
 void Operations::add_to_rim(Index face, Index opposite) {
   const auto& v = mesh_.faces[face];
   const auto i = static_cast<unsigned>(std::find(v.begin(), v.end(), opposite) - v.begin());
@@ -119,7 +121,7 @@ double Operations::worst_of_cone() {
   return cone_.worst;
 }
 
-// With the vertex as their apex the tets are what they are now.
+// Returns the worst quality of the current tets: those of the cone with the vertex as their apex.
 double Operations::worst_at_vertex(Index vertex) {
   const AngleRule* rule = rule_.by_angles();
   if (rule == nullptr || !std::isinf(cone_.worst)) return worst_of_cone();
@@ -133,8 +135,8 @@ double Operations::worst_at_vertex(Index vertex) {
   return cone_.worst;
 }
 
-// The worst tet of the cone with an apex; -1 when that is not above `above` or the rule forbids one. Faces
-// that have the apex as a corner count for nothing.
+// Returns the quality of the worst tet of the cone with an apex; -1 if it is not above `above` or the rule
+// forbids a tet. Faces that have the apex as a corner do not count.
 double Operations::quality_around(const Point& apex, Index id, double above) {
   const AngleRule* rule = rule_.by_angles();
   return rule != nullptr ? quality_by_angles(*rule, apex, id, above) : quality_by_tets(apex, id, above);
@@ -151,7 +153,7 @@ double Operations::quality_by_angles(const AngleRule& rule, const Point& apex, I
     return worst > above && may_be_made(apex, corners, quality);
   });
   if (failed == all_passed) return worst;
-  cone_.decisive = failed;  // for the next place, too, it is likely to be
+  cone_.decisive = failed;  // is likely to fail for the next place, too
   return -1;
 }
 
@@ -180,7 +182,7 @@ bool Operations::may_be_made(const Point& apex, const std::array<Index, 4>& corn
   return rule_.allows(with_apex(apex, corners), corners, quality);
 }
 
-// To the vertices around, when the vertex moves.
+// Returns whether the rule allows the edges to the vertices around when the vertex moves.
 bool Operations::edges_allowed(Index vertex, const Point& from, const Point& to) const {
   const auto& points = mesh_.points;
   for (const auto& face : cone_.hull)
@@ -200,7 +202,7 @@ bool Operations::surfaces_allow(const Point& apex, Index id) {
   return surfaces_.fit(cone_.faces, faces_, cone_.agreement);
 }
 
-// Cones over hull and rim take the place of the tets and faces.
+// Replaces the tets and faces by cones over hull and rim.
 void Operations::fill(Index apex, Change& change) const {
   auto& [old, created, old_faces, created_faces] = change.replacement;
   old = cone_.tets;
@@ -226,7 +228,7 @@ Operations::Freedom Operations::on_patch(Index patch, const Point& p) {
   return {{u, cross(n, u), {}}, 2, patch};
 }
 
-// Where a vertex may be moved to: anywhere, on its patch, or nowhere.
+// Returns where a vertex may be moved: anywhere, on its patch, or nowhere.
 std::optional<Operations::Freedom> Operations::freedom(Index vertex) {
   const auto& feature = mesh_.features[vertex];
   if (feature.dimension == 3) return everywhere;
@@ -241,7 +243,7 @@ Point Operations::back_on_feature(const Point& p, const Point& from, const Freed
   return p - dot(p - patch.origin, patch.normal) * patch.normal;
 }
 
-// Pattern search from `start`, whose quality is `best`.
+// Searches for the best place by pattern search from `start`, whose quality is `best`.
 std::pair<Point, double> Operations::best_place(const Point& start, Index id, const Freedom& freedom,
                                                 double best) {
   const auto& points = mesh_.points;
@@ -272,7 +274,7 @@ std::pair<Point, double> Operations::best_place(const Point& start, Index id, co
   return {place, best};
 }
 
-// The same along the curve of a vertex: how far to slide it.
+// Does the same along the curve of a vertex: finds how far to slide it.
 std::pair<double, double> Operations::best_way(Index vertex, double best) {
   const auto& points = mesh_.points;
   double shortest = INFINITY;
@@ -313,7 +315,7 @@ void Operations::move_vertex(Index vertex, Change& change) {
       std::tie(place, after) = best_place(p, vertex, *where, cone_.worst);
     }
   };
-  // Most often the best place is one that surface and curve allow.
+  // Most often surface and curve allow the best place.
   ask_surfaces_ = false;
   search();
   ask_surfaces_ = true;
@@ -373,7 +375,7 @@ void Operations::divide_edge(Index a, Index b, double least, Change& change) {
   fill(Change::inserted, change);
 }
 
-// The tets at an edge; false where they are not one ring, as where bodies touch.
+// Finds the tets at an edge; returns false where they are not one ring, as where bodies touch.
 bool Operations::find_whole_ring(Index a, Index b) {
   const Index from = complex_.pinched(a) ? b : a, to = from == a ? b : a;
   if (complex_.pinched(from)) return false;
@@ -413,7 +415,8 @@ void Operations::contract_edge_anyhow(Index vertex, Index onto, double least, Ch
   contract_edge_above(vertex, onto, least, false, change);
 }
 
-// All new tets are better than `least`; without it, than the worst one at the vertex and than `change`.
+// Collapses an edge if all new tets are better than `least`; without `least`, better than the worst one at
+// the vertex and than `change`.
 void Operations::contract_edge_above(Index vertex, Index onto, std::optional<double> least, bool any_length,
                                      Change& change) {
   if (mesh_.features[vertex].dimension == 0) return;
@@ -428,7 +431,7 @@ void Operations::contract_edge_above(Index vertex, Index onto, std::optional<dou
   change.kind = Change::Kind::contraction;
   change.quality = quality;
   change.vertex = vertex;
-  if (mesh_.features[vertex].dimension < 3) change.read = star_;  // of the other end
+  if (mesh_.features[vertex].dimension < 3) change.read = star_;  // star of the other end
   fill(onto, change);
 }
 
@@ -455,7 +458,7 @@ void Operations::contract_onto(Index onto, double least, double enough, Change& 
   fill(onto, change);
 }
 
-// Does the edge to `onto` lie in the vertex's feature?
+// Returns whether the edge to `onto` lies in the vertex's feature.
 bool Operations::may_contract(Index vertex, Index onto) {
   const auto& feature = mesh_.features[vertex];
   if (feature.dimension == 3) return true;
@@ -479,7 +482,7 @@ bool Operations::may_contract(Index vertex, Index onto) {
 bool Operations::keeps_topology(Index vertex, Index onto) {
   if (mesh_.features[vertex].dimension == 3) return true;
   if (complex_.pinched(onto)) return false;
-  // The other vertices that the vertex is joined to, and those that the edge is.
+  // The other vertices joined to the vertex, and those joined to the edge.
   IndexSet joined, joined_to_edge;
   for (const auto& face : cone_.hull) {
     const bool at_edge = contains(face, onto);

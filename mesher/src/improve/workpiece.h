@@ -22,13 +22,13 @@ struct Change {
 
   Kind kind = Kind::none;
   double quality = 0;                   ///< of the worst new tet
-  TetComplex::Replacement replacement;  ///< of a move the faces only
-  std::vector<Index> read;              ///< tets that it, or that nothing is done, depends on besides those
-  Index vertex = none;                  ///< that is moved, or that goes
+  TetComplex::Replacement replacement;  ///< for a move only the faces
+  std::vector<Index> read;              ///< further tets on which the change, or the refusal, depends
+  Index vertex = none;                  ///< the vertex that is moved or removed
   Point place{};                        ///< of the moved or inserted vertex
-  double way = 0;                       ///< that a vertex on a curve slides
-  TetMesh::VertexFeature feature;       ///< of the inserted vertex
-  /// Where a vertex is inserted on a curve: the edge that it divides and the arc length there.
+  double way = 0;                       ///< arc length by which a vertex on a curve slides
+  TetMesh::VertexFeature feature;       ///< feature of the inserted vertex
+  /// For a vertex inserted on a curve: the edge that it divides and its arc length.
   CurveSlides::Middle middle = {};
 };
 
@@ -50,10 +50,10 @@ class Workpiece {
 
   double quality(Index tet) const;
 
-  /// Returns whether the triangles of this patch stay as they are: those of periodic faces do.
+  /// Returns whether the triangles of this patch stay as they are, as those of periodic faces do.
   bool keeps(Index patch) const { return !kept_.empty() && patch != none && kept_[patch]; }
 
-  /// These vertices stay where they are.
+  /// Fixes these vertices at their places.
   void fix(const std::vector<Index>& vertices) {
     for (const Index v : vertices) {
       if (v >= fixed_.size()) fixed_.resize(v + std::size_t{1}, false);
@@ -62,7 +62,7 @@ class Workpiece {
   }
   bool is_fixed(Index vertex) const { return vertex < fixed_.size() && fixed_[vertex]; }
 
-  /// Tets all of whose corners are among these vertices stay as they are.
+  /// Leaves tets unchanged that have all corners among these vertices.
   void leave(std::vector<bool> vertices) { left_ = std::move(vertices); }
   bool leaves(const TetComplex::Tet& tet) const {
     return !left_.empty() &&
@@ -73,8 +73,8 @@ class Workpiece {
   bool curve_can_spare(const Change& change) const {
     return complex.mesh().features[change.vertex].dimension != 1 || curves.may_skip(change.vertex);
   }
-  /// Returns the tets that are new or have changed, until the next call.
-  /// Precondition: nothing that the change depends on has changed since it was proposed.
+  /// Applies a change. Returns the tets that are new or have changed, until the next call. Precondition:
+  /// nothing that the change depends on has changed since it was proposed.
   const std::vector<Index>& apply(Change change);
 
   /// Builds the data that is otherwise built on first use; call it before the first trial.
@@ -93,8 +93,8 @@ class Workpiece {
  private:
   static std::vector<bool> patches_to_keep(const Plc& plc, const TetMesh& mesh);
 
-  std::vector<bool> kept_;          // by patch; empty: none
-  std::vector<bool> fixed_, left_;  // by vertex, as far as some are
+  std::vector<bool> kept_;          // by patch; empty: none is kept
+  std::vector<bool> fixed_, left_;  // by vertex; empty or shorter: false
   std::vector<Index> changed_;
 };
 

@@ -11,10 +11,10 @@ constexpr std::array<std::array<std::uint8_t, 3>, 4> abaqus_faces{
     {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}}};
 constexpr std::array<std::array<std::uint8_t, 3>, 4> abaqus_face_mid_nodes{
     {{0, 1, 2}, {3, 4, 0}, {4, 5, 1}, {5, 3, 2}}};
-/// The numbers of these faces by the corner opposite.
+/// The numbers of these faces, by the opposite corner.
 constexpr std::array<unsigned, 4> abaqus_face_opposite{3, 4, 2, 1};
 
-/// Our element sets by region of the complex: this and the number.
+/// Prefix of our element sets by region of the complex; the region's number follows.
 constexpr const char* abaqus_volume_prefix = "VOLUME_";
 
 /// The set of all elements, in lower case.

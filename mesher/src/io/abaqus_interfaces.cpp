@@ -20,8 +20,8 @@ std::set<Index> nodes_of_side(const TetMesh& mesh, Tag tag) {
   return nodes;
 }
 
-/// Ties the nodes of the plus sides: not those of a front, which both sides have, nor those that are tied to
-/// another patch at a junction, because a node can depend once only.
+/// Ties the nodes of the plus sides, except those of a front, which both sides share, and those that are tied
+/// to another patch at a junction: a node can be dependent only once.
 void write_ties(FileWriter& out, const TetMesh& mesh, const Interfaces& interfaces, const Names& names) {
   std::set<Index> tied;
   for (const Sides& sides : interfaces.sides) {
@@ -44,8 +44,8 @@ void write_contacts(FileWriter& out, const Interfaces& interfaces, const Names& 
         << names.at(sides.plus) << ", " << names.at(sides.minus) << '\n';
 }
 
-/// Abaqus has cohesive elements of first order alone: those of second order are cut into four, as their
-/// triangles are by the mid-edge nodes.
+/// Abaqus has cohesive elements of first order only: those of second order are cut into four, as their
+/// mid-edge nodes divide their triangles.
 std::vector<std::array<Index, 6>> straight_prisms(const Interfaces& interfaces, std::size_t i) {
   const auto& [a, b, c, p, q, r] = interfaces.prisms[i];
   if (interfaces.prism_mid_nodes.empty()) return {interfaces.prisms[i]};

@@ -8,11 +8,11 @@
 
 namespace collarmesh::io {
 
-/// As `write_abaqus` of the mesh alone, with what is between the sides.
+/// Does the same as `write_abaqus` of the mesh alone, and adds the elements and conditions between the sides.
 void write_abaqus(const std::string& path, const TetMesh& mesh, const Interfaces& interfaces);
 
-/// Writes the elements and conditions between the sides of split patches to an .inp file. `names`: of the
-/// surfaces of patches.
+/// Writes the elements and conditions between the sides of split patches to an .inp file. `names` are those
+/// of the patches' surfaces.
 void write_abaqus_interfaces(FileWriter& out, const TetMesh& mesh, const Interfaces& interfaces,
                              const std::map<Tag, std::string>& names);
 

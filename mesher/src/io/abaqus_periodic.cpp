@@ -33,12 +33,13 @@ Matrix product(const Matrix& a, const Matrix& b) {
   return result;
 }
 
-/// What the displacement of a node is: shares of that of the root of its chain and of the reference nodes.
+/// The displacement of a node as a sum: shares of the displacements of its chain's root and of the reference
+/// nodes.
 struct Shares {
   Matrix root = identity;
   std::map<std::size_t, Matrix> references;  ///< by pair
 
-  /// That of a node's image, or of the node of an image.
+  /// Returns the shares of a node's image, or, backwards, of the node of an image.
   Shares moved(const Matrix& rows, std::size_t pair, bool backwards) const {
     const Matrix by = backwards ? transposed(rows) : rows;
     Shares result{product(by, root), {}};
@@ -62,7 +63,7 @@ class Equations {
   }
 
   void write() {
-    std::vector<Index> starts;  // of chains: nodes that are no images come first
+    std::vector<Index> starts;  // first nodes of chains: those that are no images
     for (const bool are_images : {false, true})
       for (const auto& each : steps_)
         if (images_.contains(each.first) == are_images) starts.push_back(each.first);
@@ -105,13 +106,14 @@ class Equations {
   }
 
   void add_terms(std::size_t node, const Vector& share) {
-    constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();  // of sines and cosines
+    constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();  // rounding error of sines and
+                                                                             // cosines
     for (std::size_t j = 0; j < 3; ++j)
       if (std::fabs(share[j]) > rounding) terms_.push_back({node, j + 1, -share[j]});
   }
 
   struct Term {
-    std::size_t node, direction;  // from 1
+    std::size_t node, direction;  // counted from 1
     double factor;
   };
 

@@ -1,6 +1,6 @@
 // Reads the input format of Abaqus and CalculiX (.inp): tetrahedra of solids (C3D4, C3D10 and their
-// kin), triangles and lines of shells, membranes, beams and trusses, surfaces of element sides. Tags
-// come from element sets and surfaces: from our own names, else from their order in the file.
+// variants), triangles and lines of shells, membranes, beams and trusses, surfaces of element sides. Tags
+// come from element sets and surfaces: from our own names, or else from their order in the file.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
-/// The fields of a line between commas; a comma at the end adds none.
+/// Splits a line at commas into fields; a comma at the end adds none.
 void split(std::string_view line, std::vector<std::string_view>& fields) {
   fields.clear();
   while (!line.empty()) {
@@ -44,12 +44,12 @@ void split(std::string_view line, std::vector<std::string_view>& fields) {
   }
 }
 
-/// The lines of a file without comments and empty ones.
+/// The lines of a file without comments and empty lines.
 class Lines {
  public:
   Lines(const std::string& path, std::string_view text) : path_(path), text_(text) {}
 
-  /// Returns whether there is a next line, which `next` takes.
+  /// Returns whether there is a next line, which `next` then takes.
   bool peek(std::string_view& line) {
     while (at_ < text_.size()) {
       end_ = std::min(text_.find('\n', at_), text_.size());
@@ -78,7 +78,7 @@ class Lines {
 struct Keyword {
   std::string name;
   std::map<std::string, std::string, std::less<>> parameters;
-  std::string set;  ///< the name of the set or surface that it begins, as it is written
+  std::string set;  ///< the name of the set or surface that it begins, as written
 
   explicit Keyword(std::string_view line) {
     std::vector<std::string_view> fields;
@@ -125,14 +125,14 @@ const ElementType* find_type(std::string_view name) {
   return best;
 }
 
-/// An element set; `named_apart`: by an *ELSET, not just by its *ELEMENT.
+/// An element set; `named_apart`: defined by an *ELSET, not just by its *ELEMENT.
 struct Set {
   std::string name, written;
   std::vector<std::int64_t> members;
   bool named_apart = false;
 };
 
-/// Where an element went: which list of the mesh, and its index there.
+/// The place of an element in the mesh: which list, and its index there.
 struct Place {
   std::size_t dimension = 3;
   Index index = 0;
@@ -236,7 +236,7 @@ class AbaqusReader {
                       "triangles (S3, S6, CPS3, ...) and lines (T3D2, B31, ...)",
                       quoted(keyword["type"])));
     const std::size_t set_index = keyword.set.empty() ? none : index_of_set(keyword.set);
-    // An element may go on over several lines.
+    // An element may continue over several lines.
     std::vector<std::int64_t> numbers;
     each_line([&](const Fields& fields) {
       for (const std::string_view field : fields) {
@@ -269,7 +269,7 @@ class AbaqusReader {
       add_face(nodes, mesh_);
     } else {
       place.index = static_cast<Index>(mesh_.edges.size());
-      // The mid node is the second of three.
+      // The mid-edge node is the second of three.
       add_edge(nodes.in_order(std::array<std::uint8_t, 3>{0, 2, 1}), mesh_);
     }
     elements_.add(numbers[0]);
@@ -288,7 +288,7 @@ class AbaqusReader {
     return found->second;
   }
 
-  /// Members are numbers or the names of sets before; with GENERATE first, last and step.
+  /// Reads a set. Members are numbers or the names of earlier sets; with GENERATE first, last and step.
   void read_set(const Keyword& keyword) {
     const std::size_t set = index_of_set(keyword.set);
     sets_[set].named_apart = true;
@@ -331,7 +331,8 @@ class AbaqusReader {
     members.insert(members.end(), copy.begin(), copy.end());
   }
 
-  /// Ranges and sets that name each other again and again would grow without bound.
+  /// Limits the members of sets: ranges and sets that name each other again and again would grow without
+  /// bound.
   void require_room(std::size_t members) {
     constexpr std::size_t most_repeats = 64;
     repeated_members_ += members;
@@ -351,7 +352,7 @@ class AbaqusReader {
       if (fields.size() < 2) lines_.fail("expected an element or element set and its side");
       Side side;
       const std::string name = lower_case(fields[1]);
-      if (name.size() != 2 || name[0] != 's' || name[1] < '1' || name[1] > '4') return;  // of a shell
+      if (name.size() != 2 || name[0] != 's' || name[1] < '1' || name[1] > '4') return;  // a face of a shell
       side.side = static_cast<std::size_t>(name[1] - '1');
       if (parse(fields[0], side.element))
         surfaces_.back().second.push_back(side);
@@ -386,8 +387,8 @@ class AbaqusReader {
     });
   }
 
-  /// Of the sets that a cell is in, one with a name of ours counts, else the first one of an *ELSET but that
-  /// of everything, else that of its *ELEMENT.
+  /// Sets the tags of cells. If a cell is in several sets, one with a name of ours counts, or else the first
+  /// one of an *ELSET (but not the set of everything), or else that of its *ELEMENT.
   void tag_cells() {
     mesh_.tet_tag.assign(mesh_.tets.size(), 0);
     mesh_.face_tag.assign(mesh_.faces.size(), 0);
@@ -413,7 +414,7 @@ class AbaqusReader {
   void tag_members(const Set& set, std::array<std::vector<bool>, 4>& tagged) {
     for (const std::int64_t number : set.members) {
       const Index element = elements_.find(number);
-      if (element == none) continue;  // sets may name elements that are not there
+      if (element == none) continue;  // sets may name missing elements
       const auto [dimension, index] = places_[element];
       if (tagged[dimension][index]) continue;
       tagged[dimension][index] = true;
@@ -430,7 +431,7 @@ class AbaqusReader {
     return tag;
   }
 
-  /// Our sets by region.
+  /// Reads our own sets by region.
   void read_volumes() {
     std::vector<Index> regions(mesh_.tets.size(), none);
     for (const Set& set : sets_) {
@@ -454,7 +455,7 @@ class AbaqusReader {
     }
   }
 
-  /// Abaqus' faces look inwards.
+  /// Adds a side. Abaqus orients faces inwards.
   void add_side(const Side& side, Tag tag) {
     const Index element = elements_.find(side.element);
     if (element == none || places_[element].dimension != 3) return;
@@ -480,7 +481,7 @@ class AbaqusReader {
   std::vector<Place> places_;  ///< by element
   std::map<std::string, std::size_t, std::less<>> set_index_;
   std::vector<Set> sets_;
-  std::size_t repeated_members_ = 0;  ///< of all sets and surfaces, by ranges and names of sets
+  std::size_t repeated_members_ = 0;  ///< ranges and names of sets in all sets and surfaces
   std::vector<std::pair<std::string, std::vector<Side>>> surfaces_;
   GroupTags groups_;
 };

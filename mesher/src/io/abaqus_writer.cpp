@@ -1,10 +1,10 @@
-// Abaqus' and CalculiX' input format (.inp): nodes, C3D4 or C3D10, an element set for each region of the
-// complex (VOLUME_1) and for each of their tags (REGION_7), a surface for each tag of patches (PATCH_7:
-// faces of the tets behind it), a node set for each tag of patches and curves (PATCH_7_NODES,
-// CURVE_7_NODES). Conditions for periodic faces are a file of their own beside it. EALL and NALL are
-// everything. Triangles alone are S3 or S6, or CPS3, CPE6, ... in the plane z = 0, an element set for each
-// tag of patches (PATCH_7); curve edges alone are B31 or B32, one for each tag of curves (CURVE_7). Numbers
-// take 20 characters at most, as both programs ask.
+// Abaqus' and CalculiX's input format (.inp): nodes, C3D4 or C3D10, an element set for each region of the
+// complex (VOLUME_1) and for each of their tags (REGION_7), a surface for each tag of patches (PATCH_7: faces
+// of the tets behind it), a node set for each tag of patches and curves (PATCH_7_NODES, CURVE_7_NODES).
+// Conditions for periodic faces are in a separate file beside it. EALL and NALL contain everything. Triangles
+// without tets are S3 or S6, or in the plane z = 0 CPS3, CPE6 and so on, with an element set for each tag of
+// patches (PATCH_7); curve edges without triangles are B31 or B32, one set for each tag of curves (CURVE_7).
+// Numbers take 20 characters at most, as both programs require.
 #include <fmt/format.h>
 
 #include <array>
@@ -33,7 +33,7 @@ namespace {
 
 constexpr std::size_t numbers_a_line = 16, number_width = 20;
 
-/// The shortest text that reads back as the same double, or the most digits that fit.
+/// Returns the shortest text that reads back as the same double, or the most digits that fit.
 std::string fitted(double value) {
   std::string text = fmt::format("{}", value);
   for (int digits = 16; text.size() > number_width; --digits) text = fmt::format("{:.{}g}", value, digits);
@@ -47,7 +47,7 @@ void write_numbers(FileWriter& out, const std::vector<Index>& numbers) {
 
 using Names = std::map<Tag, std::string>;
 
-/// Names of sets, all different from each other and from those that are known.
+/// Returns names of sets that differ from each other and from known ones.
 Names names_of(const TetMesh& mesh, std::size_t dimension, const std::vector<Tag>& tags,
                DistinctNames& known) {
   Names names;
@@ -62,7 +62,7 @@ bool is_volume(std::string_view name) {
   return name.starts_with(prefix) && parse(name.substr(prefix.size()), region);
 }
 
-/// As above, and different from those of our own sets of elements.
+/// Returns names that also differ from those of our own element sets.
 Names names_of_regions(const TetMesh& mesh) {
   DistinctNames known(std::string::npos);
   known.add(capital_word(abaqus_everything));
@@ -92,7 +92,7 @@ void write_elements(FileWriter& out, const TetMesh& mesh) {
   for (std::size_t t = 0; t < mesh.tets.size(); ++t)
     volumes[mesh.tet_region[t]].push_back(static_cast<Index>(t));
   for (const auto& [region, tets_of_region] : volumes) {
-    const std::vector<Index>& tets = tets_of_region;  // compilers differ in capturing the other name
+    const std::vector<Index>& tets = tets_of_region;  // compilers differ in capturing a structured binding
     regions_of_tag[mesh.tet_tag[tets.front()]].push_back(region);
     out << "*ELEMENT, TYPE=" << (mesh.order() == 2 ? "C3D10" : "C3D4") << ", ELSET=" << abaqus_volume_prefix
         << region << '\n';
@@ -111,7 +111,8 @@ void write_elements(FileWriter& out, const TetMesh& mesh) {
   }
 }
 
-/// The elements of a mesh without tets, an element set for each tag. `nodes_of`: of the i-th one, in order.
+/// Writes the elements of a mesh without tets, in an element set for each tag. `nodes_of` returns the nodes
+/// of the i-th element, in order.
 template <class NodesOf>
 void write_elements_by_tag(FileWriter& out, const std::vector<Tag>& tags, const std::string& type,
                            const Names& names, const NodesOf& nodes_of) {
@@ -130,7 +131,7 @@ void write_elements_by_tag(FileWriter& out, const std::vector<Tag>& tags, const 
   for (const auto& each : members) out << names.at(each.first) << ",\n";
 }
 
-/// Solvers take plane elements in the plane z = 0 alone.
+/// Rejects points off the plane: solvers take plane elements only in the plane z = 0.
 void require_plane(const std::string& path, const TetMesh& mesh) {
   constexpr double flat = 1e-9;
   Box box;
@@ -143,7 +144,7 @@ void require_plane(const std::string& path, const TetMesh& mesh) {
           path, p.x, p.y, p.z));
 }
 
-/// Anticlockwise, seen from above.
+/// Returns the nodes of a plane triangle, anticlockwise as seen from above.
 CellNodes nodes_of_plane_face(const TetMesh& mesh, std::size_t face) {
   constexpr std::array<std::uint8_t, 3> turned{0, 2, 1};
   constexpr std::array<std::uint8_t, 6> turned_curved{0, 2, 1, 5, 4, 3};
@@ -153,7 +154,7 @@ CellNodes nodes_of_plane_face(const TetMesh& mesh, std::size_t face) {
   return nodes.size() == turned.size() ? nodes.in_order(turned) : nodes.in_order(turned_curved);
 }
 
-/// Triangles as elements of shells, or of a plane.
+/// Writes triangles as elements of shells, or of a plane.
 void write_triangles(FileWriter& out, const TetMesh& mesh, const Names& names) {
   const std::size_t nodes = mesh.order() == 2 ? 6 : 3;
   if (mesh.triangle_elements == TriangleElements::shell) {
@@ -166,14 +167,14 @@ void write_triangles(FileWriter& out, const TetMesh& mesh, const Names& names) {
                         [&](Index face) { return nodes_of_plane_face(mesh, face); });
 }
 
-/// Edges as beams; the middle node is the second one.
+/// Writes edges as beams; the middle node is the second one.
 void write_beams(FileWriter& out, const TetMesh& mesh, const Names& names) {
   constexpr std::array<std::uint8_t, 3> order{0, 2, 1};
   write_elements_by_tag(out, mesh.edge_tag, mesh.order() == 2 ? "B32" : "B31", names,
                         [&](Index edge) { return nodes_of_edge(mesh, edge).in_order(order); });
 }
 
-/// The element and its side that lie behind each face.
+/// Writes for each face the element behind it, and that element's side.
 void write_surfaces(FileWriter& out, const TetMesh& mesh, const Names& names) {
   std::map<Tag, std::vector<SideOfTet>> surfaces;
   const std::vector<SideOfTet> sides = sides_of_faces(mesh);

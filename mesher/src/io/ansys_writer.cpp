@@ -1,6 +1,6 @@
-// Ansys' archive (.cdb; Mechanical APDL, "Guide to Interfacing with ANSYS", NBLOCK, EBLOCK and CMBLOCK):
-// nodes, SOLID285 or SOLID187 with the region as material, a component of elements for each tag of regions
-// and of nodes for each tag of patches and curves.
+// Ansys' archive format (.cdb; Mechanical APDL, "Guide to Interfacing with ANSYS", NBLOCK, EBLOCK and
+// CMBLOCK): nodes, SOLID285 or SOLID187 with the region as material, a component of elements for each tag of
+// regions and of nodes for each tag of patches and curves.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace {
 constexpr std::size_t nodes_on_line = 8, numbers_on_line = 8;
 constexpr std::size_t longest_name = 32;
 
-/// 6e21.13e3: three digits of the exponent.
+/// Formats as 6e21.13e3: the exponent has three digits.
 std::string real(double value) {
   std::string text = fmt::format("{:.13E}", value);
   const std::size_t sign = text.find('E') + 1;
@@ -39,7 +39,8 @@ void write_nodes(FileWriter& out, const TetMesh& mesh) {
   out << "N,R5.3,LOC,       -1,\n";
 }
 
-/// Material, type, and others that are 1 or 0, the number of nodes, 0, the number of the element, the nodes.
+/// Writes elements: material, type, further fields that are 1 or 0, the number of nodes, 0, the number of the
+/// element, the nodes.
 void write_elements(FileWriter& out, const TetMesh& mesh) {
   out << fmt::format("EBLOCK,19,SOLID,{0:10},{0:10}\n(19i9)\n", mesh.tets.size());
   write_each(out, mesh.tets.size(), [&](TextBuffer& text, std::size_t i) {
@@ -55,7 +56,7 @@ void write_elements(FileWriter& out, const TetMesh& mesh) {
   out << "       -1\n";
 }
 
-/// A name that no component has yet, without hyphens.
+/// Returns a name that no component has yet, without hyphens.
 std::string new_name(const TetMesh& mesh, std::size_t dimension, Tag tag, DistinctNames& known) {
   std::string name = capital_name(mesh, dimension, tag);
   std::replace(name.begin(), name.end(), '-', '_');

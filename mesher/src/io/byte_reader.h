@@ -14,12 +14,12 @@
 
 namespace collarmesh::io {
 
-/// Reads plain values of either byte order from memory and knows the byte it is at. Every failure
-/// is a ReadError "PATH: byte N: ...".
+/// Reads plain values of either byte order from memory and knows its position. Every failure is a ReadError
+/// "PATH: byte N: ...".
 class ByteReader {
  public:
-  /// `first_byte`: where in the file `bytes` begins.
-  /// Precondition: `path` and `bytes` outlive the reader.
+  /// `first_byte` is the position of `bytes` in the file. Precondition: `path` and `bytes` outlive the
+  /// reader.
   ByteReader(const std::string& path, std::string_view bytes, std::endian order = std::endian::little,
              std::size_t first_byte = 0)
       : path_(path), bytes_(bytes), order_(order), first_byte_(first_byte) {}

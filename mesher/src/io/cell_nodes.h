@@ -8,8 +8,8 @@
 
 namespace collarmesh::io {
 
-/// The nodes of a cell of either order: its corners, then its mid nodes in the order of TetMesh
-/// (amid ab, bc, ca, ad, bd, cd). VTK, Abaqus and Medit number them alike.
+/// The nodes of a cell of either order: its corners, then its mid-edge nodes in the order of TetMesh (ab, bc,
+/// ca, ad, bd, cd). VTK, Abaqus and Medit number them in the same way.
 class CellNodes {
  public:
   template <std::size_t corners, std::size_t mid_nodes>
@@ -23,7 +23,7 @@ class CellNodes {
   }
 
   void add(Index node) { nodes_[count_++] = node; }
-  /// With the k-th node at place order[k] of this one; as it is for first order.
+  /// Returns a cell whose k-th node is this one's node order[k]; unchanged in first order.
   CellNodes in_order(std::span<const std::uint8_t> order) const {
     if (order.size() != count_) return *this;
     CellNodes result;
@@ -54,7 +54,7 @@ inline CellNodes nodes_of_edge(const TetMesh& mesh, std::size_t i) {
   return result;
 }
 
-/// Add a cell of either order to a mesh that is being read.
+/// Adds a cell of either order to a mesh that is being read.
 inline void add_tet(const CellNodes& n, TetMesh& mesh) {
   mesh.tets.push_back({n[0], n[1], n[2], n[3]});
   if (n.size() == 10) mesh.tet_mid_nodes.push_back({n[4], n[5], n[6], n[7], n[8], n[9]});

@@ -4,19 +4,19 @@
 
 #include "collarmesh/tet_mesh.h"
 
-/// Which partition the other cells of a partitioned mesh belong to: that with the lowest number of the tets
-/// they are sides of; the lowest of all for what is no side of a tet. Cost: linear.
+/// The partitions of faces, edges and points of a partitioned mesh: each belongs to the lowest partition of
+/// the tets around it, or to the lowest of all without such a tet. Cost: linear.
 namespace collarmesh::io {
 
-/// Numbers of partitions that are read are below this: formats have 32 bits for them, and some count from 1.
+/// Partition numbers that are read must be below this: formats have 32 bits for them, and some count from 1.
 constexpr Index most_partitions = 0x7fffffff;
 
 std::vector<Index> partitions_of_faces(const TetMesh& mesh);
 std::vector<Index> partitions_of_edges(const TetMesh& mesh);
-/// The same for nodes, those amid edges included.
+/// Returns the same for nodes, including mid-edge nodes.
 std::vector<Index> partitions_of_points(const TetMesh& mesh);
 
-/// The numbers of the partitions that have tets, ascending.
+/// Returns the numbers of the partitions that have tets, ascending.
 std::vector<Index> partition_numbers(const TetMesh& mesh);
 
 /// Returns for each partition, in the order of `partition_numbers`, the tets of others that share a vertex

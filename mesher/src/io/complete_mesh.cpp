@@ -22,7 +22,7 @@ void turn_tet(TetMesh& mesh, std::size_t tet) {
   std::swap(ca, ad);
 }
 
-/// Programs differ in the order of a tet's corners, so if most are negative, turns all of them. Tets
+/// Reverses all tets if most are negative, because programs differ in the order of a tet's corners. Tets
 /// whose orientation differs from the others are inverted, and stay.
 void orient_tets(TetMesh& mesh) {
   std::size_t negative = 0, positive = 0;
@@ -92,7 +92,7 @@ void number_regions(TetMesh& mesh) {
         static_cast<Index>(std::lower_bound(tags.begin(), tags.end(), tag) - tags.begin() + 1));
 }
 
-/// Regions are numbered from 1; every format has 9 digits for them.
+/// Returns whether regions are numbered from 1; every format has 9 digits for them.
 bool has_region_numbers(const TetMesh& mesh) {
   constexpr Index largest = 999'999'999;
   return !mesh.tet_region.empty() && std::all_of(mesh.tet_region.begin(), mesh.tet_region.end(),
@@ -132,7 +132,9 @@ void complete_mesh(const std::string& path, TetMesh& mesh) {
   mesh.face_patch.resize(mesh.faces.size(), none);
   mesh.edge_tag.resize(mesh.edges.size(), 0);
   mesh.edge_curve.resize(mesh.edges.size(), none);
-  if (mesh.tets.empty()) mesh.face_regions.assign(mesh.faces.size(), {0, 0});  // a surface stays as it is
+  if (mesh.tets.empty())
+    mesh.face_regions.assign(mesh.faces.size(), {0, 0});  // the mesh of a surface stays
+                                                          // as it is
   if (mesh.face_regions.empty()) find_face_regions(mesh);
 }
 

@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::size_t longest_name = 255, usual_name = 32;
 
-/// Exodus' numbers of the sides of a tetrahedron, by the corner opposite.
+/// Exodus' numbers of the sides of a tetrahedron, by the opposite corner.
 constexpr std::array<std::int32_t, 4> side_opposite{2, 3, 1, 4};
 
 struct Block {
@@ -31,7 +31,7 @@ struct Block {
   std::vector<Index> tets;
 };
 
-/// Can it be the value of a property?
+/// Returns whether the tag can be the value of a property.
 bool fits(Tag tag) {
   return tag >= std::numeric_limits<std::int32_t>::min() && tag <= std::numeric_limits<std::int32_t>::max();
 }
@@ -193,7 +193,7 @@ class ExodusFile {
   NetcdfWriter out_;
   std::map<Index, Block> blocks_;
   bool tags_fit_ = true;
-  std::vector<std::int32_t> number_in_file_;  // of tets, block by block
+  std::vector<std::int32_t> number_in_file_;  // number of each tet, block by block
   std::map<Tag, std::vector<SideOfTet>> side_sets_;
   Groups node_sets_;
   std::map<Tag, std::size_t> side_numbers_, node_numbers_;

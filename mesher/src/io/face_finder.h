@@ -10,8 +10,7 @@
 
 namespace collarmesh::io {
 
-/// Finds the faces of a mesh by their corners in any order.
-/// Cost: constant per face, expected.
+/// Finds the faces of a mesh by their corners in any order. Cost: constant per face, expected.
 class FaceFinder {
  public:
   using Triangle = std::array<Index, 3>;

@@ -18,7 +18,7 @@ class FileWriter {
   FileWriter(const FileWriter&) = delete;
   FileWriter& operator=(const FileWriter&) = delete;
 
-  /// As TextBuffer.
+  /// Appends a value in the format of TextBuffer.
   template <class Value>
   FileWriter& operator<<(const Value& value) {
     buffer_ << value;
@@ -26,9 +26,9 @@ class FileWriter {
     return *this;
   }
 
-  /// Appends text as it is, without a copy where it is long.
+  /// Appends text as it is; long text without a copy.
   void append(std::string_view text);
-  /// Flush, close and rename.
+  /// Flushes, closes and renames the file.
   void commit();
 
  private:

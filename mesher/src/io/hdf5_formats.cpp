@@ -1,5 +1,5 @@
-// The writers on HDF5 are in a module of their own, which is loaded when one is used: HDF5 and MED bring
-// some forty libraries, and loading those costs as much as a small mesh.
+// Loads the writers on HDF5 from a module when one is used: HDF5 and MED bring some forty libraries, and
+// loading these costs as much as a small mesh.
 #include <fmt/format.h>
 
 #include "collarmesh/error.h"

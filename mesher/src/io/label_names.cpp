@@ -73,7 +73,7 @@ bool is_given_name(std::size_t dimension, std::string_view name) {
 
 namespace {
 
-/// Without half a character of UTF-8 at the end.
+/// Cuts a text, without half a UTF-8 character at the end.
 std::string cut(const std::string& text, std::size_t longest) {
   if (text.size() <= longest) return text;
   std::size_t end = longest;

@@ -10,36 +10,37 @@
 #include "collarmesh/geometry.h"
 #include "collarmesh/tet_mesh.h"
 
-/// Names of groups of cells, for formats whose groups have names. By dimension: this and the tag.
+/// Names of groups of cells, for formats whose groups have names: a prefix by dimension, followed by the tag.
 namespace collarmesh::io {
 
 constexpr std::array<std::string_view, 4> group_name_prefix{"vertex_", "curve_", "patch_", "region_"};
 constexpr std::array<std::string_view, 4> cad_name_prefix{"Vertex", "Edge", "Face", "Solid"};
 
-/// "patch_7" or "Face7"; "patch_minus_7" where a hyphen is not allowed in names.
+/// Returns "patch_7" or "Face7"; "patch_minus_7" where a hyphen is not allowed in names.
 std::string group_name(GroupNames names, std::size_t dimension, Tag tag, std::string_view minus = "minus_");
 
-/// The name that the tag was given, with `_` for quotes and control characters; else as above.
+/// Returns the name that the tag was given, with `_` for quotes and control characters; otherwise the name by
+/// kind and tag.
 std::string group_name(const TetMesh& mesh, std::size_t dimension, Tag tag,
                        std::string_view minus = "minus_");
 
-/// A text with `_` for all but letters of ASCII, digits and `-`; the second one in capitals.
+/// Replace all characters but ASCII letters, digits and `-` by `_`; the second one also makes capitals.
 std::string word(std::string text);
 std::string capital_word(std::string text);
 
-/// As above, of letters, digits, `_` and `-` alone; the second one in capitals and with a letter in front,
-/// which Abaqus and Ansys ask for.
+/// Return the group's name with letters, digits, `_` and `-` only; the second one in capitals and with a
+/// letter in front, as Abaqus and Ansys require.
 std::string word_name(const TetMesh& mesh, std::size_t dimension, Tag tag);
 std::string capital_name(const TetMesh& mesh, std::size_t dimension, Tag tag);
 
-/// The tag that a name of ours stands for, in any case.
+/// Returns the tag that a name of ours stands for, in any case.
 std::optional<Tag> tag_of_group_name(std::size_t dimension, std::string_view name);
 
-/// Is it a name other than that of kind and tag, "patch_7"? Those of CAD shapes are.
+/// Returns whether the name differs from that of kind and tag, "patch_7". Names of CAD shapes do.
 bool is_given_name(std::size_t dimension, std::string_view name);
 
-/// Gives the groups of another program's file tags: of our names what they stand for, others are
-/// numbered from 1 in the order of the file, past the tags that are taken.
+/// Gives tags to the groups of another program's file: groups with names of ours get the tags that these
+/// stand for, others are numbered from 1 in the order of the file, skipping tags in use.
 class GroupTags {
  public:
   Tag find(std::size_t dimension, const std::string& name);
@@ -52,7 +53,7 @@ class GroupTags {
 /// Names that are all different and not too long: "a", "a_2".
 class DistinctNames {
  public:
-  /// `longest`: bytes.
+  /// `longest` is in bytes.
   explicit DistinctNames(std::size_t longest) : longest_(longest) {}
   std::string add(const std::string& name);
 

@@ -6,11 +6,11 @@
 
 namespace collarmesh::io {
 
-/// Appends the `size` bytes that a block of LZ4 packs. False if it is damaged or packs another number of
-/// bytes. Precondition: `size` is at most `lz4_largest_ratio * packed.size()`; more fits in no block.
+/// Unpacks a block of LZ4 and appends its `size` bytes. Returns false if it is damaged or packs another
+/// number of bytes. Precondition: `size` is at most `lz4_largest_ratio * packed.size()`; no block holds more.
 bool lz4_unpack(std::string_view packed, std::size_t size, std::string& bytes);
 
-/// A byte of a block stands for no more bytes than these.
+/// The largest number of bytes that one byte of a block stands for.
 constexpr std::size_t lz4_largest_ratio = 255;
 
 }  // namespace collarmesh::io

@@ -4,7 +4,7 @@
 
 namespace collarmesh::io {
 
-/// The first line of our files; in them the reference of a tet is the index of its region.
+/// The first line of our own files, in which the reference of a tet is the index of its region.
 constexpr std::string_view medit_signature = "# Written by collarmesh.\n";
 
 }  // namespace collarmesh::io

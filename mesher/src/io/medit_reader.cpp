@@ -1,5 +1,5 @@
-// Reads Medit's text format: vertices, tetrahedra, triangles and edges with their references;
-// keywords that say nothing about those are skipped.
+// Reads Medit's text format: vertices, tetrahedra, triangles and edges with their references; skips other
+// keywords.
 #include <fmt/format.h>
 
 #include <string_view>
@@ -64,7 +64,7 @@ bool is_unsupported_cell(std::string_view keyword) {
   return false;
 }
 
-/// Returns false at the end of the mesh.
+/// Reads a section. Returns false at the end of the mesh.
 bool read_section(TextScanner& scan, TetMesh& mesh) {
   const std::string_view keyword = scan.word("a keyword or End");
   if (!is_keyword(keyword)) scan.fail("a keyword", keyword);
@@ -101,7 +101,7 @@ TetMesh read(const std::string& path, bool needs_tets) {
   while (!scan.at_end() && read_section(scan, mesh)) {
   }
   if (needs_tets && mesh.tets.empty()) scan.fail("expected tetrahedra, found none");
-  // Ours refer to the region itself, of others only the order is known.
+  // In our files references are region indices; in others only their order is known.
   if (text.starts_with(medit_signature)) mesh.tet_region.assign(mesh.tet_tag.begin(), mesh.tet_tag.end());
   complete_mesh(path, mesh);
   return mesh;

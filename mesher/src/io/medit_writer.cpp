@@ -1,6 +1,6 @@
-// Medit's text format (.mesh; P. Frey, "MEDIT: an interactive mesh visualization software", 2001).
-// References: of vertices the dimension of their feature (0 if unknown), of tets the region, of
-// triangles and edges the tag. Corners are the vertices that are features, for remeshers to keep.
+// Medit's text format (.mesh; P. Frey, "MEDIT: an interactive mesh visualization software", 2001). The
+// reference of a vertex is the dimension of its feature (0 if unknown), of a tet the region, of triangles and
+// edges the tag. Corners are the vertices that are features, for remeshers to keep.
 #include <algorithm>
 #include <string_view>
 #include <vector>

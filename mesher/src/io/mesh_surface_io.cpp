@@ -50,7 +50,7 @@ std::vector<PolygonSoup::RegionPoint> points_in_regions(const TetMesh& mesh) {
     const Index s = sides[i - 1].second, t = sides[i].second;
     if (sides[i - 1].first == sides[i].first && mesh.tet_tag[s] == mesh.tet_tag[t]) bodies.unite(s, t);
   }
-  std::map<Index, std::pair<double, Index>> largest;  // of each body: six volumes, and the tet
+  std::map<Index, std::pair<double, Index>> largest;  // by body: six volumes, and the tet
   for (Index t = 0; t < mesh.tets.size(); ++t) {
     const auto& [a, b, c, d] = mesh.tets[t];
     const double volume =
@@ -82,7 +82,7 @@ PolygonSoup read_mesh_surface(const std::string& path, std::string_view format) 
     throw ReadError(fmt::format("{}: expected triangles of a surface, found none", path));
   PolygonSoup soup;
   soup.name = path;
-  std::vector<Index> number(mesh.points.size(), none);  // points of tets alone are left out
+  std::vector<Index> number(mesh.points.size(), none);  // points only in tets are left out
   const auto point = [&](Index p) {
     if (number[p] == none) {
       number[p] = static_cast<Index>(soup.points.size());

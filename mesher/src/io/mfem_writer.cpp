@@ -1,6 +1,6 @@
 // MFEM's mesh format v1.0 (mfem.org/mesh-format-v1.0): tetrahedra with the number of their region as
-// attribute, triangles with their tags, numbered from 1 where not all of them are positive. Comments say
-// what each attribute is called. Curved elements are a function of second order on the vertices and edges.
+// attribute, triangles with their tags, or numbered from 1 if not all tags are positive. Comments give the
+// name of each attribute. Curved elements are a function of second order on the vertices and edges.
 #include <fmt/format.h>
 
 #include <array>
@@ -21,10 +21,10 @@ namespace {
 
 constexpr int triangle = 2, tetrahedron = 4;
 
-/// Corners first, and the mid nodes in the order in which MFEM numbers edges: as they come, element by
-/// element.
+/// The order of nodes: corners first, then mid-edge nodes in the order in which MFEM numbers edges: as they
+/// appear, element by element.
 struct Order {
-  std::vector<Index> corner_number;  ///< of each point; none: it is no corner
+  std::vector<Index> corner_number;  ///< by point; none: it is no corner
   std::vector<Index> corners, mid_nodes;
 
   explicit Order(const TetMesh& mesh) : corner_number(mesh.points.size(), none) {
@@ -37,7 +37,7 @@ struct Order {
         corner_number[v] = static_cast<Index>(corners.size());
         corners.push_back(v);
       }
-    // Of MFEM's edges ab, ac, ad, bc, bd, cd the places among ours.
+    // TetMesh's places of MFEM's edges ab, ac, ad, bc, bd, cd.
     constexpr std::array<std::size_t, 6> edges{0, 2, 3, 1, 4, 5};
     std::vector<bool> there(mesh.points.size(), false);
     for (const auto& middle : mesh.tet_mid_nodes)
@@ -65,7 +65,7 @@ void write_names(FileWriter& out, const TetMesh& mesh, const std::map<Tag, std::
     out << fmt::format("# boundary attribute {}: {}\n", attribute, group_name(mesh, 2, tag));
 }
 
-/// Those with these numbers.
+/// Writes the elements with these numbers.
 template <std::size_t n>
 void write_cells(FileWriter& out, const std::vector<std::array<Index, n>>& cells,
                  const std::vector<Index>& which, const Order& order, int kind, const auto& attribute_of) {
@@ -83,7 +83,7 @@ void write_mfem(const std::string& path, const TetMesh& mesh) {
   const Order order(mesh);
   std::vector<Index> tets(mesh.tets.size()), faces;
   std::iota(tets.begin(), tets.end(), Index{0});
-  for (Index f = 0; f < mesh.faces.size(); ++f)  // others bound nothing
+  for (Index f = 0; f < mesh.faces.size(); ++f)  // other faces bound nothing
     if (mesh.face_regions[f] != std::array<Index, 2>{0, 0}) faces.push_back(f);
   const std::map<Tag, std::size_t> attributes = positive_numbers(mesh.face_tag);
   FileWriter out(path);

@@ -1,7 +1,7 @@
 // Gmsh's format 2.2 as text, which OpenFOAM's gmshToFoam, SU2's and other converters read. Physical groups
-// are numbered through all dimensions, as gmshToFoam knows one list of names: faces keep their tags where
-// Gmsh takes them, then regions and curves get what is free.
-// Partitions, from 1, are tags of elements behind these and the entity.
+// are numbered across all dimensions, because gmshToFoam has one list of names: faces keep tags that Gmsh
+// accepts, then regions and curves get free numbers. Partitions, from 1, are tags of elements after these and
+// the entity.
 #include <array>
 #include <limits>
 #include <map>
@@ -55,13 +55,13 @@ void write_names(FileWriter& out, const TetMesh& mesh, const Numbers& numbers) {
   out << "$EndPhysicalNames\n";
 }
 
-/// Gmsh's elementary entities are the features, from 1; all of those without such a number are one.
+/// Gmsh's elementary entities are the features, from 1; cells without a feature share one entity.
 std::size_t entity(Index feature) {
   constexpr Index limit = std::numeric_limits<int>::max();
   return feature < limit ? std::size_t{feature} + 1 : 1;
 }
 
-/// Links of surfaces and curves; points are no entities here.
+/// Writes links of surfaces and curves; points are no entities here.
 void write_links(FileWriter& out, const TetMesh& mesh) {
   if (mesh.periodic.empty()) return;
   const MshEntities entities = find_entities(mesh);
@@ -93,7 +93,7 @@ void write_msh2(const std::string& path, const TetMesh& mesh) {
                          const std::vector<Index>& partition, std::size_t i, const CellNodes& nodes) {
     out << ++number << ' ' << type.number << (partitioned ? " 4 " : " 2 ") << numbers[type.dimension].at(tag)
         << ' ' << elementary;
-    if (partitioned) out << " 1 " << partition[i] + 1;  // how many, which ones
+    if (partitioned) out << " 1 " << partition[i] + 1;  // number of partitions, then the partition
     for (const Index v : nodes.in_order({type.order.data(), type.nodes})) out << ' ' << std::size_t{v} + 1;
     out << '\n';
   };

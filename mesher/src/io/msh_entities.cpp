@@ -16,13 +16,13 @@ namespace collarmesh::io {
 
 namespace {
 
-/// Gives each pair of a feature and a tag an entity of one dimension. Its number is that of the
-/// feature while that is known and free.
+/// Gives each pair of a feature and a tag an entity of one dimension. The entity has the number of the
+/// feature if that is known and free.
 class EntityTable {
  public:
   explicit EntityTable(std::vector<MshEntity>& entities) : entities_(entities) {}
 
-  /// `number`: wanted, 0 if the feature is unknown.
+  /// Finds or adds an entity. `number` is the preferred one, 0 if the feature is unknown.
   Index find(Index number, Tag tag) {
     const std::pair key(number, tag);
     if (key == last_key_ && last_ != none) return last_;
@@ -32,13 +32,13 @@ class EntityTable {
     return last_ = found->second;
   }
 
-  /// Returns the entity of a feature whatever its tag.
+  /// Returns the entity of a feature, whatever its tag.
   Index find(Index number) {
     const auto found = by_number_.find(number);
     return found != by_number_.end() ? found->second : find(number, 0);
   }
 
-  /// Numbers the entities that did not get the wanted number. Returns whether there were any.
+  /// Numbers the entities that did not get their preferred number. Returns whether there were any.
   bool number_the_rest() {
     int next = 1;
     for (const MshEntity& e : entities_) next = std::max(next, e.number + 1);
@@ -85,7 +85,7 @@ constexpr std::size_t tets_at_once = 16384;
 
 std::size_t ranges_of(std::size_t count) { return (count + tets_at_once - 1) / tets_at_once; }
 
-/// Entities are numbered in the order of the first tets that they have.
+/// Assigns tets to entities, numbered in the order of their first tets.
 void assign_tets(const TetMesh& mesh, EntityTable& table, std::vector<Index>& of_tet) {
   using Key = std::pair<Index, Tag>;
   const auto key_of = [&](std::size_t tet) { return Key(mesh.tet_region[tet], mesh.tet_tag[tet]); };
@@ -128,7 +128,7 @@ void place_corners(const Cells& cells, const std::vector<Index>& entities, std::
     for (const Index v : cells[i]) result.of_point[v] = {dimension, entities[i]};
 }
 
-/// As place_corners of all tets: a point is placed by its last tet.
+/// Does the same as place_corners for all tets: a point is placed by its last tet.
 void place_corners_of_tets(const TetMesh& mesh, MshEntities& result) {
   const bool alone = tbb::this_task_arena::max_concurrency() == 1;
   std::vector<Index> last_tet(mesh.points.size(), none);
@@ -142,7 +142,7 @@ void place_corners_of_tets(const TetMesh& mesh, MshEntities& result) {
   });
 }
 
-/// By the features of the vertices where they are known, else by the cells around.
+/// Places points by the features of vertices where known, otherwise by the cells around.
 void place_points(const TetMesh& mesh, Tables& tables, MshEntities& result) {
   if (mesh.tets.empty()) tables[3].find(1);
   result.of_point.resize(mesh.points.size());
@@ -213,7 +213,8 @@ void find_boundaries(const TetMesh& mesh, MshEntities& result) {
   }
 }
 
-/// A tag that Gmsh takes is its own number; the others get free ones, above all tags if they fit.
+/// Numbers the physical groups. A tag that Gmsh accepts is its own number; other tags get free numbers, above
+/// all tags if possible.
 std::map<Tag, int> number_tags(const std::vector<MshEntity>& entities) {
   constexpr Tag limit = std::numeric_limits<int>::max();
   std::map<Tag, int> numbers;
@@ -239,7 +240,7 @@ void find_physicals(MshEntities& result) {
   }
 }
 
-/// Parts in the order of their entities and partitions, numbered past the entities.
+/// Divides entities into parts, ordered by entity and partition, numbered after the entities.
 class Divider {
  public:
   Divider(const TetMesh& mesh, const MshEntities& whole, MshParts& result)
@@ -270,7 +271,7 @@ class Divider {
   }
 
  private:
-  /// Entities for these parts, whose places among them are filled in.
+  /// Adds entities for these parts, and fills in their places.
   void add(std::size_t dimension, std::map<std::pair<Index, Index>, Index>& parts) {
     int number = 0;
     for (const MshEntity& entity : whole_.of_dimension[dimension]) number = std::max(number, entity.number);
@@ -289,7 +290,7 @@ class Divider {
 
   const TetMesh& mesh_;
   const MshEntities& whole_;
-  std::vector<Index> points_;  // their partitions
+  std::vector<Index> points_;  // partitions of the points
   MshParts& result_;
 };
 

@@ -13,7 +13,7 @@ namespace collarmesh::io {
 struct MshEntity {
   int number = 0;  ///< positive, unique in its dimension
   Tag tag = 0;
-  int physical = 0;  ///< number of the physical group; 0 none
+  int physical = 0;  ///< number of the physical group; 0: none
   Box box;
   std::vector<int> boundary;  ///< of a volume: surfaces, negative where they point inwards
 };
@@ -33,8 +33,8 @@ struct MshEntities {
 
 MshEntities find_entities(const TetMesh& mesh);
 
-/// The entities of a partitioned mesh divided: for each that has cells or points, and each partition of
-/// these, one. Points are of the lowest partition around.
+/// The divided entities of a partitioned mesh: one for each entity and partition that has cells or points of
+/// it. Points belong to the lowest partition around them.
 struct MshParts {
   struct Part {
     int parent = 0;  ///< number of the whole entity
@@ -42,8 +42,8 @@ struct MshParts {
   };
   MshEntities entities;                           ///< physicals is empty
   std::array<std::vector<Part>, 4> of_dimension;  ///< beside entities.of_dimension
-  std::vector<Index> numbers;                     ///< of the partitions that have tets, ascending
-  std::size_t partitions = 0;                     ///< of which these are
+  std::vector<Index> numbers;                     ///< numbers of the partitions that have tets, ascending
+  std::size_t partitions = 0;                     ///< number of partitions
 };
 
 MshParts divide_entities(const TetMesh& mesh, const MshEntities& whole);

@@ -9,7 +9,7 @@ namespace collarmesh::io {
 
 constexpr int gmsh_point = 15;
 
-/// A type of elements, and the node of TetMesh at each place.
+/// A type of elements, and TetMesh's node at each place.
 struct GmshType {
   int number;
   std::size_t dimension, nodes;
@@ -22,10 +22,10 @@ constexpr std::array<GmshType, 6> gmsh_types{{{1, 1, 2, {0, 1}},
                                               {4, 3, 4, {0, 1, 2, 3}},
                                               {11, 3, 10, {0, 1, 2, 3, 4, 5, 6, 7, 9, 8}}}};
 
-/// In $Comments: patch i of the complex is surface i + 1 and so on, region i is volume i.
+/// In $Comments: declares that patch i of the complex is surface i + 1 and so on, and region i is volume i.
 constexpr std::string_view msh_numbers_are_features = "Entity numbers are those of the complex.";
 
-// Gmsh takes only positive numbers of physical groups, so a tag that is not from 1 to 2^31 - 1 is known
-// by the name of its group alone (label_names.h).
+// Gmsh accepts only positive numbers of physical groups, so a tag that is not from 1 to 2^31 - 1 is
+// identified by its group's name alone (label_names.h).
 
 }  // namespace collarmesh::io

@@ -53,7 +53,7 @@ class PairLinks {
   }
 
   void add(std::size_t dimension, Index entity, Index master, const CellNodes& nodes) {
-    if (entity == master) return;  // on an axis
+    if (entity == master) return;  // it lies on an axis
     auto& listed = nodes_[{dimension, entity, master}];
     for (const Index node : nodes)
       if (image_of(node) != none) listed.emplace(node, image_of(node));
@@ -102,10 +102,10 @@ class PairLinks {
   std::map<std::tuple<std::size_t, Index, Index>, std::map<Index, Index>> nodes_;  // by entity and master
 };
 
-/// The masters so far.
+/// The masters of entities so far.
 class Masters {
  public:
-  /// Returns whether the entity had none, and is not a master of that master.
+  /// Adds a link. Returns whether the entity had no master, and is not itself a master of that master.
   bool add(const MshLink& link) {
     std::map<int, int>& masters = of_[link.dimension];
     for (int at = link.master;;) {

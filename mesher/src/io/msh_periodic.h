@@ -13,17 +13,17 @@ namespace collarmesh::io {
 /// An entity of Gmsh whose mesh is the image of another one's.
 struct MshLink {
   std::size_t dimension = 2;
-  int entity = 0, master = 0;               ///< numbers
+  int entity = 0, master = 0;               ///< numbers of entities
   TetMesh::Motion motion;                   ///< takes the master to the entity
-  std::vector<std::array<Index, 2>> nodes;  ///< of the entity, with its boundary, and of the master
+  std::vector<std::array<Index, 2>> nodes;  ///< pairs of a node of the entity, including its boundary, and
+                                            ///< one of the master
 };
 
-/// Points, curves and surfaces on the second sides of periodic faces, in this order. An entity with several
-/// masters has the first one, as Gmsh's have one each.
+/// Finds points, curves and surfaces on the second sides of periodic faces, in this order. Gmsh allows one
+/// master per entity, so an entity with several gets the first one.
 std::vector<MshLink> find_msh_links(const TetMesh& mesh, const MshEntities& entities);
 
-/// Writes the section $Periodic, unless there is nothing in it. Formats before 4 have another row for the
-/// matrix.
+/// Writes the section $Periodic, unless it is empty. Formats before 4 have another word before the matrix.
 void write_msh_links(FileWriter& out, const std::vector<MshLink>& links, int version);
 
 }  // namespace collarmesh::io

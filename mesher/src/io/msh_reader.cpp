@@ -38,29 +38,29 @@ struct Cell {
   Index partition = none;
 };
 
-/// A part of an entity, in one or between several partitions; the first of these.
+/// A part of an entity, in one partition or between several, of which this keeps the first.
 struct PartitionEntity {
   std::size_t parent_dimension = 0;
   int parent = 0;
   Index partition = none;
 };
 
-/// A surface whose mesh is that of another one, moved.
+/// A surface whose mesh is the moved mesh of another one.
 struct SurfaceLink {
   int entity = 0, master = 0;
   TetMesh::Motion motion;
-  std::vector<std::array<std::uint64_t, 2>> nodes;  ///< numbers: of the master and of the entity
+  std::vector<std::array<std::uint64_t, 2>> nodes;  ///< numbers of a node of the master and of its image
 };
 
 struct Contents {
   std::vector<Node> nodes;                               ///< in the order of their numbers
-  bool dense = false;                                    ///< are the numbers 1, 2, ...?
+  bool dense = false;                                    ///< the numbers are 1, 2, ...
   std::array<std::vector<Cell>, 4> cells;                ///< by dimension
-  std::array<std::map<int, Tag>, 4> physical_of_entity;  ///< the first one
+  std::array<std::map<int, Tag>, 4> physical_of_entity;  ///< the first physical group
   std::array<std::map<int, PartitionEntity>, 4> partition_entities;
-  std::array<std::map<Tag, Tag>, 4> tag_of_physical;                   ///< where its name says so
+  std::array<std::map<Tag, Tag>, 4> tag_of_physical;                   ///< where its name determines it
   std::vector<std::pair<std::uint64_t, double>> collar, crease, thin;  ///< cell number and value
-  TagNames names;                                                      ///< of tags, where given
+  TagNames names;                                                      ///< names of tags, where given
   std::vector<SurfaceLink> links;
   bool numbers_are_features = false;
 };
@@ -70,7 +70,7 @@ Tag tag_of_physical(const Contents& contents, std::size_t dimension, Tag physica
   return named != contents.tag_of_physical[dimension].end() ? named->second : physical;
 }
 
-/// Returns the entity of which it is a part, or itself.
+/// Returns the entity that this one is a part of, or itself.
 int whole_entity(const Contents& contents, std::size_t dimension, int entity) {
   const auto part = contents.partition_entities[dimension].find(entity);
   return part == contents.partition_entities[dimension].end() ? entity : part->second.parent;
@@ -159,7 +159,7 @@ void read_physical_names(MshText values, Contents& contents) {
   }
 }
 
-/// `point_numbers`: a point has 3 coordinates, in 4.0 a box of 6.
+/// Reads entities. `point_numbers`: a point has 3 coordinates, in 4.0 a box of 6.
 template <class Values>
 void read_partition_entities(Values values, int point_numbers, Contents& contents) {
   values.number("the number of partitions");
@@ -191,7 +191,7 @@ void read_partition_entities(Values values, int point_numbers, Contents& content
     }
 }
 
-/// `point_numbers`: as of partition entities.
+/// Reads partition entities. `point_numbers` as for entities.
 template <class Values>
 void read_entities(Values values, int point_numbers, Contents& contents) {
   std::array<Index, 4> counts;
@@ -241,7 +241,8 @@ void read_cells_of_block(Values& values, const GmshType& type, int entity, Tag t
   Cell cell;
   cell.entity = entity;
   cell.tag = tag;
-  bool between_partitions = false;  // made by Gmsh, and nothing of the mesh
+  bool between_partitions = false;  // elements that Gmsh made between partitions; they are not part of the
+                                    // mesh
   const auto& parts = contents.partition_entities[type.dimension];
   if (const auto part = parts.find(entity); part != parts.end()) {
     cell.entity = part->second.parent;
@@ -273,7 +274,7 @@ void read_elements(Values values, Contents& contents) {
   if (found != total) values.fail(fmt::format("expected {} elements, found {}", total, found));
 }
 
-/// Links of surfaces that have a matrix.
+/// Reads links of surfaces that have a matrix.
 template <class Values>
 void read_periodic(Values values, Contents& contents) {
   constexpr Index matrix = 16;
@@ -300,7 +301,7 @@ void read_periodic(Values values, Contents& contents) {
   }
 }
 
-// Version 4.0: entities before dimensions, numbers and coordinates of nodes together.
+// Version 4.0: entities come before dimensions; numbers and coordinates of nodes are together.
 
 void read_nodes_40(MshText values, Contents& contents) {
   const Index blocks = values.count("the number of blocks", 4);
@@ -336,7 +337,7 @@ void read_elements_40(MshText values, Contents& contents) {
   }
 }
 
-// Version 2: counts are text in binary files too.
+// Version 2: counts are text in binary files, too.
 
 template <class Values>
 void read_nodes_2(Values values, Contents& contents) {
@@ -351,7 +352,7 @@ void read_nodes_2(Values values, Contents& contents) {
   sort_nodes(values, contents);
 }
 
-/// The tags of an element are its physical group, its entity and partitions.
+/// Reads the tags of an element: its physical group, its entity and partitions.
 template <class Values>
 void read_element_2(Values& values, const GmshType& type, std::uint64_t number, int tags,
                     Contents& contents) {
@@ -362,7 +363,7 @@ void read_element_2(Values& values, const GmshType& type, std::uint64_t number, 
     const int tag = values.integer("a tag of an element");
     if (k == 0) physical = std::abs(Tag{tag});
     if (k == 1) cell.entity = tag;
-    if (k == 3 && tag > 0) cell.partition = static_cast<Index>(tag) - 1;  // k == 2: how many there are
+    if (k == 3 && tag > 0) cell.partition = static_cast<Index>(tag) - 1;  // k == 2: the number of partitions
   }
   cell.nodes = read_cell_nodes(values, contents, type);
   if (type.dimension == 0) return;
@@ -380,7 +381,7 @@ void read_elements_2(MshText values, Contents& contents) {
   }
 }
 
-/// Elements come in blocks of one type.
+/// Reads elements, which come in blocks of one type.
 void read_elements_2(MshBinary2 values, Contents& contents) {
   const Index n = values.count("the number of elements", 4);
   for (Index i = 0; i < n;) {
@@ -398,7 +399,7 @@ void read_elements_2(MshBinary2 values, Contents& contents) {
 struct DataHead {
   std::string name;
   int components = 1, count = 0;
-  std::size_t lines = 3;  ///< it takes
+  std::size_t lines = 3;  ///< number of lines that the head takes
 };
 
 DataHead read_data_head(MshText& values) {
@@ -543,7 +544,7 @@ void add_features(const Contents& contents, TetMesh& mesh) {
     mesh.features.push_back({node.dimension, node.dimension == 3 ? none : feature_of(node.entity)});
 }
 
-/// One value for each tet, 0 where the file gives none, within these bounds.
+/// Returns one value for each tet, 0 where the file gives none, within these bounds.
 template <class T>
 void add_data(std::vector<std::pair<std::uint64_t, double>>& values, double least, double most,
               const std::vector<Cell>& tets, std::vector<T>& data) {
@@ -562,7 +563,7 @@ void add_once(Tag tag, std::vector<Tag>& tags) {
   if (at == tags.end() || *at != tag) tags.insert(at, tag);
 }
 
-/// Joins links of one motion. Only in files of ours each tag is that of whole faces.
+/// Joins links of one motion. Only in our own files does each tag cover whole faces.
 void add_periodic(const Contents& contents, TetMesh& mesh) {
   const auto position = [&](std::uint64_t number) {
     const auto found = std::lower_bound(contents.nodes.begin(), contents.nodes.end(), number,
@@ -591,7 +592,7 @@ void add_periodic(const Contents& contents, TetMesh& mesh) {
   }
 }
 
-/// Nodes and cells come in the order of their numbers.
+/// Makes the mesh. Nodes and cells come in the order of their numbers.
 TetMesh make_mesh(const std::string& path, Contents& contents) {
   TetMesh mesh;
   for (const Node& node : contents.nodes) mesh.points.push_back(node.point);
@@ -604,7 +605,7 @@ TetMesh make_mesh(const std::string& path, Contents& contents) {
     add_periodic(contents, mesh);
   }
   add_data(contents.collar, 0, 2, contents.cells[3], mesh.tet_collar);
-  constexpr double most = 0x1p52;  // that doubles hold
+  constexpr double most = 0x1p52;  // integers up to here are exact in doubles
   add_data(contents.crease, -most, most, contents.cells[3], mesh.tet_crease);
   if (!contents.thin.empty()) add_data(contents.thin, 0, 1, contents.cells[3], mesh.tet_thin);
   add_partitions(contents.cells[3], mesh);

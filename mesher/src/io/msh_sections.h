@@ -14,11 +14,11 @@ namespace collarmesh::io {
 /// The part of a .msh file between $NAME and $EndNAME.
 struct MshSection {
   std::string_view name, body;
-  std::size_t first_line = 1;  ///< of the body
+  std::size_t first_line = 1;  ///< of the section's body
   std::size_t first_byte = 0;
 };
 
-/// Cost: linear. Throws ReadError if a section has no end.
+/// Splits a file into sections. Cost: linear. Throws ReadError if a section has no end.
 std::vector<MshSection> split_msh(const std::string& path, std::string_view text);
 
 /// The values of a section of a text file.
@@ -38,7 +38,8 @@ class MshText {
     if (value < 0) scan_.fail(fmt::format("{}, {}, is negative", what, value));
     return static_cast<std::uint64_t>(value);
   }
-  /// A count of things of at least so many numbers each; more than the section can hold is an error.
+  /// Reads a count of items that take at least this many numbers each; a count that exceeds the section is an
+  /// error.
   Index count(std::string_view what, std::size_t numbers) { return scan_.count(what, 2 * numbers); }
   double real(std::string_view what) { return scan_.number(what); }
   Point point(std::string_view what) { return scan_.point(what); }
@@ -84,7 +85,7 @@ class MshBinary2 {
     if (value < 0) fail(fmt::format("{}, {}, is negative", what, value));
     return static_cast<std::uint64_t>(value);
   }
-  /// The count at the begin.
+  /// Reads the count at the beginning.
   Index count(std::string_view what, std::size_t numbers);
   Point point(std::string_view what);
   [[noreturn]] void fail(const std::string& message) const { bytes_.fail(message); }

@@ -1,10 +1,10 @@
-// Gmsh's format 4.1 as text (Gmsh's reference manual, "MSH file format"). Entities are the features:
-// a volume per region, a surface per patch, a curve per curve, a point per vertex. A physical group
-// holds what has one tag. Cells are numbered in the order tets, faces, edges; $ElementData "collar" and
-// "crease" is given for all of them in the order of the file, as meshio needs it.
-// In a partitioned mesh the cells and nodes of an entity are divided among its parts, an entity for each
-// partition: Gmsh loses other data when it writes such a mesh again.
-// $Periodic has a link for each point, curve and surface on the second sides of periodic faces.
+// Gmsh's format 4.1 as text (Gmsh's reference manual, "MSH file format"). Entities are the features: a volume
+// per region, a surface per patch, a curve per curve, a point per vertex. All entities with one tag form a
+// physical group. Cells are numbered in the order tets, faces, edges; $ElementData "collar" and "crease"
+// covers all of them in the order of the file, as meshio needs it. In a partitioned mesh the cells and nodes
+// of an entity are divided among its parts, one entity for each partition: otherwise Gmsh would lose data
+// when it writes such a mesh again. $Periodic has a link for each point, curve and surface on the second
+// sides of periodic faces.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -45,7 +45,7 @@ void write_point(Text& out, const Point& p) {
   out << p.x << ' ' << p.y << ' ' << p.z;
 }
 
-/// `part`: text behind its number.
+/// Writes an entity. `part` is the text after its number.
 void write_entity(FileWriter& out, const MshEntity& entity, std::size_t dimension,
                   const std::string& part = {}) {
   out << entity.number << ' ' << part;
@@ -74,7 +74,7 @@ void write_entities(FileWriter& out, const MshEntities& entities) {
   out << "$EndEntities\n";
 }
 
-/// Partitions count from 1.
+/// Writes the entities of partitions, which count from 1.
 void write_partition_entities(FileWriter& out, const MshParts& parts,
                               const std::vector<int>& ghost_entities) {
   out << "$PartitionedEntities\n" << parts.partitions << '\n' << ghost_entities.size() << '\n';
@@ -93,7 +93,7 @@ void write_partition_entities(FileWriter& out, const MshParts& parts,
 
 /// Writes the ghost tets of partitions.
 void write_ghost_elements(FileWriter& out, const TetMesh& mesh, const MshParts& parts) {
-  std::vector<std::pair<Index, Index>> ghosts;  // a tet and a partition it is a ghost of
+  std::vector<std::pair<Index, Index>> ghosts;  // a tet and the partition in which it is a ghost
   const std::vector<std::vector<Index>> tets = ghost_tets(mesh);
   for (std::size_t k = 0; k < tets.size(); ++k)
     for (const Index t : tets[k]) ghosts.emplace_back(t, parts.numbers[k]);
@@ -116,10 +116,10 @@ void write_ghost_elements(FileWriter& out, const TetMesh& mesh, const MshParts& 
 struct Groups {
   std::vector<Index> starts, members;
 
-  /// `entity_of(i)`, for all i below `count`: none for what is in no group.
+  /// Groups the members. `entity_of(i)`, for all i below `count`, returns none for members of no group.
   template <class EntityOf>
   Groups(std::size_t entity_count, std::size_t count, const EntityOf& entity_of) : starts(entity_count + 1) {
-    // Items are counted and placed in chunks, each of which has a place of its own in each group.
+    // Members are counted and placed in chunks, each of which has its own range in each group.
     constexpr std::size_t least_chunk = 16384, most_chunks = 64;
     const std::size_t chunk = std::max((count + most_chunks - 1) / most_chunks, least_chunk + entity_count);
     std::vector<std::vector<Index>> next((count + chunk - 1) / chunk);
@@ -228,7 +228,7 @@ void write_elements(FileWriter& out, const TetMesh& mesh, const MshEntities& ent
   out << "$EndElements\n";
 }
 
-// Writes values of tets; 0 for other cells.
+// Writes values of tets, and 0 for other cells.
 template <class T>
 void write_data(FileWriter& out, std::string_view name, const std::vector<T>& values,
                 const CellGroups& groups) {
@@ -242,7 +242,7 @@ void write_data(FileWriter& out, std::string_view name, const std::vector<T>& va
   out << "$EndElementData\n";
 }
 
-/// Numbers for volumes that Gmsh fills with the ghosts of each partition.
+/// Returns numbers for volumes that Gmsh fills with the ghosts of each partition.
 std::vector<int> ghost_volumes(const MshParts& parts) {
   int number = 0;
   for (const MshEntity& volume : parts.entities.of_dimension[3]) number = std::max(number, volume.number);
@@ -256,7 +256,7 @@ void write(const std::string& path, const TetMesh& mesh, bool with_ghosts) {
   const MshEntities entities = find_entities(mesh);
   std::optional<MshParts> parts;
   if (!mesh.tet_partition.empty()) parts = divide_entities(mesh, entities);
-  const MshEntities& holders = parts ? parts->entities : entities;  // of the cells
+  const MshEntities& holders = parts ? parts->entities : entities;  // entities of the cells
   const CellGroups groups(mesh, holders);
   out << "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Comments\nWritten by collarmesh.\n";
   if (entities.numbers_are_features) out << msh_numbers_are_features << '\n';

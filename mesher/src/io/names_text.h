@@ -7,12 +7,12 @@
 
 namespace collarmesh::io {
 
-/// The names of a mesh's groups as text, for formats that have a place for text but none for names: a line
-/// for each, as "patch 7 inlet", and the line "cad" where the others are called as in a CAD shape. Empty
-/// where there are none.
+/// Returns the names of a mesh's groups as text, for formats that have room for text but not for names: a
+/// line for each, as "patch 7 inlet", and the line "cad" if unnamed groups are named as in a CAD shape. Empty
+/// if there are no names.
 std::string names_text(const TetMesh& mesh);
 
-/// Give a mesh the names of such a text. Other lines are left out.
+/// Gives a mesh the names in such a text. Ignores other lines.
 void take_names(std::string_view text, TetMesh& mesh);
 
 }  // namespace collarmesh::io

@@ -1,7 +1,7 @@
 // Nastran's bulk data (.bdf; MSC Nastran Quick Reference Guide): nodes in large fields, CTETRA of 4 or 10
-// nodes, CTRIA3 or CTRIA6 of the faces. Each region and then each tag of faces has a number as property;
-// comments say what it is called, as HyperMesh does. Properties and materials are for the user to add; faces
-// without one are to be left out.
+// nodes, CTRIA3 or CTRIA6 of the faces. Each region and then each tag of faces has a property number;
+// comments give its name, as HyperMesh does. The user adds properties and materials, and deletes faces that
+// need none.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t large_field = 16, fields_on_line = 8;
 
-/// A real number has a point, and as many digits as fit.
+/// Formats a real number with a point and as many digits as fit.
 std::string real(double value) {
   for (int digits = 17;; --digits) {
     std::string text = digits == 17 ? fmt::format("{}", value) : fmt::format("{:.{}g}", value, digits);
@@ -39,7 +39,7 @@ void write_nodes(FileWriter& out, const TetMesh& mesh) {
   });
 }
 
-/// In fields of eight characters, with lines that go on where there are more than eight.
+/// Writes fields of eight characters, on continuation lines if there are more than eight.
 template <class NodesOf>
 void write_elements(FileWriter& out, const TetMesh& mesh, const char* name, std::size_t count,
                     std::size_t first, const NodesOf& nodes_of, const auto& property_of) {

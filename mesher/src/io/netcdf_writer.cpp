@@ -91,7 +91,7 @@ bool NetcdfWriter::grows(const Variable& variable) const {
   return !variable.dimensions.empty() && dimensions_[variable.dimensions.front()].unlimited;
 }
 
-/// Returns the bytes of all values, or of one record where the variable grows.
+/// Returns the bytes of all values, or of one record if the variable grows.
 std::uint64_t NetcdfWriter::bytes_of(const Variable& variable) const {
   std::uint64_t bytes = size_of(variable.type);
   for (const std::size_t d : variable.dimensions)
@@ -101,7 +101,7 @@ std::uint64_t NetcdfWriter::bytes_of(const Variable& variable) const {
 
 std::string NetcdfWriter::header(std::uint64_t first_value) const {
   std::string bytes = "CDF\2";
-  append32(bytes, 0);  // records
+  append32(bytes, 0);  // number of records
   append32(bytes, dimension_list);
   append32(bytes, dimensions_.size());
   for (const Dimension& dimension : dimensions_) {
@@ -111,7 +111,7 @@ std::string NetcdfWriter::header(std::uint64_t first_value) const {
   append_attributes(bytes, attributes_);
   append32(bytes, variable_list);
   append32(bytes, variables_.size());
-  std::uint64_t fixed = 0;  // records follow all that is fixed
+  std::uint64_t fixed = 0;  // records follow all fixed variables
   for (const Variable& variable : variables_) fixed += grows(variable) ? 0 : bytes_of(variable);
   std::uint64_t value = first_value, record = first_value + fixed;
   for (const Variable& variable : variables_) {

@@ -18,9 +18,9 @@ class NetcdfWriter {
  public:
   explicit NetcdfWriter(const std::string& path) : path_(path), out_(path) {}
 
-  /// Return the numbers of dimensions.
+  /// Adds a dimension and returns its number.
   std::size_t add_dimension(std::string_view name, std::size_t length);
-  /// One that later programs make longer; its length is 0.
+  /// Adds a dimension that other programs can extend; its length is 0.
   std::size_t add_unlimited_dimension(std::string_view name);
 
   struct Attribute {
@@ -37,12 +37,13 @@ class NetcdfWriter {
                  std::vector<Attribute> attributes = {});
   void add_real(std::string name, const std::vector<std::size_t>& dimensions);
 
-  /// Writes all that was added. Throws WriteError for a variable that is too large for the format.
+  /// Writes the description of everything added. Throws WriteError for a variable that is too large for the
+  /// format.
   void write_header();
-  /// The values of the next variable of those that do not grow, one after the other; then its end.
+  /// Write the values of the next variable that does not grow, one after the other, and then its end.
   void write(std::int32_t value);
   void write(double value);
-  /// As long as `length`, the rest zeros.
+  /// Writes a text padded with zeros to `length`.
   void write(const std::string& text, std::size_t length);
   void end_variable();
   void commit() { out_.commit(); }
@@ -69,7 +70,7 @@ class NetcdfWriter {
   std::vector<Dimension> dimensions_;
   std::vector<Attribute> attributes_;
   std::vector<Variable> variables_;
-  std::uint64_t written_ = 0;  // bytes of the variable
+  std::uint64_t written_ = 0;  // bytes of the current variable
 };
 
 }  // namespace collarmesh::io

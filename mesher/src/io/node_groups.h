@@ -11,10 +11,10 @@
 
 namespace collarmesh::io {
 
-/// Whatever belongs to a group, by the group's tag.
+/// Members of each group, by the group's tag.
 using Groups = std::map<Tag, std::vector<Index>>;
 
-/// The nodes of the cells of each tag, numbered from 1, ascending.
+/// Returns the nodes of the cells of each tag, numbered from 1, ascending.
 template <class Cells>
 Groups nodes_by_tag(const TetMesh& mesh, const Cells& nodes_of, const std::vector<Tag>& tags) {
   Groups groups;
@@ -27,7 +27,7 @@ Groups nodes_by_tag(const TetMesh& mesh, const Cells& nodes_of, const std::vecto
   return groups;
 }
 
-/// The tags that there are, numbered from `first` in their order: for formats whose numbers are positive.
+/// Numbers the tags from `first`, in their order: for formats whose numbers are positive.
 inline std::map<Tag, std::size_t> numbered_tags(const std::vector<Tag>& tags, std::size_t first = 1) {
   std::map<Tag, std::size_t> numbers;
   for (const Tag tag : tags) numbers.try_emplace(tag, 0);
@@ -35,7 +35,7 @@ inline std::map<Tag, std::size_t> numbered_tags(const std::vector<Tag>& tags, st
   return numbers;
 }
 
-/// The tags themselves where all are positive numbers of 32 bits, else numbered as above.
+/// Returns the tags themselves if all are positive numbers of 32 bits, otherwise numbers as above.
 inline std::map<Tag, std::size_t> positive_numbers(const std::vector<Tag>& tags) {
   std::map<Tag, std::size_t> numbers = numbered_tags(tags);
   if (std::all_of(numbers.begin(), numbers.end(), [](const auto& each) {

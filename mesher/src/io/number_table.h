@@ -10,14 +10,14 @@
 
 namespace collarmesh::io {
 
-/// Finds the entity that a file numbered in its own way.
-/// Cost: constant if the numbers are consecutive, else logarithmic.
+/// Maps a file's own numbers of entities to indices. Cost: constant if the numbers are consecutive, else
+/// logarithmic.
 class NumberTable {
  public:
-  /// Numbers in the order of the entities.
+  /// Adds a number. Call it in the order of the entities.
   void add(std::int64_t number) { numbers_.emplace_back(number, static_cast<Index>(numbers_.size())); }
 
-  /// After the last `add`. Returns a number that was given twice.
+  /// Sorts the numbers after the last `add`. Returns a number that was given twice.
   std::optional<std::int64_t> sort() {
     if (!std::is_sorted(numbers_.begin(), numbers_.end())) std::sort(numbers_.begin(), numbers_.end());
     const auto twice = std::adjacent_find(numbers_.begin(), numbers_.end(),
@@ -26,10 +26,10 @@ class NumberTable {
     return std::nullopt;
   }
 
-  /// none if there is no such number.
+  /// Returns the index of a number; none if it does not occur.
   Index find(std::int64_t number) const {
     if (numbers_.empty() || number < numbers_.front().first || number > numbers_.back().first) return none;
-    // Exact for consecutive numbers.
+    // The guess is exact for consecutive numbers.
     const auto guess =
         static_cast<std::uint64_t>(number) - static_cast<std::uint64_t>(numbers_.front().first);
     if (guess < numbers_.size() && numbers_[guess].first == number) return numbers_[guess].second;

@@ -5,22 +5,24 @@
 #include <cstdint>
 #include <string_view>
 
-/// Numbers from text, whatever the locale.
+/// Reads numbers from text, whatever the locale.
 namespace collarmesh::io {
 
-/// from_chars knows no leading plus sign.
+/// Removes a leading plus sign, which from_chars does not accept.
 inline std::string_view without_plus(std::string_view word) {
   return word.size() > 1 && word[0] == '+' && word[1] != '-' && word[1] != '+' ? word.substr(1) : word;
 }
 
-/// Is the magnitude of this decimal number, known to be out of range, too small rather than too large?
+/// Returns whether the magnitude of this decimal number, known to be out of range, is too small rather than
+/// too large.
 inline bool underflows(std::string_view word) {
   const std::size_t exponent = word.find_first_of("eE");
   return exponent == std::string_view::npos ? word.substr(0, 2) == "0." || word.substr(0, 3) == "-0."
                                             : word.substr(exponent + 1, 1) == "-";
 }
 
-/// Is the whole word a number? Also "nan" and "inf" are; a number too large is infinite.
+/// Returns whether the whole word is a number. Also accepts "nan" and "inf"; a number that is too large
+/// becomes infinite.
 inline bool parse(std::string_view word, double& value) {
   word = without_plus(word);
   const char* end = word.data() + word.size();
@@ -32,7 +34,7 @@ inline bool parse(std::string_view word, double& value) {
   return error == std::errc() && stop == end;
 }
 
-/// Is the whole word an integer that fits?
+/// Returns whether the whole word is an integer that fits.
 template <class Integer>
 bool parse(std::string_view word, Integer& value) {
   word = without_plus(word);

@@ -1,5 +1,5 @@
-// Measured with CGAL 5.5.1's read_OBJ: it drops corners that are no number, takes a face line cut
-// off after two corners and the index 0, and rejects lines continued with a backslash.
+// Our own reader, because CGAL 5.5.1's read_OBJ drops corners that are no number, takes a face line cut off
+// after two corners and the index 0, and rejects lines continued with a backslash.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,11 +19,12 @@ namespace collarmesh::io {
 
 namespace {
 
-/// The faces of an .obj file may come before their vertices; indices are checked at the end, with the line.
+/// An element of an .obj file. Faces may come before their vertices, so indices are checked at the end, with
+/// the line.
 struct Element {
   std::size_t first_corner, line;
   bool is_face;
-  std::size_t group, material;  ///< positions among their names
+  std::size_t group, material;  ///< indices of their names
 };
 
 /// Names in the order of their first use; "" is none.
@@ -44,11 +45,11 @@ class Names {
 struct Elements {
   std::vector<Element> list;
   Names groups, materials;
-  std::size_t group = 0, material = 0;  ///< those at hand
+  std::size_t group = 0, material = 0;  ///< the current ones
   std::vector<std::int64_t> corners;    ///< counted from 0; negative ones are already resolved
 };
 
-/// A line that ends with a backslash goes on in the next one.
+/// Ends a statement. A line that ends with a backslash continues in the next one.
 bool end_of_statement(TextScanner& scan) {
   while (!scan.at_line_end()) {
     if (scan.peek() != "\\") return false;
@@ -57,7 +58,8 @@ bool end_of_statement(TextScanner& scan) {
   return true;
 }
 
-/// v, v/vt, v/vt/vn or v//vn: the position counts. Negative indices count back from the last vertex so far.
+/// Reads v, v/vt, v/vt/vn or v//vn, of which only the position counts. Negative indices count back from the
+/// last vertex so far.
 std::int64_t read_corner(TextScanner& scan, std::size_t points_so_far) {
   const std::string_view word = scan.word("a corner");
   std::int64_t index = 0;
@@ -88,7 +90,8 @@ void require_in_range(const std::string& path, const Element& element, std::int6
       .fail(fmt::format("a corner is vertex {}, but the file has {} vertices", corner + 1, size));
 }
 
-/// Returns the tags of the faces: by groups, if there are several or our own, else by materials.
+/// Returns the tags of the faces: by groups, if there are several or they are our own, otherwise by
+/// materials.
 std::vector<Tag> tags_of_faces(const Elements& elements, PolygonSoup& soup) {
   std::set<std::size_t> groups, materials;
   for (const Element& element : elements.list) {

@@ -1,5 +1,5 @@
-// Measured with CGAL 5.5.1's read_OFF: a header that claims fewer faces than follow shortens the
-// file silently, and one that claims two thousand million allocates them.
+// Our own reader, because with CGAL 5.5.1's read_OFF a header that claims fewer faces than follow shortens
+// the file silently, and one that claims two thousand million allocates them.
 #include <fmt/format.h>
 
 #include <string_view>
@@ -15,8 +15,8 @@ namespace {
 
 bool is_number_start(char c) { return (c >= '0' && c <= '9') || c == '-' || c == '+'; }
 
-/// [ST][C][N]OFF, which some writers leave out. Normals, colours and texture coordinates follow the
-/// position on its line and are not used.
+/// Reads the keyword [ST][C][N]OFF, which some writers leave out. Normals, colours and texture coordinates
+/// follow the position on its line and are not used.
 void read_keyword(TextScanner& scan) {
   if (!scan.at_end() && is_number_start(scan.peek().front())) return;
   const std::string_view keyword = scan.word("the keyword OFF");
@@ -51,7 +51,7 @@ PolygonSoup read_off(const std::string& path) {
   read_keyword(scan);
   const Index point_count = scan.count("the number of vertices", 6);
   const Index face_count = scan.count("the number of faces", 4);
-  scan.skip_line();  // the number of edges, which nobody counts
+  scan.skip_line();  // the number of edges, which is often wrong
 
   PolygonSoup soup;
   soup.points.reserve(point_count);

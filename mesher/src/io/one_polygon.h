@@ -7,8 +7,8 @@
 
 namespace collarmesh::io {
 
-/// The corners of a facet that is one polygon without a hole: what most surface formats can hold.
-/// Throws WriteError (path, facet) for another one.
+/// Returns the corners of a facet that is one polygon without a hole, as most surface formats require. Throws
+/// WriteError (path, facet) for another facet.
 std::span<const Index> one_polygon(const std::string& path, const PolygonSoup& soup, Index facet);
 
 }  // namespace collarmesh::io

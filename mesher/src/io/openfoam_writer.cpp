@@ -1,7 +1,7 @@
 // OpenFOAM's polyMesh: the file `boundary` and beside it `points`, `faces`, `owner`, `neighbour`, `cellZones`
-// and `faceZones` (OpenFOAM User Guide, "Mesh description"). A patch for each tag of faces on the boundary;
-// one whose name begins with wall is a wall, with symmetry a symmetry. A zone of cells for each tag of
-// regions, and one of faces for each tag of faces inside.
+// and `faceZones` (OpenFOAM User Guide, "Mesh description"). Each tag of faces on the boundary is a patch, of
+// type wall if its name begins with wall, and symmetry likewise. Each tag of regions is a zone of cells, and
+// each tag of faces inside is a zone of faces.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,20 +26,20 @@ namespace {
 
 using Triangle = std::array<Index, 3>;
 
-/// A side of a tet, with its corners as seen from outside; in front of it another tet, or none.
+/// A side of a tet, with its corners as seen from outside, and the tet in front of it, or none.
 struct Side {
   Triangle corners;
   Index owner = none, neighbour = none;
-  Index face = none;  ///< among the faces of the mesh
+  Index face = none;  ///< index among the faces of the mesh
 };
 
-/// The smallest corner first, without turning it over.
+/// Rotates a triangle so that its smallest corner comes first; its orientation stays.
 Triangle turned(Triangle t) {
   std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
   return t;
 }
 
-/// Sides inside by owner and neighbour, then those on the boundary by tag.
+/// Inner sides by owner and neighbour, then sides on the boundary by tag.
 struct Sides {
   std::vector<Side> inside, outside;
 
@@ -90,7 +90,7 @@ std::string header(std::string_view kind, std::string_view object, std::string_v
   return text + fmt::format("    location    \"constant/polyMesh\";\n    object      {};\n}}\n\n", object);
 }
 
-/// A file of the folder.
+/// Writes a file of the folder.
 class List {
  public:
   List(const std::filesystem::path& folder, const char* name, std::string_view kind,
@@ -157,7 +157,7 @@ void write_cell_zones(FileWriter& out, const TetMesh& mesh) {
   out << ")\n";
 }
 
-/// A face is flipped where its zone's normal points to the owner.
+/// Writes zones of faces. A face is flipped if its zone's normal points to the owner.
 void write_face_zones(FileWriter& out, const TetMesh& mesh, const Sides& sides) {
   Groups zones;
   for (std::size_t i = 0; i < sides.inside.size(); ++i)

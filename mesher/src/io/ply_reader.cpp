@@ -1,5 +1,5 @@
-// Measured with CGAL 5.5.1's read_PLY: corners out of range are success, and the doubles of a text
-// file are rounded to 32 bits when its header says float.
+// Our own reader, because CGAL 5.5.1's read_PLY accepts corners out of range, and rounds the doubles of a
+// text file to 32 bits when its header says float.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -119,7 +119,7 @@ Header read_header(TextScanner& scan) {
   return header;
 }
 
-/// Where the values come from: text or bytes.
+/// The source of values: text or bytes.
 struct TextValues {
   TextScanner& scan;
   double number(Type, std::string_view what) { return scan.number(what); }
@@ -207,7 +207,7 @@ class Body {
     return 0;
   }
 
-  /// Ours; past the last column if there is none.
+  /// Returns our own column; past the last column if there is none.
   static std::size_t tag_column(const Element& element) {
     const auto found =
         std::find_if(element.properties.begin(), element.properties.end(), [](const Property& p) {
@@ -301,7 +301,7 @@ class Body {
     for (std::size_t i = 0; i < n; ++i) values_.number(property.type, property.name);
   }
 
-  /// Faces may come before the vertices they refer to.
+  /// Checks corners at the end, because faces may come before their vertices.
   void require_known_corners() {
     if (largest_corner_ >= static_cast<std::int64_t>(soup_.points.size()))
       values_.fail_at(fmt::format("a corner is vertex {}, but the file has {} vertices", largest_corner_,

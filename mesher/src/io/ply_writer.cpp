@@ -19,7 +19,7 @@ void write_value(FileWriter& out, T value) {
   out << std::string_view(bytes.data(), bytes.size());
 }
 
-/// The format has no integers of 64 bits.
+/// Returns whether tags are written. The format has no integers of 64 bits.
 bool has_tags(const PolygonSoup& soup) {
   bool any = false;
   for (Index f = 0; f < soup.facet_count(); ++f) {

@@ -36,7 +36,7 @@ class PointMerger {
       h = mixed(h + std::bit_cast<std::uint64_t>(c + 0.0));  // -0 + 0 is 0
     return h;
   }
-  /// The slot that holds the point, or the free one where it belongs.
+  /// Returns the slot that holds the point, or the free one where it belongs.
   Index& find(const Point& p) {
     return find_slot(slots_, hash(p), [&](Index i) { return points_[i] == p; });
   }

@@ -1,5 +1,5 @@
-// VTK's XML format for unstructured grids in pieces, put together by the numbers that points and cells have
-// in the whole mesh. Ghost cells are left out, as another piece has them.
+// Reads VTK's XML format for unstructured grids in pieces, joined by the numbers of points and cells in the
+// whole mesh. Ghost cells are skipped, because another piece has them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 struct NamedPiece {
   std::string path;
   VtkPiece piece;
-  std::vector<std::int64_t> point_of;  ///< the place of each of its points in the whole mesh
+  std::vector<std::int64_t> point_of;  ///< index of each of its points in the whole mesh
 };
 
 const std::vector<std::int64_t>& numbers(const NamedPiece& named, const VtkPiece::Arrays& arrays,
@@ -82,7 +82,7 @@ void join_points(std::vector<NamedPiece>& pieces, VtkPiece& whole) {
   }
 }
 
-/// In the order of their numbers.
+/// Joins cells in the order of their numbers.
 void join_cells(const std::vector<NamedPiece>& pieces, VtkPiece& whole) {
   struct Place {
     std::int64_t number;
@@ -161,7 +161,7 @@ TetMesh read_pvtu(const std::string& path) {
   VtkPiece whole;
   join_points(pieces, whole);
   join_cells(pieces, whole);
-  if (!pieces.empty()) whole.names = pieces.front().piece.names;  // each has all of them
+  if (!pieces.empty()) whole.names = pieces.front().piece.names;  // each piece has all names
   TetMesh mesh;
   try {
     add_vtk_piece(whole, mesh);

@@ -1,6 +1,6 @@
-// VTK's XML format for unstructured grids in pieces: NAME.pvtu names a .vtu file for each partition,
+// VTK's XML format for unstructured grids in pieces: NAME.pvtu lists a .vtu file for each partition,
 // NAME_0.vtu and so on. Points and cells have their numbers in the whole mesh. Ghost cells, and points that
-// another piece owns, are marked as VTK marks them (vtkDataSetAttributes: DUPLICATECELL, DUPLICATEPOINT).
+// another piece owns, are marked as in VTK (vtkDataSetAttributes: DUPLICATECELL, DUPLICATEPOINT).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,13 +27,13 @@ namespace fs = std::filesystem;
 
 constexpr std::uint8_t duplicate = 1;
 
-/// The members of one piece; ghosts are among the tets, behind its own.
+/// The members of one piece; ghost tets follow its own.
 struct Members {
   std::vector<Index> tets, faces, edges, points;
   std::size_t own_tets = 0;
 };
 
-/// The members by partition, all but the points.
+/// Returns the members by partition, without the points.
 std::vector<Members> members_by_partition(const TetMesh& mesh, const std::vector<Index>& numbers,
                                           bool with_ghosts) {
   std::vector<Members> members(numbers.size());
@@ -68,7 +68,7 @@ class Cutter {
  public:
   explicit Cutter(const TetMesh& mesh) : mesh_(mesh), local_(mesh.points.size(), none) {}
 
-  /// The points of these cells, ascending; of the first piece those that no cell has, too.
+  /// Finds the points of these cells, ascending; the first piece also gets points without cells.
   void find_points(Members& members, bool first) const {
     std::vector<Index>& points = members.points;
     const auto add = [&](const CellNodes& nodes) { points.insert(points.end(), nodes.begin(), nodes.end()); };
@@ -129,10 +129,10 @@ class Cutter {
   }
 
   const TetMesh& mesh_;
-  std::vector<Index> local_;  // of the points of the piece that is cut
+  std::vector<Index> local_;  // indices of points in the current piece
 };
 
-/// Numbers of cells: tets, then faces, then edges.
+/// Returns the numbers of cells: tets, then faces, then edges.
 VtkArray cell_ids(const TetMesh& mesh, const Members& members) {
   std::vector<std::int64_t> ids;
   const auto add = [&](const std::vector<Index>& cells, std::size_t first) {
@@ -179,7 +179,7 @@ void declare(FileWriter& out, std::string_view section, std::span<const VtkArray
   out << "    </P" << section << ">\n";
 }
 
-/// `like`: one of the pieces, all of which have the same arrays.
+/// Writes the .pvtu file. `like` is any of the pieces, all of which have the same arrays.
 void write_list(const std::string& path, const VtkGrid& like, const std::vector<std::string>& pieces,
                 bool with_ghosts) {
   FileWriter out(path);
@@ -195,7 +195,7 @@ void write_list(const std::string& path, const VtkGrid& like, const std::vector<
   out.commit();
 }
 
-/// `told`: the partitions are the mesh's own, and are written.
+/// Writes the pieces. `told`: the partitions are the mesh's own and are written as an array.
 void write_pieces(const std::string& path, const TetMesh& mesh, bool told, bool with_ghosts) {
   const std::vector<Index> numbers = partition_numbers(mesh), owners = partitions_of_points(mesh);
   std::vector<Members> members = members_by_partition(mesh, numbers, with_ghosts);
@@ -217,7 +217,7 @@ void write_pieces(const std::string& path, const TetMesh& mesh, bool told, bool 
     write_vtu_grid((fs::path(path).parent_path() / names.back()).string(), grid, boundary);
     members[k] = {};
   }
-  write_list(path, grid, names, with_ghosts);  // last: who sees it sees the pieces, too
+  write_list(path, grid, names, with_ghosts);  // last, so that its readers find all pieces
 }
 
 /// Writes the pieces; a mesh that is not partitioned is one piece.

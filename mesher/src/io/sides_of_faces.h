@@ -11,7 +11,7 @@ namespace collarmesh::io {
 /// The side of a tet opposite one of its corners.
 struct SideOfTet {
   Index tet = none;
-  unsigned opposite = 0;  ///< place of the corner
+  unsigned opposite = 0;  ///< index of the corner
 };
 
 /// Finds a side of a tet for each face: of the tet behind it, if there is one.

@@ -1,5 +1,5 @@
-// Measured with CGAL 5.5.1's read_STL: an empty file, a file shorter than its header, NaN and bytes
-// behind the last triangle are all success; a bad text file is then read as a binary one.
+// Our own reader, because CGAL 5.5.1's read_STL accepts an empty file, a file shorter than its header, NaN
+// and bytes after the last triangle, and then reads a bad text file as a binary one.
 #include <fmt/format.h>
 
 #include <bit>
@@ -48,7 +48,7 @@ void expect(TextScanner& scan, std::string_view keyword) {
 
 struct Solids {
   std::vector<std::string> names;
-  std::vector<std::size_t> ends;  // of each: how many triangles there are then
+  std::vector<std::size_t> ends;  // by solid: the number of triangles at its end
 };
 
 void read_text_facet(TextScanner& scan, PointMerger& merger, std::vector<std::array<Index, 3>>& triangles) {
@@ -84,7 +84,7 @@ void read_text_solid(TextScanner& scan, PointMerger& merger, std::vector<std::ar
   solids.ends.push_back(triangles.size());
 }
 
-/// Several solids of one file are its patches, with their names; a single solid gives no tags.
+/// Makes the solids of one file its patches, with their names; a single solid gives no tags.
 void add_solids(const std::vector<std::array<Index, 3>>& triangles, const Solids& solids, PolygonSoup& soup) {
   std::map<std::string, Tag> tags;
   const auto tag_of = [&](std::size_t solid) {

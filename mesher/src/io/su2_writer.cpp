@@ -1,5 +1,5 @@
 // SU2's mesh format (.su2; su2code.github.io/docs_v7/Mesh-File): tetrahedra, points, and a marker for each
-// tag of faces on the boundary. Faces inside have no place in it, nor have regions, edges and second order.
+// tag of faces on the boundary. The format has no place for faces inside, regions, edges and second order.
 #include <map>
 #include <string>
 #include <vector>
@@ -14,7 +14,7 @@ namespace collarmesh::io {
 
 namespace {
 
-constexpr int tetrahedron = 10, triangle = 5;  // as in VTK
+constexpr int tetrahedron = 10, triangle = 5;  // VTK's numbers
 
 void write_markers(FileWriter& out, const TetMesh& mesh) {
   Groups markers;

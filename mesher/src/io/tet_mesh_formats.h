@@ -13,7 +13,7 @@ void write_vtu(const std::string& path, const TetMesh& mesh);
 void write_pvtu(const std::string& path, const TetMesh& mesh);
 void write_vtk(const std::string& path, const TetMesh& mesh);
 void write_msh(const std::string& path, const TetMesh& mesh);
-// With the tets around each partition:
+// Writers that add the ghost tets around each partition:
 void write_pvtu_with_ghost_cells(const std::string& path, const TetMesh& mesh);
 void write_msh_with_ghost_cells(const std::string& path, const TetMesh& mesh);
 void write_msh2(const std::string& path, const TetMesh& mesh);
@@ -27,7 +27,7 @@ void write_exodus(const std::string& path, const TetMesh& mesh);
 void write_su2(const std::string& path, const TetMesh& mesh);
 void write_openfoam(const std::string& path, const TetMesh& mesh);
 void write_tetgen(const std::string& path, const TetMesh& mesh);
-// Parts of the build that are left out where HDF5 or MED are not there:
+// Parts that are not built without HDF5 or MED:
 void write_xdmf(const std::string& path, const TetMesh& mesh);
 void write_med(const std::string& path, const TetMesh& mesh);
 void write_cgns(const std::string& path, const TetMesh& mesh);
@@ -37,7 +37,7 @@ TetMesh read_med(const std::string& path);
 
 TetMesh read_vtu(const std::string& path);
 TetMesh read_pvtu(const std::string& path);
-/// The files that a .pvtu names, one for each piece.
+/// Returns the files that a .pvtu names, one for each piece.
 std::vector<std::string> pieces_of_pvtu(const std::string& path);
 TetMesh read_vtk(const std::string& path);
 TetMesh read_msh(const std::string& path);
@@ -54,7 +54,7 @@ TetMesh read_medit_cells(const std::string& path);
 
 PointField read_vtu_field(const std::string& path, const std::string& name);
 PointField read_msh_field(const std::string& path, const std::string& name);
-/// Which of these to read; the only one when none is wanted by name. Throws ReadError.
+/// Returns which of these fields to read; the only one if none is asked for by name. Throws ReadError.
 std::size_t choose_field(const std::string& path, const std::vector<std::string>& names,
                          const std::string& wanted);
 

@@ -18,8 +18,8 @@ namespace {
 struct TetMeshFormat {
   std::string_view extension;
   void (*write)(const std::string& path, const TetMesh& mesh);
-  TetMesh (*read)(const std::string& path);  ///< null: not read
-  bool partitions = false;                   ///< has a place for them
+  TetMesh (*read)(const std::string& path);  ///< null: the format is only written
+  bool partitions = false;                   ///< has a place for partitions
   void (*write_with_ghost_cells)(const std::string& path, const TetMesh& mesh) = nullptr;
   bool second_order = true;
   bool surfaces = false;  ///< has a place for meshes of triangles alone, and of curve edges alone

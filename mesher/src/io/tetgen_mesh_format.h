@@ -8,11 +8,11 @@
 /// formats"): NAME.node, NAME.ele, NAME.face and NAME.edge belong together.
 namespace collarmesh::io {
 
-/// The node of TetMesh at each place of a cell of second order, as TetGen 1.5.0 writes them with -o2.
+/// TetMesh's node at each place of a cell of second order, as TetGen 1.5.0 writes it with -o2.
 constexpr std::array<std::uint8_t, 10> tetgen_tet_order{0, 1, 2, 3, 9, 7, 4, 5, 8, 6};
 constexpr std::array<std::uint8_t, 6> tetgen_face_order{0, 1, 2, 4, 5, 3};
 
-/// The file beside `path` with this extension.
+/// Returns the file beside `path` with this extension.
 std::string tetgen_sibling(const std::string& path, const char* extension);
 
 }  // namespace collarmesh::io

@@ -1,5 +1,5 @@
-// Reads TetGen's mesh: NAME.node and NAME.ele, and NAME.face and NAME.edge where they are there, of
-// first and second order.
+// Reads TetGen's mesh of first or second order: NAME.node and NAME.ele, and NAME.face and NAME.edge if they
+// exist.
 #include <fmt/format.h>
 
 #include <array>
@@ -21,7 +21,7 @@ namespace collarmesh::io {
 
 namespace {
 
-/// The place in a file's order that each node of TetMesh has.
+/// The place of each of TetMesh's nodes in the order of the file.
 template <std::size_t n>
 std::array<std::uint8_t, n> inverse(const std::array<std::uint8_t, n>& order) {
   std::array<std::uint8_t, n> result{};
@@ -46,7 +46,7 @@ class CellFile {
     return nodes.in_order(order);
   }
 
-  /// Region attributes are real numbers.
+  /// Reads a tag: region attributes are real numbers.
   Tag read_tag() {
     if (scan_.at_line_end()) return 0;
     const double value = scan_.coordinate("a marker or attribute");
@@ -65,7 +65,7 @@ class CellFile {
 std::int64_t read_nodes(const std::string& path, TetMesh& mesh) {
   const std::string text = read_bytes(path);
   TextScanner scan(path, text);
-  std::vector<Tag> markers;  // what they mean differs
+  std::vector<Tag> markers;  // their meaning differs
   return read_tetgen_nodes(scan, read_tetgen_node_header(scan), mesh.points, markers);
 }
 
@@ -86,7 +86,7 @@ void read_tets(const std::string& path, std::int64_t first, TetMesh& mesh) {
   if (mesh.tets.empty()) file.scan().fail("expected tetrahedra, found none");
 }
 
-/// Faces and edges have mid nodes if tets have.
+/// Reads cells. Faces and edges have mid-edge nodes if tets have.
 template <class Add>
 void read_cells(const std::string& path, std::int64_t first, std::size_t n,
                 std::span<const std::uint8_t> order, Add add, std::vector<Tag>& tags, TetMesh& mesh) {

@@ -23,7 +23,7 @@ void write_nodes(FileWriter& out, const TetMesh& mesh) {
   });
 }
 
-/// Number, nodes and label of each cell.
+/// Writes number, nodes and label of each cell.
 template <class NodesOf>
 void write_cells(FileWriter& out, const TetMesh& mesh, const std::vector<Tag>& tags,
                  std::span<const std::uint8_t> order, NodesOf nodes_of) {

@@ -34,14 +34,14 @@ std::int64_t read_node_file(const std::string& poly_path, PolygonSoup& soup) {
   return read_tetgen_nodes(scan, read_tetgen_node_header(scan), soup.points, soup.point_tags);
 }
 
-/// A facet of the file, which may span nothing.
+/// A facet of the file, which may span no area.
 struct FileFacet {
   Tag tag = 0;
   std::vector<std::vector<Index>> polygons;
   std::vector<Point> holes;
 };
 
-/// A facet without a polygon of three corners spans nothing: its edges are loose segments.
+/// Adds a facet. One without a polygon of three corners spans no area: its edges are loose segments.
 void add_facet(const FileFacet& facet, PolygonSoup& soup) {
   bool spans = false, has_point = false;
   for (const std::vector<Index>& polygon : facet.polygons) {
@@ -111,7 +111,7 @@ void read_facets(TextScanner& scan, std::int64_t first, FacetReader read_facet, 
   }
 }
 
-/// The edge length of a regular tetrahedron.
+/// Returns the edge length of a regular tetrahedron of this volume.
 double edge_of_volume(double volume) { return std::cbrt(6 * std::numbers::sqrt2 * volume); }
 
 Tag region_tag(TextScanner& scan) {

@@ -11,9 +11,8 @@ namespace collarmesh::io {
 /// \r\n. Every failure is a ReadError "PATH: line N: what was expected and what was found".
 class TextScanner {
  public:
-  /// `comment`: this character and what follows on its line are skipped; 0: no comments.
-  /// `first_line`: the number of the line at which `text` begins.
-  /// Precondition: `path` and `text` outlive the scanner.
+  /// `comment` is a character that starts a comment up to the end of the line; 0: no comments. `first_line`
+  /// is the number of the line at which `text` begins. Precondition: `path` and `text` outlive the scanner.
   TextScanner(const std::string& path, std::string_view text, char comment = '#', std::size_t first_line = 1)
       : path_(path),
         begin_(text.data()),
@@ -22,12 +21,12 @@ class TextScanner {
         comment_(comment),
         line_(first_line) {}
 
-  /// Nothing but blanks and comments left on this line?
+  /// Returns whether only blanks and comments are left on this line.
   bool at_line_end() {
     skip_blanks();
     return at_ == end_ || *at_ == '\n';
   }
-  /// Nothing but blanks, comments and line ends left in the text?
+  /// Returns whether only blanks, comments and line ends are left in the text.
   bool at_end() {
     while (at_line_end()) {
       if (at_ == end_) return true;
@@ -35,7 +34,7 @@ class TextScanner {
     }
     return false;
   }
-  /// Go to the begin of the next line.
+  /// Goes to the beginning of the next line.
   void skip_line() {
     while (at_ != end_ && *at_ != '\n') ++at_;
     if (at_ == end_) return;
@@ -43,14 +42,14 @@ class TextScanner {
     ++line_;
   }
 
-  /// The next word, on this line or a later one. `what` names it in the error.
+  /// Takes the next word, on this line or a later one. `what` names it in the error.
   std::string_view word(std::string_view what);
-  /// The next word, not taken; empty at the end.
+  /// Returns the next word without taking it; empty at the end.
   std::string_view peek();
-  /// The rest of this line without blanks around it; goes to the next line.
+  /// Takes the rest of this line without surrounding blanks; goes to the next line.
   std::string_view rest_of_line();
 
-  /// So many bytes from here, whatever they are; nothing is taken if there are fewer.
+  /// Takes this many bytes, whatever they are; takes nothing if there are fewer.
   std::string_view raw(std::size_t count) {
     if (count > left()) return {};
     at_ += count;
@@ -65,10 +64,10 @@ class TextScanner {
     return {x, y, z};
   }
   std::int64_t integer(std::string_view what);
-  /// How many of something follow, each of at least `least_bytes` bytes: more than the rest of the
-  /// text can hold is an error, and so is what `Index` cannot number.
+  /// Reads a count of items that take at least `least_bytes` bytes each; a count that the rest of the text
+  /// cannot hold, or `Index` cannot number, is an error.
   Index count(std::string_view what, std::size_t least_bytes);
-  /// An index in [first, first + size), returned counted from 0.
+  /// Reads an index in [first, first + size); returns it counted from 0.
   Index index(std::string_view what, std::int64_t first, std::size_t size);
 
   [[noreturn]] void fail(const std::string& message) const;
@@ -76,13 +75,14 @@ class TextScanner {
   [[noreturn]] void fail(std::string_view expected, std::string_view found) const;
 
   std::size_t line() const { return line_; }
-  /// How many bytes are read, and left.
+  /// Return the number of bytes read, and left.
   std::size_t offset() const { return static_cast<std::size_t>(at_ - begin_); }
   std::size_t left() const { return static_cast<std::size_t>(end_ - at_); }
 
  private:
   static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
-  // Most characters are told by the first comparison: blanks and line ends are no greater than a space.
+  // Returns whether a word continues. The first comparison decides for most characters: blanks and line ends
+  // are no greater than a space.
   bool in_word(char c) const {
     if (static_cast<unsigned char>(c) > ' ') return c != comment_;
     return c != '\n' && !is_blank(c) && (c != comment_ || comment_ == 0);
@@ -101,7 +101,7 @@ class TextScanner {
   std::size_t line_;
 };
 
-/// A piece of a file for a message: short, printable, in quotes.
+/// Quotes a piece of a file for a message: short, printable.
 std::string quoted(std::string_view text);
 
 }  // namespace collarmesh::io

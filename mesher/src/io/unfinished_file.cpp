@@ -20,8 +20,8 @@ namespace {
 
 constexpr int names_to_try = 100;
 
-/// On the disk before it takes its name, with the mode of the file that had it. Returns the system's number
-/// of an error, 0: none. File systems that cannot flush say so by two of these numbers.
+/// Flushes a file to the disk, before it gets its name, with the mode of the file that had it. Returns the
+/// system's error number, 0: none. File systems that cannot flush report one of these two errors.
 int settle(const std::string& temporary, const std::string& path) {
   struct stat before = {};
   if (stat(path.c_str(), &before) == 0 && chmod(temporary.c_str(), before.st_mode & 07777) != 0) return errno;

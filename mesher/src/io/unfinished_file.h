@@ -4,8 +4,8 @@
 
 namespace collarmesh::io {
 
-/// A file that appears under its name when it is complete, or not at all: until `commit` renames it, it
-/// is a temporary file beside its place. Throws WriteError with the path and the system's reason.
+/// A file that appears under its name when it is complete, or not at all: until `commit` renames it, it is a
+/// temporary file in the same folder. Throws WriteError with the path and the system's reason.
 class UnfinishedFile {
  public:
   /// Creates the temporary file, empty.
@@ -15,12 +15,12 @@ class UnfinishedFile {
   UnfinishedFile(const UnfinishedFile&) = delete;
   UnfinishedFile& operator=(const UnfinishedFile&) = delete;
 
-  /// Where to write.
+  /// Returns the path to write to.
   const std::string& temporary() const { return temporary_; }
-  /// It is on the disk before it takes its name, and has the mode of the file that it replaces.
+  /// Flushes the file to the disk, gives it the mode of the file that it replaces, and renames it.
   /// Precondition: the temporary file is closed.
   void commit();
-  /// `reason` is the system's number of an error, 0: unknown.
+  /// Throws WriteError. `reason` is the system's error number, 0: unknown.
   [[noreturn]] void fail(int reason) const;
 
  private:

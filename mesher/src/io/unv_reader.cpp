@@ -1,6 +1,6 @@
-// Reads the universal file format of I-DEAS (.unv): nodes (2411, 781), elements (2412, 780) and groups
-// (2467 and its forerunners). Tags are groups: of our names what they say, else their order in the
-// file; without groups they are the materials. Names other than patch_7 are kept.
+// Reads the universal file format of I-DEAS (.unv): nodes (2411, 781), elements (2412, 780) and groups (2467
+// and its forerunners). Groups become tags: groups with names of ours the tags that these stand for, others
+// numbers in their order; without groups the materials become tags. Names other than patch_7 are kept.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -47,7 +47,7 @@ class UnvReader {
  private:
   void read_dataset(std::int64_t number) {
     scan_.skip_line();
-    // Members of the older ones have no node and component.
+    // Members of the older datasets have no node and component.
     constexpr std::array<std::int64_t, 4> old_groups{2417, 2429, 2430, 2432},
         groups{2435, 2452, unv_groups, 2477};
     const auto is_one_of = [number](const std::array<std::int64_t, 4>& numbers) {
@@ -65,7 +65,7 @@ class UnvReader {
 
   bool at_mark() { return scan_.at_end() || scan_.peek() == "-1"; }
 
-  /// Texts in a dataset may hold anything; only a line of "-1" ends it.
+  /// Skips a dataset. Its texts may hold anything; only a line of "-1" ends it.
   void skip_dataset() {
     while (!at_mark()) scan_.skip_line();
   }
@@ -95,7 +95,7 @@ class UnvReader {
     while (!at_mark()) {
       const std::int64_t number = scan_.integer("the number of an element"),
                          type = scan_.integer("the type of an element");
-      // Property table (780: two numbers), material, colour, number of nodes.
+      // Skips the property table (780: two numbers), material, colour, and the number of nodes.
       scan_.integer("a property");
       if (old) scan_.integer("a property");
       const std::int64_t material = scan_.integer("a material");
@@ -110,7 +110,8 @@ class UnvReader {
     }
   }
 
-  /// SALOME and FreeCAD write the beams' record for rods, too, of three numbers; rods have two nodes.
+  /// Returns the number of words on the next line. SALOME and FreeCAD write the beams' record of three
+  /// numbers for rods, too; rods have two nodes.
   std::size_t words_on_next_line() const {
     TextScanner ahead = scan_;
     ahead.skip_line();
@@ -149,7 +150,7 @@ class UnvReader {
     return node;
   }
 
-  /// `long_members`: type, number, node and component, else type and number.
+  /// Reads groups. `long_members` have type, number, node and component, others type and number.
   void read_groups(bool long_members) {
     while (!at_mark()) {
       scan_.integer("the number of a group");
@@ -185,7 +186,7 @@ class UnvReader {
     return names_.size() - 1;
   }
 
-  /// The first group that an element is in counts.
+  /// Sets tags: the first group that contains an element counts.
   void tag_cells() {
     if (const auto twice = element_numbers_.sort())
       scan_.fail(fmt::format("two elements have the number {}", *twice));

@@ -17,7 +17,7 @@ namespace collarmesh::io {
 
 namespace {
 
-/// Fortran's 1PD25.16.
+/// Appends a number in Fortran's format 1PD25.16.
 void append_real(std::string& line, double value) {
   const std::size_t first = line.size();
   fmt::format_to(std::back_inserter(line), "{:25.16E}", value);
@@ -70,7 +70,7 @@ class ElementWriter {
     }
   }
 
-  /// Two members a line.
+  /// Writes groups, two members per line.
   void write_groups() {
     begin_dataset(out_, unv_groups);
     std::size_t number = 0;

@@ -39,15 +39,15 @@ T value_at(std::string_view bytes, std::size_t at, std::endian order) {
   return std::bit_cast<T>(raw);
 }
 
-/// Takes bytes off the front of what is stored.
+/// Takes bytes from the front of the stored data.
 class Stored {
  public:
   Stored(std::string_view text, bool base64) : text_(text), base64_(base64) {}
 
-  /// How many bytes are left at most.
+  /// Returns an upper bound of the bytes left.
   std::size_t left() const { return base64_ ? text_.size() / 4 * 3 : text_.size(); }
 
-  /// In base64 a run of bytes ends with its own padding.
+  /// Takes bytes. In base64 a run of bytes ends with its own padding.
   std::string take(std::uint64_t count) {
     std::string bytes = peek(count);
     if (bytes.size() < count) fail(count, bytes.size());
@@ -55,7 +55,7 @@ class Stored {
     return bytes;
   }
 
-  /// Fewer bytes if the run is padded before.
+  /// Returns bytes without taking them; fewer if padding ends the run before.
   std::string peek(std::uint64_t count) const {
     if (count > left()) fail(count, left());
     if (!base64_) return std::string(text_.substr(0, count));
@@ -65,7 +65,7 @@ class Stored {
     return *std::move(bytes);
   }
 
-  /// Is the run of so many bytes padded, so that it ends there?
+  /// Returns whether padding ends the run after this many bytes.
   bool ends_after(std::size_t count) const {
     return base64_ && base64_size(count) <= text_.size() && text_[base64_size(count) - 1] == '=';
   }
@@ -84,7 +84,7 @@ std::uint64_t header_number(std::string_view header, std::size_t i, const VtkSto
                                    : value_at<std::uint32_t>(header, 4 * i, storage.order);
 }
 
-/// A number of bytes, then the bytes; some writers encode the number by itself.
+/// Decodes a number of bytes, then the bytes; some writers encode the number separately.
 std::string decode_plain(Stored& stored, const VtkStorage& storage) {
   const std::string header = stored.peek(storage.header_bytes);
   if (header.size() < storage.header_bytes)
@@ -108,8 +108,8 @@ void unpack_block(VtkCompression compression, std::string_view packed, std::uint
     throw VtkArrayError{"a compressed block is damaged"};
 }
 
-/// The number of blocks, their size, the size of the last one if it is smaller, the compressed
-/// sizes; then the blocks.
+/// Decodes the number of blocks, their size, the size of the last one if it is smaller, the compressed sizes;
+/// then the blocks.
 std::string decode_compressed(Stored& stored, const VtkStorage& storage) {
   const std::string first = stored.peek(storage.header_bytes);
   if (first.size() < storage.header_bytes)
@@ -150,7 +150,7 @@ std::vector<To> convert(std::string_view bytes, std::endian order) {
   return values;
 }
 
-/// Real numbers that no integer can hold become -1, which no index or count is.
+/// Converts values. Real numbers that no integer can hold become -1, which is no valid index or count.
 template <class From>
 std::vector<std::int64_t> convert_to_integers(std::string_view bytes, std::endian order) {
   std::vector<std::int64_t> values;

@@ -20,7 +20,7 @@ enum class VtkCompression { none, zlib, lz4 };
 /// How the whole file stores arrays.
 struct VtkStorage {
   std::endian order = std::endian::little;
-  std::size_t header_bytes = 4;  ///< of the numbers that describe blocks
+  std::size_t header_bytes = 4;  ///< bytes of each number that describes blocks
   VtkCompression compression = VtkCompression::none;
 };
 
@@ -32,11 +32,11 @@ struct VtkArrayError {
   std::string message;
 };
 
-/// The bytes of an array that begins where `stored` begins. Throws VtkArrayError.
-/// Allocates no more than the stored bytes can hold.
+/// Decodes an array that begins where `stored` begins. Throws VtkArrayError. Allocates no more than the
+/// stored bytes can hold.
 std::string decode_vtk_array(std::string_view stored, bool base64, const VtkStorage& storage);
 
-/// Numbers of any type as doubles or 64-bit integers.
+/// Converts numbers of any type to doubles or 64-bit integers.
 template <class To>
 std::vector<To> convert_vtk_values(std::string_view bytes, VtkType type, std::endian order);
 

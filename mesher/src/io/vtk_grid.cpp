@@ -27,7 +27,7 @@ std::size_t cell_count(const TetMesh& mesh) {
   return mesh.tets.size() + mesh.faces.size() + mesh.edges.size();
 }
 
-/// One value per cell, from what each kind of cell has.
+/// Makes one value per cell, by functions for each kind of cell.
 template <class T, class OfTet, class OfFace, class OfEdge>
 std::vector<T> per_cell(const TetMesh& mesh, OfTet of_tet, OfFace of_face, OfEdge of_edge) {
   std::vector<T> values;
@@ -71,7 +71,7 @@ class GridMaker {
  private:
   static constexpr std::size_t tets_per_task = 1024;
 
-  /// Adds the array, in place, and fills it with the values that `values` returns.
+  /// Adds an array at its place and fills it with the values that `values` returns.
   template <class Values>
   void add(VtkArray& array, std::string_view name, Values values) {
     array.name = name;
@@ -165,7 +165,7 @@ class GridMaker {
     });
   }
 
-  /// These take longest.
+  /// Adds the measures, which take longest.
   void add_measures() {
     std::array<float*, 3> of_cells{};
     for (std::size_t k = 0; k < of_cells.size(); ++k) {
@@ -273,7 +273,7 @@ void pick(const std::vector<std::int64_t>& values, const std::vector<std::size_t
     for (const std::size_t cell : cells) to.push_back(static_cast<T>(values[cell]));
 }
 
-/// The first of these arrays that is there; empty if none is.
+/// Returns the first of these arrays that exists; empty if none does.
 const std::vector<std::int64_t>& find_array(const VtkPiece::Arrays& arrays,
                                             std::initializer_list<std::string_view> names) {
   static const std::vector<std::int64_t> nothing;
@@ -346,7 +346,7 @@ std::vector<VtkArray> take_boundary(const TetMesh& mesh, VtkGrid& grid) {
   const std::size_t tets = mesh.tets.size(), corners = tets * (mesh.order() == 2 ? 10 : 4);
   const auto name_of = [](const VtkArray& array) { return std::string(vtk_boundary_prefix) + array.name; };
   std::vector<VtkArray> boundary;
-  // Cuts an array and returns what was behind the cut.
+  // Cuts an array and returns the part behind the cut.
   const auto cut = [&](VtkArray& array, std::size_t at) {
     VtkArray rest{name_of(array), {}};
     std::visit(

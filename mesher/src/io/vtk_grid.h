@@ -43,27 +43,28 @@ VtkGrid make_vtk_grid(const TetMesh& mesh);
 constexpr std::string_view vtk_point_ids = "GlobalPointIds", vtk_cell_ids = "GlobalCellIds",
                            vtk_ghosts = "vtkGhostType";
 
-/// Leave the tets as cells and give the other cells as data of the whole grid: views that cut or select cells
-/// are then of the volume alone. Arrays: `boundary_` and the name of what they continue, and `boundary_of`,
-/// how many points and tets there are, so that a reader knows that nobody changed these. Cell arrays that say
-/// something about faces and edges alone go. The names of groups are there, too.
+/// Keeps only the tets as cells and moves the other cells to data of the whole grid, so that views that cut
+/// or select cells show the volume alone. The arrays are named `boundary_` and the name of the cell array
+/// that they continue; `boundary_of` has the numbers of points and tets, so that a reader can tell whether
+/// these were changed. Cell arrays that only concern faces and edges are removed. The names of groups are
+/// added, too.
 std::vector<VtkArray> take_boundary(const TetMesh& mesh, VtkGrid& grid);
 constexpr std::string_view vtk_boundary_prefix = "boundary_";
-/// The arrays that continue those of cells.
+/// The arrays that continue arrays of cells.
 constexpr std::array<std::string_view, 6> vtk_boundary_arrays{"tag",          "region",  "region_back",
                                                               "region_front", "feature", vtk_cell_ids};
 
 /// Data of the whole grid that has the names of groups, a byte for each character (names_text.h): VTK has
 /// arrays of strings, but not all readers do.
 constexpr std::string_view vtk_names = "names";
-/// It, or nothing where there are no names.
+/// Returns that array, or nothing if there are no names.
 std::vector<VtkArray> names_array(const TetMesh& mesh);
-/// The text in such an array.
+/// Returns the text in such an array.
 std::string names_of(const std::vector<std::int64_t>& bytes);
 
 /// Returns the name of the values' type in .vtu files: "Float64".
 std::string_view vtu_type(const VtkArray& array);
-/// Write a grid as a .vtu file. Its connectivity, offsets and types are moved out. Arrays that are called
+/// Writes a grid as a .vtu file. Its connectivity, offsets and types are moved out. Arrays named
 /// `vtk_point_ids` or `vtk_cell_ids` become the grid's GlobalIds. Throws WriteError.
 void write_vtu_grid(const std::string& path, VtkGrid& grid, const std::vector<VtkArray>& field_data);
 
@@ -72,17 +73,17 @@ struct VtkPiece {
   using Arrays = std::map<std::string, std::vector<std::int64_t>, std::less<>>;
   std::vector<Point> points;
   std::vector<std::int64_t> connectivity, ends, types;
-  Arrays point_data, cell_data;  ///< those of `vtk_point_arrays` and `vtk_cell_arrays` that are there
-  std::string names;             ///< of groups, as in names_text.h
+  Arrays point_data, cell_data;  ///< those of `vtk_point_arrays` and `vtk_cell_arrays` that exist
+  std::string names;             ///< names of groups, as in names_text.h
 };
 
-/// Arrays that say something about a mesh: ours, and the names that meshio and Gmsh give to labels.
+/// Arrays with labels of a mesh: ours, and the names that meshio and Gmsh use.
 constexpr std::array<std::string_view, 3> vtk_point_arrays{"feature_dimension", "feature", vtk_point_ids};
 constexpr std::array<std::string_view, 14> vtk_cell_arrays{
     "tag",     "gmsh:physical", "medit:ref", "CellEntityIds", "region",    "region_back", "region_front",
     "feature", "collar",        "crease",    "thin",          "partition", vtk_cell_ids,  vtk_ghosts};
 
-/// The pieces of a .vtu file, each with the faces and edges beside its cells. Throws ReadError.
+/// Reads the pieces of a .vtu file, each with the faces and edges beside its cells. Throws ReadError.
 std::vector<VtkPiece> read_vtu_pieces(const std::string& path);
 
 /// A fault of a piece, to which the caller adds the file and the place.
@@ -91,11 +92,11 @@ struct VtkPieceError {
   std::string message;
 };
 
-/// Add a piece to a mesh. Cells of a point are skipped. Throws VtkPieceError.
-/// Precondition: arrays have one value for each point or cell.
+/// Adds a piece to a mesh. Cells of a point are skipped. Throws VtkPieceError. Precondition: arrays have one
+/// value for each point or cell.
 void add_vtk_piece(const VtkPiece& piece, TetMesh& mesh);
 
-/// After the last piece: arrays that only some pieces have are dropped. Throws ReadError.
+/// Completes a mesh after the last piece: drops arrays that only some pieces have. Throws ReadError.
 void complete_vtk_mesh(const std::string& path, TetMesh& mesh);
 
 }  // namespace collarmesh::io

@@ -1,5 +1,5 @@
-// Reads VTK's legacy format for unstructured grids, versions 1 to 5.1, text and binary: tetrahedra,
-// triangles and lines with their labels; other data are skipped.
+// Reads VTK's legacy format for unstructured grids, versions 1 to 5.1, text and binary: tetrahedra, triangles
+// and lines with their labels; skips other data.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,7 +25,8 @@ struct TypeName {
   std::string_view name;
   VtkType type;
 };
-/// VTK writes vtkIdType with 32 bits here. "long" has 64 bits, as where VTK's files mostly come from.
+/// VTK writes vtkIdType with 32 bits here. "long" has 64 bits, as on the systems where most VTK files come
+/// from.
 constexpr TypeName type_names[] = {
     {"char", VtkType::i8},          {"signed_char", VtkType::i8},     {"unsigned_char", VtkType::u8},
     {"short", VtkType::i16},        {"unsigned_short", VtkType::u16}, {"int", VtkType::i32},
@@ -93,7 +94,7 @@ class LegacyReader {
       fail(fmt::format("the dataset is {}, but has to be UNSTRUCTURED_GRID", quoted(kind)));
   }
 
-  /// Data that was read belongs to what came before it.
+  /// Rejects data that belong to an earlier item.
   void require_no_data(const VtkPiece::Arrays& arrays, std::string_view section) const {
     if (!arrays.empty()) fail(fmt::format("{} come after their data", section));
   }
@@ -241,7 +242,7 @@ class LegacyReader {
     values<double>(times(tuples_, components), binary_ ? VtkType::u8 : VtkType::f32);
   }
 
-  /// Ends with an empty line.
+  /// Skips metadata, which ends with an empty line.
   void skip_metadata() {
     scan_.skip_line();
     while (scan_.left() > 0 && !scan_.rest_of_line().empty()) {
@@ -263,7 +264,7 @@ class LegacyReader {
     return found->type;
   }
 
-  /// `count` numbers, which begin on the next line if they are binary.
+  /// Reads `count` numbers, which begin on the next line if they are binary.
   template <class T>
   std::vector<T> values(std::size_t count, VtkType type) {
     if (binary_) return binary_values<T>(count, type);
@@ -297,7 +298,7 @@ class LegacyReader {
 
   std::string keyword(std::string_view what) { return lower_case(scan_.word(what)); }
 
-  /// Lines say little in a file with bytes.
+  /// Throws ReadError; a line number says little in a binary file.
   [[noreturn]] void fail(const std::string& message) const {
     if (!binary_) scan_.fail(message);
     throw ReadError(fmt::format("{}: byte {}: {}", path_, scan_.offset(), message));

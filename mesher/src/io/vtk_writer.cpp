@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::string_view type_name(std::uint8_t) { return "unsigned_char"; }
 constexpr std::string_view type_name(std::int32_t) { return "int"; }
-constexpr std::string_view type_name(std::int64_t) { return "long"; }  // meshio knows no other
+constexpr std::string_view type_name(std::int64_t) { return "long"; }  // the only name that meshio knows
 constexpr std::string_view type_name(float) { return "float"; }
 constexpr std::string_view type_name(double) { return "double"; }
 
@@ -33,7 +33,7 @@ void write_values(FileWriter& out, const std::vector<T>& values) {
   out << '\n';
 }
 
-/// Each cell is preceded by the number of its corners.
+/// Writes cells, each preceded by the number of its corners.
 void write_cells(FileWriter& out, const VtkGrid& grid) {
   const auto& corners = std::get<std::vector<std::int32_t>>(grid.connectivity.values);
   const auto& ends = std::get<std::vector<std::int64_t>>(grid.offsets.values);

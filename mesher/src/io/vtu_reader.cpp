@@ -1,5 +1,5 @@
 // Reads VTK's XML format for unstructured grids: arrays as text, inline or appended, base64 or raw,
-// compressed with zlib, with LZ4 or not, with 32- or 64-bit headers; tetrahedra, triangles and lines.
+// compressed with zlib or LZ4 or not, with 32- or 64-bit headers; tetrahedra, triangles and lines.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ namespace collarmesh::io {
 
 namespace {
 
-/// A file taken apart: its XML, and the appended bytes, which need not be XML.
+/// A file split into its XML and the appended bytes, which need not be XML.
 class VtuFile {
  public:
   explicit VtuFile(const std::string& path, const char* type = "UnstructuredGrid")
@@ -40,7 +40,7 @@ class VtuFile {
     return node;
   }
 
-  /// The values of an array. `count`: how many there have to be; any number if not given.
+  /// Returns the values of an array. `count` is the required number; any number if not given.
   template <class T>
   std::vector<T> values(const pugi::xml_node& array, std::size_t count = any) const {
     const VtkType type = vtk_type(array.attribute("type").value());
@@ -61,7 +61,7 @@ class VtuFile {
     return value;
   }
 
-  /// Line of a node of the XML.
+  /// Throws ReadError with the line of a node of the XML.
   [[noreturn]] void fail(const pugi::xml_node& node, const std::string& message) const {
     fail_at(static_cast<std::size_t>(std::max<std::ptrdiff_t>(node.offset_debug(), 0)), message);
   }
@@ -77,7 +77,7 @@ class VtuFile {
     throw ReadError(fmt::format("{}: line {}: {}", path_, line_at(offset), message));
   }
 
-  /// Cost: linear in the distance from the place asked for before.
+  /// Returns the line at an offset. Cost: linear in the distance from the last offset.
   std::size_t line_at(std::size_t offset) const {
     const auto place = [&](std::size_t byte) { return text_.begin() + static_cast<std::ptrdiff_t>(byte); };
     offset = std::min(offset, text_.size());
@@ -88,7 +88,7 @@ class VtuFile {
     return line_;
   }
 
-  /// Appended raw bytes would break the XML: only what is before them is parsed.
+  /// Parses only the text before appended raw bytes, which would break the XML.
   void parse_xml() {
     const std::size_t tag = text_.find("<AppendedData");
     const std::size_t tag_end = tag == std::string::npos ? tag : text_.find('>', tag);
@@ -198,7 +198,7 @@ class VtuFile {
     }
   }
 
-  /// Arrays of many pieces that share their bytes would fill the memory.
+  /// Limits memory: arrays of many pieces could share their bytes.
   void require_room(std::size_t decoded) const {
     decoded_ += decoded;
     if (decoded_ > text_.size() * (storage_.compression == VtkCompression::none ? 1 : vtk_largest_ratio))
@@ -222,7 +222,7 @@ class VtuFile {
   std::size_t appended_begin_ = 0;
   bool appended_is_base64_ = false;
   std::string_view appended_;
-  mutable std::size_t line_offset_ = 0, line_ = 1;  ///< what line_at was asked for last, and its answer
+  mutable std::size_t line_offset_ = 0, line_ = 1;  ///< the last offset given to line_at, and its line
   mutable std::size_t decoded_ = 0;                 ///< bytes of all arrays so far
 };
 
@@ -302,8 +302,8 @@ class PieceReader {
         arrays.emplace(name, file_.values<std::int64_t>(array, count));
   }
 
-  /// The faces and edges that our files have beside the cells (`take_boundary`), unless somebody changed the
-  /// cells since.
+  /// Appends the faces and edges that our files have beside the cells (`take_boundary`), unless the cells
+  /// were changed since.
   void append_boundary(VtkPiece& piece) const {
     const pugi::xml_node data = piece_.parent().child("FieldData");
     const auto find = [&](std::string_view name) {
@@ -330,7 +330,7 @@ class PieceReader {
       }
     for (auto& [name, values] : piece.cell_data) values.resize(piece.types.size());
   }
-  static constexpr std::int64_t limit = std::int64_t{1} << 48;  // far more corners than there are
+  static constexpr std::int64_t limit = std::int64_t{1} << 48;  // far above any number of corners
 
   pugi::xml_node place_of(std::string_view array) const {
     if (array == "connectivity") return find_array(piece_.child("Cells"), "connectivity");
@@ -372,7 +372,7 @@ std::vector<VtkPiece> read_vtu_pieces(const std::string& path) {
 
 TetMesh read_vtu_cells(const std::string& path) { return read_grid(path, false); }
 
-// Polygons of three corners and tags by cell, as ParaView saves surfaces.
+// Reads polygons of three corners and tags by cell, as ParaView saves surfaces.
 TetMesh read_vtp_cells(const std::string& path) {
   const VtuFile file(path, "PolyData");
   TetMesh mesh;
@@ -381,7 +381,7 @@ TetMesh read_vtp_cells(const std::string& path) {
   return mesh;
 }
 
-// Our own labels of points are no fields.
+// Reads a field. Our own labels of points are no fields.
 PointField read_vtu_field(const std::string& path, const std::string& name) {
   const VtuFile file(path);
   const auto pieces = file.grid().children("Piece");

@@ -1,7 +1,6 @@
-// VTK's XML format for unstructured grids: appended arrays, compressed in blocks, base64. Headers
-// are UInt64. See "VTK File Formats" (VTK User's Guide) and vtkXMLDataReader. vtk_grid.h
-// describes the arrays. The cells are the tets; faces and edges are in FieldData.
-// Of a mesh of triangles alone these and the edges are the cells.
+// VTK's XML format for unstructured grids: appended arrays, compressed in blocks, base64. Headers are UInt64.
+// See "VTK File Formats" (VTK User's Guide) and vtkXMLDataReader. vtk_grid.h describes the arrays. The cells
+// are the tets; faces and edges are in FieldData. In a mesh without tets, triangles and edges are the cells.
 #include <tbb/task_arena.h>
 
 #include <array>
@@ -25,8 +24,8 @@ namespace collarmesh::io {
 
 namespace {
 
-constexpr int fastest = 1;                    // of zlib_pack's levels
-constexpr std::size_t block_bytes = 1 << 18;  // a multiple of every value's size, as some readers ask
+constexpr int fastest = 1;                    // level of zlib_pack
+constexpr std::size_t block_bytes = 1 << 18;  // a multiple of every value's size, as some readers require
 
 template <class T>
 constexpr std::string_view type_name = {};
@@ -41,7 +40,7 @@ constexpr std::string_view type_name<float> = "Float32";
 template <>
 constexpr std::string_view type_name<double> = "Float64";
 
-/// One array as it is written: the header (number of blocks, their size, size of the last one if it is
+/// One array in its written form: the header (number of blocks, their size, size of the last one if it is
 /// smaller, compressed sizes) and the compressed blocks, in base64.
 struct DataArray {
   const VtkArray* array;
@@ -75,7 +74,7 @@ struct Section {
 struct Piece {
   DataArray* array;
   std::string_view bytes;
-  std::size_t first;  // of its characters in the text
+  std::size_t first;  // its first character in the text
 };
 constexpr std::size_t piece_bytes = 3 << 15;  // a multiple of three
 
@@ -94,10 +93,10 @@ void join(std::span<const std::string> blocks, DataArray& array, std::string& jo
   array.blocks.resize(base64_size(size));
 }
 
-/// Make the text of all arrays.
+/// Makes the text of all arrays.
 void encode(std::span<Section> sections) {
   std::vector<DataArray*> arrays;
-  std::vector<std::size_t> first{0};  // block of each array, and the end
+  std::vector<std::size_t> first{0};  // first block of each array, and the end
   std::vector<std::string_view> bytes;
   for (Section& section : sections)
     for (DataArray& array : section.arrays) {
@@ -130,7 +129,7 @@ void write_section(FileWriter& out, const Section& section, std::size_t& offset)
   for (const DataArray& array : section.arrays) {
     const int components = array.array->components;
     out << "        <DataArray type=\"" << array.type << "\" Name=\"" << array.array->name << '"';
-    // meshio gives arrays with the attribute a second dimension.
+    // meshio gives arrays with this attribute a second dimension.
     if (components > 1) out << " NumberOfComponents=\"" << components << '"';
     if (section.name == "FieldData") out << " NumberOfTuples=\"" << array.values << '"';
     out << " format=\"appended\" offset=\"" << offset << "\"/>\n";
@@ -142,7 +141,7 @@ void write_section(FileWriter& out, const Section& section, std::size_t& offset)
 }  // namespace
 
 void write_vtu(const std::string& path, const TetMesh& mesh) {
-  // Counting the threads that there can be keeps TBB to them.
+  // Counting the available threads limits TBB to them.
   if (tbb::this_task_arena::max_concurrency() > 1) static_cast<void>(usable_threads());
   VtkGrid grid = make_vtk_grid(mesh);
   const std::vector<VtkArray> boundary =

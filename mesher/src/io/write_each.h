@@ -11,9 +11,9 @@
 
 namespace collarmesh::io {
 
-/// `write(text, i)` writes item i to a TextBuffer, for all i below `count`: several threads at once, each
-/// some items that follow each other. The file has them in their order. While one thread hands over to the
-/// system what is formatted, the others format what comes next.
+/// Calls `write(text, i)` to write item i to a TextBuffer, for all i below `count`. Several threads call it
+/// at once, each for consecutive items; the file has the items in order. One thread passes formatted text to
+/// the system while the others format the next items.
 template <class Write>
 void write_each(FileWriter& out, std::size_t count, const Write& write) {
   constexpr std::size_t at_once = 1024, buffers_of_a_thread = 8;
@@ -21,7 +21,7 @@ void write_each(FileWriter& out, std::size_t count, const Write& write) {
   const std::size_t buffers = threads > 1 ? threads * buffers_of_a_thread : 1;
   std::array<std::vector<TextBuffer>, 2> texts{std::vector<TextBuffer>(buffers),
                                                std::vector<TextBuffer>(buffers)};
-  std::size_t formatted = 0;  // of the buffers of the round before
+  std::size_t formatted = 0;  // bytes in the buffers of the previous round
   for (std::size_t first = 0, round = 0; first < count || formatted > 0; ++round) {
     std::vector<TextBuffer>&now = texts[round % 2], &before = texts[(round + 1) % 2];
     const std::size_t items = std::min(at_once * buffers, count - first);

@@ -17,7 +17,7 @@ struct Free {
 
 constexpr std::size_t levels = 13;
 
-/// They are large: one for each thread is kept.
+/// Returns a compressor. Compressors are large, so each thread keeps one.
 libdeflate_compressor* compressor(int level) {
   thread_local std::array<std::unique_ptr<libdeflate_compressor, Free>, levels> compressors;
   auto& made = compressors.at(static_cast<std::size_t>(level));

@@ -6,12 +6,12 @@
 
 namespace collarmesh::io {
 
-/// Compressed in zlib's format (RFC 1950), at a level of libdeflate from 1 (fastest) to 12 (smallest).
-/// Throws std::bad_alloc.
+/// Compresses to zlib's format (RFC 1950), at a level of libdeflate from 1 (fastest) to 12 (smallest). Throws
+/// std::bad_alloc.
 std::string zlib_pack(std::string_view bytes, int level);
 
-/// Appends what was compressed, which is `size` bytes. False where it is not, or where it is damaged.
-/// Throws std::bad_alloc.
+/// Appends the decompressed data, which has `size` bytes. Returns false if it has another size, or is
+/// damaged. Throws std::bad_alloc.
 bool zlib_unpack(std::string_view packed, std::size_t size, std::string& bytes);
 
 }  // namespace collarmesh::io

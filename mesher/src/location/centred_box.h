@@ -7,15 +7,15 @@
 
 namespace collarmesh {
 
-/// A box as its centre and half of its sides, widened by more than the rounding of the tests below:
-/// fewer operations than between minima and maxima. The tests have no branches, as which comparison
-/// fails cannot be foreseen.
+/// A box given by its centre and half of its sides, widened by more than the rounding of the tests below:
+/// these need fewer operations than with minima and maxima. The tests have no branches, because it is
+/// unpredictable which comparison fails.
 struct CentredBox {
   Point centre;
   Vector half;
 
   CentredBox() = default;
-  /// A box that nothing meets, however near.
+  /// Returns a box that nothing meets, however near.
   static CentredBox empty() {
     CentredBox box;
     box.half = {-INFINITY, -INFINITY, -INFINITY};
@@ -37,7 +37,7 @@ struct CentredBox {
     return std::max(std::max(x, y), z) <= 0;
   }
 
-  /// A lower bound of the squared distance from p; 0 inside.
+  /// Returns a lower bound of the squared distance from p; 0 inside.
   double squared_distance(const Point& p) const {
     const Vector d = p - centre;
     return squared_norm({std::max(std::fabs(d.x) - half.x, 0.0), std::max(std::fabs(d.y) - half.y, 0.0),
@@ -47,9 +47,8 @@ struct CentredBox {
   static constexpr double widen = 1 + 1e-12;
 };
 
-/// A segment ready for tests against many boxes by separating axes (Akenine-Moeller, Haines, Hoffman:
-/// Real-Time Rendering, segment against box). Conservative: a segment that meets a box is never
-/// found beside it.
+/// A segment prepared for tests against many boxes by separating axes (Akenine-Moeller, Haines, Hoffman:
+/// Real-Time Rendering, segment against box). Conservative: never misses a box that the segment meets.
 class SegmentAgainstBoxes {
  public:
   SegmentAgainstBoxes(const Point& p, const Point& q) : half_(0.5 * (q - p)) {

@@ -17,13 +17,13 @@ struct PlaceOnCurve {
 /// The curves of a complex by arc length. On a closed curve parameters wrap around.
 class CurvePaths {
  public:
-  /// Both are kept by reference; `points` are those of the complex, possibly in another frame.
+  /// Keeps both by reference; `points` are those of the complex, possibly in another frame.
   CurvePaths(const Plc& plc, std::span<const Point> points);
 
   double length(Index curve) const { return lengths_[curve].back(); }
-  /// Arc lengths of the polyline's points, with the whole length at the end.
+  /// Returns the arc lengths of the polyline's points, with the whole length at the end.
   const std::vector<double>& lengths(Index curve) const { return lengths_[curve]; }
-  /// The number of the polyline's segment at a parameter, and its two points.
+  /// Returns the number of the polyline's segment at a parameter, and the segment's two points.
   std::size_t segment(Index curve, double parameter) const;
   std::array<Index, 2> segment_ends(Index curve, std::size_t segment) const;
   Point point(Index curve, double parameter) const;

@@ -8,9 +8,9 @@
 
 namespace collarmesh {
 
-/// The objects that are not in the mesh yet but must be found from it: an unresolved point (radius 0) or the
-/// protective ball of a subsegment. Each is kept at the mesh vertex whose Voronoi cell contains its
-/// centre, that is, at its nearest vertex.
+/// The objects that are not in the mesh yet but must be found from it: unresolved points (radius 0) and the
+/// protective balls of subsegments. Each is kept at the mesh vertex whose Voronoi cell contains its centre,
+/// that is, at its nearest vertex.
 class LocationObjects {
  public:
   struct Object {
@@ -18,7 +18,7 @@ class LocationObjects {
     double squared_radius;
     Index vertex;          ///< nearest mesh vertex
     Index previous, next;  ///< in that vertex's list
-    Index owner;           ///< index of what it is, given when it was added
+    Index owner;           ///< index of the point or subsegment, given when it was added
   };
 
   const Object& operator[](Index object) const { return objects_[object]; }

@@ -16,17 +16,17 @@
 
 namespace collarmesh {
 
-/// Segments in one neighbourhood, ready for tests against many boxes: by separating axes as
-/// SegmentAgainstBoxes, four segments at a time. In single precision relative to the neighbourhood, the
-/// boxes widened by more than the rounding: a segment that meets a box is never found beside it.
+/// Segments in one neighbourhood, prepared for tests against many boxes: by separating axes as in
+/// SegmentAgainstBoxes, four segments at a time. Works in single precision relative to the neighbourhood,
+/// with boxes widened by more than the rounding: never misses a box that a segment meets.
 class SegmentBundle {
  public:
   /// Bit i: segment i of the part.
   using Mask = std::uint64_t;
-  /// Segments that one mask is about.
+  /// The number of segments that one mask covers.
   static constexpr std::size_t part_size = 64;
 
-  /// Forget what was there; the points to come lie in the ball B(centre, radius). Precondition: radius > 0.
+  /// Starts a new bundle; the points to come lie in the ball B(centre, radius). Precondition: radius > 0.
   void start(const Point& centre, double radius) {
     centre_ = centre;
     scale_ = 1 / radius;
@@ -36,13 +36,13 @@ class SegmentBundle {
     groups_.clear();
   }
 
-  /// Points are numbered from 0.
+  /// Adds a point. Points are numbered from 0.
   void add_point(const Point& p) {
     points_.push_back(p);
     const Vector d = scale_ * (p - centre_);
     relative_.push_back(Lanes{static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z), 0});
   }
-  /// Segments, too.
+  /// Adds a segment. Segments are numbered from 0, too.
   void add_segment(Index from, Index to) {
     const std::size_t lane = segments_.size() % lane_count;
     if (lane == 0) groups_.push_back({});
@@ -59,7 +59,7 @@ class SegmentBundle {
   const Point& from(Index segment) const { return points_[segments_[segment][0]]; }
   const Point& to(Index segment) const { return points_[segments_[segment][1]]; }
   std::size_t part_count() const { return (segments_.size() + part_size - 1) / part_size; }
-  /// All segments of a part.
+  /// Returns all segments of a part.
   Mask all(std::size_t part) const {
     const std::size_t count = std::min(part_size, segments_.size() - part * part_size);
     return ~Mask{0} >> (part_size - count);
@@ -84,8 +84,8 @@ class SegmentBundle {
  private:
   static constexpr std::size_t lane_count = 4;
   static constexpr Mask lanes_of_a_group = 15;
-  // A single precision number is off by 6e-8 of itself: the points, which are at most 1 from the centre, by
-  // as much, and the tests by a few times that, up to the extent of the boxes that the segments meet.
+  // A number in single precision is off by 6e-8 of itself: the points, which are at most 1 from the centre,
+  // by as much, and the tests by a few times that, up to the extent of the boxes that the segments meet.
   static constexpr double slack = 4e-6;
   using Lanes [[gnu::vector_size(lane_count * sizeof(float))]] = float;
   using Truths [[gnu::vector_size(lane_count * sizeof(float))]] = std::int32_t;

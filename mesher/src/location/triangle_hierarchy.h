@@ -21,14 +21,14 @@ namespace collarmesh {
 /// while the cell is large, so that neither memory nor queries grow with the input's resolution.
 class TriangleHierarchy {
  public:
-  /// A triangle that a segment crosses; `direction` is +1 when it goes from behind the triangle to
+  /// A triangle that a segment crosses; `direction` is +1 when the segment goes from behind the triangle to
   /// its front (the side its normal points to), else -1.
   struct Crossing {
     Index triangle;
     int direction;
   };
 
-  /// The nodes that a search has met. Each thread that searches keeps its own.
+  /// Marks of the nodes that a search has met. Each thread that searches keeps its own.
   class Marks {
    public:
     std::size_t bytes() const { return of_nodes_.capacity() * sizeof(OfNode); }
@@ -36,14 +36,14 @@ class TriangleHierarchy {
    private:
     friend class TriangleHierarchy;
     struct OfNode {
-      std::uint32_t met = 0, started = 0;  // the last search that met it, and that started from it
+      std::uint32_t met = 0, started = 0;  // the last searches that met it, and that started from it
     };
     std::vector<OfNode> of_nodes_;
     std::uint32_t search_ = 0;
   };
 
-  /// The points are kept by reference. A segment or point is a triangle with equal corners; nothing crosses
-  /// it.
+  /// Builds the hierarchy. Keeps the points by reference. A segment or point is a triangle with equal
+  /// corners, which no segment crosses.
   TriangleHierarchy(std::span<const Point> points, std::vector<std::array<Index, 3>> triangles);
 
   bool empty() const { return nodes_.empty(); }
@@ -55,16 +55,16 @@ class TriangleHierarchy {
     return {points_[t[0]], points_[t[1]], points_[t[2]]};
   }
 
-  /// Replace `found` by the nodes whose boxes meet the box, each at the coarsest level whose extent
-  /// does not exceed `extent`, and by the larger triangles whose planes meet it, too. Precondition: the nodes
-  /// of `from` cover every triangle that meets it. Conservative: a node found may hold no triangle that meets
+  /// Replaces `found` by the nodes whose boxes meet the box, each at the coarsest level whose extent does not
+  /// exceed `extent`, and by the larger triangles whose planes meet it, too. Precondition: the nodes of
+  /// `from` cover every triangle that meets it. Conservative: a node found may hold no triangle that meets
   /// the box. Cost: linear in the nodes found plus the levels between them and `from`.
   void nodes_meeting(const Box& box, double extent, std::span<const Index> from, Marks& marks,
                      std::vector<Index>& found) const;
 
-  /// Replace `found` by the triangles below `nodes` that the segment pq crosses. Exact; ties are
-  /// broken by moving the segment by (e, e^2, e^3) for an infinitesimal e, so that a closed surface
-  /// is crossed an even number of times by every segment with both ends on one side.
+  /// Replaces `found` by the triangles below `nodes` that the segment pq crosses. Exact; ties are broken by
+  /// moving the segment by (e, e^2, e^3) for an infinitesimal e, so that a closed surface is crossed an even
+  /// number of times by every segment with both ends on one side.
   void crossings(const Point& p, const Point& q, std::span<const Index> nodes,
                  std::vector<Crossing>& found) const;
 
@@ -73,53 +73,53 @@ class TriangleHierarchy {
     Index segment;
     Crossing crossing;
   };
-  /// The same for all segments of a bundle, in their order.
+  /// Does the same for all segments of a bundle, in their order.
   void crossings(const SegmentBundle& bundle, std::span<const Index> nodes,
                  std::vector<BundleCrossing>& found) const;
 
-  /// The direction in which the segment pq crosses one triangle; 0 when it does not.
+  /// Returns the direction in which the segment pq crosses one triangle; 0 when it does not.
   int crossing(const Point& p, const Point& q, Index triangle) const;
 
-  /// Squared distance from p to the nearest triangle, if below `bound` (else `bound`, and `nearest`
-  /// is left alone).
+  /// Returns the squared distance from p to the nearest triangle, if below `bound` (else `bound`, and
+  /// `nearest` is left alone).
   double squared_distance_to(const Point& p, double bound = INFINITY, Index* nearest = nullptr) const {
     return squared_distance_to(p, bound, nearest, [](Index) { return true; });
   }
-  /// The same among the triangles that `counts` accepts.
+  /// Returns the same among the triangles that `counts` accepts.
   template <class Counts>
   double squared_distance_to(const Point& p, double bound, Index* nearest, const Counts& counts) const {
     return squared_distance_to(
         p, bound, nearest, [](Index) { return false; }, counts);
   }
-  /// The same without what lies below nodes that `skips` accepts.
+  /// Returns the same without the triangles below nodes that `skips` accepts.
   template <class Skips, class Counts>
   double squared_distance_to(const Point& p, double bound, Index* nearest, const Skips& skips,
                              const Counts& counts) const;
 
-  /// Some triangle whose squared distance from p is below `bound`, the `hint` if its is; none if there is no
-  /// such triangle.
+  /// Returns some triangle whose squared distance from p is below `bound`: the `hint` if it is one; none if
+  /// there is no such triangle.
   Index triangle_within(const Point& p, double bound, Index hint = none) const {
     return triangle_within(p, bound, hint, [](Index) { return true; });
   }
-  /// The same among the triangles that `counts` accepts. Precondition: it accepts the hint.
+  /// Returns the same among the triangles that `counts` accepts. Precondition: it accepts the hint.
   template <class Counts>
   Index triangle_within(const Point& p, double bound, Index hint, const Counts& counts) const;
 
-  /// Visit triangles below `nodes` as long as their boxes are nearer to p than the bound, which the visitor
-  /// may lower: near ones first.
+  /// Visits triangles below `nodes`, near ones first, as long as their boxes are nearer to p than the bound,
+  /// which the visitor may lower.
   template <class Visit>
   void visit_near(std::span<const Index> nodes, const Point& p, const double& squared_bound,
                   const Visit& visit) const {
     visit_near(
         nodes, p, squared_bound, [](Index) { return false; }, visit);
   }
-  /// The same without what lies below nodes that `skips` accepts.
+  /// Does the same without the triangles below nodes that `skips` accepts.
   template <class Skips, class Visit>
   void visit_near(std::span<const Index> nodes, const Point& p, const double& squared_bound,
                   const Skips& skips, const Visit& visit) const;
 
-  /// For each node the label that all triangles below it have; none where they differ. Precondition: one
-  /// label per triangle.
+  /// Returns for each node the label that all triangles below it have; none where they differ. Precondition:
+  /// one label per triangle.
   std::vector<Index> common_labels(std::span<const Index> label_of_triangle) const;
 
   std::size_t bytes() const;
@@ -129,10 +129,10 @@ class TriangleHierarchy {
     CentredBox box;
     double extent;  // longest side of the box
     Index parent;
-    Index left, right;  // a leaf has left == none and its triangle in right
+    Index left, right;  // in a leaf left == none, and right is its triangle
   };
 
-  /// Add to the box what lies below the node that is returned.
+  /// Builds the tree of these keys and adds its box to `box`. Returns its root.
   Index build(std::span<const SpatialKey> keys, Index parent, Box& box);
   void descend(Index node, const CentredBox& box, double extent, Marks& marks,
                std::vector<Index>& found) const;
@@ -142,7 +142,7 @@ class TriangleHierarchy {
   LargeVector<Node> nodes_;
 };
 
-/// Over the triangles of one patch. The complex's points are kept by reference.
+/// Builds a hierarchy over the triangles of one patch. Keeps the complex's points by reference.
 std::unique_ptr<TriangleHierarchy> hierarchy_of_patch(const Plc& plc, Index patch);
 
 template <class Skips, class Counts>

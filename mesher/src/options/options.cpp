@@ -32,7 +32,7 @@ std::optional<OptionValue> read_word(const Option& option, const std::string& te
   return std::holds_alternative<bool>(option.get({})) ? OptionValue(word == option.words.begin()) : text;
 }
 
-/// The value of a repeatable option with one more.
+/// Returns the value of a repeatable option with one more entry.
 std::optional<OptionValue> read_more(const std::string& text, OptionValue value) {
   if (auto* const texts = std::get_if<std::vector<std::string>>(&value)) {
     texts->push_back(text);
@@ -108,7 +108,7 @@ void require(bool holds, const std::string& message) {
   if (!holds) throw OptionError(message);
 }
 
-/// Who gives an option that the profile sets another value is told.
+/// Throws OptionError if an option is given a value other than the profile's.
 void require_as_profile_sets(const RunOptions& options) {
   const RunOptions set = with_profile(options), defaults;
   for (const Option& option : option_table()) {

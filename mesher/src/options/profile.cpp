@@ -7,7 +7,7 @@ namespace collarmesh {
 namespace {
 
 constexpr double right_angle = 90;
-// Any bound above 2 sqrt 2 will do (paper, section 1.2).
+// Any bound above 2 sqrt 2 is possible (paper, section 1.2).
 constexpr double proved_radius_edge = 2.83;
 
 }  // namespace

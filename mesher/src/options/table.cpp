@@ -22,7 +22,7 @@ constexpr Kind kind_of(bool has_words) {
   return std::is_same_v<T, std::vector<std::string>> ? Kind::texts : Kind::sizes;
 }
 
-/// Leads to a member of a member of RunOptions. A choice has `words`.
+/// Accesses a member of a member of RunOptions. A choice has `words`.
 template <bool has_words, auto... members>
 struct At {
   static auto& of(auto& options) { return (options.*....*members); }
@@ -64,7 +64,7 @@ constexpr Option::Place in_mesh = at<&RunOptions::mesh, member>;
 template <auto member>
 constexpr Option::Place in_bounds = at<&RunOptions::mesh, &MeshOptions::bounds, member>;
 
-/// The bound on the radius-edge ratio. Tets may be thin anywhere unless it is asked for.
+/// The bound on the radius-edge ratio. Without this option tets may be thin anywhere.
 constexpr Option::Place asked_ratio{Kind::number, in_bounds<&Bounds::radius_edge>.get,
                                     [](const Option&, RunOptions& options, const OptionValue& value) {
                                       options.mesh.bounds.radius_edge = std::get<double>(value);
@@ -503,7 +503,8 @@ std::vector<Option> run_options() {
        .commands = writing | Option::repair}};
 }
 
-/// Adds rows, with what most of a group have in common. In a row the name is followed by that of the value.
+/// Adds rows, with the properties that most rows of a group have in common. In a row the option's name is
+/// followed by the name of its value.
 void append(std::vector<Option>& table, std::vector<Option> options, const char* group, unsigned commands) {
   for (Option& option : options) {
     const std::size_t space = std::min(option.name.find(' '), option.name.size());

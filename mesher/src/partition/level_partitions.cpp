@@ -53,7 +53,7 @@ class Levelling {
     enter(tet, to);
   }
 
-  /// From the largest ones.
+  /// Fills empty partitions from the largest ones.
   void fill_empty_ones() {
     std::priority_queue<std::pair<std::size_t, Part>> donors;
     std::vector<Part> empty;
@@ -69,7 +69,7 @@ class Levelling {
     }
   }
 
-  /// Make one smaller by one tet.
+  /// Makes a partition smaller by one tet.
   void relieve(Part full) {
     std::unordered_map<Part, Part> before{{full, full}};
     std::queue<Part> reached;
@@ -82,7 +82,7 @@ class Levelling {
             reached.push(part_of(other));
             if (end == full && members(part_of(other)).size() < most_) end = part_of(other);
           }
-    if (end == full) {  // what hangs together with it is full
+    if (end == full) {  // all partitions connected with it are full
       move(cheapest(full, none_), with_room());
       return;
     }
@@ -97,8 +97,8 @@ class Levelling {
     return static_cast<Part>(found - members_.begin());
   }
 
-  /// The tet of one partition that adds the fewest cut faces in another one: beside that, if there is any
-  /// such.
+  /// Returns the tet of one partition that adds the fewest cut faces if moved to another one: a tet beside
+  /// that one, if there is any.
   Tet cheapest(Part from, Part to) {
     Tet best = members(from).front();
     auto best_cost = std::pair(true, std::numeric_limits<std::ptrdiff_t>::max());
@@ -121,7 +121,7 @@ class Levelling {
   const DualGraph& graph_;
   std::size_t most_;
   std::vector<Part>& part_of_;
-  std::vector<std::size_t> place_;  // of each tet among the members of its partition
+  std::vector<std::size_t> place_;  // position of each tet among the members of its partition
   std::vector<std::vector<Tet>> members_;
 };
 

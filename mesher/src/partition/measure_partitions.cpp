@@ -10,7 +10,7 @@ PartitionMeasures measure_partitions(const TetMesh& mesh) {
   PartitionMeasures measures;
   const std::vector<Index>& partition_of = mesh.tet_partition;
   if (partition_of.empty()) return measures;
-  std::unordered_map<Index, std::size_t> tets;  // numbers that were read may have gaps
+  std::unordered_map<Index, std::size_t> tets;  // numbers read from a file may have gaps
   for (const Index partition : partition_of) ++tets[partition];
   measures.partitions = tets.size();
   measures.smallest = partition_of.size();

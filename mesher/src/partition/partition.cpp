@@ -19,7 +19,8 @@ namespace {
 
 constexpr double imbalance = 0.03;
 
-/// Scotch is in a module that is loaded when it is used, as other programs have no need of its libraries.
+/// Loads Scotch from a module when it is used, because programs that do not partition need none of its
+/// libraries.
 ScotchPartition find_scotch() {
 #ifdef COLLARMESH_HAS_SCOTCH
   std::string reason;

@@ -12,8 +12,8 @@
 
 namespace collarmesh {
 
-/// Calls `found(t, u)` once for each triangle that two tets have in common, by the triangles' smallest
-/// vertices. Cost: linear, 48 bytes per tet for a while.
+/// Calls `found(t, u)` once for each triangle that two tets have in common, in groups by the triangles'
+/// smallest vertices. Cost: linear, 48 bytes per tet for a while.
 template <class Found>
 void for_each_shared_face(const TetMesh& mesh, const Found& found) {
   constexpr std::array<std::array<std::size_t, 3>, 4> faces{{{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}}};

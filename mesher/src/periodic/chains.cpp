@@ -11,8 +11,9 @@ namespace collarmesh::periodicity {
 
 namespace {
 
-constexpr double near = 0.3;          // of the edges at a node: places so near are worth a move
-constexpr double good_removal = 0.3;  // the quality that a removal must leave; else both sides get the node
+constexpr double near = 0.3;          // share of the edges at a node: if a place is this near, the node is
+                                      // moved there
+constexpr double good_removal = 0.3;  // quality that a removal must leave; otherwise both sides get the node
 constexpr double good_enough = 0.1;   // the quality that a move or a removal must leave
 
 /// Follows the edges of one curve.
@@ -98,7 +99,7 @@ class ChainEditor {
         nearest = i, least = d;
     const Index a = chain_.nodes[nearest], b = chain_.end(nearest);
     const Cavity cavity = editor_.around_edge(a, b);
-    if (editor_.worst(cavity, place, none) < 0) return;  // the certificate will miss it
+    if (editor_.worst(cavity, place, none) < 0) return;  // the certificate will report the miss
     const Index node = editor_.insert(cavity, place, {1, curve_});
     editor_.divide_curve_edge(a, node, b);
     const auto position = static_cast<std::ptrdiff_t>(nearest + 1);
@@ -115,9 +116,9 @@ class ChainEditor {
     }
   }
 
-  // Contracts the edge to the better one of its neighbours.
+  // Removes a node by collapsing the edge to the better one of its neighbours.
   bool remove(std::size_t i) {
-    if (size() < 4) return false;  // what is left of a closed one is a triangle
+    if (size() < 4) return false;  // the rest of a closed chain is a triangle
     const Index node = chain_.nodes[i], before = chain_.nodes[(i + size() - 1) % size()],
                 after = chain_.nodes[(i + 1) % size()];
     if (editor_.on_curve(before, after)) return false;
@@ -136,7 +137,7 @@ class ChainEditor {
   CavityEditor& editor_;
   Index curve_;
   Chain& chain_;
-  std::vector<bool> stays_;  // by place in the chain
+  std::vector<bool> stays_;  // by position in the chain
   ChainChange change_;
 };
 

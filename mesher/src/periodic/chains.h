@@ -9,8 +9,8 @@
 
 namespace collarmesh::periodicity {
 
-/// The mesh vertices along a curve, in order. A closed chain does not repeat its first one; that of a loop at
-/// one vertex does.
+/// The mesh vertices along a curve, in order. A closed chain does not repeat its first vertex; the chain of a
+/// loop at one vertex does.
 struct Chain {
   std::vector<Index> nodes;
   bool closed = false;
@@ -22,22 +22,21 @@ struct Chain {
 /// Returns the chains of all curves.
 std::vector<Chain> chains_of(const TetMesh& mesh, const Plc& plc);
 
-/// What a chain's change took.
+/// The effort of changing a chain.
 struct ChainChange {
   std::size_t inserted = 0, removed = 0;
   std::vector<Point> stuck;  ///< places of nodes that could not be removed
 };
 
-/// Gives the chain of a curve nodes at these places, and no others: those between its ends, or all if it is
-/// closed. Nodes near a place are moved there, others inserted and removed. Nodes that cannot be removed
-/// stay.
+/// Gives the chain of a curve nodes at exactly these places: between its ends, or all if it is closed. Moves
+/// nodes that are near a place, inserts and removes others. Nodes that cannot be removed stay.
 ChainChange put_nodes(CavityEditor& editor, Index curve, Chain& chain, std::span<const Point> places);
-/// The same, but all other nodes stay. Adds the nodes at these places to `nodes`.
+/// Does the same, except that all other nodes stay. Adds the nodes at these places to `nodes`.
 ChainChange add_nodes(CavityEditor& editor, Index curve, Chain& chain, std::span<const Point> places,
                       std::vector<Index>& nodes);
 
-/// Returns the nodes of `second` that correspond to those of `first`, when this is moved: in their order, or
-/// in the opposite one. Empty if the numbers differ.
+/// Returns the nodes of `second` that correspond to those of `first` after the motion: in their order, or in
+/// the opposite one. Empty if the numbers differ.
 std::vector<Index> corresponding(const TetMesh& mesh, const Chain& first, const Chain& second,
                                  const Motion& motion);
 

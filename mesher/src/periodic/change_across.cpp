@@ -8,7 +8,7 @@
 namespace collarmesh::periodicity {
 
 namespace {
-constexpr unsigned edges_between = 6;  // what is changed and what stays
+constexpr unsigned edges_between = 6;  // between the changed part and the part that stays
 }
 
 void change_across(TetMesh& mesh, const Plc& plc, const PeriodicOptions& options, double distance,

@@ -14,7 +14,7 @@ namespace collarmesh::periodicity {
 
 namespace {
 
-constexpr double rounding_of_input = 1e-7;  // of the diagonal: CAD shapes are no more exact
+constexpr double rounding_of_input = 1e-7;  // share of the diagonal: CAD shapes are not more exact
 
 /// The features of one group, sorted.
 struct Features {
@@ -35,7 +35,7 @@ Features features_of(const std::vector<Index>& patches, const Plc& plc) {
   return of;
 }
 
-/// How far a point is from where it should be.
+/// The distance of a point from its intended place.
 struct Deviation {
   double distance = 0;
   Point where{};
@@ -113,7 +113,7 @@ class Matcher {
 
   const Point& at(Index curve) const { return plc_.points[plc_.curves[curve].points.front()]; }
 
-  /// A closed curve repeats its first point.
+  /// Returns the polyline of a curve. A closed curve repeats its first point.
   std::vector<Point> polyline(Index curve, const Motion& motion) const {
     const Plc::Curve& of = plc_.curves[curve];
     std::vector<Point> points;
@@ -122,7 +122,8 @@ class Matcher {
     return points;
   }
 
-  /// The distance of two polylines, both ways; of those whose boxes already differ, only how much these do.
+  /// Returns the distance of two polylines, in both directions; if already their boxes differ, only the
+  /// distance of the boxes.
   Deviation deviation(const std::vector<Point>& a, const std::vector<Point>& b) const {
     Box box_of_a, box_of_b;
     for (const Point& p : a) box_of_a.add(p);
@@ -142,7 +143,7 @@ class Matcher {
     return off;
   }
 
-  /// A patch is known by its curves and vertices.
+  /// Matches patches, each identified by its curves and vertices.
   void match_patches() {
     using Border = std::pair<std::vector<Index>, std::vector<Index>>;
     std::map<Index, Index> image_of_curve(images_.curves.begin(), images_.curves.end());
@@ -193,7 +194,7 @@ FeatureImages find_images(const PatchPair& pair, const Plc& plc, double distance
 
 std::vector<CurveClass> curve_classes(const std::vector<PatchPair>& pairs,
                                       const std::vector<FeatureImages>& images, std::size_t curves) {
-  std::map<Index, std::vector<CurveImage>> images_of;  // and originals, by the motion back
+  std::map<Index, std::vector<CurveImage>> images_of;  // with originals, by the inverse motion
   std::vector<bool> is_image(curves, false), seen(curves, false);
   for (std::size_t k = 0; k < pairs.size(); ++k)
     for (const auto& [curve, image] : images[k].curves) {
@@ -203,7 +204,7 @@ std::vector<CurveClass> curve_classes(const std::vector<PatchPair>& pairs,
       is_image[image] = true;
     }
   std::vector<CurveClass> classes;
-  for (const bool of_images : {false, true})  // where pairs run in a circle, each curve is an image
+  for (const bool of_images : {false, true})  // where pairs form a cycle, each curve is an image
     for (const auto& [original, direct] : images_of) {
       if (is_image[original] != of_images || seen[original]) continue;
       CurveClass& of = classes.emplace_back(CurveClass{original, {}});

@@ -16,9 +16,9 @@ namespace collarmesh {
 namespace periodicity {
 namespace {
 
-// Qualities that turned edges are to leave, while they can.
+// Qualities that edge flips must leave, if possible.
 constexpr double good = 0.15, fair = 0.05;
-constexpr unsigned rounds = 8;  // in which curves get nodes that others of their class could not lose
+constexpr unsigned rounds = 8;  // rounds in which curves get nodes that others of their class could not lose
 
 struct Periodicity {
   std::vector<PatchPair> pairs;
@@ -31,7 +31,7 @@ Periodicity find_periodicity(const PeriodicOptions& options, const Plc& plc, dou
   return found;
 }
 
-/// Curves of a class, with what takes the original onto each: the original itself first.
+/// Returns the curves of a class, the original first, each with the motion from the original.
 std::vector<CurveImage> with_original(const CurveClass& of) {
   std::vector<CurveImage> curves{{of.original, {}}};
   curves.insert(curves.end(), of.images.begin(), of.images.end());
@@ -71,7 +71,7 @@ struct Surface {
     for (Index f = 0; f < mesh.faces.size(); ++f)
       if (mesh.face_patch[f] != none) faces[mesh.face_patch[f]].push_back(f);
   }
-  /// Those between the ends of a curve, or all of a closed one.
+  /// Returns the nodes between the ends of a curve, or all nodes of a closed one.
   std::vector<Point> places_on_curve(const TetMesh& mesh, Index curve) const {
     std::vector<Point> places;
     for (const Index node : chains[curve].nodes)
@@ -131,7 +131,7 @@ struct Surface {
   std::vector<std::vector<Index>> faces;  // by patch
 };
 
-/// Makes the meshes of both groups of each pair alike: curves, then patches.
+/// Makes the meshes of both groups of each pair correspond: curves, then patches.
 class Maker {
  public:
   Maker(TetMesh& mesh, const Plc& plc, Periodicity periodicity)
@@ -179,7 +179,8 @@ class Maker {
     return curve_classes(periodicity_.pairs, periodicity_.images, plc_.curves.size());
   }
 
-  // Nodes that one of the curves cannot lose are put on the others as well.
+  // Makes the curves of a class correspond: nodes that one of the curves cannot lose are added to the others
+  // as well.
   void make_curves_alike(const CurveClass& of) {
     std::vector<Point> places = surface_.places_on_curve(mesh_, of.original);
     for (unsigned round = 0; round < rounds; ++round) {
@@ -210,7 +211,7 @@ class Maker {
     for (const auto& [patch, image] : images.patches) make_patch_alike(patch, image, pair.motion);
   }
 
-  // An edge is turned on the side where that leaves better tets.
+  // Makes two patches correspond: flips an edge on the side where that leaves better tets.
   void make_patch_alike(Index patch, Index image, const Motion& motion) {
     PatchEditor first(editor_, plc_, patch, surface_.faces[patch]);
     PatchEditor second(editor_, plc_, image, surface_.faces[image]);
@@ -236,7 +237,7 @@ class Maker {
     }
   }
 
-  // Edges by the nodes that theirs correspond to.
+  // Returns the edges between the nodes that correspond to theirs.
   static std::vector<PatchEditor::Edge> named(const std::vector<PatchEditor::Edge>& edges,
                                               const std::map<Index, Index>& node_of) {
     std::vector<PatchEditor::Edge> named;
@@ -253,7 +254,7 @@ class Maker {
   const Periodicity periodicity_;
   CavityEditor editor_;
   Surface surface_;
-  std::map<Index, Index> image_of_;  // of the nodes of the pair's first group
+  std::map<Index, Index> image_of_;  // images of the nodes of the pair's first group
   PeriodicReport report_;
 };
 

@@ -6,7 +6,7 @@
 
 namespace collarmesh::periodicity {
 
-/// Adds nodes to a mesh at the places of those that the first group of each pair has in `source`, another
+/// Adds nodes to a mesh at the places of the nodes that the first group of each pair has in `source`, another
 /// mesh of the same complex, and at the images of these places. Returns them.
 std::vector<Index> add_periodic_nodes(TetMesh& mesh, const TetMesh& source, const Plc& plc,
                                       const PeriodicOptions& options, double distance);

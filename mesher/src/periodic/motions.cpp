@@ -8,7 +8,7 @@ namespace collarmesh::periodicity {
 
 namespace {
 
-/// Cosine and sine of an angle in degrees, exact at multiples of a right angle.
+/// Returns cosine and sine of an angle in degrees, exact at multiples of a right angle.
 std::array<double, 2> cosine_and_sine(double degrees) {
   const double turns = degrees / 90, whole = std::round(turns);
   if (turns == whole) {

@@ -12,14 +12,14 @@ inline Motion translation(const Vector& by) {
   return motion;
 }
 
-/// The rotation about the axis through a point with a direction of any length, counterclockwise as seen
-/// against it. Right angles have no rounding about axes of coordinates.
+/// Returns the rotation about the axis through a point with a direction of any length, counterclockwise as
+/// seen against it. Rotations by right angles about coordinate axes have no rounding.
 Motion rotation(const Point& through, const Vector& direction, double degrees);
 
-/// Undoes one.
+/// Returns the inverse of a motion.
 Motion inverse(const Motion& motion);
 
-/// First one, then the other.
+/// Returns the composition: one motion first, then the other.
 Motion composed(const Motion& first, const Motion& then);
 
 }  // namespace collarmesh::periodicity

@@ -16,7 +16,8 @@ namespace collarmesh::periodicity {
 
 namespace {
 
-constexpr double at_end = 1e-9;  // of the diagonal: patches so near the end of the shape are there
+constexpr double at_end = 1e-9;  // share of the diagonal: patches this near to the end of the shape are at
+                                 // the end
 
 constexpr std::string_view grammar =
     "a pair is x, y, z, FIRST=SECOND, or FIRST=SECOND with :translation,DX,DY,DZ or :rotation,AXIS,DEGREES "

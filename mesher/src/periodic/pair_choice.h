@@ -9,9 +9,9 @@
 
 namespace collarmesh::periodicity {
 
-/// Two groups of patches of a complex, of which the second is to be the image of the first.
+/// Two groups of patches of a complex, of which the second must be the image of the first.
 struct PatchPair {
-  std::string text;                  ///< as it was asked for
+  std::string text;                  ///< the pair as the option gives it
   std::vector<Index> first, second;  ///< sorted
   Motion motion;                     ///< takes the first to the second
 };

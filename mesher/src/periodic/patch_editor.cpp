@@ -12,10 +12,12 @@ namespace collarmesh::periodicity {
 
 namespace {
 
-constexpr double near = 0.25;         // of the edges at a node: places so near are worth a move
-constexpr double good_removal = 0.3;  // the quality that a removal must leave; else both sides get the node
-constexpr double good_enough = 0.1;   // the quality that a move or a removal must leave if another way may
-constexpr double fair = 0.02;         // the quality that a turned edge must leave if it need not be turned
+constexpr double near = 0.25;         // share of the edges at a node: if a place is this near, the node is
+                                      // moved there
+constexpr double good_removal = 0.3;  // quality that a removal must leave; otherwise both sides get the node
+constexpr double good_enough = 0.1;   // quality that a move or a removal must leave if there may be another
+                                      // way
+constexpr double fair = 0.02;         // quality that an edge flip must leave if it is optional
 
 bool contains(const auto& range, Index v) { return std::find(range.begin(), range.end(), v) != range.end(); }
 
@@ -39,7 +41,7 @@ int PatchEditor::side(Index a, Index b, const Point& p) const {
   return predicates::orientation(editor_.at(a), editor_.at(b), p, viewpoint_);
 }
 
-// The third corner of the face to the left of ab; none at a border.
+// Returns the third corner of the face to the left of ab; none at a border.
 Index PatchEditor::opposite(Index a, Index b) const {
   const auto found = faces_at_.find(edge_key(a, b));
   if (found == faces_at_.end()) return none;
@@ -126,7 +128,7 @@ std::vector<Index> PatchEditor::others() const {
   return others;
 }
 
-// Walks there from the last one; looks at all where a hole is in the way.
+// Finds the face at a place: walks there from the last one; searches all faces if a hole is in the way.
 Index PatchEditor::find_face(const Point& place) {
   const auto& faces = editor_.mesh().faces;
   const auto edge_before = [&](Index face) {
@@ -149,7 +151,7 @@ Index PatchEditor::find_face(const Point& place) {
   return none;
 }
 
-// The nearest corner of the face there.
+// Moves the nearest corner of the face at a place there.
 Index PatchEditor::move_one_to(const Point& place) {
   const Index face = find_face(place);
   if (face == none) return none;
@@ -172,7 +174,7 @@ Index PatchEditor::move_one_to(const Point& place) {
   return node;
 }
 
-// In the face there, or on an edge of it.
+// Inserts a node at a place, in a face or on an edge of it.
 Index PatchEditor::insert(const Point& place) {
   const Index face = find_face(place);
   if (face == none) return none;
@@ -194,7 +196,7 @@ Index PatchEditor::insert(const Point& place) {
   return node;
 }
 
-// Onto a neighbour.
+// Removes a node by collapsing an edge onto a neighbour.
 void PatchEditor::remove(Index node) {
   Cavity cavity = editor_.around_vertex(node);
   Index onto = none;
@@ -209,7 +211,8 @@ void PatchEditor::remove(Index node) {
   make_delaunay(edges_of_created_faces());
 }
 
-// The place for an apex below `start` that leaves the best tets, and the quality of the worst of them.
+// Returns the place for an apex below `start` that leaves the best tets, and the quality of the worst of
+// them.
 std::pair<double, Point> PatchEditor::best_below(const Cavity& cavity, const Point& start) const {
   double size = 0;
   Vector sum{0, 0, 0};
@@ -248,7 +251,7 @@ void PatchEditor::make_delaunay(std::vector<Edge> edges) {
   }
 }
 
-// The angles opposite the edge sum up to at most two right ones.
+// Returns whether the angles opposite the edge sum up to at most two right angles.
 bool PatchEditor::is_delaunay(Index a, Index b, Index c, Index d) const {
   constexpr double tolerance = 1e-9;
   const Point &p = editor_.at(a), &q = editor_.at(b), &r = editor_.at(c), &s = editor_.at(d);
@@ -258,7 +261,7 @@ bool PatchEditor::is_delaunay(Index a, Index b, Index c, Index d) const {
   return sine_r * cosine_s + cosine_r * sine_s >= -tolerance * scale;
 }
 
-// Joins the opposite corners of the two faces at ab in its place.
+// Flips the edge ab: joins the opposite corners of its two faces instead.
 bool PatchEditor::turn(Index a, Index b, double least, bool with_new_vertex) {
   const Index c = opposite(a, b), d = opposite(b, a);
   if (c == none || d == none || side(d, c, a) * side(d, c, b) >= 0) return false;
@@ -308,8 +311,8 @@ std::vector<Point> PatchEditor::places_of_others() const {
   return places;
 }
 
-// Turns the edges that cross it, one after the other, those first whose faces make a convex quadrilateral
-// (Sloan 1993).
+// Makes an edge by flipping the edges that cross it, one after the other; first those whose faces form a
+// convex quadrilateral (Sloan 1993).
 bool PatchEditor::make_edge(Index a, Index b, double least, bool must) {
   const std::vector<Edge> all = crossed(a, b);
   std::deque<Edge> edges(all.begin(), all.end());
@@ -328,7 +331,7 @@ bool PatchEditor::make_edge(Index a, Index b, double least, bool must) {
   return has(a, b);
 }
 
-// The edges between a and b, in order; none if a node is in the way.
+// Returns the edges between a and b, in order; none if a node is in the way.
 std::vector<PatchEditor::Edge> PatchEditor::crossed(Index a, Index b) const {
   const auto& patches = editor_.mesh().face_patch;
   std::vector<Edge> edges;

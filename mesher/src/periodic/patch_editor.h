@@ -12,7 +12,7 @@
 
 namespace collarmesh::periodicity {
 
-/// What a patch's change took.
+/// The effort of changing a patch.
 struct PatchChange {
   std::size_t inserted = 0, removed = 0, turned = 0;
 };
@@ -22,19 +22,18 @@ class PatchEditor {
  public:
   using Edge = std::array<Index, 2>;
 
-  /// Keeps the editor by reference. Cost: linear in the mesh's faces that are given, those of the patch.
+  /// Keeps the editor by reference. `faces` are the patch's faces in the mesh. Cost: linear in these.
   PatchEditor(CavityEditor& editor, const Plc& plc, Index patch, std::span<const Index> faces);
 
-  /// Gives the inside of the patch nodes at these places, and no others. Nodes near a place are moved there,
-  /// others inserted, and removed if that leaves good tets. Returns the node at each place.
+  /// Gives the inside of the patch nodes at exactly these places. Moves nodes that are near a place, inserts
+  /// others, and removes nodes if that leaves good tets. Returns the node at each place.
   std::vector<Index> put_nodes(std::span<const Point> places);
   /// Returns the places of the other nodes, which could not be removed.
   std::vector<Point> places_of_others() const;
-  /// The same, but all other nodes stay.
+  /// Does the same, except that all other nodes stay.
   std::vector<Index> add_nodes(std::span<const Point> places);
-  /// Turns edges until these are there, as far as all new tets are better than `least`; both ends are nodes
-  /// of the patch. If they must be there, new vertices below the patch make room. Returns how many are
-  /// missing.
+  /// Flips edges until these exist, as far as all new tets are better than `least`; both ends are nodes of
+  /// the patch. If they must exist, new vertices below the patch make room. Returns how many are missing.
   std::size_t make_edges(std::span<const Edge> edges, double least, bool must);
   /// Returns the edges of the patch, the smaller node of each first.
   std::vector<Edge> edges() const;
@@ -68,8 +67,8 @@ class PatchEditor {
 
   CavityEditor& editor_;
   Index patch_;
-  Vector normal_;    // out of the region
-  Point viewpoint_;  // outside: sides are judged as seen from here
+  Vector normal_;    // points out of the region
+  Point viewpoint_;  // a point outside, from which sides are judged
   std::unordered_map<std::uint64_t, std::array<Index, 2>> faces_at_;  // by edge
   std::unordered_map<Index, bool> stays_;                             // nodes inside the patch
   Index last_ = none;                                                 // the face that was made or found last

@@ -30,7 +30,8 @@ struct HashOfTriangle {
 template <class Value>
 using ByTriangle = std::unordered_map<std::array<Index, 3>, Value, HashOfTriangle>;
 
-// Copies of the complex are as many as 2 to this power at most. Groups of further pairs stay as they are.
+// Largest number of moved groups, as the number of copies of the complex is 2 to this power. Groups of
+// further pairs stay as they are.
 constexpr std::size_t most_moved = 6;
 
 std::vector<Index> keys_of(const std::unordered_map<Index, Index>& map) {
@@ -110,7 +111,7 @@ void Recut::find_shifts(Moved moved) {
   }
 }
 
-// Of all vertices from some.
+// Returns the distances of all vertices from some.
 std::vector<double> Recut::distances(std::size_t k, const std::vector<Index>& from) const {
   if (neighbours_.empty()) find_neighbours();
   std::vector<double> distances(mesh_.points.size(), std::numeric_limits<double>::infinity());
@@ -155,8 +156,8 @@ void Recut::number_copies() {
   copies_.push_back(0);
   std::sort(copies_.begin(), copies_.end());
   copies_.erase(std::unique(copies_.begin(), copies_.end()), copies_.end());
-  for (const Shift shift :
-       std::vector<Shift>(copies_))  // a vertex of one on several seams belongs to copies of fewer shifts
+  for (const Shift shift : std::vector<Shift>(copies_))  // a vertex of a feature on several seams belongs to
+                                                         // copies of fewer shifts
     for (Shift part = shift; part > 0; part = (part - 1) & shift) copies_.push_back(part);
   std::sort(copies_.begin(), copies_.end());
   copies_.erase(std::unique(copies_.begin(), copies_.end()), copies_.end());
@@ -173,7 +174,7 @@ Motion Recut::motion_of(Shift shift) const {
   return motion;
 }
 
-// A vertex that is moved onto its image is that.
+// Returns the place of a vertex on a seam: a vertex moved onto its image becomes that image.
 Recut::Place Recut::on_seam(Place place) const {
   for (std::size_t k = 0; k < seams_.size(); ++k) {
     if ((place.shift >> k & 1U) == 0) continue;
@@ -200,7 +201,7 @@ Index Recut::vertex_at(Place place) {
   return found->second;
 }
 
-// With the tets. Their regions say which copy they are of.
+// Adds vertices and tets. The regions of tets give their copy.
 void Recut::add_vertices() {
   const std::size_t regions = plc_.regions.size();
   for (std::size_t t = 0; t < mesh_.tets.size(); ++t) {
@@ -215,7 +216,7 @@ void Recut::add_vertices() {
   points_ = made_.points;
 }
 
-// Of the seams only those of the other groups; each where its tets are.
+// Adds faces. Only the seams of the other groups get faces, each where its tets are.
 void Recut::add_faces() {
   ByTriangle<Index> face_at;
   for (Index f = 0; f < mesh_.faces.size(); ++f) face_at.emplace(sorted(mesh_.faces[f]), f);
@@ -251,7 +252,7 @@ void Recut::add_faces() {
     }
 }
 
-// Each where its tets are.
+// Adds edges, each where its tets are.
 void Recut::add_edges() {
   std::unordered_map<std::uint64_t, Index> edge_at, made_at;
   for (Index e = 0; e < mesh_.edges.size(); ++e)
@@ -277,8 +278,8 @@ void Recut::add_edges() {
     }
 }
 
-// The vertices of sides without a neighbour, but those of the boundary. Faces there are of no patch, so they
-// stay.
+// Fixes the vertices of sides without a neighbour, except those of the boundary. Faces there belong to no
+// patch, so they stay.
 void Recut::fix_cuts() {
   ByTriangle<unsigned> uses, uses_before;
   for (std::size_t t = 0; t < made_.tets.size(); ++t)
@@ -289,7 +290,7 @@ void Recut::fix_cuts() {
   for (Index f = 0; f < mesh_.faces.size(); ++f)
     for (const Seam& seam : seams_)
       if (seam.image[2].contains(mesh_.face_patch[f]) || seam.original[2].contains(mesh_.face_patch[f]))
-        uses_before[sorted(mesh_.faces[f])] = 2;  // of the torus
+        uses_before[sorted(mesh_.faces[f])] = 2;  // used twice, because the seam closes the mesh to a torus
   std::vector<bool> is_fixed(made_.points.size(), false);
   ByTriangle<bool> cut;
   for (std::size_t t = 0; t < made_.tets.size(); ++t)
@@ -352,7 +353,7 @@ void Recut::note_vertices(const improvement::TetComplex& complex) {
   points_.resize(kept);
 }
 
-// Of a feature of the tiled complex, as the tets of a copy have it.
+// Returns the feature of the original complex from one of the tiled complex, for the tets of a copy.
 Index Recut::feature_back(unsigned dimension, Index feature, Shift shift) const {
   if (feature == none) return none;
   const Shift own = copies_[feature / count(dimension)];
@@ -370,7 +371,7 @@ Index Recut::vertex_back(Place place, Shift shift) const {
 
 namespace {
 
-/// Builds a mesh of vertices by number, each given when it is first used.
+/// Builds a mesh of numbered vertices, each created when it is first used.
 class Restored {
  public:
   explicit Restored(const TetMesh& like) {

@@ -17,42 +17,43 @@
 
 namespace collarmesh::periodicity {
 
-/// A periodic mesh cut open elsewhere: the tets beside one group of each pair are moved behind the other one,
-/// so that both groups become one patch inside of the mesh, with tets on both of its sides. What is changed
-/// there fits both sides. The vertices where it is cut open now stay where they are.
+/// A periodic mesh cut open elsewhere: the tets beside one group of each pair are moved behind the other
+/// group, so that both groups become one patch inside the mesh, with tets on both sides. A change there fits
+/// both sides. The vertices at the new cuts do not move.
 class Recut {
  public:
   /// What is much nearer to the group is moved, or all that is nearer: the cuts lie elsewhere. Those of two
   /// pairs may meet the faces of a third one at the same places in two of the three, but not in all.
   enum class Moved { beside_first, beside_second, first_half };
 
-  /// Keeps all by reference but `moved`. Preconditions: the mesh is of first order, and its map has the
-  /// corners.
+  /// Keeps all by reference except `moved`. Preconditions: the mesh is of first order, and its map contains
+  /// the corners.
   Recut(const TetMesh& mesh, const Plc& plc, const SurfaceTolerance& tolerance,
         const std::vector<PatchPair>& pairs, const std::vector<FeatureImages>& images, Moved moved);
 
-  /// Its patches, curves and vertices are those of the tiled complex.
+  /// Returns the mesh; its patches, curves and vertices are those of the tiled complex.
   TetMesh& mesh() { return made_; }
   const TiledComplex& complex() const { return *complex_; }
-  /// Returns the vertices that have to stay.
+  /// Returns the vertices that must stay.
   const std::vector<Index>& fixed() const { return fixed_; }
-  /// Returns for each vertex whether it takes more than so many edges to get there from the groups' patches.
+  /// Returns for each vertex whether its distance from the groups' patches exceeds this number of edges.
   std::vector<bool> farther_than(unsigned edges) const;
 
-  /// Returns sizes of the mesh as sizes of the recut one.
+  /// Returns sizes for the recut mesh from sizes for the original mesh.
   SizeField sizes(const SizeField& of_mesh) const;
 
-  /// Call this before the complex is stored: vertices that it has lost lose their numbers then.
+  /// Removes the numbers of vertices that the complex has lost. Call it before the complex is stored.
   void note_vertices(const improvement::TetComplex& complex);
-  /// Returns the mesh that is cut at the faces of the pairs again, without a map. Precondition: it is stored.
+  /// Returns the mesh, cut at the faces of the pairs again, without a map. Precondition: it is stored.
   TetMesh back() const;
 
  private:
-  using Shift = std::uint32_t;  // by pair, a bit: is it moved?
+  using Shift = std::uint32_t;  // bits by pair: 1 if moved
   struct Seam {
-    Motion motion;                                          // of what is moved
-    std::unordered_map<Index, Index> image_of;              // of vertices on the group beside what is moved
-    std::unordered_map<Index, Index> on_other;              // keys: their images
+    Motion motion;                                          // motion of the moved part
+    std::unordered_map<Index, Index> image_of;              // images of vertices on the group beside the
+                                                            // moved part
+    std::unordered_map<Index, Index> on_other;              // images of keys
     std::array<std::map<Index, Index>, 3> image, original;  // of features, by dimension
   };
   struct Place {
@@ -78,16 +79,16 @@ class Recut {
 
   const TetMesh& mesh_;
   const Plc& plc_;
-  mutable std::vector<std::vector<Index>> neighbours_;  // by vertex; empty until they are asked for
+  mutable std::vector<std::vector<Index>> neighbours_;  // by vertex; empty until first asked for
   std::vector<Seam> seams_;
   std::vector<Shift> shifts_;       // by tet
   std::vector<Shift> copies_;       // shift of each
   std::vector<Motion> motions_;     // by copy
-  std::map<Shift, Index> copy_of_;  // shift
+  std::map<Shift, Index> copy_of_;  // by shift
   std::unique_ptr<const TiledComplex> complex_;
   TetMesh made_;
   std::vector<Place> places_;                           // by vertex of the recut mesh
-  std::vector<Point> points_;                           // of these, as they were
+  std::vector<Point> points_;                           // original points of these places
   std::unordered_map<std::uint64_t, Index> vertex_at_;  // by vertex of the mesh and shift
   std::vector<Index> fixed_;
 };

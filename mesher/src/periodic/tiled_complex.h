@@ -9,7 +9,7 @@
 namespace collarmesh::periodicity {
 
 /// Copies of a complex, each moved as a whole, as one complex: feature f of copy k of a complex with n such
-/// features is feature k n + f; so with regions. Copies do not share features.
+/// features has the number k n + f; likewise regions. Copies do not share features.
 struct TiledComplex {
   TiledComplex(const Plc& plc, const SurfaceTolerance& tolerance, const std::vector<Motion>& copies);
 

@@ -12,7 +12,8 @@ namespace collarmesh::periodicity {
 
 namespace {
 
-constexpr double slope = 0.1;  // of the tolerance away from these curves, as beside wedges
+constexpr double slope = 0.1;  // increase of the tolerance with the distance from these curves, as beside
+                               // wedges
 
 struct Sample {
   Point place;
@@ -25,7 +26,7 @@ std::vector<Sample> samples_on(const Plc& plc, Index curve, const SurfaceToleran
   return samples;
 }
 
-/// Adds the samples, moved, where the tolerance of the nearest of `to` is larger.
+/// Adds the moved samples where the tolerance of the nearest sample of `to` is larger.
 void compare(const std::vector<Sample>& from, const std::vector<Sample>& to, const Motion& motion,
              std::vector<Sample>& smaller) {
   for (const Sample& sample : from) {

@@ -5,8 +5,8 @@
 
 namespace collarmesh::periodicity {
 
-/// Returns the tolerance with the smaller one of both sides at curves that are images of each other, and with
-/// it rising slowly away from there. So chords that fit one side fit the other, too.
+/// Returns a tolerance that, at curves that are images of each other, is the smaller one of both sides, and
+/// rises slowly away from there. So chords that fit one side fit the other, too.
 SurfaceTolerance tolerance_across(const SurfaceTolerance& tolerance, const Plc& plc,
                                   const PeriodicOptions& options, double distance);
 

@@ -50,7 +50,7 @@ double smallest_angle_along(const Arc& a, double a0, const Arc& b, double b0, do
   return best;
 }
 
-// The smallest angle between rays that are `apart` along the fan: two positions move along it, from
+// Returns the smallest angle between rays that are `apart` along the fan: moves two positions along it, from
 // one border of a sector to the next.
 double smallest_angle_apart(const std::vector<Arc>& arcs, double apart, bool closed) {
   const double total = arcs.back().from + arcs.back().length;

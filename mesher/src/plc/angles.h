@@ -9,7 +9,7 @@
 /// Angles between rays and facets at a common point. Directions are unit vectors, angles degrees.
 namespace collarmesh::plc {
 
-/// In [0, 180], accurate near both ends.
+/// Returns the angle in [0, 180], accurate near both ends.
 double angle_between(const Vector& u, const Vector& v);
 
 /// The planar sector between two rays.
@@ -17,22 +17,21 @@ struct Sector {
   Vector u, v;
 };
 double angle_between(const Vector& ray, const Sector& sector);
-/// Precondition: the sectors do not cross.
+/// Returns the smallest angle between rays of the sectors. Precondition: the sectors do not cross.
 double angle_between(const Sector& s, const Sector& t);
 
-/// How sharply a fan of sectors (between neighbouring rays in order around a point) folds: the
-/// smallest angle in space between two of its rays that are far apart along the fan. Far is half
-/// way round a closed fan, and 90, 135 or 180 degrees in an open one. 180 for a closed flat fan, the
-/// aperture for a round cone, at least 90 for any open flat one.
+/// Returns how sharply a fan of sectors (between neighbouring rays in order around a point) folds: the
+/// smallest angle in space between two of its rays that are far apart along the fan. Far means half way round
+/// a closed fan, and 90, 135 or 180 degrees in an open one. 180 for a closed flat fan, the aperture for a
+/// round cone, at least 90 for any open flat one.
 double fold_angle(std::span<const Vector> rays, bool closed);
 
-/// The points where a smooth patch folds on itself by an angle below 90 degrees (the apex of a
-/// cone): they are vertices. Reads the patches and triangles of `plc` and its planar tolerance;
-/// needs no curves.
+/// Returns the points where a smooth patch folds on itself by an angle below 90 degrees (the apex of a cone):
+/// they are vertices. Reads the patches and triangles of `plc` and its planar tolerance; needs no curves.
 std::vector<Index> find_folds(std::span<const Point> points, const Plc& plc,
                               std::span<const FeatureSegment> segments);
 
-/// The smallest angle of each kind at each curve and vertex of the complex.
+/// Returns the smallest angle of each kind at each curve and vertex of the complex.
 std::vector<Crease> measure_angles(const Plc& plc);
 
 }  // namespace collarmesh::plc

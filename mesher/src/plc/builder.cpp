@@ -1,4 +1,4 @@
-// From polygon soups to a complex. The order of the steps is that of `build_plc` at the end.
+// Builds a complex from polygon soups. `build_plc` at the end shows the order of the steps.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -113,7 +113,7 @@ void require_region(const Draft& draft, const EdgeTable& edges, const Regions& r
              {a, b}, 0.5 * (pa + pb));
 }
 
-// Adds the patches to the complex, each with its triangles in one range. Turns a patch between a region in
+// Adds the patches to the complex, each with its triangles in one range. Reverses a patch with a region in
 // front of it and the outside behind it.
 void add_patches(Draft& draft, const Regions& regions, const std::vector<Index>& patch_of, Index patch_count,
                  Plc& plc) {
@@ -147,7 +147,8 @@ void sort_unique(std::vector<Index>& list) {
   list.erase(std::unique(list.begin(), list.end()), list.end());
 }
 
-// Precondition: curves have their patches and vertices their curves.
+// Links patches to their curves and vertices. Precondition: curves have their patches and vertices their
+// curves.
 void link_patches(const Draft& draft, Plc& plc) {
   for (Index c = 0; c < plc.curves.size(); ++c)
     for (const Index p : plc.curves[c].patches) plc.patches[p].curves.push_back(c);

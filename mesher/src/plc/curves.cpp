@@ -218,7 +218,7 @@ class CurveFinder {
       for (const Index p : chain.points)
         largest = std::fmax(largest,
                             distance_to_segment(draft_.points[p], draft_.points[first], draft_.points[last]));
-      // Two points that a fold cut off a given curve do not say whether it is straight.
+      // Two points that a fold cut off a given curve do not show whether it is straight.
       const bool cut_off = segments_[chain.segment].given && (is_fold_[first] || is_fold_[last]);
       curve.straight = chain.points.size() == 2 ? !cut_off : largest <= draft_.planar_tolerance;
       if (curve.straight) draft_.largest_deviation = std::max(draft_.largest_deviation, largest);
@@ -240,7 +240,7 @@ class CurveFinder {
   double largest_turn_;
   std::vector<Index> first_, at_;             // segments at each point
   std::vector<Index> first_patch_, patches_;  // patches of each segment
-  std::vector<bool> is_vertex_, is_fold_;     // folds: not named as vertices
+  std::vector<bool> is_vertex_, is_fold_;     // folds: vertices that the input does not name
   std::vector<bool> used_;
   std::vector<Chain> chains_;
   std::vector<Index> vertex_at_;

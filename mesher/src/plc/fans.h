@@ -14,17 +14,17 @@ namespace collarmesh::plc {
 struct Fan {
   Index patch = none;
   bool closed = false;
-  std::vector<Index> rim;    ///< the other ends of their edges at the point, in order
+  std::vector<Index> rim;    ///< the other ends of the triangles' edges at the point, in order
   std::vector<Vector> rays;  ///< unit, towards them
 
   std::size_t sector_count() const { return closed ? rim.size() : rim.size() - 1; }
   Sector sector(std::size_t i) const { return {rays[i], rays[(i + 1) % rays.size()]}; }
 };
 
-/// The triangles of patches by the points that they surround, cut along the segments.
+/// The triangles of patches around their points, cut along the segments.
 class PatchFans {
  public:
-  /// The points and patches are kept by reference. Segments are pairs of points in any order.
+  /// Keeps points and patches by reference. Segments are pairs of points in any order.
   PatchFans(std::span<const Point> points, const std::vector<Plc::Triangle>& triangles,
             const std::vector<Plc::Patch>& patches, std::span<const std::array<Index, 2>> segments);
 
@@ -32,13 +32,13 @@ class PatchFans {
   const facets::EdgeTable& edges() const { return edges_; }
   Index patch_of(Index side) const { return patch_of_[side / 3]; }
 
-  /// The fans around a point, of smooth patches only or of all.
+  /// Returns the fans around a point, of smooth patches only or of all.
   std::vector<Fan> at(Index point, bool smooth_only);
-  /// The side of the neighbour in the same patch, none at a segment.
+  /// Returns the side of the neighbour in the same patch, none at a segment.
   Index across(Index side) const;
 
-  /// How sharply a smooth patch folds in a fan around the point (degrees, see fold_angle), 180 where
-  /// its edges are no longer than `noise` and point anywhere.
+  /// Returns how sharply a smooth patch folds in a fan around the point (degrees, see fold_angle); 180 where
+  /// its edges are at most as long as `noise`, because their directions mean nothing.
   double fold(Index point, const Fan& fan, double noise) const;
 
  private:

@@ -29,7 +29,7 @@ class SegmentTest {
       return true;
     if (clusters_.seed[s] == clusters_.seed[t]) return false;
     const double cosine = dot(clusters_.normal[s], clusters_.normal[t]);
-    // Two sheets that are folded onto each other need a curve at the fold, else the surface has no mesh.
+    // Two sheets folded onto each other need a curve at the fold, because otherwise the surface has no mesh.
     if (draft_.soup_gives_features[draft_.origins[s].soup]) return cosine < 0;
     return every_fold_ || cosine < smallest_cosine_;
   }
@@ -48,7 +48,7 @@ struct Extent {
   double low = INFINITY, high = -INFINITY;
 };
 
-// Most points occur several times.
+// Returns the corners, most of which occur several times, once each.
 std::vector<Index> corners_of(const Draft& draft, const std::vector<Index>& triangles) {
   std::vector<Index> points;
   points.reserve(3 * triangles.size());

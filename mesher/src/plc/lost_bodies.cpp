@@ -62,7 +62,7 @@ void add_bodies(const PolygonSoup& soup, std::vector<Body>& bodies) {
   });
 }
 
-/// Returns whether there is a triangle within or near the box.
+/// Finds triangles by place: returns whether there is one within or near a box.
 class TrianglesByPlace {
  public:
   explicit TrianglesByPlace(const Plc& plc) : plc_(plc), order_(plc.triangles.size()) {
@@ -98,8 +98,9 @@ class TrianglesByPlace {
 
 std::vector<Plc::Warning> lost_bodies(std::span<const PolygonSoup> soups, const Plc& plc, double distance) {
   constexpr std::size_t listed = 10;
-  constexpr Index smallest_closed = 4;       // facets
-  constexpr double largest_collapsed = 100;  // distances that points of one body may have moved in a chain
+  constexpr Index smallest_closed = 4;       // number of facets
+  constexpr double largest_collapsed = 100;  // multiple of the distance: points of one body may have moved in
+                                             // a chain
   std::vector<Body> small;
   for (const PolygonSoup& soup : soups) add_bodies(soup, small);
   std::erase_if(small, [&](const Body& body) {
@@ -127,7 +128,7 @@ std::vector<Plc::Warning> lost_bodies(std::span<const PolygonSoup> soups, const 
 }
 
 LostRegions lost_regions(const Plc& before, const Plc& after, double tolerance) {
-  constexpr double most_of_a_volume = 0.02;  // may be lost or gained
+  constexpr double most_of_a_volume = 0.02;  // share of a volume that may be lost or gained
   std::multiset<double> volumes;
   for (std::size_t r = 1; r < after.regions.size(); ++r) volumes.insert(std::fabs(after.regions[r].volume));
   std::vector<double> areas(before.regions.size(), 0);

@@ -1,4 +1,4 @@
-// The angles between the features of a complex (paper, Definition 1).
+// Measures the angles between the features of a complex (paper, Definition 1).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -61,7 +61,7 @@ class AngleFinder {
   }
   double noise_length() const { return noise * plc_.planar_tolerance; }
 
-  // The polyline's first point that is far enough away gives the direction of an end of a curve.
+  // Returns the direction of an end of a curve: that of the polyline's first point that is far enough away.
   Ray make_ray(Index curve, std::vector<Index> points) const {
     std::size_t far = 1;
     while (far + 1 < points.size() && distance(at(points[0]), at(points[far])) <= noise_length()) ++far;
@@ -97,7 +97,7 @@ class AngleFinder {
 
   Index patch_of(Index side) const { return fans_.patch_of(side); }
 
-  // Unit vector in the facet, orthogonal to the triangle's side.
+  // Returns the unit vector in the facet, orthogonal to the triangle's side.
   Vector into_facet(Index side) const {
     const Corners& t = triangles_[side / 3];
     const Vector d = cross(facet_normal(side / 3), at(t[(side % 3 + 1) % 3]) - at(t[side % 3]));
@@ -120,7 +120,7 @@ class AngleFinder {
     return norm(cross(b - a, c - a)) / std::max({distance(a, b), distance(b, c), distance(c, a)});
   }
 
-  // The triangle itself, or the nearest one in its patch that is no needle.
+  // Returns the triangle itself, or the nearest one in its patch that is no needle.
   Index reliable_triangle(Index triangle) const {
     std::vector<Index> seen{triangle};
     for (std::size_t next = 0; next < seen.size() && seen.size() < 64; ++next) {
@@ -152,7 +152,7 @@ class AngleFinder {
     add(best);
   }
 
-  // Measures a curve and a facet that does not have it as a side there.
+  // Measures the angle between a curve and a facet that does not have it as a side there.
   void measure_segments_and_facets(Index v, const std::vector<Fan>& fans) {
     Crease best = at_vertex(Kind::segment_and_facet, v);
     for (const Ray& ray : rays_[v])
@@ -221,11 +221,11 @@ namespace {
 // too flat to fold.
 constexpr double flat_cosine = 0.966;
 
-// Points where the triangles of some smooth patch face several ways: all others are flat.
+// Returns points where the triangles of some smooth patch face several ways; all other points are flat.
 std::vector<Index> points_not_flat(std::span<const Point> points, const Plc& plc) {
   struct First {
-    Index patch = none;  // the last one that was seen at the point
-    Vector normal;       // of its first triangle there
+    Index patch = none;  // the last patch that was seen at the point
+    Vector normal;       // normal of its first triangle there
   };
   std::vector<First> first(points.size());
   std::vector<bool> flat(points.size(), true);

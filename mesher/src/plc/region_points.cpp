@@ -29,7 +29,7 @@ class PointPlacer {
     find_largest_sides();
     Index missing = 0;
     std::vector<bool> done(plc_.regions.size(), false);
-    // A region may have several shells; the one with the largest triangle is tried first.
+    // A region may have several shells; start with the one that has the largest triangle.
     for (const Index side : order_of_sides()) {
       const Index region = region_of(side);
       if (region == 0 && encloses_void(side)) {

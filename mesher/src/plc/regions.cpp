@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t largest_attempt = 1000;
 
-// A sum that keeps what rounding loses (Neumaier 1974).
+// A sum that keeps the rounding errors (Neumaier 1974).
 class Sum {
  public:
   void add(double value) {
@@ -38,11 +38,11 @@ struct Chamber {
   Index inner_shell = none;  // of the component that encloses it
   bool complex = false;
   bool claimed = false;           // a facet has its back towards it
-  bool behind_claimed = false;    // a facet that has its front towards it has its back towards a claimed one
-  bool beside_outside = false;    // a facet parts it from what is around the component
-  Index claiming_surface = none;  // a soup that is a surface
+  bool behind_claimed = false;    // a facet has its front towards it and its back towards a claimed chamber
+  bool beside_outside = false;    // a facet separates it from the chamber around the component
+  Index claiming_surface = none;  // a soup that is a surface and claims it
   Index hole_soup = none;
-  Index owner = none;           // the soup that most of its inner shell comes from
+  Index owner = none;           // the soup with the largest part of its inner shell
   Index first_triangle = none;  // of the owner, on that shell
   Index region = none;
 };
@@ -90,7 +90,7 @@ class RegionFinder {
 
   double reach() const { return 2 * draft_.bounds.diagonal(); }
 
-  // Casts a line through each component to find its outermost shell and what that shell sees.
+  // Casts a line through each component to find its outermost shell and the surface that this shell sees.
   void nest_components() {
     std::vector<Index> largest(count_, none);
     std::vector<double> area(count_);
@@ -106,7 +106,7 @@ class RegionFinder {
 
   void cast_through(Index component, Index triangle) {
     for (std::size_t attempt = 0; attempt < largest_attempt; ++attempt) {
-      // Weights of the corners that move with the attempts.
+      // Weights of the corners, which change with each attempt.
       const Vector w = generic_direction(attempt + 7);
       const double wa = 1 + 0.9 * w.x, wb = 1 + 0.9 * w.y, wc = 1 + 0.9 * w.z;
       const Point at = (wa * draft_.corner(triangle, 0) + wb * draft_.corner(triangle, 1) +
@@ -184,8 +184,8 @@ class RegionFinder {
     chamber.claiming_surface = std::min(chamber.claiming_surface, soup);
   }
 
-  // Neighbours that share facets of a chamber have less of its shell than the file that encloses it.
-  // The owner is the soup with the largest share, the first one among equals.
+  // Finds the owner of each chamber: the soup with the largest share of its shell, the first one among
+  // equals. Neighbours that share facets of a chamber have less of its shell than the file that encloses it.
   void find_owners() {
     constexpr double clearly_more = 1 + 1e-9;
     double area = 0;
@@ -217,7 +217,7 @@ class RegionFinder {
     }
   }
 
-  // Returns the bounded chamber of a point; none outside of all.
+  // Returns the bounded chamber that contains a point; none outside all.
   Index enclosing_chamber(const Point& point, const char* what, Index soup) {
     for (std::size_t attempt = 0; attempt < largest_attempt; ++attempt) {
       const auto crossings = caster_.cast(point, point + reach_to(point) * generic_direction(attempt));
@@ -246,7 +246,7 @@ class RegionFinder {
     return none;
   }
 
-  // Goes from the outside inwards, so that the surroundings of a chamber are decided before it.
+  // Decides from the outside inwards, so that the surroundings of a chamber are decided before it.
   void decide() {
     region_of_chamber_.assign(2 * count_ + 1, none);
     region_of_chamber_[chambers_.find(outside_)] = 0;
@@ -272,8 +272,9 @@ class RegionFinder {
     return chambers_.find(outer_shell_[components_.find(chamber.inner_shell / 2)]);
   }
 
-  // A cavity that touches the surface around it is behind that one's facets everywhere. A
-  // chamber that also has facets to the outside is a body that is inside out, as a single one may be.
+  // Returns whether a chamber is a region. A cavity that touches the surface around it is behind that
+  // surface's facets everywhere. A chamber that also has facets to the outside is a body that is inside out,
+  // as a single body may be.
   static bool is_region(const Chamber& chamber, bool inside_region) {
     const bool filled = chamber.claiming_surface != none && chamber.claiming_surface != chamber.hole_soup;
     if (chamber.hole_soup != none) return filled;
@@ -374,10 +375,10 @@ class RegionFinder {
   const Draft& draft_;
   Faults& faults_;
   Index count_;
-  Index outside_;            // the element of the sets that stands for it
-  DisjointSets components_;  // of triangles
-  DisjointSets shells_;      // of sides, within components
-  DisjointSets chambers_;    // of sides
+  Index outside_;            // representative of the outside
+  DisjointSets components_;  // sets of triangles
+  DisjointSets shells_;      // sets of sides, within components
+  DisjointSets chambers_;    // sets of sides
   LineCaster caster_;
   std::vector<Index> outer_shell_;  // by component
   std::vector<Chamber> list_;

@@ -7,30 +7,30 @@
 
 namespace collarmesh::prediction {
 
-/// Graded sizes: the edge length at any point is the least one that the sources ask for; it grows with the
-/// distance from them.
+/// Graded sizes: the edge length at a point is the smallest that any source asks for; each source's length
+/// grows with the distance from it.
 class GradedSize {
  public:
   /// A point, segment or triangle (corners may be equal) with its edge length.
   struct Source {
     std::array<Point, 3> corners;
     double size;
-    double growth;  // per unit length
+    double growth;  // growth per unit length
   };
 
-  /// Cost: O(n log n).
+  /// Builds the hierarchy. Cost: O(n log n).
   explicit GradedSize(std::vector<Source> sources);
 
-  /// The largest.
+  /// Returns the largest growth.
   double growth() const { return growth_; }
-  /// At most `largest`.
+  /// Returns the size at a point, at most `largest`.
   double at(const Point& p, double largest) const;
 
  private:
   struct Node {
     Box box;
-    double least;        // size below
-    double growth;       // the least below
+    double least;        // smallest size below
+    double growth;       // least growth below
     Index first, count;  // sources; count 0: the children are the next node and `first`
   };
   static constexpr Index leaf_size = 4;

@@ -16,7 +16,7 @@ namespace collarmesh {
 
 namespace {
 
-constexpr double sizes_per_diagonal = 20;  // of the default size
+constexpr double sizes_per_diagonal = 20;  // for the default size
 
 // Returns the predicted seconds, which are mostly proportional to the tets before coarsening; fitted
 // (bench/predicted_elements.py).

@@ -29,7 +29,7 @@ std::vector<DistanceTree::Triangle> corners_of(const Plc& plc) {
 
 Shape::Shape(const Plc& plc)
     : plc_(plc),
-      radii_(curvature_sizes(plc, 2 * std::numbers::pi)),  // an element for each radian
+      radii_(curvature_sizes(plc, 2 * std::numbers::pi)),  // one element for each radian
       angles_(solid_angles(plc)),
       surface_(plc.points, triangles_of(plc)),
       tree_(corners_of(plc)),

@@ -27,28 +27,29 @@ class Shape {
   std::size_t segment_count(Index curve) const;
   std::array<Point, 2> segment(Index curve, std::size_t number) const;
 
-  /// Radii of curvature; infinite where there is none.
+  /// Returns the radius of curvature; infinite where the surface is flat.
   double radius_of_triangle(Index triangle) const { return radii_.triangle[triangle]; }
   double radius_of_segment(Index curve, std::size_t number) const {
     return radii_.curve_segment[curve].empty() ? INFINITY : radii_.curve_segment[curve][number];
   }
 
-  /// From a point on a patch to its curves; infinite where it has none.
+  /// Returns the distance from a point on a patch to its curves; infinite if it has none.
   double distance_to_border(const Point& p, Index patch) const;
-  /// From a point on a curve to another one that runs along it on a common patch, at most `widest`.
+  /// Returns the distance from a point on a curve to another curve that runs along it on a common patch, at
+  /// most `widest`.
   double strip_width(const Point& p, Index curve, const Vector& along, double widest) const;
-  /// From a point on a triangle across a region to a patch that faces it and does not meet it; at most
-  /// `widest`.
+  /// Returns the distance from a point on a triangle across a region to a patch that faces it and does not
+  /// meet it; at most `widest`.
   double wall_width(const Point& p, Index triangle, double widest) const;
   double distance_to_surface(const Point& p) const { return tree_.nearest(p).distance; }
-  /// Precondition: the point is not on the surface.
+  /// Returns the region at a point. Precondition: the point is not on the surface.
   Index region_at(const Point& p) const { return locator_.region_at(p); }
 
  private:
   /// The segments of a patch's curves.
   struct Border {
     std::unique_ptr<TriangleHierarchy> segments;
-    std::vector<Index> curve;  // of each
+    std::vector<Index> curve;  // the curve of each segment
   };
 
   Border border_of(const Plc::Patch& patch) const;

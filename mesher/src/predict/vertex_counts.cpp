@@ -16,8 +16,9 @@ namespace {
 
 // Beyond this number the remaining pieces are not divided.
 constexpr std::size_t most_pieces = 40000, most_cubes = 20000;
-constexpr double most_pieces_of_segment = 1000, most_pieces_of_curves = 40000;  // beyond one for each segment
-constexpr double least_share = 0.002;  // of the size: what walls and strips make of it at most
+constexpr double most_pieces_of_segment = 1000, most_pieces_of_curves = 40000;  // beyond one piece for each
+                                                                                // segment
+constexpr double least_share = 0.002;  // share of the size: walls and strips reduce it at most to this
 
 /// Rises from 0 to 1 between two bounds.
 double ramp(double x, double from, double to) { return std::clamp((x - from) / (to - from), 0.0, 1.0); }
@@ -53,7 +54,7 @@ class Counter {
     Index triangle;
     std::array<Point, 3> corners;
   };
-  /// A cube of an octree. Its region is known, unless it may meet the surface.
+  /// A cube of an octree. Its region is known, unless the cube may meet the surface.
   struct Cube {
     Point centre;
     double half;
@@ -61,7 +62,7 @@ class Counter {
   };
 
   void add(double vertices, double share) {
-    if (vertices > 0)  // else it may be 0 times infinity
+    if (vertices > 0)  // avoids 0 times infinity
       tets_ += model_.tets_per_vertex * share * vertices;
   }
 
@@ -99,7 +100,7 @@ class Counter {
                : size;
   }
 
-  /// Pieces as long as half an edge, of very fine meshes longer ones.
+  /// Returns the number of pieces: half an edge long, longer in very fine meshes.
   static double pieces_wanted(double length, double size) {
     return std::clamp(std::ceil(2 * length / size), 1.0, most_pieces_of_segment);
   }
@@ -130,7 +131,7 @@ class Counter {
     return all;
   }
 
-  /// Rounds the number of edges of a curve, which is at least one, of a loop three.
+  /// Rounds the number of edges of a curve, to at least one, for a loop to at least three.
   double whole(Index c, double edges) const {
     const Plc::Curve& curve = plc_.curves[c];
     const bool loop = curve.closed || curve.ends[0] == curve.ends[1];
@@ -197,8 +198,8 @@ class Counter {
     }
   }
 
-  /// Evenly spread over many pieces (the R2 sequence of M. Roberts, 2018), so that slivers need not be cut
-  /// down to their width.
+  /// Returns a place, evenly spread over many pieces (the R2 sequence of M. Roberts, 2018), so that slivers
+  /// need not be cut down to their width.
   static Point place_in(const Piece& piece, std::size_t number) {
     double whole = 0;
     double u = std::modf(0.5 + 0.7548776662466927 * static_cast<double>(number), &whole);

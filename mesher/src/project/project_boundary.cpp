@@ -1,4 +1,4 @@
-// Moves boundary vertices onto exact geometry, all at once; then makes room where that spoils tets, and moves
+// Moves boundary vertices onto exact geometry, all at once; then makes room where tets became invalid. Moves
 // vertices back that have no room, take faces too far from the complex, or leave thin tets outside narrow
 // places.
 #include "collarmesh/project_boundary.h"
@@ -64,21 +64,20 @@ class BoundaryProjection {
   }
 
  private:
-  // Relative to the tolerance: of edges and triangles between vertices, and of vertices, to the largest one
-  // on their feature.
+  // Relative to the tolerance: the largest distance of edges and triangles between vertices, and of vertices.
   static constexpr double largest_sag = 0.5, most_off = 0.75;
-  // A move of more than this many times the shortest edge at the vertex leads through other tets: the faces
-  // of a CAD file may be farther from their edges than the features are apart.
+  // A vertex that moves by more than this many times its shortest edge would pass through other tets: the
+  // faces of a CAD file may be farther from their edges than the distance between features.
   static constexpr double longest_way = 2;
   static constexpr int retries = 2;
 
   struct Move {
     Index point;
     Point to;
-    bool limited;   // off the exact geometry, for something flat
+    bool limited;   // stays off the exact geometry because its feature is flat
     bool hopeless;  // farther than the tets there can follow
     bool done = false;
-    std::size_t tried = 0;  // after so many commits, in vain
+    std::size_t tried = 0;  // commits up to which no place was found
   };
 
   projection::Bounds bounds(const Plc& plc) const {
@@ -151,9 +150,9 @@ class BoundaryProjection {
     room_.set_free(moves_[slot].point, done && stays_.count(moves_[slot].point) == 0);
   }
 
-  // Where exact curves end beside their vertices, as tolerances of CAD files allow, a vertex near the end may
-  // have gone past it: the end of such an edge with the longer way moves back, until none is left.
-  // Returns the tets around the vertices that moved back.
+  // Moves back vertices that passed the end of an exact curve: curves of CAD files may end beside their
+  // vertices, within tolerances. The end of such an edge that moved farther moves back, until no such edge is
+  // left. Returns the tets around the vertices that moved back.
   std::vector<Index> keep_courses() {
     std::vector<Index> around;
     for (bool turned = true; turned;) {
@@ -175,8 +174,9 @@ class BoundaryProjection {
     return around;
   }
 
-  // The exact geometry may be nearly as far from the complex as the mesh may be. Where faces and a smooth
-  // patch are farther apart, the corner that has moved most goes back. Returns the tets around such corners.
+  // Moves back corners of faces that are too far from a smooth patch, the corner that moved farthest first:
+  // the exact geometry may be nearly as far from the complex as the mesh may be. Returns the tets around such
+  // corners.
   std::vector<Index> keep_distances() {
     std::vector<Index> around;
     const PatchPoints points_of(plc_);
@@ -214,9 +214,9 @@ class BoundaryProjection {
     return around.empty() ? keep_narrow_places() : around;
   }
 
-  // Moving vertices turns the normals that decide where a place is narrow. If a thin tet is in no narrow
-  // place any more, its corner that has moved most goes back; if none has moved, the corner that has moved
-  // most of each tet around does. Returns the tets around such vertices.
+  // Moves back corners of thin tets that are in no narrow place any more: moving vertices turns the normals
+  // that define narrow places. The corner that moved farthest moves back; if none moved, the corner that
+  // moved farthest of each tet around does. Returns the tets around such vertices.
   std::vector<Index> keep_narrow_places() {
     std::vector<Index> around;
     if (!options_.bounds.thin_in_narrow_places_only) return around;
@@ -242,8 +242,8 @@ class BoundaryProjection {
     around.insert(around.end(), tets.begin(), tets.end());
   }
 
-  // In each spoilt tet moves the vertex with the longest way back, or all moved ones. Returns the tets that
-  // are spoilt then.
+  // Moves back, in each spoilt tet, the vertex that moved farthest, or all moved vertices. Returns the tets
+  // that are spoilt then.
   std::vector<Index> give_way(const std::vector<Index>& spoilt) {
     std::vector<Index> around;
     for (const Index t : spoilt) {
@@ -265,8 +265,8 @@ class BoundaryProjection {
     return room_.relax(std::move(around));
   }
 
-  // Tries the vertices that moved back one by one, as there may be room now or after later changes. Returns
-  // whether something changed.
+  // Tries the vertices that moved back one by one, because there may be room now or after later changes.
+  // Returns whether anything changed.
   bool retry(bool again) {
     bool any = false;
     for (Index slot = 0; slot < moves_.size() && !execution_.cancelled(); ++slot) {

@@ -14,14 +14,14 @@ namespace {
 // Sweeps continue while they help: the penalty must fall to this share within this number of sweeps.
 constexpr unsigned sweeps = 50, idle_sweeps = 3;
 constexpr double worthwhile = 0.9;
-// Vertices move by steps from this share of their shortest edge down, halved so often.
+// Vertices move by steps from this share of their shortest edge down, each half of the last, this many times.
 constexpr double first_step = 0.3;
 constexpr unsigned halvings = 5;
 // A move that gains less is not worth it.
 constexpr double least_gain = 1e-3;
-// Room is made until tets are as good as they were, or as this: the smallest sine of their dihedral angles.
+// Tets get room until they are as good as they were, or reach this smallest sine of their dihedral angles.
 constexpr double good_shape = 0.2;
-// The cosine between an edge of a curve and itself as it was.
+// Least cosine between an edge of a curve and its initial direction.
 constexpr double least_course = 0.5;
 // The bounds are kept with room for rounding.
 constexpr double margin = 1e-6;
@@ -102,7 +102,7 @@ void Relaxation::roll_back() {
   }
 }
 
-// Returns whether a search found no better place for it with unchanged surroundings.
+// Returns whether a search found no better place for the vertex with unchanged surroundings.
 bool Relaxation::in_vain(Index vertex) const {
   if (stuck_[vertex] == 0) return false;
   for (const Index t : tets_at_[vertex])
@@ -111,7 +111,7 @@ bool Relaxation::in_vain(Index vertex) const {
   return true;
 }
 
-// 1 for a tet that keeps its bound and its shape, positive for one with positive volume.
+// Returns 1 for a tet that keeps its bound and its shape, a positive value for one with positive volume.
 double Relaxation::score(Index tet, const Corners& p) const {
   const double six = six_volume(p[0], p[1], p[2], p[3]);
   if (six <= 0) {
@@ -141,7 +141,7 @@ double Relaxation::collar_score(Index tet, const Corners& p) const {
   return angle <= bounds_.collar_angle ? 1 : (180 - angle) / (180 - wanted(tet).angle);
 }
 
-// 1 for angles within the bounds of thin tets, or no farther beyond them than at the beginning.
+// Returns 1 for angles within the bounds of thin tets, or no farther beyond them than at the beginning.
 double Relaxation::angle_score(Index tet, const Corners& p) const {
   constexpr double largest = improvement::ThinShape::largest_angle,
                    rounding = improvement::ThinShape::rounding;
@@ -240,8 +240,8 @@ std::vector<Index> Relaxation::relax(std::vector<Index> tets) {
     std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());
   };
-  double missing = INFINITY;  // in all tets together
-  unsigned idle = 0;          // sweeps since that has become much less
+  double missing = INFINITY;  // sum over all tets
+  unsigned idle = 0;          // sweeps since the sum last fell much
   for (unsigned sweep = 0; sweep < sweeps && idle < idle_sweeps; ++sweep) {
     std::vector<Index> vertices;
     double missing_now = 0;
@@ -319,7 +319,7 @@ double Relaxation::sag_around(Index vertex) const {
   for (const Index f : faces_at_[vertex]) {
     const auto& [a, b, c] = mesh_.faces[f];
     see(2, mesh_.face_patch[f], (points[a] + points[b] + points[c]) / 3);
-    const Index next = vertex == a ? b : vertex == b ? c : a;  // its other side is another face's
+    const Index next = vertex == a ? b : vertex == b ? c : a;  // its other side belongs to another face
     see(2, mesh_.face_patch[f], 0.5 * (points[vertex] + points[next]));
   }
   for (const Index e : edges_at_[vertex]) {

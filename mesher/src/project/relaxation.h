@@ -15,20 +15,20 @@
 namespace collarmesh::projection {
 
 struct Bounds {
-  double radius_edge = 2;                          ///< outside collars, but for thin tets
+  double radius_edge = 2;                          ///< outside collars, except for thin tets
   double collar_angle = 150;                       ///< largest dihedral angle in collars, degrees
   const improvement::ThinShape* thin = nullptr;    ///< null: no tet is thin
-  const improvement::CellBounds* cells = nullptr;  ///< where there are thin ones
+  const improvement::CellBounds* cells = nullptr;  ///< set if there are thin tets
   /// Absolute, by patch and by curve: largest distance of faces and edges from the exact geometry.
   std::vector<double> patch_sag, curve_sag;
 };
 
-/// Makes room for vertices that were placed: the corners of the tets that this spoilt move, inside
-/// their regions or along their exact features, until the tets keep their bounds again. Changes since
-/// the last `commit` can be undone.
+/// Makes room for placed vertices: moves the corners of the tets that became invalid, inside their regions or
+/// along their exact features, until the tets keep their bounds again. Changes since the last `commit` can be
+/// undone.
 class Relaxation {
  public:
-  /// Keeps the mesh by reference. A tet that misses a bound now may still miss it, but not by more.
+  /// Keeps the mesh by reference. A tet that misses a bound already may still miss it, but not by more.
   Relaxation(TetMesh& mesh, const ExactGeometry& exact, const Bounds& bounds);
 
   const CellsAtVertices& tets_at() const { return tets_at_; }
@@ -44,11 +44,11 @@ class Relaxation {
   /// Returns whether a mesh edge of a curve has turned by less than 60 degrees. If it turned by more, a
   /// vertex has passed its neighbour.
   bool on_course(Index edge) const;
-  /// Returns that for all such edges at the vertex.
+  /// Returns whether this holds for all such edges at the vertex.
   bool keeps_course(Index vertex);
 
   void put(Index vertex, const Point& place);
-  /// Sets whether `relax` may move a vertex; at first it may move those inside regions only.
+  /// Sets whether `relax` may move a vertex. By default only vertices inside regions may move.
   void set_free(Index vertex, bool is_free) { free_[vertex] = is_free; }
 
   /// Moves vertices of spoilt tets sweep by sweep, each to a place where the worst tet around it is better.
@@ -57,7 +57,7 @@ class Relaxation {
 
   void commit();
   void roll_back();
-  /// Return the number of commits, and whether commits after that number changed a tet at the vertex.
+  /// Returns the number of commits, and whether commits after that number changed a tet at the vertex.
   std::size_t commits() const { return commits_; }
   bool changed_around(Index vertex, std::size_t since) const;
 
@@ -66,10 +66,10 @@ class Relaxation {
 
   /// The target of a tet: its bound, or its initial shape if that was poorer.
   struct Wanted {
-    double shape = -1;  // negative until it is known
+    double shape = -1;  // negative until computed
     double ratio = 0;
-    double angle = 0;   // at creases
-    bool thin = false;  // its angles are bounded, the ratio need not be
+    double angle = 0;   // bound at creases
+    bool thin = false;  // its angles are bounded instead of its ratio
   };
 
   const Wanted& wanted(Index tet) const;
@@ -80,7 +80,8 @@ class Relaxation {
   bool may_be_thin(Index tet, const Corners& p) const {
     return !bounds_.cells->forbid_thin_tets() || bounds_.cells->allow(p, mesh_.tets[tet]);
   }
-  // Of a collar that has not been coarsened: only its obtuse angles are bounded.
+  // Returns whether the tet is in a collar that has not been coarsened: then only its obtuse angles are
+  // bounded.
   bool in_ball(Index tet) const { return mesh_.tet_collar[tet] != 0 && !mesh_.collar_balls.empty(); }
   double collar_score(Index tet, const Corners& p) const;
   double score(Index tet, const Corners& p) const;
@@ -103,12 +104,12 @@ class Relaxation {
   mutable std::vector<Wanted> wanted_;  // by tet
   std::vector<std::size_t> changed_;    // by vertex: the commit that moved it last, 0: none did
   std::size_t commits_ = 0;
-  // By vertex: how many moves there were when it moved last, and when there was no better place for it.
+  // By vertex: the number of moves when it last moved, and when no better place for it was found.
   std::vector<std::size_t> moved_, stuck_;
   std::size_t moves_ = 0;
   std::vector<std::pair<double, Index>> worst_first_;
   std::vector<Index> around_;
-  std::vector<std::pair<Index, Point>> log_;  // vertices and where they were, in order
+  std::vector<std::pair<Index, Point>> log_;  // vertices and their previous places, in order
 };
 
 }  // namespace collarmesh::projection

@@ -13,16 +13,16 @@ namespace collarmesh {
 
 namespace {
 
-// In smaller meshes too many vertices lie beside the blocks' borders, or curves.
+// In smaller meshes too many vertices lie near the borders of blocks, or on curves.
 constexpr std::size_t least_vertices = 4096;
-// A round costs some time for every vertex of the mesh.
+// A round costs some time for every vertex of the mesh, so it needs this many entries.
 constexpr std::size_t least_entries = 2048, vertices_per_entry = 64;
-// A round that destroys less than this share of what it took is not worth its while: the next one waits until
-// the mesh has grown by a share.
+// If a round destroys less than this share of the entries it took, it was not worthwhile: the next round
+// waits until the mesh has grown by a share.
 constexpr std::size_t entries_per_insertion = 48, vertices_per_wait = 32;
 constexpr std::size_t vertices_per_block = 4000, most_blocks = 256, samples_per_block = 64;
 constexpr std::size_t most_insertions_of_a_round = std::size_t{1} << 18;
-// Where blocks are cut: shares of a sample.
+// Blocks are cut between these shares of a sample.
 constexpr double first_share = 0.4, last_share = 0.6;
 
 bool of_cells(WorkQueue::Priority priority) {
@@ -33,7 +33,7 @@ bool of_triangles(WorkQueue::Priority priority) {
   return priority == WorkQueue::unresolved_triangles || priority == WorkQueue::large_triangles;
 }
 
-// The same for the same cell or triangle, whoever destroys it.
+// Returns the seed of random offsets at a place: the same for the same cell or triangle, in any thread.
 std::uint64_t seed_at(const Point& centre, std::uint64_t seed) {
   for (std::size_t axis = 0; axis < 3; ++axis)
     seed = mixed(seed + split_mix_step + std::bit_cast<std::uint64_t>(centre[axis]));
@@ -59,7 +59,7 @@ BlockRefinement::BlockRefinement(const Domain& domain, RefinedMesh& mesh, Surfac
       cells_(cells),
       queue_(queue),
       next_round_(least_vertices) {
-  // Callers' functions need not bear several threads; what is kept at vertices is not kept by blocks.
+  // Callers' functions need not be safe for several threads, and data at vertices is not kept by blocks.
   if (sizes.asked().has_field() || sizes.any_at_vertices() || domain_.options.vertex_ratio > 0 ||
       domain_.is_papers())
     next_round_ = std::numeric_limits<std::size_t>::max();
@@ -91,7 +91,7 @@ bool BlockRefinement::due() {
   return most_insertions() >= least_entries;
 }
 
-// The caller may cancel between rounds, and wants no more vertices than these.
+// Returns the largest number of insertions before the caller may cancel or the budget of vertices ends.
 std::size_t BlockRefinement::most_insertions() const {
   const std::size_t wanted = domain_.options.max_vertices, vertices = mesh_.vertex_count();
   if (wanted == 0) return most_insertions_of_a_round;
@@ -148,8 +148,8 @@ std::size_t BlockRefinement::bytes() const {
 
 std::size_t BlockRefinement::block_count() const { return cuts_.size() + 1; }
 
-// A kd-tree of a sample of the vertices. Where it is cut changes from round to round: what lies between
-// blocks in one of them lies inside one in the next.
+// Divides vertices by a kd-tree of a sample. Its cuts change from round to round, so that places between
+// blocks in one round lie inside a block in the next.
 void BlockRefinement::divide_vertices() {
   const std::size_t vertices = mesh_.vertex_count();
   const std::size_t blocks =
@@ -196,8 +196,8 @@ bool BlockRefinement::may_belong_to_block(Index vertex) const {
          !collar_cells_.near(vertex);
 }
 
-// The entries of each block: those of cells, and of triangles between cells, whose vertices all are its own.
-// The others go back.
+// Deals the entries to blocks: those of cells, and of triangles between cells, all of whose vertices belong
+// to the block. Puts the others back.
 std::vector<std::vector<WorkQueue::Entry>> BlockRefinement::deal(const std::vector<WorkQueue::Entry>& taken) {
   constexpr std::uint16_t gone = Triangulation::no_owner - 1;
   std::vector<std::uint16_t> owner(taken.size());
@@ -247,7 +247,7 @@ std::vector<Index> BlockRefinement::room_for(
   return room;
 }
 
-// A vertex on the surface makes two triangles more than it destroys, and others hardly any.
+// A vertex on the surface makes two triangles more than it destroys; other vertices make hardly any.
 std::vector<std::size_t> BlockRefinement::records_for(std::span<const Index> room) const {
   constexpr std::size_t of_a_zone = 512, insertions_per_record = 4;
   std::vector<std::size_t> records;
@@ -269,7 +269,7 @@ void BlockRefinement::refine(Block block, const std::vector<WorkQueue::Entry>& e
     const Fate fate = destroy(item, block, worker);
     if (fate == Fate::waits)
       waiting.push_back({item.priority, queue.bucket_of(radius), item.entry});
-    else if (fate == Fate::destroyed && due(item))  // it has yielded to something that left it alive
+    else if (fate == Fate::destroyed && due(item))  // it yielded to another insertion that left it alive
       queue.push(item.priority, radius, item.entry);
   }
   for (WorkQueue::Priority priority = queue.first_priority(); priority < WorkQueue::priority_count;
@@ -280,8 +280,8 @@ void BlockRefinement::refine(Block block, const std::vector<WorkQueue::Entry>& e
   }
 }
 
-// Skinny cells of any size, and of what the loop would take before it comes to smaller balls than those of
-// the round?
+// Returns whether entries are left that the round should take: skinny cells of any size, and entries with
+// larger balls than the round's smallest, which the loop would take first.
 bool BlockRefinement::any_left(WorkQueue& queue) const {
   const WorkQueue::Priority priority = queue.first_priority();
   if (priority == WorkQueue::skinny_cells) return true;
@@ -303,7 +303,7 @@ std::optional<Candidate> BlockRefinement::candidate(const WorkQueue::Item& item,
                                  : triangles_.candidate_beside(item.entry.id, random);
 }
 
-// As the loop does where no candidate warps or encroaches a subsegment.
+// Destroys an item like the loop, if no candidate warps or encroaches a subsegment.
 BlockRefinement::Fate BlockRefinement::destroy(const WorkQueue::Item& item, Block block, Worker& worker) {
   const Point& centre =
       of_cells(item.priority) ? mesh_.circumcentre(item.entry.id) : surface_.triangle(item.entry.id).x;
@@ -325,8 +325,8 @@ BlockRefinement::Fate BlockRefinement::destroy(const WorkQueue::Item& item, Bloc
   }
 }
 
-// False when there is no room for it. Where nothing of the complex is found from the zone's vertices, cells
-// have the region of those that they replace.
+// Inserts a candidate. Returns false if the block has no room for it. If no part of the complex is found from
+// the zone's vertices, the new cells get the region of the old ones.
 bool BlockRefinement::insert(const Candidate& candidate, Block block, Worker& worker) {
   ConflictZone& zone = worker.zone;
   const bool quiet =

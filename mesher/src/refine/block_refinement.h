@@ -21,31 +21,30 @@
 
 namespace collarmesh {
 
-/// Destroys many skinny or large cells, or triangles of the surface, at once, by several threads.
+/// Destroys many skinny or large cells, or triangles of the surface, at once, with several threads.
 ///
-/// A vertex may belong to a block when it lies on no vertex or curve of the complex, and no point, no
-/// protective ball and no collar is found from it. A zone between such vertices is the business of the mesh,
-/// the surface and the quality of triangles and cells alone. So a round takes the first bucket of the queue,
-/// divides these vertices into blocks, and refines each block as the loop does: in the same order of
-/// priorities, with cells that yield to triangles. What does not lie in one block waits in the queue; the
-/// blocks are others in the next round, and what is left then is little enough for the loop. (Of a study of
-/// several ways this one cost a single thread the least.)
+/// A vertex may belong to a block if it lies on no vertex or curve of the complex, and no unresolved point,
+/// protective ball or collar is found from it. An insertion among such vertices only concerns the mesh, the
+/// surface and the quality of triangles and cells. So a round takes the first bucket of the queue, divides
+/// these vertices into blocks, and refines each block like the loop: in the same order of priorities, with
+/// cells that yield to triangles. Entries that do not lie in one block wait in the queue. The next round has
+/// other blocks; the loop handles the few entries that remain.
 ///
-/// The mesh does not depend on the number of threads: blocks depend on the mesh alone, random offsets on
-/// what is destroyed. The loop says when the queue may be taken from.
+/// The mesh does not depend on the number of threads: blocks depend only on the mesh, and random offsets on
+/// the cell or triangle to destroy. The loop decides when a round may take entries from the queue.
 class BlockRefinement {
  public:
-  /// All are kept by reference.
+  /// Keeps all by reference.
   BlockRefinement(const Domain& domain, RefinedMesh& mesh, SurfaceNodes& nodes, const CollarSystem& collars,
                   CollarCells& collar_cells, RestrictedSurface& surface, const GradedSizes& sizes,
                   const UnresolvedPoints& points, const CurveChains& curves, const TriangleQuality& triangles,
                   const CellQuality& cells, WorkQueue& queue);
 
-  /// Are cells or triangles next in the queue, and so many that a round is worth its while?
+  /// Returns whether cells or triangles are next in the queue, and enough of them to make a round worthwhile.
   bool due();
-  /// A round. Precondition: it is due.
+  /// Runs a round. Precondition: it is due.
   void round();
-  /// Vertices that all rounds have inserted.
+  /// Returns the number of vertices that all rounds have inserted.
   std::size_t inserted() const { return inserted_; }
   LargestZone largest_zone() const;
   std::size_t yields() const;
@@ -57,7 +56,8 @@ class BlockRefinement {
     unsigned bucket;
     WorkQueue::Entry entry;
   };
-  /// Lent to a thread for a block; kept to the end, as SurfaceNodes points into its lists.
+  /// The data of a thread while it refines a block; kept to the end, because SurfaceNodes points into its
+  /// lists.
   struct Worker {
     explicit Worker(const Domain& domain);
 
@@ -67,12 +67,12 @@ class BlockRefinement {
     LargestZone largest;
     std::size_t yields = 0;
   };
-  /// What a thread works on.
+  /// The block that a thread refines.
   struct Block {
     Triangulation::Block& mesh;
     RestrictedSurface::Workspace& surface;
   };
-  /// A node of a binary tree in an array: below the cut is node 2 i + 1, above 2 i + 2. The leaves are
+  /// A node of a binary tree in an array: node 2 i + 1 is below the cut, node 2 i + 2 above. The leaves are
   /// blocks.
   struct Cut {
     std::size_t axis;
@@ -99,9 +99,9 @@ class BlockRefinement {
   double squared_radius(const WorkQueue::Item& item) const;
   std::optional<Candidate> candidate(const WorkQueue::Item& item, RandomOffsets& random) const;
   enum class Fate {
-    destroyed,  ///< something was inserted for its sake
-    stays,      ///< nothing can be inserted for it
-    waits       ///< for the loop
+    destroyed,  ///< a vertex was inserted to destroy it
+    stays,      ///< no vertex can be inserted to destroy it
+    waits       ///< left for the loop
   };
   Fate destroy(const WorkQueue::Item& item, Block block, Worker& worker);
   bool insert(const Candidate& candidate, Block block, Worker& worker);
@@ -117,7 +117,7 @@ class BlockRefinement {
   const TriangleQuality& triangles_;
   const CellQuality& cells_;
   WorkQueue& queue_;
-  std::size_t next_round_;  // not before there are so many vertices
+  std::size_t next_round_;  // the number of vertices before which no round begins
   std::uint64_t rounds_ = 0;
   std::size_t inserted_ = 0;
   // During a round:

@@ -7,27 +7,27 @@
 
 namespace collarmesh {
 
-/// Time, memory and vertices that a refinement may use, and whether the caller wants it to go on.
-/// The loop asks now and then. A time limit is for callers of `generate`: the pipeline, the program and the
+/// The time, memory and vertices that a refinement may use, and the caller's wish to continue. The loop
+/// checks it now and then. Only callers of `generate` pass a time limit: the pipeline, the program and the
 /// Python package watch the time of all stages themselves, pass none, and cancel.
 class Budget {
  public:
-  /// What is in use.
+  /// The resources in use.
   struct Usage {
     std::size_t vertices, cells, bytes;
-    std::size_t planned_vertices;  ///< that will come for sure
-    Point last_vertex;             ///< a refinement that does not end stays where it is
-    double expected_cells;         ///< when it is complete, about
+    std::size_t planned_vertices;  ///< vertices that will be inserted for sure
+    Point last_vertex;             ///< a refinement that does not end stays near it
+    double expected_cells;         ///< estimated cells of the complete mesh
   };
 
-  /// All are kept by reference. The clock starts.
+  /// Keeps all by reference. Starts the clock.
   Budget(const MeshOptions& options, const Execution& execution, Outcome& outcome);
 
-  /// Is something spent, or the caller no longer interested? Then the outcome says so.
+  /// Returns whether a budget is spent or the caller has cancelled; then sets the outcome.
   bool spent(const Usage& now);
 
   bool is_out_of_time() const { return options_.time_limit > 0 && elapsed() > options_.time_limit; }
-  /// Seconds since the start.
+  /// Returns the seconds since the start.
   double elapsed() const;
   std::size_t peak_bytes() const { return peak_bytes_; }
 

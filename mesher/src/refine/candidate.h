@@ -5,13 +5,13 @@
 
 namespace collarmesh {
 
-/// A point about to be inserted to destroy a ball (paper, Procedure 2): made by the part that wants it,
-/// shown to the parts that it may encroach or warp to, inserted by the loop.
+/// A point about to be inserted to destroy a ball (paper, Procedure 2). The part that wants it makes it, the
+/// parts that it may encroach or warp to examine it, and the loop inserts it.
 struct Candidate {
   Point point;
-  double squared_radius;  ///< of the ball that is destroyed
+  double squared_radius;  ///< of the ball to destroy
   Point ball_centre;
-  Feature feature;      ///< that the point lies on; dimension 3: none
+  Feature feature;      ///< feature that the point lies on; dimension 3: none
   Index start;          ///< a cell in conflict with the point
   Index across = none;  ///< the mesh vertex that it faces across a gap
 };

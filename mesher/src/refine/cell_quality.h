@@ -14,42 +14,43 @@
 
 namespace collarmesh {
 
-/// Which cells are to be destroyed: skinny ones, by their radius-edge ratio or because they are flat, and
+/// Decides which cells to destroy: skinny ones, by their radius-edge ratio or because they are flat, and
 /// large ones.
 ///
-/// State: with a vertex ratio, the shortest edge at every vertex. Invariant: after an insertion every new
-/// cell that is to be destroyed is in the queue, and so are older ones that have become so. The loop tells of
+/// State: with a vertex ratio, the shortest edge at every vertex. Invariant: after an insertion the queue
+/// contains every new cell that must be destroyed, and older cells that have become so. The loop reports
 /// insertions and takes candidates.
 class CellQuality {
  public:
-  /// All are kept by reference.
+  /// Keeps all by reference.
   CellQuality(const Domain& domain, const RefinedMesh& mesh, const CollarCells& collar_cells,
               const RestrictedSurface& surface, const GradedSizes& sizes, const FacingSheets& facing_sheets,
               RandomOffsets& random, WorkQueue& queue);
 
-  /// What destroys a cell, if anything can. For one thread.
+  /// Returns a candidate that destroys a cell, if there is one. For one thread.
   std::optional<Candidate> candidate(Index cell) { return candidate(cell, random_); }
-  /// Several threads may ask at once, each with offsets of its own, of cells of its own block.
+  /// Returns the same. Several threads may call it at once, each with its own offsets and for cells of its
+  /// own block.
   std::optional<Candidate> candidate(Index cell, RandomOffsets& random) const;
-  /// Is the entry of the queue that of a cell that is still there, outside the collars? In the paper's
-  /// profile those inside count, too.
+  /// Returns whether the cell of a queue entry still exists and is outside the collars. In the paper's
+  /// profile cells inside count, too.
   bool due(const WorkQueue::Item& item) const {
     return mesh_.alive(item.entry.id, item.entry.stamp) &&
            (!collar_cells_.inside(item.entry.id) ||
             (domain_.is_papers() && item.priority == WorkQueue::skinny_cells));
   }
-  /// Queue a cell again that is still there after something else was inserted in its place.
+  /// Queues a cell again if another insertion has left it alive.
   void queue_again(const WorkQueue::Item& item, double squared_radius);
 
-  /// Precondition: surface, collar cells and sizes know the new cells.
+  /// Judges the new cells. Precondition: surface, collar cells and sizes know them.
   void cells_made(const ConflictZone& zone, Index vertex);
-  /// Queue a cell that is to be destroyed. Several threads may ask at once, each with a queue of its own, as
-  /// long as no size is asked of the caller or kept at vertices and there is no vertex ratio.
+  /// Queues a cell if it must be destroyed. Several threads may call it at once, each with its own queue, if
+  /// no sizes come from the caller or are kept at vertices and there is no vertex ratio.
   void judge(Index cell, WorkQueue& queue) const { judge(cell, queue, leaves_narrow_cells_); }
-  /// At the start, and when sizes have changed everywhere.
+  /// Judges all cells: at the start, and when sizes have changed everywhere.
   void judge_all();
-  /// From now on narrow cells keep the bound on the ratio, too. Queues those that were left and returns
-  /// whether there are any.
+  /// Makes narrow cells keep the bound on the ratio, too, from now on. Queues the cells that exceed it and
+  /// returns whether there are any.
   bool bound_narrow_cells();
 
   std::size_t bytes() const { return shortest_edge_.bytes(); }

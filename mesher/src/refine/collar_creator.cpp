@@ -46,7 +46,7 @@ void CollarCreator::start() {
   take_up_balls(none, {none, none}, BallReason::up_front);
 }
 
-// The smallest target edge length of what is at this place of a vertex or curve.
+// Returns the smallest target edge length of the features at this place of a vertex or curve.
 double CollarCreator::target_size(const Feature& feature, const Point& p) const {
   const Sizing& sizing = sizes_.asked();
   if (feature.dimension == 1) return sizing.feature_size(1, feature.index, p);
@@ -71,8 +71,8 @@ void CollarCreator::cells_made(const ConflictZone& zone, Index vertex) {
   for (const Index v : zone.vertices) create_if_isolated(v);
 }
 
-// Does the cell hold one crease vertex that is not in the mesh, theta_0-medial and isolated (paper, appendix
-// A)?
+// Places a ball if the cell contains one crease vertex that is not in the mesh, theta_0-medial and isolated
+// (paper, appendix A).
 void CollarCreator::create_if_isolated(Index at) {
   const Index only = points_.only_vertex_at(at);
   if (only == none || !waits_for_ball(only)) return;
@@ -80,7 +80,7 @@ void CollarCreator::create_if_isolated(Index at) {
   if (gap_size().isolated({0, only}, at)) create_at_vertex(only, at, BallReason::vertex_isolated);
 }
 
-// The curves that end at the vertex do not reach beyond its ball's sphere any more.
+// Places a vertex ball. Curves that end at the vertex then end at the ball's sphere.
 void CollarCreator::create_at_vertex(Index vertex, Index near, BallReason reason) {
   assert(collars_.ball_at_vertex(vertex) == none);
   gap_size().start_near(near);
@@ -91,7 +91,8 @@ void CollarCreator::create_at_vertex(Index vertex, Index near, BallReason reason
   take_up_balls(near, {none, none}, reason);
 }
 
-// Every cell that a subsegment crosses is that of one of its ends, as its protective ball is empty.
+// Places balls on isolated curves. Every cell that a subsegment crosses is the cell of one of its ends,
+// because its protective ball is empty.
 void CollarCreator::create_on_isolated_curves() {
   while (open_creases_.any_touched()) {
     const Index curve = open_creases_.take_touched();
@@ -101,7 +102,7 @@ void CollarCreator::create_on_isolated_curves() {
   }
 }
 
-// Precondition: its chain is resolved.
+// Returns whether a curve is isolated. Precondition: its chain is resolved.
 bool CollarCreator::is_isolated(Index curve) {
   const OpenCreases::Chain& chain = open_creases_.chain(curve);
   std::vector<CollarBall> at_ends;
@@ -117,7 +118,8 @@ bool CollarCreator::is_isolated(Index curve) {
   return isolated == chain.links.size();
 }
 
-// The paper does not put balls where a crease is not isolated yet.
+// Places a curve's balls instead of splitting its subsegment. The paper does not place balls where a crease
+// is not isolated yet.
 bool CollarCreator::create_at_subsegment(Index subsegment) {
   const Index curve = curves_.curve_of(subsegment);
   if (!open_creases_.is_open(curve) || open_creases_.chain(curve).unresolved > 0) return false;
@@ -146,8 +148,8 @@ void CollarCreator::create_on_curve(Index curve, BallReason reason) {
   take_up_balls(near, chain.ends, reason);
 }
 
-// Of the balls placed last the first and the last one may have their centres among the unresolved points
-// already.
+// Registers the balls placed last. The first and the last one may have their centres among the unresolved
+// points already.
 void CollarCreator::take_up_balls(Index near, const std::array<Index, 2>& ends, BallReason reason) {
   const auto first = static_cast<Index>(ball_points_.size());
   const auto count = static_cast<Index>(collars_.balls().size());
@@ -173,7 +175,7 @@ void CollarCreator::take_up_balls(Index near, const std::array<Index, 2>& ends, 
     for (Index b = first; b < count; ++b) observer_(collars_.balls()[b]);
 }
 
-// The cells and restricted triangles that a new ball takes away from the refinement.
+// Finds the cells and restricted triangles that a new ball removes from the refinement.
 void CollarCreator::find_inside(const CollarBall& ball, Index near) {
   const double squared = ball.radius * ball.radius * (1 + 1e-9);
   mesh_.visit_ball(ball.centre, mesh_.nearest_vertex(ball.centre, near), squared, [&](Index vertex) {

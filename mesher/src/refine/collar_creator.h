@@ -17,53 +17,54 @@
 namespace collarmesh {
 
 /// Creates the collars: all of them before refinement, or each in the pass (paper, section 3.2 and Procedures
-/// 3 and 4): a vertex ball when the vertex is inserted or, still uninserted, isolated and medial; the balls
-/// along a crease curve when all cells that it crosses outside its ends' balls are isolated with respect to
-/// it, or when one of its subsegments would be split.
+/// 3 and 4). A vertex ball is created when the vertex is inserted or, still uninserted, isolated and medial;
+/// the balls along a crease curve when all cells that it crosses outside its ends' balls are isolated with
+/// respect to it, or when one of its subsegments would be split.
 ///
 /// Invariant: the centre of every ball and every corner point of the collars is an unresolved point or a mesh
-/// vertex. It alone adds balls to the system, and tells cells, surface and curves of them. The loop starts
-/// it, tells of insertions and says when; the parts that stitch ask for the vertices of balls.
+/// vertex. Only this class adds balls to the system, and reports them to cells, surface and curves. The loop
+/// starts it, reports insertions and decides when curves get their balls; the parts that stitch ask it for
+/// the vertices of balls.
 class CollarCreator {
  public:
-  /// All are kept by reference. `stopped` is asked with how many vertices will come at least.
+  /// Keeps all by reference. Calls `stopped` with a lower bound on the number of vertices to come.
   CollarCreator(const Domain& domain, const RefinedMesh& mesh, const SurfaceNodes& nodes,
                 const GradedSizes& sizes, CollarSystem& collars, CollarCells& collar_cells,
                 RestrictedSurface& surface, UnresolvedPoints& points, CurveChains& curves,
                 OpenCreases& open_creases, std::function<bool(std::size_t)> stopped);
 
-  /// Precondition: the vertices of the complex are the first unresolved points, in their order. Stays
-  /// incomplete when it is stopped.
+  /// Starts the creation. Precondition: the vertices of the complex are the first unresolved points, in their
+  /// order. If stopped, the system stays incomplete.
   void start();
-  /// The mesh vertex at a ball's centre; none as long as it is unresolved.
+  /// Returns the mesh vertex at a ball's centre; none as long as it is unresolved.
   Index vertex_of(Index ball) const { return points_[ball_points_[ball]].vertex; }
 
-  /// Why a ball is there.
+  /// Returns the reason why a ball was placed.
   BallReason reason(Index ball) const { return reasons_[ball]; }
 
   // In the pass:
-  /// Is an unresolved point a vertex of the complex that is to get a ball?
+  /// Returns whether an unresolved point is a vertex of the complex that will get a ball.
   bool waits_for_ball(Index point) const {
     return placement_ && collars_.is_crease_vertex(point) && collars_.ball_at_vertex(point) == none;
   }
-  /// Paper, Procedure 4. `near`: the mesh vertex whose cell contains the vertex. Precondition: it waits for
-  /// its ball.
+  /// Creates the ball of a vertex (paper, Procedure 4). `near` is the mesh vertex whose cell contains the
+  /// vertex. Precondition: the vertex waits for its ball.
   void create_at_vertex(Index vertex, Index near, BallReason reason);
-  /// Is any crease vertex or curve isolated now? Vertices get their balls at once; curves when
+  /// Looks for crease vertices or curves that are isolated now. Vertices get their balls at once; curves when
   /// `create_on_isolated_curves` is called. Precondition: all other parts know the new cells.
   void cells_made(const ConflictZone& zone, Index vertex);
-  /// The balls of curves that have become isolated.
+  /// Creates the balls of curves that have become isolated.
   void create_on_isolated_curves();
-  /// A subsegment would be split: if it is a crease's whose chain has started, the crease gets its balls
-  /// instead. Did it? Then the subsegment is gone. Precondition: the subsegment is there.
+  /// Creates the balls of a crease instead of splitting its subsegment, if its chain has started. Returns
+  /// whether it did; then the subsegment is gone. Precondition: the subsegment exists.
   bool create_at_subsegment(Index subsegment);
-  /// Creates the balls of all creases that have none yet. False when there are no such creases. Precondition:
-  /// the queue is empty, so the ends of creases have their balls.
+  /// Creates the balls of all creases that have none yet. Returns false if there are no such creases.
+  /// Precondition: the queue is empty, so the ends of creases have their balls.
   bool create_remaining();
 
-  /// The gap size as the mesh is now.
+  /// Returns the gap size in the current mesh.
   GapExplorer& gap_size();
-  /// Null unless somebody has asked for it.
+  /// Returns the explorer of gaps; null unless it was used.
   const GapExplorer* gap_explorer() const { return gap_.get(); }
   /// For tests: called for every ball.
   void observe(std::function<void(const CollarBall&)> observer) { observer_ = std::move(observer); }
@@ -87,11 +88,12 @@ class CollarCreator {
   CurveChains& curves_;
   OpenCreases& open_creases_;
   std::function<bool(std::size_t)> stopped_;
-  std::unique_ptr<GapExplorer> gap_;                 // made when first asked for
-  std::unique_ptr<CollarPlacement> placement_;       // in the pass only
-  std::unordered_map<Index, std::size_t> isolated_;  // by curve: the first so many links of its chain are
+  std::unique_ptr<GapExplorer> gap_;                 // created when first asked for
+  std::unique_ptr<CollarPlacement> placement_;       // only if collars are created in the pass
+  std::unordered_map<Index, std::size_t> isolated_;  // by curve: the number of links at the start of its
+                                                     // chain that are isolated
   std::vector<Index> ball_points_;                   // unresolved points at the balls' centres
-  std::vector<BallReason> reasons_;                  // of the balls
+  std::vector<BallReason> reasons_;                  // reasons of the balls
   std::size_t corners_taken_up_ = 0;
   std::function<void(const CollarBall&)> observer_;
   std::vector<Index> scratch_;

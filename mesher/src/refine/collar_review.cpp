@@ -18,7 +18,7 @@ void sort_and_make_unique(std::vector<Index>& values) {
   values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
-// The faces around an edge of a cell; all of them unless the edge lies on the hull.
+// Visits the faces around an edge of a cell; all of them unless the edge lies on the hull.
 template <class Visit>
 void visit_faces_around(const RefinedMesh& mesh, Index cell, Index a, Index b, const Visit& visit) {
   const auto other_corner = [&](Index at, unsigned but) {
@@ -81,7 +81,8 @@ bool CollarReview::check() {
   return queue_.pushed() > before;
 }
 
-// Everything is new. Voronoi cells have become smaller: fewer vertices are near collars than when they came.
+// Starts the review: all cells are new. Voronoi cells have become smaller, so fewer vertices are near collars
+// than when these were created.
 void CollarReview::start() {
   started_ = true;
   collars_.complete();
@@ -104,7 +105,7 @@ void CollarReview::touch(Index cell) {
   if (std::exchange(touched_[cell], 1) == 0) touched_cells_.push_back(cell);
 }
 
-// Those that are still there. A cell that takes the place of one is touched itself.
+// Returns the touched cells that still exist. A cell that replaces one is touched itself.
 std::vector<Index> CollarReview::take_touched() {
   std::vector<Index> cells;
   cells.swap(touched_cells_);
@@ -114,8 +115,8 @@ std::vector<Index> CollarReview::take_touched() {
   return cells;
 }
 
-// Corner points of neighbouring circles on neighbouring sheets are cocircular: a flat cell of them
-// just outside the collar is given to it. Adds what is given to the cells.
+// Gives flat cells to collars: corner points of neighbouring circles on neighbouring sheets are cocircular,
+// and may form a flat cell just outside the collar. Adds these cells to `cells`.
 void CollarReview::take_in_flat_cells(std::vector<Index>& cells) {
   std::vector<Index> candidates = cells;
   const auto add_neighbours = [&](Index cell) {
@@ -136,7 +137,7 @@ void CollarReview::take_in_flat_cells(std::vector<Index>& cells) {
   sort_and_make_unique(cells);
 }
 
-// The ball that a flat cell is given to, none when it stays outside.
+// Returns the ball whose collar gets a flat cell; none if it stays outside.
 Index CollarReview::ball_to_take_in(Index cell) {
   if (cells_.inside(cell) || surface_.region(cell) == 0) return none;
   const auto& v = mesh_.corners(cell);
@@ -160,8 +161,8 @@ Index CollarReview::ball_to_take_in(Index cell) {
   return none;
 }
 
-// Judge the triangles of these cells, and those that share an edge with what these cells have replaced.
-// False when stopped.
+// Judges the triangles of these cells, and those that share an edge with faces that these cells have
+// replaced. Returns false when stopped.
 bool CollarReview::judge_changed_triangles(const std::vector<Index>& cells) {
   for (const Index cell : cells) touched_[cell] = 1;
   std::size_t looked_at = 0;
@@ -176,7 +177,7 @@ bool CollarReview::judge_changed_triangles(const std::vector<Index>& cells) {
         continue;
       for (const FaceId outer : {face, other}) {
         auto t = collar_surface_.triangle(outer);
-        if (!t) continue;  // what was known of this face is not asked for any more
+        if (!t) continue;  // the record of this face is obsolete
         if (++looked_at % triangles_between_stops == 0 && stopped_()) return false;
         t->poor_alone = collar_surface_.poor_alone(*t);
         triangles_.insert_or_assign(*t);
@@ -201,7 +202,7 @@ bool CollarReview::judge_changed_triangles(const std::vector<Index>& cells) {
   return true;
 }
 
-// The collar triangle of a face seen from either side, if it is one.
+// Returns the collar triangle of a face seen from either side, if it is one.
 const CollarTriangle* CollarReview::known_triangle(FaceId face) const {
   const FaceId other = mesh_.opposite(face);
   if (other == no_face) return nullptr;
@@ -212,8 +213,9 @@ const CollarTriangle* CollarReview::known_triangle(FaceId face) const {
   return triangles_.find(outer, mesh_.generation(cell_of(outer)));
 }
 
-// What neighbours decide: every edge has two triangles, of one ball or of consecutive ones, and then
-// the book tet between their centres is not inverted and keeps the angle bound.
+// Judges an edge by its neighbours: every edge must have two triangles, of one ball or of consecutive ones,
+// and the book tet between the centres of consecutive balls must not be inverted and must keep the angle
+// bound.
 bool CollarReview::poor_edge(const CollarTriangle& t, Index a, Index b) const {
   const CollarTriangle* neighbour = nullptr;
   std::size_t count = 0;
@@ -231,8 +233,8 @@ bool CollarReview::poor_edge(const CollarTriangle& t, Index a, Index b) const {
          collar_surface_.poor_book(t, *neighbour, {std::min(a, b), std::max(a, b)});
 }
 
-// A centre, or another point of a crease, must not be a vertex of cells outside: their part of the sphere has
-// no points yet.
+// Finds vertices of creases, centres of balls above all, that are vertices of cells outside: their part of
+// the sphere has no points yet.
 void CollarReview::find_exposed_vertices(const std::vector<Index>& cells) {
   for (const Index cell : cells) {
     if (surface_.region(cell) == 0 || cells_.inside(cell)) continue;
@@ -245,7 +247,7 @@ void CollarReview::find_exposed_vertices(const std::vector<Index>& cells) {
   sort_and_make_unique(exposed_);
 }
 
-// The cells of regions that have the vertex and lie outside the collar.
+// Returns the cells of regions that have the vertex and lie outside the collar.
 const std::vector<Index>& CollarReview::cells_outside(Index vertex) {
   mesh_.incident_cells(vertex, scratch_);
   std::erase_if(scratch_, [&](Index cell) { return surface_.region(cell) == 0 || cells_.inside(cell); });
@@ -276,11 +278,11 @@ std::optional<Candidate> CollarReview::candidate(const WorkQueue::Item& item) {
                                                              : candidate_on_triangle(item.entry);
 }
 
-// On the sphere, towards the centre of a cell outside.
+// Returns a point on the sphere, towards the centre of a cell outside.
 std::optional<Candidate> CollarReview::candidate_at_vertex(Index vertex) {
   for (const Index outside : cells_outside(vertex))
     if (auto found = candidate_towards(outside, vertex)) {
-      exposed_.push_back(vertex);  // it may yield: to be looked at again
+      exposed_.push_back(vertex);  // it may yield: review it again
       return found;
     }
   return std::nullopt;
@@ -304,7 +306,7 @@ std::optional<Candidate> CollarReview::candidate_on_triangle(const WorkQueue::En
       touched_[cell_of(mesh_.opposite(face))] != 0)
     return std::nullopt;
   auto found = collar_surface_.repair(*t);
-  if (found) poor_.push_back(face);  // it may yield: to be looked at again
+  if (found) poor_.push_back(face);  // it may yield: review it again
   return found;
 }
 

@@ -10,32 +10,32 @@
 
 namespace collarmesh {
 
-/// Looks at the collar surface whenever everything else is done (paper, section 4), and queues what is poorly
-/// represented: triangles, and vertices of creases that cells outside the collar have.
+/// Reviews the collar surface whenever all other work is done (paper, section 4), and queues its faults: poor
+/// triangles, and vertices of creases that are vertices of cells outside the collar.
 ///
-/// State: what is known of the collar surface since it looked last. Invariant, once started: every cell near
-/// collars that was created since then, or whose vertices lie on other features, is touched; so it judges the
-/// triangles around those alone, and those again whose candidates it gave away. So all looks together cost
-/// what was created and what was given. The loop asks for looks, takes candidates, and tells of insertions
-/// and of vertices that join features. What has no candidate is not asked again before its cells change: it
-/// stays poor, for the certificate to tell.
+/// State: the known triangles of the collar surface since the last review. Invariant, once started: every
+/// cell near collars that was created since then, or whose vertices lie on other features, is touched. So a
+/// review only judges the triangles around touched cells, and triangles whose candidates it has handed out;
+/// the cost of all reviews together is proportional to the created cells and the candidates. The loop asks
+/// for reviews, takes candidates, and reports insertions and vertices that join features. A fault without a
+/// candidate is not reviewed again before its cells change: it stays, and the certificate reports it.
 class CollarReview {
  public:
-  /// All are kept by reference. `stopped` is asked now and then. The first look tells the collars that no
-  /// more balls will come.
+  /// Keeps all by reference. Calls `stopped` now and then. The first review tells the collars that no more
+  /// balls will come.
   CollarReview(const RefinedMesh& mesh, CollarSystem& collars, CollarCells& cells,
                const RestrictedSurface& surface, const CollarCreator& creator, CollarSurface& collar_surface,
                WorkQueue& queue, std::function<bool()> stopped);
 
-  /// Precondition: the queue is empty. False when nothing was queued: nothing is poor that can be mended, or
-  /// nothing has come of what was queued before.
+  /// Reviews the surface. Returns false if nothing was queued: there is no fault that can be repaired, or the
+  /// last queued items changed nothing. Precondition: the queue is empty.
   bool check();
-  /// What mends a queued triangle, or stands between a queued vertex and the cells outside. Nothing when that
-  /// is impossible, or what was done meanwhile is to be looked at first.
+  /// Returns the point to insert for this queue item: it repairs a poor triangle or shields an exposed crease
+  /// vertex. Returns nothing if there is none, or if recent changes must be reviewed first.
   std::optional<Candidate> candidate(const WorkQueue::Item& item);
 
   void cells_made(const ConflictZone& zone);
-  /// A vertex that is there was found to lie on a feature.
+  /// Reports that an existing vertex lies on a feature.
   void vertex_joined_feature(Index vertex);
 
   std::size_t bytes() const { return triangles_.bytes() + touched_.bytes(); }
@@ -67,13 +67,13 @@ class CollarReview {
   std::function<bool()> stopped_;
 
   bool started_ = false;
-  bool changed_ = true;                 // since it looked last: vertices, or their features
+  bool changed_ = true;                 // vertices or their features have changed since the last review
   GrowingArray<std::uint8_t> touched_;  // by cell: a flag
-  std::vector<Index> touched_cells_;    // each of them, and some that are gone or not touched any more
+  std::vector<Index> touched_cells_;    // the touched cells, and some that are gone or not touched any more
   CollarTriangles triangles_;
-  std::vector<FaceId> poor_;                  // inside regions, to be looked at
-  std::unordered_map<Index, Index> ball_at_;  // by the mesh vertices on creases
-  std::vector<Index> exposed_;                // of these vertices, to be looked at
+  std::vector<FaceId> poor_;                  // triangles inside regions to review
+  std::unordered_map<Index, Index> ball_at_;  // by mesh vertex on a crease
+  std::vector<Index> exposed_;                // such vertices to review
   std::vector<Index> scratch_;
 };
 

@@ -9,10 +9,10 @@ namespace collarmesh {
 
 namespace {
 
-// A representation point this close to an arc, in radii of its ball, is moved onto the arc: lower
-// dimension first is what keeps collars small.
+// A representation point this close to an arc, in radii of its ball, is moved onto the arc: inserting points
+// of lower dimension first keeps collars small.
 constexpr double arc_reach = 0.7;
-// ... unless a mesh vertex is this close to the arc's point already, in radii of the empty ball.
+// This does not apply if a mesh vertex is this close to the arc's point already, in radii of the empty ball.
 constexpr double arc_clearance = 0.5;
 // Where a smooth patch bends, a point of its arc comes this close to mesh vertices, in distance tolerances.
 constexpr double bent_clearance = 0.1;
@@ -36,7 +36,8 @@ bool CollarSurface::on_crease(Index vertex) const {
          (f.dimension == 1 && collars_.is_crease_curve(f.index));
 }
 
-// A smooth patch may fold at a curve inside it: a tet between its two sides is not flat.
+// Returns whether a smooth patch may fold here, at a curve inside it: a tet between its two sides is then not
+// flat.
 bool CollarSurface::at_fold(std::span<const Index> corners) const {
   return std::any_of(corners.begin(), corners.end(), [&](Index v) {
     if (mesh_.feature(v).dimension != 1) return false;
@@ -80,7 +81,7 @@ std::optional<CollarTriangle> CollarSurface::triangle(FaceId outer) {
     off_[cell_of(outer)] |= static_cast<std::uint8_t>(1U << corner_of(outer));
     return std::nullopt;
   }
-  // The parts of the dual edge inside each ball, as parameters from p to q.
+  // The part of the dual edge inside a ball, as parameters from p to q.
   struct Part {
     double from, to;
     Index ball;
@@ -105,7 +106,7 @@ std::optional<CollarTriangle> CollarSurface::triangle(FaceId outer) {
   return CollarTriangle{outer, generation, parts[0].ball, p + parts[0].from * d, several};
 }
 
-// The triangle alone: everything but what its neighbours decide.
+// Judges the triangle alone, without its neighbours.
 bool CollarSurface::poorly_represented(const CollarTriangle& t) {
   const Index outer = cell_of(t.face);
   const FaceId inner = mesh_.opposite(t.face);
@@ -142,8 +143,8 @@ bool CollarSurface::far_from_patch(Index patch, const Point& p) const {
   return nearest == none;
 }
 
-// An edge on a smooth patch makes a face with the ball's centre there: does it leave the patch by
-// more than the tolerance?
+// Returns whether an edge on a smooth patch, which makes a face with the ball's centre there, leaves the
+// patch by more than the tolerance.
 bool CollarSurface::bends(CollarTriangle& t) const {
   if (surface_.region(cell_of(t.face)) == 0) return false;
   const CollarBall& ball = collars_.balls()[t.ball];
@@ -153,7 +154,7 @@ bool CollarSurface::bends(CollarTriangle& t) const {
     for (unsigned k = 0; k < 3; ++k) {
       const Index i = v[k], j = v[(k + 1) % 3];
       if (mesh_.on_patch(i, patch)) {
-        // The edge to the centre, which is longer than the radius where i is not on the sphere.
+        // The edge to the centre, which is longer than the radius if i is not on the sphere.
         const Vector spoke = mesh_.point(i) - ball.centre;
         for (const double share : {0.4, 0.65}) {
           if (!far_from_patch(patch, ball.centre + share * spoke)) continue;
@@ -191,7 +192,7 @@ bool CollarSurface::spans_sheets(const CollarBall& ball, Index a, Index b) const
   return found;
 }
 
-// A point near a given one where a patch through the ball's centre meets its sphere.
+// Returns a point near a given one where a patch through the ball's centre meets its sphere.
 std::optional<Point> CollarSurface::arc_point(const CollarBall& ball, Index patch, const Point& near) const {
   const auto on_sphere_towards = [&](const Point& p) {
     const Vector d = p - ball.centre;
@@ -210,7 +211,7 @@ std::optional<Point> CollarSurface::arc_point(const CollarBall& ball, Index patc
   return std::nullopt;
 }
 
-// Does an edge of a star cross a patch? Only those through the ball's centre come so near to it, the
+// Returns whether an edge of a star crosses a patch. Only patches through the ball's centre are near enough;
 // others are three radii away.
 bool CollarSurface::crosses_patch(const CollarBall& ball, Index a, Index b) {
   const Point &p = mesh_.point(a), &q = mesh_.point(b);
@@ -237,10 +238,11 @@ bool CollarSurface::crosses_patch(const CollarBall& ball, Index a, Index b) {
   });
 }
 
-// A smooth patch may pass through a ball's centre in several sheets, of which an edge may begin on one and
-// cross another. A sheet leaves its chords by the shares that the balls are made for (collar/flatness.cpp):
-// by h over a radius r, with a triangle tilted by about 4 h / r; so a point of it is off the triangle's plane
-// by less than 8 h, where h is half the distance tolerance at most, and less than r / 2.
+// Returns whether an edge leads to another sheet. A smooth patch may pass through a ball's centre in several
+// sheets, so an edge may begin on one and cross another. A sheet leaves its chords by the shares for which
+// balls are made (collar/flatness.cpp): by h over a radius r, with a triangle tilted by about 4 h / r; so a
+// point of it is off the triangle's plane by less than 8 h, where h is half the distance tolerance at most,
+// and less than r / 2.
 bool CollarSurface::on_another_sheet(const CollarBall& ball, const Point& p, Index triangle) const {
   const auto [a, b, c] = nodes_.hierarchy().corners(triangle);
   const Index patch = domain_.plc.triangles[triangle].patch;
@@ -300,7 +302,7 @@ std::optional<Candidate> CollarSurface::repair(const CollarTriangle& t) const {
   return Candidate{best, radius * radius, t.representation, feature, start};
 }
 
-// What is known of faces whose cells have changed is forgotten.
+// Forgets what is known of faces whose cells have changed.
 void CollarSurface::cells_made(const ConflictZone& zone) {
   if (off_.size() == 0) return;
   off_.resize(mesh_.cell_capacity(), 0);

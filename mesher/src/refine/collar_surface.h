@@ -12,13 +12,13 @@ namespace collarmesh {
 
 /// The collar surface as a restricted Delaunay triangulation (paper, section 4): the triangles between cells
 /// inside the collars and outside, whether they represent the surface well enough to be stitched to the
-/// balls' centres, and the points that mend it where they do not, lower dimension first.
+/// balls' centres, and the points that repair it elsewhere, lower dimension first.
 ///
-/// State: the faces whose dual edges are known to meet no ball. CollarReview asks which triangles are poor
-/// and when; RipAndStitch takes them all. The loop tells of insertions.
+/// State: the faces whose dual edges are known to meet no ball. CollarReview asks which triangles are poor,
+/// and decides when; RipAndStitch takes them all. The loop reports insertions.
 class CollarSurface {
  public:
-  /// All are kept by reference.
+  /// Keeps all by reference.
   CollarSurface(const Domain& domain, const RefinedMesh& mesh, const SurfaceNodes& nodes,
                 const CollarSystem& collars, const CollarCells& cells, const RestrictedSurface& surface,
                 const CollarCreator& creator)
@@ -31,26 +31,28 @@ class CollarSurface {
         creator_(creator) {}
 
   std::vector<CollarTriangle> triangles();
-  /// The face seen from a cell outside, if its dual edge meets the collar surface.
+  /// Returns the collar triangle of a face seen from a cell outside, if its dual edge meets the collar
+  /// surface.
   std::optional<CollarTriangle> triangle(FaceId outer);
-  /// Is it known that the dual edge of a face meets no ball?
+  /// Returns whether the dual edge of a face is known to meet no ball.
   bool is_off(FaceId outer) const {
     return cell_of(outer) < off_.size() && (off_[cell_of(outer)] >> corner_of(outer) & 1U) != 0;
   }
 
-  /// Is a triangle poor whatever its neighbours are? Notes where it bends.
+  /// Returns whether a triangle is poor whatever its neighbours are. Records where it bends.
   bool poor_alone(CollarTriangle& t) { return poorly_represented(t) || bends(t); }
-  /// Would the book tet between two triangles of consecutive balls be inverted, or its angle too large?
+  /// Returns whether the book tet between two triangles of consecutive balls would be inverted, or its angle
+  /// too large.
   bool poor_book(const CollarTriangle& t, const CollarTriangle& u, const std::array<Index, 2>& edge) const;
-  /// An edge and the ball's centre make a face between two regions. Does it lead from one sheet of a smooth
-  /// patch to another? In balls smaller than the distance tolerance that does not tell.
+  /// Returns whether an edge, which with the ball's centre makes a face between two regions, leads from one
+  /// sheet of a smooth patch to another. Cannot tell in balls smaller than the distance tolerance.
   bool spans_sheets(const CollarBall& ball, Index a, Index b) const;
-  /// What mends a triangle: its representation point, or the nearest point of an arc where a patch through
-  /// the ball's centre meets the sphere. Nothing when there is none, or when it is next to a mesh vertex
-  /// already: so the repairs of a ball are bounded (theory.md).
+  /// Returns the point that repairs a triangle: its representation point, or the nearest point of an arc
+  /// where a patch through the ball's centre meets the sphere. Returns nothing if there is none, or if it is
+  /// close to a mesh vertex already; so the number of repairs of a ball is bounded (theory.md).
   std::optional<Candidate> repair(const CollarTriangle& t) const;
 
-  /// Does a mesh vertex lie on a crease?
+  /// Returns whether a mesh vertex lies on a crease.
   bool on_crease(Index vertex) const;
 
   void cells_made(const ConflictZone& zone);
@@ -72,7 +74,7 @@ class CollarSurface {
   const CollarCells& cells_;
   const RestrictedSurface& surface_;
   const CollarCreator& creator_;
-  GrowingArray<std::uint8_t> off_;  // by cell: bit i for the face opposite corner i; grows when asked
+  GrowingArray<std::uint8_t> off_;  // by cell: bit i for the face opposite corner i; grows on demand
   std::vector<Index> balls_;        // scratch
   std::vector<TriangleHierarchy::Crossing> crossings_;  // scratch
 };

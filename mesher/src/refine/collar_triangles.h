@@ -9,22 +9,21 @@ namespace collarmesh {
 /// A face between a cell inside the collars and one outside, with the ball that its dual edge
 /// enters first and the point where it does (paper, Definition 9).
 struct CollarTriangle {
-  FaceId face;               ///< of the cell outside
+  FaceId face;               ///< seen from the cell outside
   std::uint32_t generation;  ///< of that cell
   Index ball;
   Point representation;
   bool several;             ///< its dual edge meets the collar surface more than once
-  bool poor_alone = false;  ///< whatever its neighbours are
+  bool poor_alone = false;  ///< poor whatever its neighbours are
   bool poor = false;
   Index bent_on = none;  ///< a smooth patch that an edge of it leaves too far ...
   Point bent_at = {};    ///< ... at its middle
 };
 
-/// Collar triangles by their faces. What is kept for a cell that is gone gives its place to the next one
-/// there.
+/// Collar triangles by their faces. Records of a removed cell are reused for the next cell in its slot.
 class CollarTriangles {
  public:
-  /// None when it is not known since its cell was created.
+  /// Returns the record of a face; none if there is none since its cell was created.
   CollarTriangle* find(FaceId face, std::uint32_t generation) {
     for (Index at = first(cell_of(face)); at != none; at = triangles_[at].next)
       if (triangles_[at].face == face && triangles_[at].generation == generation) return &triangles_[at];
@@ -51,7 +50,7 @@ class CollarTriangles {
 
  private:
   struct Linked : CollarTriangle {
-    Index next;  // of the same cell
+    Index next;  // next record of the same cell
   };
   Index first(Index cell) const { return cell < first_.size() ? first_[cell] : none; }
 

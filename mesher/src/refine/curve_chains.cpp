@@ -11,11 +11,11 @@ namespace collarmesh {
 
 namespace {
 
-// A curve that is this much longer than its chord gets inner seeds: its first ball would miss it.
+// A curve that is this much longer than its chord gets inner seeds, because its first ball would miss it.
 constexpr double seeded_length_per_chord = 1.2;
 // Subsegments are split at most this share of their radius off the centre.
 constexpr double subsegment_offset = 0.1;
-// What is left of a subsegment beyond the ball at its end is at least this share of the ball's radius long,
+// The rest of a subsegment beyond the ball at its end is at least this share of the ball's radius long,
 // unless a vertex is there already.
 constexpr double least_clipped_length = 0.3;
 // An arc may leave its chord by this share of the chord: about 60 degrees of turning.
@@ -46,7 +46,8 @@ void CurveChains::add_chain(Index c) {
   if (!closed) open_creases_.note_unresolved(c);
 }
 
-// Unresolved points: those of its vertices, or where it leaves their balls, and seeds between them.
+// Returns the unresolved points of a new chain: its vertices, or the points where the curve leaves their
+// balls, and seeds between them.
 std::vector<CurveChains::End> CurveChains::first_ends(Index c) {
   const Plc::Curve& curve = domain_.plc.curves[c];
   const auto seed = [&](double parameter) {
@@ -71,7 +72,8 @@ std::vector<CurveChains::End> CurveChains::first_ends(Index c) {
   return {ends[0], first, second, ends[1]};
 }
 
-// Where a curve leaves the ball at one of its ends: bisection, the ball meets it in one arc.
+// Returns the parameter at which a curve leaves the ball at one of its ends, by bisection: the ball meets the
+// curve in one arc.
 double CurveChains::leaving_parameter(Index c, const CollarBall& ball, bool at_start) const {
   const double length = domain_.paths.length(c);
   double inside = at_start ? 0 : length, outside = length / 2;
@@ -104,7 +106,7 @@ void CurveChains::point_resolved(Index point) {
   if (!points_[point].dormant && open_creases_.note_resolved(curve)) chain_resolved(curve, piece);
 }
 
-// A crease whose chain was split gets its balls, at once unless they must wait until it is isolated.
+// Creates the balls of a crease whose chain was split, unless they must wait until it is isolated.
 void CurveChains::chain_resolved(Index curve, Index piece) {
   if (domain_.is_papers())
     open_creases_.touch(curve);
@@ -119,8 +121,8 @@ void CurveChains::resolve_end(Index subsegment, unsigned side) {
   if (s.piece.resolved()) judge(subsegment);
 }
 
-// Where the curve between two parameters meets the bisector plane of a and b: bisection on the sign
-// of |xa| - |xb| over the polyline's points, then linear on one segment.
+// Returns the parameter at which the curve between two parameters meets the bisector plane of a and b: by
+// bisection on the sign of |xa| - |xb| over the polyline's points, then linear on one segment.
 double CurveChains::bisecting_parameter(Index c, const Point& a, const Point& b, double from,
                                         double to) const {
   const auto nearer_to_a = [&](const Point& p) { return squared_distance(p, b) - squared_distance(p, a); };
@@ -172,14 +174,14 @@ Index CurveChains::add(Index curve, const std::array<End, 2>& ends, Index near) 
   return index;
 }
 
-// The complex's vertices find theirs through its curves.
+// Records the piece at an unresolved point. Vertices of the complex find their pieces through their curves.
 void CurveChains::note_piece(Index point, Index subsegment) {
   if (point == none || point < domain_.plc.vertices.size()) return;
   if (point >= piece_at_.size()) piece_at_.resize(points_.size(), none);
   piece_at_[point] = subsegment;
 }
 
-// None before the first piece of a curve, and after its last one.
+// Links two pieces; none stands for the ends of a curve.
 void CurveChains::link(Index curve, Index before, Index after) {
   (before == none ? chain_ends_[curve][0] : subsegments_[before].neighbours[1]) = after;
   (after == none ? chain_ends_[curve][1] : subsegments_[after].neighbours[0]) = before;
@@ -194,7 +196,7 @@ void CurveChains::remove(Index subsegment) {
   free_subsegments_.push_back(subsegment);
 }
 
-// Is it to be split?
+// Queues a subsegment if it must be split.
 void CurveChains::judge(Index subsegment) {
   const Chained& s = subsegments_[subsegment];
   if (holds(s, balls_[s.ball].vertex) || turns_too_far(s))
@@ -203,7 +205,7 @@ void CurveChains::judge(Index subsegment) {
     queue(WorkQueue::coarse_subsegments, subsegment);
 }
 
-// Does a vertex encroach a subsegment? Its ends do not, nor what is at their places.
+// Returns whether a vertex encroaches a subsegment. Its ends do not, nor do vertices at their places.
 bool CurveChains::holds(const Chained& s, Index vertex) const {
   return squared_distance(mesh_.point(vertex), s.piece.centre) <= s.piece.squared_radius &&
          !is_end(s, vertex);
@@ -235,7 +237,7 @@ bool CurveChains::too_coarse(const Chained& chained) const {
   return squared_distance(a, b) > length * length || leaves_chord(chained, tolerance_of(s));
 }
 
-// The smallest of its part of the curve.
+// Returns the smallest tolerance on its part of the curve.
 double CurveChains::tolerance_of(const Subsegment& s) const {
   if (!domain_.tolerance.varies()) return domain_.tolerance.largest();
   const CurvePaths& paths = domain_.paths;
@@ -249,13 +251,13 @@ double CurveChains::tolerance_of(const Subsegment& s) const {
   }
 }
 
-// Its ball may not hold all of it.
+// Returns whether the curve turns so far that the subsegment's ball may not contain all of it.
 bool CurveChains::turns_too_far(const Chained& s) const {
   if (collars_.is_crease_curve(s.piece.curve)) return false;
   return leaves_chord(s, largest_sagitta_per_chord * distance(place(s, 0), place(s, 1)));
 }
 
-// By more than this?
+// Returns whether the curve leaves its chord by more than this.
 bool CurveChains::leaves_chord(const Chained& chained, double sagitta) const {
   const Subsegment& s = chained.piece;
   if (domain_.plc.curves[s.curve].straight) return false;
@@ -317,7 +319,7 @@ std::optional<CurveChains::Split> CurveChains::split_of(Index subsegment) {
   const auto across = is_end(chained, nearest) ? std::nullopt
                                                : facing_sheets_.parameter_across(
                                                      s, place(chained, 1) - place(chained, 0), nearest);
-  // A little off the centre: halves of symmetric curves would be cocircular.
+  // The split is a little off the centre: halves of symmetric curves would be cocircular.
   const double parameter =
       across ? *across
              : s.centre_parameter + subsegment_offset * std::sqrt(s.squared_radius) * random_.in_cube().x;
@@ -350,7 +352,8 @@ void CurveChains::drop_ball(const Split& split) {
   s.ball = none;
 }
 
-// The vertex may have made a ball at an end of the curve: then the piece has become another one.
+// Splits a subsegment at a vertex. The vertex may have created a ball at an end of the curve; then the piece
+// has become another one.
 void CurveChains::split_at(const Split& split, Index vertex) {
   Index piece = split.link.subsegment;
   if (!is_there(split.link)) {
@@ -443,7 +446,7 @@ void CurveChains::clip(Index c, bool at_start, Index near) {
   cut_off(first, side, {none, point, parameter}, near);
 }
 
-// The chain begins at a new end; what lies before it goes, and unresolved points that are just behind it.
+// Cuts a chain at a new end: removes the part beyond it, and unresolved points just behind it.
 void CurveChains::cut_off(Index first, unsigned side, const End& end, Index near) {
   const Index curve = subsegments_[first].piece.curve;
   const double from = subsegments_[first].piece.parameters[side];

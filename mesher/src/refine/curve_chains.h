@@ -19,33 +19,33 @@
 
 namespace collarmesh {
 
-/// The chains of curves: each is cut into subsegments, whose protective balls keep other features' samples
-/// away until they are split.
+/// The chains of curves: each curve is cut into subsegments, whose protective balls keep other features'
+/// samples away until they are split.
 ///
-/// Chains run ahead of the mesh, as the paper's one-dimensional meshes do: a subsegment ends at mesh vertices
-/// or at unresolved points. What a vertex encroaches is split by an unresolved point, which comes in when the
-/// mesh has quality again; so a vertex never makes other vertices come in at once, and no protective ball
-/// holds a vertex for long. Invariants, between insertions: what is left of a curve that has no collar is
-/// covered by its subsegments; a subsegment whose ball holds a mesh vertex, or that is resolved and too
-/// coarse, is in the queue; each ball is found from the mesh vertex that is nearest to its centre. The loop
-/// tells of insertions and of resolved points, and splits; SurfaceCheck wants more; CollarCreator clips
-/// chains, and in the end gives a crease its collar instead. It learns of the chains of creases through
-/// OpenCreases.
+/// Chains run ahead of the mesh, like the paper's one-dimensional meshes: a subsegment ends at mesh vertices
+/// or at unresolved points. A subsegment that a vertex encroaches is split by an unresolved point, which is
+/// inserted when the mesh has quality again. So a vertex never forces other vertices to be inserted at once,
+/// and no protective ball contains a vertex for long. Invariants, between insertions: the subsegments of a
+/// curve without a collar cover it; a subsegment whose ball contains a mesh vertex, or that is resolved and
+/// too coarse, is in the queue; each ball is found from the mesh vertex nearest to its centre. The loop
+/// reports insertions and resolved points, and splits; SurfaceCheck asks for further splits; CollarCreator
+/// clips chains, and in the end replaces a crease's chain by its collar. It learns of the chains of creases
+/// through OpenCreases.
 class CurveChains {
  public:
   /// A place where a subsegment is to be split.
   struct Split {
-    Candidate candidate;  ///< start == none: a mesh vertex is there already, `vertex`
+    Candidate candidate;  ///< start == none: the mesh vertex `vertex` is there already
     ChainLink link;
     double parameter;
-    Index vertex;  ///< nearest to the place
+    Index vertex;  ///< mesh vertex nearest to the place
   };
-  /// Where a curve that is no crease leaves the ball at its end.
+  /// The place where a curve that is no crease leaves the ball at its end.
   struct ClippedEnd {
     Index curve, ball;
-    Index point;  ///< unresolved
+    Index point;  ///< its unresolved point
   };
-  /// All are kept by reference.
+  /// Keeps all by reference.
   CurveChains(const Domain& domain, const RefinedMesh& mesh, const CollarSystem& collars,
               UnresolvedPoints& points, OpenCreases& open_creases, const GradedSizes& sizes,
               const FacingSheets& facing_sheets, RandomOffsets& random, Outcome& outcome, WorkQueue& queue)
@@ -60,17 +60,17 @@ class CurveChains {
         outcome_(outcome),
         queue_(queue) {}
 
-  /// Start the chains of all curves that no balls cover. Precondition: the vertices of the complex are the
+  /// Starts the chains of all curves that no balls cover. Precondition: the vertices of the complex are the
   /// first unresolved points, in their order.
   void start();
 
-  /// Paper, Procedure 2: the subsegment in whose protective ball a candidate with this zone lies deepest;
-  /// none if it encroaches none.
+  /// Returns the subsegment in whose protective ball a candidate with this zone lies deepest (paper,
+  /// Procedure 2); none if it encroaches none.
   Index encroached(const ConflictZone& zone, const Candidate& candidate) const;
-  /// Is any ball found from this mesh vertex?
+  /// Returns whether any ball is found from this mesh vertex.
   bool any_at(Index mesh_vertex) const { return balls_.first_at(mesh_vertex) != none; }
-  /// The end of a subsegment, not resolved yet, that is to come in instead of a candidate that encroaches it:
-  /// the one nearer to the candidate of those that are medial. None if there is no such end.
+  /// Returns the unresolved end of a subsegment that is inserted instead of a candidate that encroaches it:
+  /// among the medial ends the one nearer to the candidate. None if there is no such end.
   Index end_to_resolve(Index subsegment, const Candidate& candidate) const;
 
   bool due(const WorkQueue::Entry& entry) const { return is_there({entry.id, entry.stamp}); }
@@ -78,37 +78,37 @@ class CurveChains {
   // no; `split_of`; then `split_ahead`, or `drop_ball`, force_insert and `split_at`. Where a vertex is there
   // already (`start` is none), `can_join` must say yes, the vertex takes over the curve as its feature, and
   // `split_at` follows. When the candidate warps, `queue_again` follows.
-  /// Where to split a subsegment; nothing, and given up, when its ball is at the floor. Precondition: the
-  /// subsegment is there (`due`, or `encroached`).
+  /// Returns where to split a subsegment; nothing, and gives up, if its ball is at the floor. Precondition:
+  /// the subsegment exists (`due`, or `encroached`).
   std::optional<Split> split_of(Index subsegment);
-  /// Does the mesh vertex at the place split the subsegment? Not if it is one of its ends.
+  /// Returns whether the mesh vertex at the place splits the subsegment. Not if it is one of its ends.
   bool can_join(const Split& split) const;
-  /// Split a subsegment by an unresolved point. Precondition: no mesh vertex is at the place.
+  /// Splits a subsegment by an unresolved point. Precondition: no mesh vertex is at the place.
   void split_ahead(const Split& split);
-  /// The vertex that splits a subsegment is about to come, and may lie in its ball.
+  /// Removes the ball of a subsegment before the vertex that splits it is inserted, possibly inside the ball.
   void drop_ball(const Split& split);
-  /// Split a subsegment by a mesh vertex at the place. Precondition: sizes know it.
+  /// Splits a subsegment by a mesh vertex at the place. Precondition: sizes know it.
   void split_at(const Split& split, Index vertex);
-  /// Queue a subsegment that is too coarse again, if it is still there after something else was inserted.
+  /// Queues a subsegment that is too coarse again, if another insertion has left it.
   void queue_again(const Split& split);
 
-  /// An unresolved point has become a mesh vertex: what ends there knows it.
+  /// Reports that an unresolved point has become a mesh vertex; updates the subsegments that end there.
   void point_resolved(Index point);
-  /// A vertex has come: balls that it is nearest to move to it. Subsegments whose balls hold it are queued.
-  /// Precondition: the mesh has the vertex, and the point that it was, if any, is resolved.
+  /// Reports a new vertex. Balls move to it if it is nearest to them, and subsegments whose balls contain it
+  /// are queued. Precondition: the mesh has the vertex, and its unresolved point, if any, is resolved.
   void cells_made(const ConflictZone& zone, Index vertex);
-  /// Sizes have changed everywhere.
+  /// Judges all subsegments because sizes have changed everywhere.
   void judge_all();
-  /// Split a subsegment when its turn comes, before skinny cells.
+  /// Queues a subsegment to be split before skinny cells.
   void encroach(Index subsegment);
 
-  /// Visit all subsegments: their numbers and what they are.
+  /// Visits all subsegments with their numbers.
   template <class Visit>
   void visit(const Visit& visit) const {
     for (Index s = 0; s < subsegments_.size(); ++s)
       if (subsegments_[s].alive) visit(s, subsegments_[s].piece);
   }
-  /// Visit what all subsegments are, with the places of their ends.
+  /// Visits all subsegments with the places of their ends.
   template <class Visit>
   void visit_places(const Visit& visit) const {
     for (Index i = 0; i < subsegments_.size(); ++i)
@@ -117,16 +117,16 @@ class CurveChains {
   const std::vector<ClippedEnd>& clipped_ends() const { return clipped_ends_; }
 
   // For collars that are created in the pass:
-  /// A vertex of the complex has got its ball: a curve that ends there does so on the sphere.
+  /// Reports that a vertex of the complex has its ball: a curve that ends there now ends on the sphere.
   void clip(Index curve, bool at_start, Index near);
-  /// The subsegment of a link, if it is still there.
+  /// Returns the subsegment of a link, if it still exists.
   const Subsegment* find(const ChainLink& link) const {
     return is_there(link) ? &subsegments_[link.subsegment].piece : nullptr;
   }
-  /// Balls take the place of a chain: its subsegments go, and the points between them that are not resolved.
-  /// Returns a mesh vertex near it, none if there was no chain.
+  /// Removes a chain that balls replace: its subsegments, and the unresolved points between them. Returns a
+  /// mesh vertex near it, none if there was no chain.
   Index remove_chain(Index curve);
-  /// The mesh vertices between the ends of a chain, in their order.
+  /// Returns the mesh vertices between the ends of a chain, in their order.
   std::vector<PlaceOnCurve> vertices_amid(Index curve) const;
   Index curve_of(Index subsegment) const { return subsegments_[subsegment].piece.curve; }
 
@@ -142,7 +142,7 @@ class CurveChains {
   struct Chained {
     Subsegment piece;
     std::array<Index, 2> points;      // unresolved points at its ends; none where there are mesh vertices
-    std::array<Index, 2> neighbours;  // on the curve; none at its ends
+    std::array<Index, 2> neighbours;  // previous and next piece on the curve; none at its ends
     Index ball;
     std::uint32_t stamp;
     bool alive;
@@ -193,7 +193,7 @@ class CurveChains {
   GrowingArray<Chained> subsegments_;
   std::vector<Index> free_subsegments_;
   std::vector<std::array<Index, 2>> chain_ends_;  // by curve: its first and last subsegment
-  GrowingArray<Index> piece_at_;  // by unresolved point amid a curve: the piece that ends there
+  GrowingArray<Index> piece_at_;                  // by unresolved point on a curve: the piece that ends there
   std::vector<ClippedEnd> clipped_ends_;
 };
 

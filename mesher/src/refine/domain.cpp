@@ -8,15 +8,16 @@ namespace collarmesh {
 namespace {
 
 constexpr double floor_per_diagonal = 1e-10;
-// Edges of the complex that are shorter than this share of the diagonal are tiny; the floor at them is as low
-// relative to them as it is to the diagonal elsewhere, but what double precision still tells apart.
+// Edges of the complex shorter than this share of the diagonal are tiny. The floor near them has the same
+// ratio to their length as elsewhere to the diagonal, limited by double precision.
 constexpr double tiny_per_diagonal = 1e-5, floor_per_tiny_edge = floor_per_diagonal / tiny_per_diagonal;
 constexpr double precise_per_diagonal = 1e-13, precise_per_coordinate = 500 * 2.2e-16;
-constexpr double reach_of_tiny_edge = 10;  // in its lengths
-// The share of the distance tolerance that refinement aims at: it looks at a few points of a face.
+constexpr double reach_of_tiny_edge = 10;  // in lengths of the edge
+// The share of the distance tolerance that refinement aims at, because it tests only a few points of a face.
 constexpr double distance_reserve = 0.75;
 
-// Slightly different in each axis so that its corners are not cospherical with points of symmetric input.
+// Returns a box slightly different in each axis, so that its corners are not cospherical with points of
+// symmetric input.
 Box surrounding_box(const Box& bounds) {
   const Vector sides = bounds.max - bounds.min;
   const double extent = std::max({sides.x, sides.y, sides.z});
@@ -68,7 +69,7 @@ std::vector<Domain::TinyEdge> Domain::tiny_edges() const {
   return found;
 }
 
-// Whoever asks has reached the floor elsewhere, which is rare: all tiny edges are looked at.
+// Returns the floor. Queries are rare (the ball is at the floor elsewhere), so all tiny edges are tested.
 double Domain::floor_at(const Point& p) const {
   double edge = tiny_per_diagonal * diagonal;
   for (const auto& [middle, length] : tiny_edges_)
@@ -79,7 +80,8 @@ double Domain::floor_at(const Point& p) const {
   return std::min(floor, std::max(floor_per_tiny_edge * edge, precise));
 }
 
-// Needle triangles of a facet that is planar within a tolerance only have normals of their own.
+// Returns the nearest point in the plane of the patch. In a facet that is planar only within a tolerance,
+// normals of needle triangles are meaningless.
 Point Domain::on_plane(Index patch, const Point& p) const {
   const Plc::Patch& plane = plc.patches[patch];
   return p - dot(p - frame.inside(plane.origin), plane.normal) * plane.normal;

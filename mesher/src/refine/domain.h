@@ -9,27 +9,27 @@
 
 namespace collarmesh {
 
-/// What is to be meshed, and how closely. Fixed from the start; every part reads it.
+/// The complex to mesh, and the required accuracy. Constant from the start; every part reads it.
 struct Domain {
-  /// The complex is kept by reference.
+  /// Keeps the complex by reference.
   Domain(const Plc& complex, const MeshOptions& mesh_options);
   Domain(const Domain&) = delete;
   Domain& operator=(const Domain&) = delete;
 
-  /// Is it to be meshed exactly as the paper's proofs assume?
+  /// Returns whether the mesh must meet exactly the assumptions of the paper's proofs.
   bool is_papers() const { return options.profile == Profile::paper; }
-  /// The radius of the smallest ball that is destroyed at a place: it ends what would never end. It is
-  /// `floor` or, where edges of the complex are tiny, a share of the shortest one that is near.
+  /// Returns the radius of the smallest ball that is destroyed at a place; it ends refinement that would not
+  /// terminate. It is `floor` or, where edges of the complex are tiny, a share of the shortest one nearby.
   double floor_at(const Point& p) const;
-  /// Is a ball around this place too small to be destroyed?
+  /// Returns whether a ball around this place is too small to be destroyed.
   bool at_floor(const Point& p, double squared_radius) const {
     if (squared_radius >= floor * floor) return false;
     const double least = floor_at(p);
     return squared_radius < least * least;
   }
-  /// The nearest point in the plane of a planar patch.
+  /// Returns the nearest point in the plane of a planar patch.
   Point on_plane(Index patch, const Point& p) const;
-  /// Is a point strictly inside the box?
+  /// Returns whether a point is strictly inside the box.
   bool in_box(const Point& p) const {
     return p.x > box.min.x && p.x < box.max.x && p.y > box.min.y && p.y < box.max.y && p.z > box.min.z &&
            p.z < box.max.z;
@@ -38,13 +38,13 @@ struct Domain {
   const Plc& plc;
   const MeshOptions options;
   const Frame frame;
-  const std::vector<Point> points;  ///< of the complex, in the frame
+  const std::vector<Point> points;  ///< points of the complex, in the frame
   const PatchPoints patch_points;
   const CurvePaths paths;
   const double diagonal;             ///< of the complex; lengths here are absolute
-  const SurfaceTolerance tolerance;  ///< how far the mesh may be from smooth curves and patches
-  const double floor;                ///< least radius of balls that are destroyed, but at tiny edges
-  const Box box;                     ///< around the mesh, well away from the complex; in the frame
+  const SurfaceTolerance tolerance;  ///< allowed distance of the mesh from smooth curves and patches
+  const double floor;                ///< least radius of balls that are destroyed, except at tiny edges
+  const Box box;                     ///< box around the mesh, well away from the complex; in the frame
 
  private:
   struct TinyEdge {

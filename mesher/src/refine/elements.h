@@ -7,15 +7,15 @@
 
 namespace collarmesh {
 
-/// Visit the two points of each segment of a curve's polyline.
+/// Visits the two points of each segment of a curve's polyline.
 template <class Visit>
 void visit_segments(const Plc::Curve& curve, const Visit& visit) {
   for (std::size_t i = 0; i + 1 < curve.points.size(); ++i) visit(curve.points[i], curve.points[i + 1]);
   if (curve.closed) visit(curve.points.back(), curve.points[0]);
 }
 
-/// The corners of the elements of a complex: its triangles, then what no patch has as degenerate ones, the
-/// segments of curves and single vertices.
+/// Returns the corners of the elements of a complex: its triangles, then, as degenerate ones, features on no
+/// patch: the segments of curves and single vertices.
 inline std::vector<std::array<Index, 3>> elements_of(const Plc& plc) {
   std::vector<std::array<Index, 3>> elements;
   elements.reserve(plc.triangles.size());

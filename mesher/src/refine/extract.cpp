@@ -16,7 +16,7 @@ namespace collarmesh {
 
 namespace {
 
-/// The cells by their least points, those that share it as they were.
+/// Orders the cells by their least points; cells with the same one keep their order.
 std::vector<Index> order_by_least_point(const std::vector<Index>& least_points, std::size_t points) {
   return order_by_group(points, least_points.size(), [&](std::size_t i) { return least_points[i]; });
 }
@@ -52,9 +52,9 @@ class Extraction {
   }
 
  private:
-  static constexpr std::size_t at_once = 8192;  // that a thread looks at
+  static constexpr std::size_t at_once = 8192;  // cells in a chunk of one thread
 
-  // The cells of regions outside of collars; after them come the stitched tets.
+  // Finds the cells of regions outside collars; the stitched tets follow.
   void find_tets() {
     std::vector<std::uint8_t> used(refined_.mesh.vertex_count(), 0);
     const auto use = [&](const std::array<Index, 4>& corners) {
@@ -80,7 +80,7 @@ class Extraction {
                                : refined_.stitched.tets[tet - cells_.size()].corners;
   }
 
-  // Along a curve through space, so that what is near lies near in memory.
+  // Adds points along a curve through space, so that near points are near in memory.
   void add_points() {
     std::vector<Point> places;
     resize_by_all_threads(places, vertices_.size());
@@ -102,7 +102,7 @@ class Extraction {
     });
   }
 
-  // In the order of their least points.
+  // Adds tets in the order of their least points.
   void add_tets() {
     const std::size_t count = cells_.size() + refined_.stitched.tets.size();
     std::vector<Index> least;
@@ -171,7 +171,7 @@ class Extraction {
     mesh_.face_tag.push_back(plc_.patches[patch].tag);
   }
 
-  // An edge of no tet is none of the mesh.
+  // Adds an edge, unless no tet has it.
   void add_edge(const std::array<Index, 2>& ends, Index curve) {
     if (number_[ends[0]] == none || number_[ends[1]] == none) return;
     mesh_.edges.push_back({number_[ends[0]], number_[ends[1]]});
@@ -186,15 +186,15 @@ class Extraction {
         mesh_.collar_balls.push_back({number_[v], balls[ball].radius, mesh_.points[number_[v]]});
   }
 
-  // Oriented so that the normal points from the first region to the second: as the patch is, except
-  // that a boundary's solid comes first.
+  // Adds a face oriented so that the normal points from the first region to the second: like the patch,
+  // except that a boundary's solid comes first.
   void add_face(FaceId face) {
     const RefinedMesh& mesh = refined_.mesh;
     const Index cell = cell_of(face), beyond = cell_of(mesh.opposite(face));
     if (refined_.collar_cells.inside(cell) || refined_.collar_cells.inside(beyond)) return;
     const RestrictedTriangle& t = refined_.surface.triangle(face);
     const Index patch = refined_.surface.patch(face);
-    // face_vertices is counterclockwise from outside its cell: the normal leaves that cell.
+    // face_vertices is counterclockwise as seen from outside its cell: the normal points out of that cell.
     auto v = mesh.face_vertices(face);
     std::array<Index, 2> regions{refined_.surface.region(cell), refined_.surface.region(beyond)};
     if (regions[0] == 0 && regions[1] == 0) return;
@@ -214,7 +214,7 @@ class Extraction {
     add_face(v, regions, patch);
   }
 
-  // As tets are.
+  // Orders faces like tets.
   void order_faces() {
     std::vector<Index> least;
     least.reserve(mesh_.faces.size());
@@ -226,7 +226,8 @@ class Extraction {
     permute(mesh_.face_tag, order);
   }
 
-  // The middle of a triangle may lie in the plane of its patch, but beside the patch.
+  // Removes the feature of vertices that may lie in the plane of their patch, but beside the patch, as the
+  // middle of a triangle can.
   void forget_features_off_the_surface() {
     std::vector<bool> on_surface(mesh_.points.size(), false);
     for (const auto& face : mesh_.faces)
@@ -239,9 +240,9 @@ class Extraction {
   const Plc& plc_;
   TetMesh mesh_;
   KnownNeighbours neighbours_;
-  std::vector<Index> number_;    // in the result, by mesh vertex; none if no tet has it
-  std::vector<Index> vertices_;  // that tets have
-  std::vector<Index> cells_;     // that are tets
+  std::vector<Index> number_;    // index in the result, by mesh vertex; none if no tet has it
+  std::vector<Index> vertices_;  // vertices of tets
+  std::vector<Index> cells_;     // cells that become tets
 };
 
 }  // namespace

@@ -6,7 +6,7 @@
 
 namespace collarmesh {
 
-/// What of the parts makes the result.
+/// The parts from which the result is made.
 struct Refined {
   const Domain& domain;
   const RefinedMesh& mesh;
@@ -24,9 +24,9 @@ struct Extracted {
   KnownNeighbours neighbours;  ///< none at all sides of stitched tets
 };
 
-/// The result of the refinement: the cells inside regions and outside collars, and what was stitched. In
-/// memory points lie along a curve through space, tets and faces in the order of their least points: what
-/// visits them one after the other finds their neighbourhood in the caches.
+/// Returns the result of the refinement: the cells inside regions and outside collars, and the stitched tets.
+/// Points lie in memory along a curve through space, tets and faces in the order of their least points, so
+/// that a loop over them finds neighbouring data in the caches.
 Extracted extract(const Refined& refined);
 
 }  // namespace collarmesh

@@ -10,18 +10,18 @@ namespace collarmesh {
 
 namespace {
 
-// Of a set of numbers: a node and its place in the table.
+// Bytes per entry of a hash set: a node and its slot in the table.
 constexpr std::size_t bytes_per_pair = 32;
-// Of the radius of the ball that is to be split. Where a gap is wider, samples are as dense as it is narrow
-// anyway.
+// Largest width of a gap, relative to the radius of the ball to split. In wider gaps samples are as dense as
+// the gap is narrow anyway.
 constexpr double widest_gap_per_radius = 0.9;
-// The new vertex keeps this share of that radius to all vertices on its own side.
+// The new vertex keeps at least this share of that radius from all vertices on its own side.
 constexpr double least_spacing_per_radius = 0.35;
-// The least cosine between the way across and the normals of sheets that face each other.
+// The least cosine between the direction across and the normals of sheets that face each other.
 constexpr double least_facing = 0.97;
 // Cells that span a gap are flatter than this.
 constexpr double largest_narrowness = 0.5;
-// A curve is split beneath a vertex in this middle part of a subsegment only.
+// A curve is split beneath a vertex only in this middle part of a subsegment.
 constexpr double least_part = 0.25;
 
 using Corners = std::array<Point, 4>;
@@ -90,8 +90,9 @@ std::optional<double> FacingSheets::parameter_across(const Subsegment& s, const 
   return low;
 }
 
-// Features that meet would bring each other's samples ever closer to where they do: sheets face each other
-// only where they are parallel, and no other features that have a point in common.
+// Returns whether a patch faces a vertex: only if the sheets are parallel and, for other features, have no
+// point in common. Otherwise the samples of features that meet would bring each other ever closer to their
+// common point.
 bool FacingSheets::faces(Index vertex, Index patch, const Vector& normal) const {
   const Feature& v = mesh_.feature(vertex);
   if (v.dimension == 0) return true;

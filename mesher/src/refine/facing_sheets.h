@@ -10,19 +10,19 @@
 
 namespace collarmesh {
 
-/// Sheets of the surface that face each other across a gap narrower than the elements around it. With samples
-/// of its own each of them would encroach the other one until both are sampled as densely as the gap is
-/// narrow. So what a vertex encroaches from across a gap is split beneath that vertex. Samples in such pairs
-/// leave the balls of the other sheet's triangles and subsegments empty, whatever their size: what makes them
-/// smaller is the quality of cells in a thin part. Outside the regions nobody wants that, so there the edge
-/// between the vertices of a pair counts in no radius-edge ratio. The paper knows none of this: in its
-/// profile there are no pairs.
+/// Sheets of the surface that face each other across a gap narrower than the elements around it. If each were
+/// sampled alone, each sample would encroach the other sheet until both are sampled as densely as the gap is
+/// narrow. So a triangle or subsegment that a vertex encroaches from across a gap is split beneath that
+/// vertex. Samples in such pairs leave the balls of the other sheet's triangles and subsegments empty,
+/// whatever their size; only the quality of cells in a thin part makes them smaller. Outside the regions that
+/// quality is not needed, so there the edge between the vertices of a pair counts in no radius-edge ratio. In
+/// the paper's profile there are no pairs.
 ///
-/// State: the pairs. TriangleQuality and CurveChains ask what faces theirs, CellQuality whether a cell is to
-/// be spared; the loop notes pairs.
+/// State: the pairs. TriangleQuality and CurveChains query them for their triangles and subsegments,
+/// CellQuality for cells to spare; the loop records pairs.
 class FacingSheets {
  public:
-  /// All are kept by reference.
+  /// Keeps all by reference.
   FacingSheets(const Domain& domain, const RefinedMesh& mesh, const SurfaceNodes& nodes,
                const CollarSystem& collars, const RestrictedSurface& surface)
       : domain_(domain),
@@ -32,26 +32,28 @@ class FacingSheets {
         surface_(surface),
         contacts_(domain.plc) {}
 
-  /// For a restricted triangle with a vertex on another sheet: the point of its patch beneath that vertex.
+  /// For a restricted triangle with a vertex on another sheet, returns the point of its patch beneath that
+  /// vertex.
   std::optional<Candidate> candidate_across(FaceId face);
-  /// Where on a subsegment, which goes this way, the vertex is nearest that encroaches it from across a gap,
-  /// if it does. Precondition: it is none of its ends.
+  /// Returns the parameter on a subsegment, which has this direction, that is nearest to a vertex that
+  /// encroaches it from across a gap, if it does. Precondition: the vertex is none of its ends.
   std::optional<double> parameter_across(const Subsegment& s, const Vector& along, Index vertex) const;
 
-  /// These vertices face each other; the second one may be about to come.
+  /// Records that these vertices face each other; the second one may be about to be inserted.
   void note_pair(Index a, Index b);
-  /// Is a cell within the radius-edge bound but for the edges between vertices of a pair? Several threads may
-  /// ask at once, while nobody notes pairs.
+  /// Returns whether a cell is within the radius-edge bound if edges between vertices of a pair do not count.
+  /// Several threads may call it at once, while no pairs are recorded.
   bool is_within(Index cell, double bound) const;
-  /// How wide the gap is that a flat cell with corners on features alone spans: between vertices of pairs, or
-  /// of features that have no point in common; infinite if it spans none. The same for threads.
+  /// Returns the width of the gap that a flat cell with corners on features alone spans: between vertices of
+  /// pairs, or of features that have no point in common; infinite if it spans none. Several threads may call
+  /// it in the same way.
   double gap_across(Index cell) const;
 
   std::size_t bytes() const;
 
  private:
   bool faces(Index vertex, Index patch, const Vector& normal) const;
-  /// Do two features have no point in common?
+  /// Returns whether two features have no point in common.
   bool are_apart(const Feature& a, const Feature& b) const;
   bool is_pair(Index a, Index b) const;
 
@@ -61,7 +63,7 @@ class FacingSheets {
   const CollarSystem& collars_;
   const RestrictedSurface& surface_;
   const FeatureContacts contacts_;
-  std::unordered_set<std::uint64_t> pairs_;  // of mesh vertices, as edges
+  std::unordered_set<std::uint64_t> pairs_;  // edges between mesh vertices
   ConflictZone zone_;                        // scratch
 };
 

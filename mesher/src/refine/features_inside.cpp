@@ -8,7 +8,7 @@ namespace {
 
 bool outside(const Plc::Patch& patch) { return patch.regions[0] == 0 && patch.regions[1] == 0; }
 
-// The features to keep, and by whole numbers their numbers among these, none for others.
+// The features to keep, and their new numbers by old ones, none for removed features.
 struct Renumbering {
   std::vector<Index> kept, number;
 
@@ -21,7 +21,7 @@ struct Renumbering {
     }
   }
   bool keeps(Index i) const { return number[i] != none; }
-  // Of a list of features what is kept; stays sorted.
+  // Keeps and renumbers the features of a list; it stays sorted.
   void apply(std::vector<Index>& list) const {
     std::erase_if(list, [&](Index i) { return !keeps(i); });
     for (Index& i : list) i = number[i];

@@ -59,7 +59,7 @@ double GapExplorer::on_curve(Index curve, const Point& p, double bound) {
 double GapExplorer::explore(const Feature& at, const Point& x, double bound) {
   ++queries_;
   near_ = mesh_.nearest_vertex(x, near_);
-  // What came near last is near still.
+  // The last witness is often still near.
   Witness& last = last_witness(at);
   double squared = bound * bound;
   if (last.points[0] != none) squared = std::min(squared, squared_distance_to(last.points, x));
@@ -114,7 +114,7 @@ bool GapExplorer::reaches_into(Index cell, const std::array<Index, 3>& points,
   return !polygon_.empty() && std::none_of(except.begin(), except.end(), holds_polygon);
 }
 
-// By the planes between the vertex and its neighbours, as long as anything is left.
+// Cuts by the planes between the vertex and its neighbours, as long as anything is left.
 void GapExplorer::cut_to_cell(Index vertex, const Point& a, const Point& b, const Point& c) {
   const Point& u = mesh_.point(vertex);
   polygon_ = {a, b, c};
@@ -144,7 +144,8 @@ void GapExplorer::interview(std::span<const Index> nodes, const Feature& at, con
   nodes_.hierarchy().visit_near(nodes, x, squared_bound, contains_all, [&](Index element) {
     ++interviews_;
     const auto& e = nodes_.hierarchy().points(element);
-    // What bounds a patch is no nearer than the patch. Without a border it counts: it was not left out.
+    // The border of a patch is no nearer than the patch. An element without a border counts, because it was
+    // not left out.
     const bool is_triangle = element < plc_.triangles.size();
     if (border_of_[element] == none || (is_triangle && counts({2, plc_.triangles[element].patch})))
       return witness(e[0], e[1], e[2]);

@@ -12,43 +12,43 @@
 
 namespace collarmesh {
 
-/// The gap size by exploring the mesh (paper, Procedure 4): from the Voronoi cell that contains the point
-/// breadth first, interviewing what meets the cells, until the ball of the nearest witness is explored. What
-/// contains the point is left out as a whole, however finely it is tessellated.
+/// The gap size by exploring the mesh (paper, Procedure 4): breadth first from the Voronoi cell that contains
+/// the point, interviewing the elements that meet the cells, until the ball of the nearest witness is
+/// explored. Features that contain the point are left out as a whole, however finely they are tessellated.
 class GapExplorer final : public GapSize {
  public:
-  /// All are kept by reference.
+  /// Keeps all by reference.
   GapExplorer(const Domain& domain, const RefinedMesh& mesh, const SurfaceNodes& nodes);
 
-  /// The next query is near this mesh vertex: where its cell is looked for. Each query is near the next.
+  /// Makes the next query start near this mesh vertex. Each query starts near the last one.
   void start_near(Index vertex) { near_ = vertex; }
 
   double at_vertex(Index vertex, double bound = INFINITY) override;
   double on_curve(Index curve, const Point& p, double bound = INFINITY) override;
 
-  /// Is a vertex or curve of the complex isolated in the Voronoi cell of a mesh vertex (paper, Definition 6):
-  /// does every feature that meets the cell contain it? What a feature has in the cell does not count where
-  /// it lies in one of these balls as a whole: the cell of a point on the sphere of a vertex ball reaches
-  /// into the ball, where features come as close as they like.
-  /// The witness against it is kept, and asked first.
+  /// Returns whether a vertex or curve of the complex is isolated in the Voronoi cell of a mesh vertex
+  /// (paper, Definition 6): whether every feature that meets the cell contains it. A feature does not count
+  /// if its whole part in the cell lies in one of these balls: the cell of a point on the sphere of a vertex
+  /// ball reaches into the ball, where features come arbitrarily close. The witness against isolation is
+  /// kept, and tested first the next time.
   bool isolated(const Feature& vertex_or_curve, Index cell, std::span<const CollarBall> except = {});
-  /// Is the last witness against the isolation of this vertex or curve still in the cell where it was found?
+  /// Returns whether the last witness against the isolation of this vertex or curve is still in the cell
+  /// where it was found.
   bool witness_remains(const Feature& vertex_or_curve, std::span<const CollarBall> except = {});
 
   std::size_t queries() const { return queries_; }
-  /// Vertices whose cells were explored, of all queries.
+  /// Returns the number of vertices whose cells were explored, over all queries.
   std::size_t explored() const { return explored_; }
-  /// Elements below the nodes of these cells that were asked for their distance.
+  /// Returns the number of elements below the nodes of these cells whose distance was computed.
   std::size_t interviews() const { return interviews_; }
 
  private:
-  /// What of the complex an element holds besides its triangle: the vertices at its corners, and the curves
-  /// from each corner to the next.
+  /// The border of an element: the vertices at its corners, and the curves from each corner to the next.
   struct Border {
     std::array<Index, 3> vertices{none, none, none}, curves{none, none, none};
   };
-  /// Points of what came near a vertex or curve last, but does not contain it, and the cell in which that
-  /// kept it from being isolated.
+  /// Points of the element that last came near a vertex or curve that it does not contain, and the cell in
+  /// which it prevented isolation.
   struct Witness {
     std::array<Index, 3> points{none, none, none};
     Index cell = none;
@@ -56,8 +56,8 @@ class GapExplorer final : public GapSize {
 
   void find_borders();
   double explore(const Feature& at, const Point& x, double bound);
-  /// Calls witness(a, b, c) with points of what the features that do not contain `at` consist of: below the
-  /// nodes, nearer to x than the bound, which may be lowered.
+  /// Calls witness(a, b, c) with points of elements below the nodes whose features do not contain `at`, if
+  /// nearer to x than the bound, which may be lowered.
   template <class Found>
   void interview(std::span<const Index> nodes, const Feature& at, const Point& x, const double& squared_bound,
                  const Found& witness);
@@ -67,10 +67,10 @@ class GapExplorer final : public GapSize {
   double squared_distance_to(const std::array<Index, 3>& points, const Point& x) const {
     return squared_distance_to_triangle(x, points_[points[0]], points_[points[1]], points_[points[2]]);
   }
-  /// Does a witness reach into this cell, whose neighbours are adjacent_, with more than lies in one of these
-  /// balls?
+  /// Returns whether a witness reaches into this cell, whose neighbours are adjacent_, with more than the
+  /// part in one of these balls.
   bool reaches_into(Index cell, const std::array<Index, 3>& points, std::span<const CollarBall> except);
-  /// Put what a triangle has in the cell of this vertex, whose neighbours are adjacent_, into polygon_.
+  /// Writes the part of a triangle in the cell of this vertex, whose neighbours are adjacent_, to polygon_.
   void cut_to_cell(Index vertex, const Point& a, const Point& b, const Point& c);
 
   const Plc& plc_;
@@ -80,8 +80,8 @@ class GapExplorer final : public GapSize {
   std::vector<Border> borders_;             // of elements that have any
   std::vector<Index> border_of_;            // by element; none: only a triangle
   std::vector<Index> patch_below_;          // by node: the patch of all elements below, if none has a border
-  std::vector<Witness> witnesses_;          // the last ones, of vertices, then of curves
-  std::vector<std::uint32_t> interviewed_;  // by node: in this exploration, if it is the last one's number
+  std::vector<Witness> witnesses_;          // the last ones of vertices, then of curves
+  std::vector<std::uint32_t> interviewed_;  // by node: the number of the exploration that last interviewed it
   std::uint32_t exploration_ = 0;
   std::vector<Index> fresh_nodes_, adjacent_;
   std::vector<Point> polygon_, clipped_;

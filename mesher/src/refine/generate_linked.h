@@ -6,8 +6,9 @@
 
 namespace collarmesh {
 
-/// As the public one. `neighbours`: what the triangulation knows of the mesh's tets, for the stages to come.
-/// `trace`: becomes the steps of the run, of the last one if it is run twice; null if nobody asks for them.
+/// Does the same as the public function. Sets `neighbours` to the tets' neighbours known from the
+/// triangulation, for later stages. `trace` gets the steps of the run, of the last one if it is run twice;
+/// null if they are not needed.
 MeshResult generate(const Plc& plc, const MeshOptions& options, const Execution& execution,
                     KnownNeighbours& neighbours, Trace* trace = nullptr);
 

@@ -7,7 +7,8 @@ namespace collarmesh {
 namespace {
 
 constexpr unsigned most_rounds = 20;
-// What lies between two surfaces is as fine as they are: sizes spread from them when gaps were asked for.
+// Elements between two surfaces are as fine as the surfaces: sizes spread from there with this growth if gaps
+// were asked for.
 constexpr double gradation_in_gaps = 0.25;
 
 }  // namespace

@@ -11,37 +11,37 @@
 
 namespace collarmesh {
 
-/// Target edge lengths: what is asked for (Sizing) and, with gradation, one at every mesh vertex, which grow
-/// by at most `gradation` per unit length from where they are small.
+/// Target edge lengths: those asked for (Sizing) and, with gradation, one at every mesh vertex, which grow by
+/// at most `gradation` per unit length from where they are small.
 ///
-/// A vertex takes the smallest size that its neighbours allow when it is inserted; what becomes smaller
-/// later is spread over the mesh when the queue has run empty. The parts that judge cells, triangles and
-/// subsegments ask; TriangleQuality imposes what it finds on the surface; the loop tells of insertions and
-/// spreads.
+/// When a vertex is inserted, it gets the smallest size that its neighbours allow; sizes that decrease later
+/// are spread over the mesh when the queue is empty. The parts that judge cells, triangles and subsegments
+/// query sizes; TriangleQuality imposes sizes found on the surface; the loop reports insertions and spreads
+/// sizes.
 class GradedSizes {
  public:
-  /// All are kept by reference.
+  /// Keeps all by reference.
   GradedSizes(const Domain& domain, const RefinedMesh& mesh, const RestrictedSurface& surface);
 
   const Sizing& asked() const { return sizing_; }
-  /// Do sizes depend on those at vertices?
+  /// Returns whether sizes depend on those at vertices.
   bool any_at_vertices() const { return at_vertex_.size() > 0; }
-  /// The target edge length that gradation imposes on a simplex with these corners, whose ball has this
-  /// radius; infinite without gradation.
+  /// Returns the target edge length that gradation imposes on a simplex with these corners, whose ball has
+  /// this radius; infinite without gradation.
   double graded(std::span<const Index> corners, double reach) const {
     if (at_vertex_.size() == 0) return INFINITY;
     double size = INFINITY;
     for (const Index v : corners) size = std::min(size, at_vertex_[v]);
     return size + gradation_ * reach;
   }
-  /// The target edge length is this at such a distance from the vertices.
+  /// Imposes a target edge length at this distance from the vertices.
   void impose(std::span<const Index> vertices, double size, double distance);
 
-  /// Precondition: the surface knows the regions of the new cells.
+  /// Sets the size of a new vertex. Precondition: the surface knows the regions of the new cells.
   void cells_made(const ConflictZone& zone, Index vertex);
 
-  /// Spread sizes over the whole mesh: Dijkstra's algorithm. False without gradation, and after too many
-  /// times.
+  /// Spreads sizes over the whole mesh by Dijkstra's algorithm. Returns false without gradation, and after
+  /// too many times.
   bool spread();
 
  private:

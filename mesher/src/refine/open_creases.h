@@ -9,43 +9,44 @@
 
 namespace collarmesh {
 
-/// A subsegment of a curve's chain, as long as the stamp is its own.
+/// A subsegment of a curve's chain; it is valid as long as the stamp is the subsegment's.
 struct ChainLink {
   Index subsegment;
   std::uint32_t stamp;
 };
 
-/// The crease curves that have no collar yet, when collars are created in the pass: what their chains have
-/// been, and which of them may have become isolated.
+/// The crease curves that have no collar yet, when collars are created in the pass: the history of their
+/// chains, and which of them may have become isolated.
 ///
-/// Invariant: an open crease that has changed since it was asked for is touched, once. CurveChains opens
-/// creases and tells of their chains; CollarCreator touches them, asks, and closes those that get their
-/// balls. All functions but `chain` do nothing for curves that are not open.
+/// Invariant: an open crease that has changed since it was last tested is touched, once. CurveChains opens
+/// creases and reports their chains; CollarCreator touches them, tests them, and closes those that get their
+/// balls. All functions except `chain` do nothing for curves that are not open.
 class OpenCreases {
  public:
   struct Chain {
-    std::vector<ChainLink> links;           ///< all there have been
-    std::size_t unresolved = 0;             ///< of the points that its chain started with
-    bool split = false;                     ///< some subsegment was, before all of these were resolved
+    std::vector<ChainLink> links;           ///< all links so far
+    std::size_t unresolved = 0;             ///< number of unresolved points that its chain started with
+    bool split = false;                     ///< a subsegment was split before all of these were resolved
     std::array<Index, 2> ends{none, none};  ///< unresolved points where it leaves the balls at its ends
   };
 
   void open(Index curve) { creases_[curve] = {}; }
   bool is_open(Index curve) const { return creases_.contains(curve); }
-  /// All open ones, in no particular order.
+  /// Returns all open creases, in no particular order.
   std::vector<Index> curves() const {
     std::vector<Index> found;
     for (const auto& [curve, crease] : creases_) found.push_back(curve);
     return found;
   }
-  /// Precondition: it is open.
+  /// Returns the chain of a crease. Precondition: the crease is open.
   const Chain& chain(Index curve) const { return creases_.at(curve).chain; }
 
-  /// Its chain starts with one unresolved point more.
+  /// Reports that its chain starts with one more unresolved point.
   void note_unresolved(Index curve) {
     if (Crease* crease = find(curve)) ++crease->chain.unresolved;
   }
-  /// One of these is resolved, or not needed any more. Was it the last one, and has the chain been split?
+  /// Reports that one of these points is resolved, or not needed any more. Returns whether it was the last
+  /// one and the chain has been split.
   bool note_resolved(Index curve) {
     Crease* crease = find(curve);
     return crease != nullptr && --crease->chain.unresolved == 0 && crease->chain.split;
@@ -57,18 +58,18 @@ class OpenCreases {
     if (Crease* crease = find(curve)) crease->chain.links.push_back(link);
     touch(curve);
   }
-  /// It leaves a ball at its first (0) or last (1) end at this point.
+  /// Reports that the crease leaves a ball at its first (0) or last (1) end at this point.
   void note_end(Index curve, unsigned side, Index point) {
     if (Crease* crease = find(curve)) crease->chain.ends[side] = point;
   }
 
-  /// It may have become isolated.
+  /// Reports that the crease may have become isolated.
   void touch(Index curve) {
     Crease* crease = find(curve);
     if (crease != nullptr && !std::exchange(crease->touched, true)) touched_.push_back(curve);
   }
   bool any_touched() const { return !touched_.empty(); }
-  /// The one that was touched last, which is not touched any more; none if it was closed since.
+  /// Returns the crease that was touched last and untouches it; none if it was closed since.
   Index take_touched() {
     const Index curve = touched_.back();
     touched_.pop_back();
@@ -78,7 +79,7 @@ class OpenCreases {
     return curve;
   }
 
-  /// Balls take the place of its chain, which is returned. Precondition: it is open.
+  /// Closes a crease because balls replace its chain. Returns the chain. Precondition: the crease is open.
   Chain close(Index curve) {
     Chain chain = std::move(creases_.at(curve).chain);
     creases_.erase(curve);

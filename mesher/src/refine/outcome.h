@@ -7,8 +7,8 @@
 
 namespace collarmesh {
 
-/// What a refinement comes to. Parts report here what they could not guarantee; the loop asks.
-/// Invariant: of several messages the first one is kept, unless the refinement is stopped.
+/// The outcome of a refinement. Parts report here what they could not guarantee; the loop queries it.
+/// Invariant: the first of several messages is kept, unless the refinement is stopped.
 class Outcome {
  public:
   static constexpr const char* advice_at_floor =
@@ -17,18 +17,18 @@ class Outcome {
 
   explicit Outcome(const Frame& frame) : frame_(frame) {}
 
-  /// Something could not be done. `next`: what the user can do. The refinement goes on: the loop works off
-  /// the queue, checks nothing any more and returns `guarantee_missed`.
+  /// Reports a missed guarantee. `next` tells what the user can do. The refinement goes on: the loop finishes
+  /// the queue, makes no more checks and returns `guarantee_missed`.
   void give_up(const Point& where, const std::string& what, const std::string& next);
-  /// The refinement ends with this status, whatever else was reported: the loop returns, there is no mesh.
+  /// Ends the refinement with this status, whatever else was reported: the loop returns without a mesh.
   void stop(MeshStatus status, const Point& where, const std::string& what, const std::string& next);
 
   bool given_up() const { return !message_.empty(); }
   bool stopped() const { return status_ != MeshStatus::complete; }
-  /// `complete` unless it was stopped.
+  /// Returns the status: `complete` unless the refinement was stopped.
   MeshStatus status() const { return status_; }
   const std::string& message() const { return message_; }
-  /// In the frame.
+  /// Returns the place, in the frame.
   const Point& where() const { return where_; }
 
  private:

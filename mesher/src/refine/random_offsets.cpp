@@ -6,7 +6,7 @@ namespace collarmesh {
 
 namespace {
 
-// So many offsets are tried where they lead into a collar.
+// The number of offsets tried if they lead into a collar.
 constexpr int most_offsets = 16, offsets_of_full_length = 8;
 
 }  // namespace

@@ -6,20 +6,20 @@
 
 namespace collarmesh {
 
-/// Pseudo-random offsets of what is inserted: exact centres of cospherical input make flat cells whose
-/// refinement never ends. The loop and the parts it drives have one sequence: who asks when decides about the
-/// mesh. BlockRefinement has one for each cell or triangle, from its centre and the seed, so that the number
-/// of threads decides nothing.
+/// Pseudo-random offsets of inserted points: exact centres of cospherical input make flat cells whose
+/// refinement never ends. The loop and the parts it drives share one sequence, so the order of calls
+/// determines the mesh. BlockRefinement has one for each cell or triangle, from its centre and the seed, so
+/// that the number of threads does not matter.
 class RandomOffsets {
  public:
-  /// The collars are kept by reference.
+  /// Keeps the collars by reference.
   RandomOffsets(std::uint64_t seed, const CollarSystem& collars) : collars_(collars), state_(seed) {}
 
-  /// Each coordinate from -1 to 1.
+  /// Returns a vector with each coordinate from -1 to 1.
   Vector in_cube();
-  /// A vector in the cube of this half edge length, orthogonal to the normal unless that is zero, that does
-  /// not lead into a collar: between two sheets exact centres often lie on a third one. Zero when none was
-  /// found.
+  /// Returns a vector in the cube of this half edge length, orthogonal to the normal unless that is zero,
+  /// that does not lead into a collar: between two sheets exact centres often lie on a third one. Zero if
+  /// none was found.
   Vector outside_collars(const Point& from, double length, const Vector& normal);
 
  private:

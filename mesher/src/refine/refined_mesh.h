@@ -13,13 +13,13 @@ namespace collarmesh {
 
 /// The Delaunay mesh and the features that its vertices lie on.
 ///
-/// The loop inserts and says that a vertex lies on one feature more, BlockRefinement inserts into blocks; all
-/// other parts read. Searching is reading, though it marks cells and vertices: it is for one thread.
-/// `visit_ball` does not nest. Invariant: every vertex has a feature, of the lowest dimension that is known
-/// to hold it; dimension 3: none.
+/// The loop inserts vertices and reports further features of a vertex, BlockRefinement inserts into blocks;
+/// all other parts read. Searching counts as reading, though it marks cells and vertices, so only one thread
+/// may search. `visit_ball` does not nest. Invariant: every vertex has a feature, of the lowest dimension
+/// known to contain it; dimension 3: none.
 class RefinedMesh {
  public:
-  /// The corners of a box. The complex is kept by reference.
+  /// Makes a mesh of the corners of a box. Keeps the complex by reference.
   RefinedMesh(const Plc& plc, const Box& box);
 
   const Triangulation& triangulation() const { return triangulation_; }
@@ -33,27 +33,27 @@ class RefinedMesh {
   Index cell_count() const { return triangulation_.cell_count(); }
   bool alive(Index cell) const { return triangulation_.alive(cell); }
   std::uint32_t generation(Index cell) const { return triangulation_.generation(cell); }
-  /// Is there still the cell that had this generation?
+  /// Returns whether the cell that had this generation still exists.
   bool alive(Index cell, std::uint32_t generation) const {
     return triangulation_.alive(cell) && triangulation_.generation(cell) == generation;
   }
   const std::array<Index, 4>& corners(Index cell) const { return triangulation_.corners(cell); }
   FaceId opposite(FaceId face) const { return triangulation_.opposite(face); }
   std::array<Index, 3> face_vertices(FaceId face) const { return triangulation_.face_vertices(face); }
-  /// Of a cell whose corners and generation are asked for soon.
+  /// Prefetches the cell's corners and generation.
   void prefetch(Index cell) const { triangulation_.prefetch(cell); }
   const Point& circumcentre(Index cell) const { return triangulation_.circumcentre(cell); }
   double squared_radius(Index cell) const { return triangulation_.squared_radius(cell); }
   bool in_conflict(Index cell, const Point& p) const { return triangulation_.in_conflict(cell, p); }
 
-  /// Does a vertex lie on a patch, or on what bounds the patch?
+  /// Returns whether a vertex lies on a patch, or on its border.
   bool on_patch(Index vertex, Index patch) const {
     const Feature& f = features_[vertex];
     if (f.dimension == 2) return f.index == patch;
     if (f.dimension == 1) return plc_.curve_on_patch(f.index, patch);
     return f.dimension == 0 && plc_.vertex_on_patch(f.index, patch);
   }
-  /// Do all these vertices lie on one patch?
+  /// Returns whether all these vertices lie on one patch.
   bool on_one_patch(std::span<const Index> vertices) const;
 
   void incident_cells(Index vertex, std::vector<Index>& cells) const {
@@ -68,26 +68,26 @@ class RefinedMesh {
   void find_conflict_zone(const Point& p, Index start, ConflictZone& zone) const {
     triangulation_.find_conflict_zone(p, start, zone);
   }
-  /// The vertex whose Voronoi cell contains p. `near`: a vertex not far away, if one is known.
+  /// Returns the vertex whose Voronoi cell contains p. `near` is a vertex not far away, if one is known.
   Index nearest_vertex(const Point& p, Index near = none) const;
-  /// As VoronoiWalk::visit_ball.
+  /// Visits vertices like VoronoiWalk::visit_ball.
   template <class Visit>
   void visit_ball(const Point& x, Index nearest, const double& squared_radius, const Visit& visit) const {
     walk_.visit_ball(x, nearest, squared_radius, visit);
   }
 
-  /// For the loop: replace the zone's cells by those around its point.
+  /// Replaces the zone's cells by those around its point. For the loop.
   Index insert(ConflictZone& zone, const Feature& feature) {
     features_.push_back(feature);
     return triangulation_.insert(zone);
   }
-  /// As in Triangulation.
+  /// Divides the mesh like Triangulation::divide.
   std::vector<Triangulation::Block> divide(std::span<const Index> insertions, Triangulation::Owners& owners) {
     auto blocks = triangulation_.divide(insertions, owners);
     features_.resize(vertex_count(), Feature{3, none});
     return blocks;
   }
-  /// For several threads, each with a block of its own.
+  /// Inserts into a block. For several threads, each with a block of its own.
   Index insert(Triangulation::Block& block, ConflictZone& zone, const Feature& feature) {
     const Index vertex = block.insert(zone);
     features_[vertex] = feature;
@@ -98,7 +98,8 @@ class RefinedMesh {
     renumbering.apply(features_);
     return renumbering;
   }
-  /// A vertex is found to lie on this feature, too: it takes it over where it is of a lower dimension.
+  /// Records that a vertex lies on this feature, too: it becomes the vertex's feature if its dimension is
+  /// lower.
   void lower_feature(Index vertex, const Feature& feature) {
     if (feature.dimension < features_[vertex].dimension) features_[vertex] = feature;
   }
@@ -107,7 +108,7 @@ class RefinedMesh {
 
  private:
   const Plc& plc_;
-  mutable Triangulation triangulation_;  // its marks
+  mutable Triangulation triangulation_;  // for its marks
   mutable VoronoiWalk walk_;
   GrowingArray<Feature> features_;
 };

@@ -1,5 +1,5 @@
-// Sparse Voronoi Refinement: the work loop, destroy and force_insert (paper, Procedures 1 to 3;
-// what differs from the paper and why is in doc/theory.md).
+// Sparse Voronoi Refinement: the work loop, destroy and force_insert (paper, Procedures 1 to 3; doc/theory.md
+// lists the differences from the paper and the reasons).
 #include "refine/refinement.h"
 
 #include <fmt/format.h>
@@ -15,7 +15,7 @@ namespace collarmesh {
 namespace {
 
 constexpr std::size_t steps_between_stops = 512;
-// Of a ball that will come: with its links, corner points and places in hierarchies.
+// Bytes of a ball to come: with its links, corner points and places in hierarchies.
 constexpr std::size_t bytes_of_ball = 512;
 
 }  // namespace
@@ -71,9 +71,10 @@ MeshStatus Refinement::run() {
     return found;
   };
   WorkQueue::Item item;
-  // The collar surface is mended in many small steps: let it settle before the rest is looked at again.
+  // Repairs of the collar surface take many small steps: let it settle before the next check of everything
+  // else.
   bool mending_collars = false;
-  // Until then nobody looks at the collar surface, which blocks tell nothing.
+  // Until then the collar surface, to which blocks report nothing, is not used.
   bool first_pass = true;
   if (trace_) trace_->record("box");
   while (!outcome_.stopped()) {
@@ -147,7 +148,7 @@ void Refinement::process(const WorkQueue::Item& item) {
 
 void Refinement::destroy_cell(const WorkQueue::Item& item) {
   const auto candidate = cells_.candidate(item.entry.id);
-  // It may have yielded or warped to something that left this cell alive.
+  // It may have yielded or warped to another insertion that left this cell alive.
   if (candidate && destroy(*candidate)) cells_.queue_again(item, candidate->squared_radius);
 }
 
@@ -190,7 +191,8 @@ bool Refinement::destroy(Candidate candidate) {
   }
 }
 
-// The ball is empty: its middle is as good a place for a vertex as the candidate's, and so is a medial end.
+// Yields to a subsegment. Its ball is empty, so its middle is as good a place for a vertex as the
+// candidate's, and so is a medial end.
 bool Refinement::yield_to(Index subsegment, const Candidate& candidate) {
   if (const Index end = curves_.end_to_resolve(subsegment, candidate); end != none) {
     insert_point(end);
@@ -218,7 +220,7 @@ bool Refinement::destroy_subsegment(Index subsegment, bool queue_again) {
   return true;
 }
 
-// A vertex is in the ball: what splits the subsegment waits for its turn.
+// Splits a subsegment by an unresolved point because a vertex is in its ball; the point waits for its turn.
 void Refinement::split_ahead(Index subsegment) {
   if (collar_creator_.create_at_subsegment(subsegment)) return;
   const auto split = curves_.split_of(subsegment);
@@ -229,7 +231,7 @@ void Refinement::split_ahead(Index subsegment) {
     curves_.split_ahead(*split);
 }
 
-// A vertex is there already: it joins the curve.
+// Lets the vertex at the place of a split join the curve.
 bool Refinement::join(const CurveChains::Split& split) {
   if (!curves_.can_join(split)) return false;
   mesh_.lower_feature(split.vertex, split.candidate.feature);
@@ -238,8 +240,8 @@ bool Refinement::join(const CurveChains::Split& split) {
   return true;
 }
 
-// The paper inserts nothing that is not medial (section 3.1): it destroys the balls around a point of the
-// input, until one warps to it or the point is medial.
+// Resolves an unresolved point. The paper inserts no point that is not medial (section 3.1): it destroys the
+// balls around the point, until one warps to it or the point is medial.
 void Refinement::resolve_point(Index index) {
   if (!domain_.is_papers() || points_.medial(index)) return insert_point(index);
   const Point& p = points_[index].point;
@@ -282,12 +284,12 @@ Index Refinement::force_insert(const Feature& feature) {
   surface_.cells_vanish(zone_);
   const Index vertex = mesh_.insert(zone_, feature);
   if (counter_) counter_->note_insertion(zone_, early);
-  // What is there:
+  // Structures that represent the mesh:
   nodes_.cells_made(zone_, vertex);
   collar_cells_.cells_made(zone_, vertex);
   surface_.cells_made(zone_, vertex);
   sizes_.cells_made(zone_, vertex);
-  // What is to be done:
+  // Structures that queue work:
   points_.cells_made(zone_, vertex);
   curves_.cells_made(zone_, vertex);
   triangles_.cells_made(zone_);
@@ -298,7 +300,7 @@ Index Refinement::force_insert(const Feature& feature) {
   return vertex;
 }
 
-// Does something else come in than what destroys skinny cells, while one of these waits?
+// Returns whether the insertion has another purpose than destroying skinny cells, while a skinny cell waits.
 bool Refinement::too_early() {
   return working_on_ != WorkQueue::skinny_cells &&
          queue_.any_due(WorkQueue::skinny_cells, [&](const WorkQueue::Entry& entry) {
@@ -393,7 +395,7 @@ WorkCounts Refinement::work_counts() const {
   return counts;
 }
 
-// Vertices of cells in collars that neither a cell outside nor a stitched one has.
+// Returns the number of vertices that only cells in collars have, but no cell outside and no stitched tet.
 std::size_t Refinement::ripped_out() const {
   enum : std::uint8_t { elsewhere, ripped, kept };
   std::vector<std::uint8_t> where(mesh_.vertex_count(), elsewhere);

@@ -35,45 +35,46 @@
 
 namespace collarmesh {
 
-/// Sparse Voronoi Refinement of a complex (paper, Procedures 1 to 3): the loop. It alone knows all parts;
-/// what it knows of them is their order (doc/architecture/refinement_parts.md).
+/// Sparse Voronoi Refinement of a complex (paper, Procedures 1 to 3): the loop. Only the loop knows all
+/// parts, and it only knows their order (doc/architecture/refinement_parts.md).
 class Refinement {
  public:
   Refinement(const Plc& plc, const MeshOptions& options, const Execution& execution);
 
-  /// Refine until nothing is left to do, a budget is spent or the caller cancels.
+  /// Refines until nothing is left to do, a budget is spent or the caller cancels.
   MeshStatus run();
-  /// After run() returned budget_hit: was it within the budget until the ratio was bounded in narrow cells,
-  /// too?
+  /// After run() returned budget_hit: returns whether the run was within the budget until the ratio was
+  /// bounded in narrow cells, too.
   bool narrow_cells_are_dear() const { return narrow_cells_are_dear_; }
-  /// After run() returned complete or guarantee_missed.
+  /// Returns the mesh, after run() returned complete or guarantee_missed.
   Extracted extract() const;
 
-  /// For tests: called whenever no skinny cell is left to destroy, before anything else goes in.
+  /// For tests: sets a function to call whenever no skinny cell is left, before anything else is inserted.
   void observe_quality_phases(std::function<void()> observer) { observer_ = std::move(observer); }
-  /// For tests: called for every ball that is created in the pass, with the mesh as it is then.
+  /// For tests: sets a function to call for every ball that is created in the pass, with the mesh as it is
+  /// then.
   void observe_collars(std::function<void(const CollarBall&)> observer) {
     collar_creator_.observe(std::move(observer));
   }
-  /// The feature that a mesh vertex lies on; dimension 3: none.
+  /// Returns the feature that a mesh vertex lies on; dimension 3: none.
   const Feature& feature_of(Index vertex) const { return mesh_.feature(vertex); }
   const Triangulation& triangulation() const { return mesh_.triangulation(); }
   bool in_collar(Index cell) const { return collar_cells_.inside(cell); }
-  /// The gap size as the mesh is now.
+  /// Returns the gap size in the current mesh.
   GapExplorer& gap_size() { return collar_creator_.gap_size(); }
 
-  /// Before run(): record steps.
+  /// Turns on the recording of steps. Call it before run().
   void record_steps() { trace_.emplace(refined()); }
-  /// The steps recorded.
+  /// Returns the recorded steps.
   Trace trace() const { return trace_ ? trace_->trace() : Trace(); }
   const std::string& message() const { return outcome_.message(); }
   Point where() const { return domain_.frame.outside(outcome_.where()); }
   MeshStatistics statistics() const;
 
  private:
-  /// The order matters: collars and curves take the numbers of the complex's vertices for those of the first
-  /// unresolved points; curves ask which creases balls cover and where balls clip them; cells are judged when
-  /// it is known which lie in collars.
+  /// Starts all parts. The order matters: collars and curves take the numbers of the complex's vertices for
+  /// those of the first unresolved points; curves ask which creases balls cover and where balls clip them;
+  /// cells are judged when it is known which lie in collars.
   void start();
   void process(const WorkQueue::Item& item);
   void destroy_cell(const WorkQueue::Item& item);
@@ -82,20 +83,22 @@ class Refinement {
   void split_ahead(Index subsegment);
   bool join(const CurveChains::Split& split);
   bool yield_to(Index subsegment, const Candidate& candidate);
-  /// Paper, Procedure 2. False when nothing could be inserted.
+  /// Inserts a candidate or what it yields or warps to (paper, Procedure 2). Returns false if nothing could
+  /// be inserted.
   bool destroy(Candidate candidate);
   void resolve_point(Index point);
   void insert_point(Index point);
-  /// Paper, Procedure 3. Precondition: zone_ is the point's. Returns the new vertex.
+  /// Inserts a point (paper, Procedure 3). Precondition: zone_ is the point's. Returns the new vertex.
   Index force_insert(const Feature& feature);
   bool at_floor(const Candidate& candidate) const {
     return domain_.at_floor(candidate.point, candidate.squared_radius);
   }
   bool check_gradation();
   bool check_collars();
-  /// When nothing else is left to do. Returns whether there is more to do now.
+  /// Bounds the ratio in narrow cells, when nothing else is left to do. Returns whether there is more to do
+  /// now.
   bool bound_narrow_cells();
-  /// Is a budget spent when so many vertices more will come at least?
+  /// Returns whether a budget is spent, given a lower bound on the vertices to come.
   bool stopped(std::size_t planned_vertices = 0);
   bool is_budget_spent(std::size_t planned_vertices);
   std::size_t bytes() const;
@@ -111,14 +114,14 @@ class Refinement {
   CollarSystem collars_;
   RandomOffsets random_;
 
-  // What is there:
+  // Structures that represent the mesh:
   RefinedMesh mesh_;
   SurfaceNodes nodes_;
   CollarCells collar_cells_;
   RestrictedSurface surface_;
   GradedSizes sizes_;
   FacingSheets facing_sheets_;
-  // What is to be done:
+  // Structures that queue work:
   UnresolvedPoints points_;
   OpenCreases open_creases_;
   CurveChains curves_;
@@ -126,7 +129,7 @@ class Refinement {
   CellQuality cells_;
   CollarCreator collar_creator_;
   BlockRefinement blocks_;
-  // When the queue has run empty:
+  // Structures used when the queue is empty:
   CollarSurface collar_surface_;
   CollarReview collar_review_;
   SurfaceCheck surface_check_;
@@ -134,12 +137,12 @@ class Refinement {
   SurfaceTopology topology_;
 
   ConflictZone zone_;
-  std::optional<WorkCounter> counter_;  // for those who ask
+  std::optional<WorkCounter> counter_;  // only if counts are wanted
   std::optional<TraceRecorder> trace_;
   WorkQueue::Priority working_on_ = WorkQueue::priority_count;
   std::size_t steps_ = 0, warps_ = 0, yields_ = 0;
   double seconds_ = 0;
-  std::size_t most_with_narrow_cells_ = 0;  // vertices, once their ratio is to be bounded
+  std::size_t most_with_narrow_cells_ = 0;  // vertices at which the ratio of narrow cells becomes bounded
   bool narrow_cells_are_dear_ = false;
   std::function<void()> observer_;
 };

@@ -40,12 +40,12 @@ void RestrictedSurface::label_from_outside(Index cell, Workspace& w) {
   labels_[cell].region = region_beyond(0, w);
 }
 
-// The region at the end of a segment that starts in `region` and has just been intersected
-// (crossings_). Each crossing leaves one region and enters another; the one that is entered once
-// more than left is where the segment ends, whatever the order of the crossings.
+// Returns the region at the end of a segment that starts in `region` and has just been intersected
+// (crossings_). Each crossing leaves one region and enters another; the segment ends in the region that is
+// entered once more than left, whatever the order of the crossings.
 Index RestrictedSurface::region_beyond(Index region, const Workspace& w) const {
   if (w.crossings_.empty()) return region;
-  // The regions that a crossing leaves and enters.
+  // Returns the regions that a crossing leaves and enters.
   const auto regions_at = [&](const TriangleHierarchy::Crossing& crossing) {
     auto regions = domain_.plc.patches[domain_.plc.triangles[crossing.triangle].patch].regions;
     if (crossing.direction < 0) std::swap(regions[0], regions[1]);
@@ -74,8 +74,8 @@ Index RestrictedSurface::region_beyond(Index region, const Workspace& w) const {
   return region;
 }
 
-// Label one of the new cells from across the zone's border, best where no patch can be in between;
-// when the zone is the whole box, from the box's corner. Returns its index in the zone.
+// Labels one of the new cells from across the zone's border, preferably where no patch can be in between; if
+// the zone is the whole box, from the box's corner. Returns its index in the zone.
 std::size_t RestrictedSurface::first_label(const ConflictZone& zone, Workspace& w) {
   std::size_t seed = zone.created.size();
   for (std::size_t i = 0; i < zone.created.size(); ++i) {
@@ -93,8 +93,8 @@ std::size_t RestrictedSurface::first_label(const ConflictZone& zone, Workspace& 
   return 0;
 }
 
-// Restricted triangles among the faces between the new cells: their dual edges are those of the new vertex's
-// Voronoi cell. What they cross is kept in crossed_faces_ and dual_crossings_.
+// Finds restricted triangles among the faces between the new cells: their dual edges are those of the new
+// vertex's Voronoi cell. Keeps their crossings in crossed_faces_ and dual_crossings_.
 void RestrictedSurface::restrict_created_faces(const ConflictZone& zone, Index vertex, Workspace& w) {
   double largest = 0;
   for (const Index cell : zone.created) largest = std::max(largest, mesh_.squared_radius(cell));
@@ -108,7 +108,7 @@ void RestrictedSurface::restrict_created_faces(const ConflictZone& zone, Index v
       const FaceId face = face_id(cell, corner), other = mesh_.opposite(face);
       if (mesh_.corners(cell)[corner] == vertex || other == no_face) continue;
       const Index j = labels_[cell_of(other)].region;
-      if (j >= i) continue;  // its turn comes
+      if (j >= i) continue;  // it is handled later
       w.dual_edges_.add_segment(i, j);
       w.faces_.push_back(face);
     }
@@ -126,7 +126,8 @@ void RestrictedSurface::restrict_created_faces(const ConflictZone& zone, Index v
   }
 }
 
-// What the dual edge of a face between new cells crosses on the way out of the face's cell, in crossings_.
+// Puts the crossings of the dual edge of a face between new cells, on the way out of the face's cell, into
+// crossings_.
 void RestrictedSurface::recall_crossings(FaceId face, Workspace& w) const {
   w.crossings_.clear();
   if (!is_marked(face)) return;
@@ -139,7 +140,7 @@ void RestrictedSurface::recall_crossings(FaceId face, Workspace& w) const {
   }
 }
 
-// Labels of the new cells, and restricted triangles among the faces between them.
+// Labels the new cells, and finds restricted triangles among the faces between them.
 void RestrictedSurface::label_created_cells(const ConflictZone& zone, Index vertex, Workspace& w) {
   for (const Index cell : zone.created) labels_[cell] = {.region = unlabelled};
   if (nodes_.any_at(vertex)) restrict_created_faces(zone, vertex, w);
@@ -165,12 +166,12 @@ void RestrictedSurface::label_created_cells(const ConflictZone& zone, Index vert
   }
 }
 
-// A border face's dual edge has become shorter, so that it crosses what it crossed, or nothing. Does it
-// still cross the triangle that it alone crossed, from the one label to the other?
+// Returns whether a border face's dual edge still crosses the single triangle that it crossed, from one label
+// to the other. The insertion shortened the edge, so it can only lose crossings.
 bool RestrictedSurface::crosses_as_before(FaceId outer, FaceId face, Index vertex, Workspace& w) const {
   const RestrictedTriangle& t = triangle(outer);
-  // Of a dual edge in the plane of its triangle x may be any point: it is gone when the new vertex has
-  // come into the surface gap ball.
+  // If a dual edge lies in the plane of its triangle, x may be any point of it, so the triangle is lost when
+  // the new vertex lies in the surface gap ball.
   if (t.several_sheets || squared_distance(mesh_.point(vertex), t.x) < t.squared_radius) return false;
   const int direction = nodes_.hierarchy().crossing(mesh_.circumcentre(cell_of(outer)),
                                                     mesh_.circumcentre(cell_of(face)), t.triangle);
@@ -179,8 +180,8 @@ bool RestrictedSurface::crosses_as_before(FaceId outer, FaceId face, Index verte
   return region_beyond(labels_[cell_of(outer)].region, w) == labels_[cell_of(face)].region;
 }
 
-// What it alone crossed is beyond the end that is gone: the labels say so, unless the regions on both sides
-// of the patch are the same.
+// Returns whether a border face's dual edge has lost its single crossing, which is then beyond the lost end.
+// The labels show it, unless the regions on both sides of the patch are the same.
 bool RestrictedSurface::crosses_no_more(FaceId outer, FaceId face) const {
   const RestrictedTriangle& t = triangle(outer);
   const auto& regions = domain_.plc.patches[patch_of(t)].regions;
@@ -188,8 +189,8 @@ bool RestrictedSurface::crosses_no_more(FaceId outer, FaceId face) const {
          labels_[cell_of(outer)].region == labels_[cell_of(face)].region;
 }
 
-// The dual edges of the zone's border faces have become shorter, their ends are rounded anew: look
-// again at those that were marked and those whose labels say that they should be.
+// Checks the border faces again that were marked or whose labels require it: their dual edges have become
+// shorter, and their ends are rounded again.
 void RestrictedSurface::mark_border_faces(const ConflictZone& zone, Index vertex, Workspace& w) {
   for (std::size_t i = 0; i < zone.border.size(); ++i) {
     const FaceId outer = zone.outer[i];
@@ -214,7 +215,7 @@ void RestrictedSurface::mark_border_faces(const ConflictZone& zone, Index vertex
 void RestrictedSurface::cells_vanish(const ConflictZone& zone, Workspace& w) {
   const auto has_marks = [&](Index cell) { return labels_[cell].marked != 0; };
   if (std::none_of(zone.cells.begin(), zone.cells.end(), has_marks)) return;
-  // The record of a border face stays: the cell beyond has it, too.
+  // The record of a border face stays, because the cell beyond has it, too.
   for (const FaceId border : zone.border)
     labels_[cell_of(border)].marked &= static_cast<std::uint8_t>(~(1U << corner_of(border)));
   for (const Index cell : zone.cells)
@@ -225,7 +226,7 @@ void RestrictedSurface::cells_vanish(const ConflictZone& zone, Workspace& w) {
     });
 }
 
-// Are the cell's faces marked, with one record, from both of their cells or from none?
+// Returns whether the cell's faces are marked, with one record, from both of their cells or from none.
 [[maybe_unused]] static bool consistent(const RestrictedSurface& surface, const RefinedMesh& mesh,
                                         Index cell) {
   for (unsigned corner = 0; corner < 4; ++corner) {
@@ -254,7 +255,7 @@ void RestrictedSurface::fit_mesh() {
   marks_.extend(mesh_.cell_capacity());
 }
 
-// Those that are free first.
+// Gives free records to blocks first.
 void RestrictedSurface::divide(std::span<const std::size_t> records, std::span<Workspace> of_blocks) {
   fit_mesh();
   std::vector<Index>& free = workspace_.free_records_;
@@ -278,7 +279,7 @@ void RestrictedSurface::join(std::span<Workspace> of_blocks) {
   }
 }
 
-// Every face of a new cell may be one.
+// Returns whether there is room: every face of a new cell may need a record.
 bool RestrictedSurface::has_room(const ConflictZone& zone, const Workspace& w) const {
   return w.free_records_.size() >= zone.border.size() / 2 * 5;
 }
@@ -299,13 +300,13 @@ void RestrictedSurface::mark(FaceId face, Index record) {
   marks_[cell_of(face)][corner_of(face)] = record;
 }
 
-// Drop the mark on this side; the record goes with it.
+// Removes the mark on this side and the record.
 void RestrictedSurface::unmark(FaceId face, Workspace& w) {
   labels_[cell_of(face)].marked &= static_cast<std::uint8_t>(~(1U << corner_of(face)));
   w.free_records_.push_back(record_of(face));
 }
 
-// Precondition: crossings_ are those of its dual edge.
+// Marks a face if it is restricted. Precondition: crossings_ are those of its dual edge.
 void RestrictedSurface::restrict_face(FaceId face, Workspace& w) {
   const Index record = new_record(w);
   mark(face, record);
@@ -327,7 +328,7 @@ void RestrictedSurface::restrict_face(FaceId face, Workspace& w) {
   t.resolved_vertices =
       mesh_.on_patch(v[0], patch) && mesh_.on_patch(v[1], patch) && mesh_.on_patch(v[2], patch);
   if (t.resolved_vertices && domain_.plc.patches[patch].planar && !t.several_sheets) {
-    // A needle's circumcentre is noise; the crossing is not.
+    // The circumcentre of a needle is noise; the crossing is not.
     const Point centre = circumcentre(face);
     if (squared_distance(centre, t.x) < 0.01 * t.squared_radius) {
       t.x = centre;
@@ -344,7 +345,7 @@ Point RestrictedSurface::crossing_point(FaceId face, Index triangle) const {
   const Vector n = cross(t[1] - t[0], t[2] - t[0]);
   const double hp = dot(p - t[0], n), hq = dot(q - t[0], n);
   const double share = hp == hq ? 0.5 : std::clamp(hp / (hp - hq), 0.0, 1.0);
-  // A dual edge almost in the triangle's plane crosses it, but where is noise: not beside it.
+  // The place where a dual edge almost in the triangle's plane crosses it is noise: keep it on the triangle.
   return nearest_point_on_triangle(p + share * (q - p), t[0], t[1], t[2]);
 }
 

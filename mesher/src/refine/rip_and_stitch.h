@@ -7,13 +7,13 @@
 
 namespace collarmesh {
 
-/// What takes the place of the cells inside the collars, in mesh vertices.
+/// The tets that replace the cells inside the collars, in mesh vertices.
 struct Stitched {
   struct Tet {
     std::array<Index, 4> corners;
     Index region;
     std::uint8_t collar;  ///< 1 star, 2 book
-    Tag crease;           ///< of the curve or vertex
+    Tag crease;           ///< tag of the curve or vertex
   };
   struct Face {
     std::array<Index, 3> corners;
@@ -31,14 +31,14 @@ struct Stitched {
                             ///< of cells that would have a corner twice
 };
 
-/// Rip and stitch (paper, Procedure 5). `extract` drops the cells inside the collars; this makes what takes
-/// their place: each triangle of the collar surface makes a star tet with its ball's centre, each edge
-/// between triangles of consecutive balls a book tet with the two centres.
+/// Rip and stitch (paper, Procedure 5). `extract` drops the cells inside the collars, and this class makes
+/// the tets that replace them: each triangle of the collar surface makes a star tet with its ball's centre,
+/// each edge between triangles of consecutive balls a book tet with the two centres.
 ///
-/// State: the result, of the mesh as it was when the loop asked last. SurfaceTopology and extraction read it.
+/// State: the result for the mesh at the loop's last call. SurfaceTopology and extraction read it.
 class RipAndStitch {
  public:
-  /// All are kept by reference.
+  /// Keeps all by reference.
   RipAndStitch(const Domain& domain, const RefinedMesh& mesh, const SurfaceNodes& nodes,
                const CollarSystem& collars, const RestrictedSurface& surface, const UnresolvedPoints& points,
                const CurveChains& curves, const CollarCreator& creator, CollarSurface& collar_surface)
@@ -52,8 +52,8 @@ class RipAndStitch {
         creator_(creator),
         collar_surface_(collar_surface) {}
 
-  /// Precondition: every point is resolved. Where the collar surface is not well represented, as after
-  /// refinement has given up, some collars are `open` or have other cells than the paper's.
+  /// Makes the tets. Precondition: every point is resolved. If the collar surface is not well represented,
+  /// because refinement has given up, some collars are `open` or have other cells than the paper's.
   void stitch();
   const Stitched& result() const { return stitched_; }
 

@@ -8,62 +8,64 @@
 
 namespace collarmesh {
 
-/// Turns the requested sizes into target edge lengths, and these into bounds on circumradii.
-/// The factors are measured (doc/architecture/refinement.md).
+/// Turns the requested sizes into target edge lengths, and these into bounds on circumradii. The factors are
+/// measured (doc/architecture/refinement.md).
 ///
-/// Who asks: CurveChains::too_coarse, TriangleQuality::target_size and CellQuality::judge, for what is to be
-/// split; GradedSizes::cells_made, for the size at a new vertex; CollarCreator::target_size, for the radii of
-/// balls; coarsen/target_sizes.cpp and predict/vertex_counts.cpp, for the same sizes in other stages. A new
-/// kind of size is looked for in each of them (doc/contributing.md); if it calls the user's code or is kept
-/// at vertices, BlockRefinement must not have rounds with it, as with `has_field`.
+/// Callers are CurveChains::too_coarse, TriangleQuality::target_size and CellQuality::judge, to decide about
+/// splits; GradedSizes::cells_made, for the size at a new vertex; CollarCreator::target_size, for the radii
+/// of balls; coarsen/target_sizes.cpp and predict/vertex_counts.cpp, for the same sizes in other stages. A
+/// new kind of size must be added to each of them (doc/contributing.md); if it calls the user's code or is
+/// kept at vertices, BlockRefinement must not have rounds with it, as with `has_field`.
 class Sizing {
  public:
-  /// The target edge length where a size is asked for. The median edge of other meshers' meshes exceeds the
-  /// size by more; what is asked for as a number of elements, across a gap or on a circle, is not stretched.
+  /// The target edge length relative to a size that is asked for. The median edge of other meshers' meshes
+  /// exceeds the size by more. Sizes given as a number of elements, across a gap or on a circle, are not
+  /// stretched.
   static constexpr double edge_per_size = 1.08;
-  /// Cells are left in gaps that are narrower than this share of the target edge length, if the mesh will be
-  /// coarsened: in wider ones a bounded ratio costs little, and angles are better.
+  /// If the mesh will be coarsened, cells are left in gaps narrower than this share of the target edge
+  /// length: in wider gaps a bounded ratio costs little, and angles are better.
   static constexpr double narrow_gap_per_size = 0.1;
 
-  /// Functions of a place throw OptionError where the field asks for no positive size; infinite: none.
+  /// Makes the sizes. Functions of a place throw OptionError where the field returns no positive size;
+  /// infinite: no size.
   Sizing(const Plc& plc, const MeshOptions& options, const Frame& frame);
 
-  /// Largest allowed circumradius of a cell of this region at this point; infinite outside.
+  /// Returns the largest allowed circumradius of a cell of this region at this point; infinite outside.
   /// `graded` is a target edge length that gradation imposes, here and below.
   double cell_radius(Index region, const Point& p, double graded) const {
     return region == 0 ? INFINITY : cell_radius_per_edge * std::min(graded, limited(region_size_[region], p));
   }
-  /// The target edge length on a patch at a point of a triangle of the complex.
+  /// Returns the target edge length on a patch at a point of a triangle of the complex.
   double triangle_size(Index patch, Index triangle, const Point& p) const {
     const double size = limited(patch_size_[patch], p);
     return curved_.triangle.empty() ? size : std::min(size, at_least_minimum(curved_.triangle[triangle]));
   }
-  /// Largest allowed radius of a surface gap ball where the target edge length is this.
+  /// Returns the largest allowed radius of a surface gap ball for this target edge length.
   static double triangle_radius(double size) { return triangle_radius_per_edge * size; }
-  /// The target edge length on a curve, between two segments of its polyline, at a point.
+  /// Returns the target edge length on a curve, between two segments of its polyline, at a point.
   double curve_size(Index curve, std::size_t first, std::size_t last, const Point& p) const;
-  /// Largest allowed length of a subsegment where the target edge length is this.
+  /// Returns the largest allowed length of a subsegment for this target edge length.
   static double subsegment_length(double size) { return subsegment_length_per_edge * size; }
-  /// The target edge length where two facing parts of the surface are so far apart; infinite unless
+  /// Returns the target edge length where two facing parts of the surface have this distance; infinite unless
   /// gaps were asked for.
   double gap_size(double gap) const {
     return elements_across_gap_ > 0 ? at_least_minimum(gap / elements_across_gap_) : INFINITY;
   }
-  /// Only gaps below this make something finer than `size`; 0: none does.
+  /// Returns the width below which gaps make elements finer than `size`; 0: no gap does.
   double widest_gap(double size) const { return elements_across_gap_ * size; }
-  /// The target edge length at a mesh vertex on this feature (`dimension` 1: curve, 2: patch).
+  /// Returns the target edge length at a mesh vertex on this feature (`dimension` 1: curve, 2: patch).
   double feature_size(unsigned dimension, Index feature, const Point& p) const {
     return limited(dimension == 1 ? curve_size_[feature] : patch_size_[feature], p);
   }
-  /// The target edge length inside a region; infinite outside.
+  /// Returns the target edge length inside a region; infinite outside.
   double region_size(Index region, const Point& p) const {
     return region == 0 ? INFINITY : limited(region_size_[region], p);
   }
-  /// The target edge length where nothing finer is asked for.
+  /// Returns the target edge length where nothing finer is asked for.
   double default_size(const Point& p) const { return limited(global_size_, p); }
-  /// Is the caller asked for sizes?
+  /// Returns whether the caller provides a size field.
   bool has_field() const { return static_cast<bool>(field_); }
-  /// About how many cells the whole domain will take.
+  /// Returns the approximate number of cells of the whole domain.
   double expected_cells() const { return expected_cells_; }
 
  private:

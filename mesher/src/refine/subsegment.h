@@ -16,7 +16,7 @@ struct Subsegment {
   double centre_parameter;
   double squared_radius;
 
-  /// Are both ends in the mesh?
+  /// Returns whether both ends are in the mesh.
   bool resolved() const { return ends[0] != none && ends[1] != none; }
 };
 

@@ -18,7 +18,7 @@ namespace collarmesh {
 namespace {
 
 constexpr unsigned most_rounds = 60;
-// Six volumes over the longest edge cubed: what rounding makes of none.
+// Six volumes over the longest edge cubed: rounding may turn zero into this.
 constexpr double rounded_volume = 1e-13;
 constexpr std::size_t seeds_per_closed_patch = 4, seeds_per_missed_patch = 8;
 
@@ -26,7 +26,7 @@ constexpr std::size_t seeds_per_closed_patch = 4, seeds_per_missed_patch = 8;
 struct EdgeUse {
   std::uint64_t edge;  // its two mesh vertices
   Index patch;
-  FaceId face;  // or the subsegment
+  FaceId face;  // the triangle's face, or the subsegment
 
   friend bool operator<(const EdgeUse& a, const EdgeUse& b) {
     if (a.edge != b.edge) return a.edge < b.edge;
@@ -41,7 +41,7 @@ bool has_use(const std::vector<EdgeUse>& sorted, const EdgeUse& wanted) {
   return first != sorted.end() && first->same_place(wanted);
 }
 
-// By counting the lower ends, then within each.
+// Sorts by counting the lower ends, then within each of them.
 void sort_by_edge(std::vector<EdgeUse>& uses, std::size_t vertex_count) {
   std::vector<std::size_t> next(vertex_count + 1, 0);
   for (const EdgeUse& use : uses) ++next[(use.edge >> 32) + 1];
@@ -104,7 +104,7 @@ bool SurfaceCheck::another_round() {
   return false;
 }
 
-// Which mesh vertices belong to a cell inside the collars.
+// Returns which mesh vertices belong to a cell inside the collars.
 std::vector<bool> SurfaceCheck::vertices_at_collars() const {
   std::vector<bool> at(mesh_.vertex_count(), false);
   if (collars_.empty()) return at;
@@ -114,8 +114,8 @@ std::vector<bool> SurfaceCheck::vertices_at_collars() const {
   return at;
 }
 
-// Every edge of a patch's triangles lies in two of them, or on one of the patch's curves; every
-// subsegment has triangles of all the patches that its curve bounds.
+// Checks that every edge of a patch's triangles lies in two of them or on one of the patch's curves, and that
+// every subsegment has triangles of all the patches that its curve bounds.
 bool SurfaceCheck::check_patch_topology(const std::vector<FaceId>& faces) {
   std::vector<EdgeUse> uses, on_curves;
   uses.reserve(3 * faces.size());
@@ -139,7 +139,7 @@ bool SurfaceCheck::check_patch_topology(const std::vector<FaceId>& faces) {
   for (std::size_t i = 0, j = 0; i < uses.size(); i = j) {
     for (j = i; j < uses.size() && uses[j].same_place(uses[i]);) ++j;
     if (j - i == 2 || has_use(on_curves, uses[i])) continue;
-    // The patch goes on inside a collar.
+    // The patch continues inside a collar.
     if (at_collars[uses[i].edge >> 32] && at_collars[uses[i].edge & 0xffffffff]) continue;
     std::size_t largest = i;
     for (std::size_t k = i; k < j; ++k)
@@ -152,8 +152,8 @@ bool SurfaceCheck::check_patch_topology(const std::vector<FaceId>& faces) {
   return found;
 }
 
-// Is p within the tolerance of the patch? `near`, a triangle of it to begin with, becomes the one that says
-// so.
+// Returns whether p is within the tolerance of the patch. `near`, a triangle of it to begin with, becomes the
+// triangle that proves it.
 bool SurfaceCheck::is_near_patch(const Point& p, Index patch, Index& near) const {
   const SurfaceTolerance& tolerance = domain_.tolerance;
   const Index found = triangle_within_tolerance(
@@ -166,10 +166,10 @@ bool SurfaceCheck::is_near_patch(const Point& p, Index patch, Index& near) const
   return found != none;
 }
 
-// Triangles on smooth patches whose edges or middle leave the patch by more than the tolerance.
+// Queues triangles on smooth patches whose edges or middle leave the patch by more than the tolerance.
 bool SurfaceCheck::refine_distant_triangles(const std::vector<FaceId>& faces) {
-  // Edges found near a patch, of which two triangles share most. What takes a place here is only looked at
-  // again.
+  // A cache of edges found near a patch, most of which two triangles share. An entry that another one
+  // replaces is only tested again.
   struct NearEdge {
     std::uint64_t edge;
     Index patch;
@@ -203,14 +203,14 @@ bool SurfaceCheck::refine_distant_triangles(const std::vector<FaceId>& faces) {
   return found;
 }
 
-// A patch that no triangle was found of: its dual edges cross it back and forth.
+// Seeds a patch for which no triangle was found, because its dual edges cross it back and forth.
 void SurfaceCheck::seed_missed_patch(Index patch) {
   const std::size_t seeds = seeds_per_missed_patch << std::min(rounds_, 16U);
   for (const Index point : spread_points(domain_.patch_points[patch], domain_.points, seeds))
     seed(patch, domain_.points[point]);
 }
 
-// What faces another sheet may have become a vertex there already, but for rounding.
+// A point that faces another sheet may, but for rounding, be a vertex already.
 void SurfaceCheck::seed(Index patch, const Point& at) {
   points_.add({.point = at, .feature = {2, patch}, .apart = domain_.floor_at(at)}, none);
 }
@@ -233,28 +233,28 @@ void SurfaceCheck::prepare_tessellation() {
   first_tessellation_point_.push_back(tessellation_.size());
 }
 
-// Is the triangle that the point was near to when last looked at still there?
+// Returns whether the triangle that the point was near to at the last check still exists.
 bool SurfaceCheck::still_near(const TessellationPoint& p, Index patch) const {
   if (p.near == no_face) return false;
   const Index cell = cell_of(p.near);
   return mesh_.alive(cell, p.generation) && surface_.is_marked(p.near) && surface_.patch(p.near) == patch;
 }
 
-// Makes the surface come nearer to a point of a patch; `nearest` is the nearest of the patch's triangles.
+// Brings the surface nearer to a point of a patch; `nearest` is the nearest of the patch's triangles.
 void SurfaceCheck::resolve(const TessellationPoint& p, Index patch, FaceId nearest) {
-  constexpr double same_place = 0.1;  // of the tolerance
+  constexpr double same_place = 0.1;  // share of the tolerance
   const Index vertex = mesh_.nearest_vertex(p.at, mesh_.face_vertices(nearest)[0]);
   const double apart = same_place * p.tolerance;
-  // A vertex that is not one of the surface yet: a second one beside it would not be either.
+  // A vertex that is not on the surface yet: a second vertex beside it would not be on it either.
   if (distance(mesh_.point(vertex), p.at) < apart)
     triangles_.split(nearest);
   else
     points_.add({.point = p.at, .feature = {2, patch}, .apart = apart}, vertex);
 }
 
-// A tessellation point of a smooth patch that is farther than the tolerance from the patch's
-// triangles becomes an unresolved point: the farthest one at each triangle, so that one insertion
-// serves all its neighbours.
+// Turns tessellation points of smooth patches that are farther than the tolerance from the patch's triangles
+// into unresolved points: only the farthest one at each triangle, because one insertion serves all its
+// neighbours.
 bool SurfaceCheck::resolve_distant_points(const std::vector<FaceId>& faces) {
   if (first_tessellation_point_.empty()) prepare_tessellation();
   std::vector<std::vector<FaceId>> faces_of(domain_.plc.patches.size());
@@ -305,7 +305,8 @@ bool SurfaceCheck::resolve_distant_points(const std::vector<FaceId>& faces) {
   return found;
 }
 
-// Cells of regions, outside the collars, whose vertices all lie on features: what may be flat on a patch.
+// Returns the cells of regions, outside the collars, whose vertices all lie on features: they may be flat on
+// a patch.
 std::vector<Index> SurfaceCheck::cells_on_surface() const {
   return found_in_ranges<Index>(mesh_.cell_capacity(), [&](std::size_t i, std::vector<Index>& cells) {
     const auto cell = static_cast<Index>(i);
@@ -316,7 +317,7 @@ std::vector<Index> SurfaceCheck::cells_on_surface() const {
   });
 }
 
-// Precondition: it is one of `cells_on_surface`.
+// Returns whether a cell is flat on a patch. Precondition: it is one of `cells_on_surface`.
 bool SurfaceCheck::flat_on_patch(Index cell) const {
   assert(mesh_.alive(cell));
   const auto& corners = mesh_.corners(cell);
@@ -331,8 +332,8 @@ bool SurfaceCheck::flat_on_patch(Index cell) const {
   return found;
 }
 
-// But for rounding: samples that face each other on two curves of a smooth patch make rectangles. Then two of
-// its faces lie on the patch.
+// Returns whether a cell has no volume but for rounding, because samples that face each other on two curves
+// of a smooth patch form rectangles. Two of its faces then lie on the patch.
 bool SurfaceCheck::has_no_volume(Index cell) const {
   if (std::popcount(surface_.marked(cell)) != 2) return false;
   const auto& v = mesh_.corners(cell);
@@ -343,14 +344,14 @@ bool SurfaceCheck::has_no_volume(Index cell) const {
   return std::fabs(six_volume(a, b, c, d)) <= rounded_volume * longest * longest * longest;
 }
 
-// Of the domain: one region beside the face is outside.
+// Returns whether the face lies on the domain's boundary: one region beside it is outside.
 bool SurfaceCheck::at_boundary(FaceId face) const {
   const auto& regions = domain_.plc.patches[surface_.patch(face)].regions;
   return regions[0] != regions[1] && (regions[0] == 0 || regions[1] == 0);
 }
 
-// A cell with all vertices on one planar patch cannot stay between two regions or inside one: its
-// centre goes in. At a domain boundary relabel_flat_cells sees to it.
+// Queues flat cells. A cell with all vertices on one planar patch cannot stay between two regions or inside
+// one, so its centre is inserted. At a domain boundary relabel_flat_cells handles it.
 bool SurfaceCheck::check_flat_cells() {
   bool found = false;
   for (const Index cell : cells_on_surface()) {
@@ -366,7 +367,7 @@ bool SurfaceCheck::check_flat_cells() {
   return found;
 }
 
-// Four cocircular vertices of a boundary facet can make a flat cell just inside: it belongs outside.
+// Gives flat cells just inside a boundary facet, which four cocircular vertices can form, to the outside.
 bool SurfaceCheck::relabel_flat_cells() {
   bool found = false;
   for (const Index cell : cells_on_surface()) {

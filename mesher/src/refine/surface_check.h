@@ -10,20 +10,20 @@
 
 namespace collarmesh {
 
-/// Of some points, those that are far from each other: each next one is the farthest from all
-/// before. Cost: candidates times count.
+/// Returns points far from each other among these: each next one is the farthest from all before. Cost:
+/// candidates times count.
 std::vector<Index> spread_points(std::span<const Index> candidates, const std::vector<Point>& points,
                                  std::size_t count);
 
-/// Looks at the whole restricted surface when the queue has run empty: whether the triangles of each patch
-/// form a manifold that ends at the patch's curves, whether any part of a smooth patch was missed, and flat
-/// cells. Every violation found is queued.
+/// Checks the whole restricted surface when the queue is empty: whether the triangles of each patch form a
+/// manifold that ends at the patch's curves, whether any part of a smooth patch was missed, and flat cells.
+/// Queues every violation found.
 ///
-/// State: which face each corner and centre of the smooth patches' triangles was near to when last looked at,
-/// so that a round looks at what has changed; the number of rounds. The loop asks.
+/// State: the face that each corner and centre of the smooth patches' triangles was near to at the last
+/// check, so that a round only tests what has changed; the number of rounds. The loop calls it.
 class SurfaceCheck {
  public:
-  /// All are kept by reference.
+  /// Keeps all by reference.
   SurfaceCheck(const Domain& domain, const RefinedMesh& mesh, const SurfaceNodes& nodes,
                const CollarSystem& collars, const CollarCells& collar_cells, RestrictedSurface& surface,
                TriangleQuality& triangles, UnresolvedPoints& points, CurveChains& curves, Outcome& outcome)
@@ -38,18 +38,18 @@ class SurfaceCheck {
         curves_(curves),
         outcome_(outcome) {}
 
-  /// A closed patch has no border to start from: seed it.
+  /// Seeds closed patches, which have no border to start from.
   void seed_closed_patches();
-  /// A round. False when nothing is wrong.
+  /// Runs a round. Returns false if it found nothing wrong.
   bool check();
-  /// Count a round in which something was found. False, and given up, after too many.
+  /// Counts a round that found a violation. Gives up and returns false after too many.
   bool another_round();
-  /// Flat cells at the boundary of the domain go outside. Not before the end: refinement is over. False when
-  /// there are none.
+  /// Gives flat cells at the boundary of the domain to the outside. Precondition: refinement is over. Returns
+  /// false if there are none.
   bool relabel_flat_cells();
 
  private:
-  /// A corner or the centre of one of a smooth patch's triangles, outside collars as the certificate looks at
+  /// A corner or the centre of one of a smooth patch's triangles, outside collars as the certificate tests
   /// them, with a face of the mesh that it was near to.
   struct TessellationPoint {
     Point at;
@@ -84,7 +84,7 @@ class SurfaceCheck {
   CurveChains& curves_;
   Outcome& outcome_;
   std::vector<TessellationPoint> tessellation_;        // of all smooth patches, one after the other
-  std::vector<std::size_t> first_tessellation_point_;  // of each patch; empty before the first check
+  std::vector<std::size_t> first_tessellation_point_;  // by patch; empty before the first check
   unsigned rounds_ = 0;
 };
 

@@ -9,9 +9,9 @@ namespace collarmesh {
 
 namespace {
 
-// Nodes of a vertex are filtered again after so many insertions in its star: rarely on the surface, where
-// they never run out. In a large star after as many as a share of its cells, because filtering visits all of
-// them: a hub with n cells would cost n^2 while they are made.
+// The nodes of a vertex are filtered again after this many insertions in its star: rarely on the surface,
+// where insertions never end. In a large star filtering waits for a share of its cells, because it visits all
+// of them: a hub with n cells would otherwise cost n^2.
 constexpr std::size_t insertions_between_refreshes = 16;
 constexpr std::size_t insertions_between_surface_refreshes = 48;
 constexpr std::size_t cells_per_insertion = 4;
@@ -60,8 +60,8 @@ void SurfaceNodes::crossings_of_dual_edge(FaceId face,
                        fewest(face), found);
 }
 
-// Other patches may be nearer all along, as a sheet that faces this one: what lies below nodes of one of them
-// is not looked at.
+// Finds the nearest triangle of a patch. Other patches may be nearer everywhere, such as a sheet that faces
+// this one, so nodes that contain only one other patch are skipped.
 Index SurfaceNodes::nearest_triangle(const Point& p, Index patch, double& within_squared) const {
   const Plc& plc = domain_.plc;
   Index nearest = none;
@@ -89,7 +89,8 @@ void SurfaceNodes::cells_made(const ConflictZone& zone, Index vertex, const Tria
              [&](Index v, std::vector<Index>& cells) { block.incident_cells(v, cells); });
 }
 
-// A new vertex's Voronoi cell is cut out of its neighbours' cells: their nodes cover it.
+// Finds the nodes of a new vertex. Its Voronoi cell is cut out of its neighbours' cells, so their nodes cover
+// it.
 template <class IncidentCells>
 void SurfaceNodes::cells_made(const ConflictZone& zone, Index vertex, Workspace& w,
                               const IncidentCells& incident_cells) {
@@ -122,8 +123,8 @@ void SurfaceNodes::expect_insertions(Index vertex, std::size_t star) {
       std::min<std::size_t>(std::max(least, star / cells_per_insertion), UINT16_MAX));
 }
 
-// Into found_: what covers the elements in the Voronoi cell of a vertex with these cells, by the box of its
-// corners, widened by the rounding of circumcentres. Precondition: seeds_ cover them.
+// Finds, in found_, nodes that cover the elements in the Voronoi cell of a vertex with these cells, by the
+// box of its corners, widened by the rounding of circumcentres. Precondition: seeds_ cover them.
 void SurfaceNodes::find(const std::vector<Index>& cells, Workspace& w) const {
   Box box;
   double largest = 0;

@@ -12,40 +12,41 @@
 
 namespace collarmesh {
 
-/// What of the complex is found from a mesh vertex: nodes of a hierarchy over all its elements, coarse ones
-/// while the vertex's Voronoi cell is large.
+/// The elements of the complex that are found from a mesh vertex: nodes of a hierarchy over all elements,
+/// coarse ones while the vertex's Voronoi cell is large.
 ///
 /// Invariant: the nodes of a vertex cover every element that meets the box of its Voronoi cell. There may be
-/// more of them: they are filtered now and then. The loop tells of insertions, BlockRefinement of those into
-/// blocks; all parts ask.
+/// more nodes; they are filtered now and then. The loop reports insertions, BlockRefinement reports those
+/// into blocks; all parts query it.
 class SurfaceNodes {
  public:
-  /// Both are kept by reference. Every vertex that the mesh has gets the root.
+  /// Gives every vertex that the mesh has the root. Keeps both by reference.
   SurfaceNodes(const Domain& domain, const RefinedMesh& mesh);
 
   const TriangleHierarchy& hierarchy() const { return hierarchy_; }
   std::span<const Index> at(Index vertex) const { return {lists_[vertex].nodes, lists_[vertex].count}; }
   bool any_at(Index vertex) const { return lists_[vertex].count > 0; }
-  /// Of the vertices of a face those of the one with the fewest: they cover what the face's dual edge meets.
+  /// Returns the nodes of the vertex of a face that has the fewest: they cover what the face's dual edge
+  /// meets.
   std::span<const Index> fewest(FaceId face) const;
-  /// Replace `found` by the triangles that the dual edge of a face crosses, seen from the face's cell.
+  /// Replaces `found` by the triangles that the dual edge of a face crosses, seen from the face's cell.
   void crossings_of_dual_edge(FaceId face, std::vector<TriangleHierarchy::Crossing>& found) const;
-  /// Replace `found` by all triangles that a segment crosses.
+  /// Replaces `found` by all triangles that a segment crosses.
   void crossings(const Point& p, const Point& q, std::vector<TriangleHierarchy::Crossing>& found) const {
     const Index root = hierarchy_.root();
     hierarchy_.crossings(p, q, {&root, 1}, found);
   }
-  /// The triangle of a patch that is nearest to p, if nearer than this, which becomes its own squared
-  /// distance; else none.
+  /// Returns the triangle of a patch that is nearest to p, if it is nearer than `within_squared`, which
+  /// becomes its squared distance; else none.
   Index nearest_triangle(const Point& p, Index patch, double& within_squared) const;
 
   void cells_made(const ConflictZone& zone, Index vertex);
 
-  /// What a thread that inserts into blocks keeps for itself: scratch, and the lists that it has made.
-  /// SurfaceNodes points into these, so it must not be destroyed first.
+  /// The data of a thread that inserts into blocks: scratch, and the lists that it has made. SurfaceNodes
+  /// points into these, so it must not be destroyed first.
   class Workspace {
    public:
-    /// Of the lists: their sum over all threads does not depend on which thread made which.
+    /// Returns the bytes of the lists: their sum over all threads does not depend on which thread made which.
     std::size_t bytes() const { return reserved_ * sizeof(Index); }
 
    private:
@@ -53,18 +54,18 @@ class SurfaceNodes {
     Index* reserve(std::size_t count);
 
     std::vector<std::unique_ptr<Index[]>> chunks_;
-    Index* end_ = nullptr;  // of the last one
-    std::size_t left_ = 0;  // in the last one
+    Index* end_ = nullptr;  // end of the last chunk
+    std::size_t left_ = 0;  // free entries in the last chunk
     std::size_t reserved_ = 0;
     TriangleHierarchy::Marks marks_;
     std::vector<Index> seeds_, found_, cells_;
   };
-  /// Before vertices are inserted into blocks: room for all.
+  /// Makes room for all vertices before some are inserted into blocks.
   void fit_mesh();
-  /// As `cells_made`. For several threads, each with its block.
+  /// Does the same as `cells_made`. For several threads, each with its block.
   void cells_made(const ConflictZone& zone, Index vertex, const Triangulation::Block& block,
                   Workspace& workspace);
-  /// Blocks were joined.
+  /// Renumbers vertices after blocks were joined.
   void renumber(const Renumbering& renumbering) { renumbering.apply(lists_); }
 
   std::size_t bytes() const {
@@ -76,7 +77,7 @@ class SurfaceNodes {
   struct List {
     Index* nodes = nullptr;  // in a chunk of a workspace
     Index count = 0;
-    std::uint16_t insertions_left = 0;  // in the vertex's star before its nodes are filtered again
+    std::uint16_t insertions_left = 0;  // insertions in the vertex's star before its nodes are filtered again
   };
   template <class IncidentCells>
   void cells_made(const ConflictZone& zone, Index vertex, Workspace& w, const IncidentCells& incident_cells);
@@ -87,7 +88,7 @@ class SurfaceNodes {
   const Domain& domain_;
   const RefinedMesh& mesh_;
   TriangleHierarchy hierarchy_;
-  std::vector<Index> patch_below_;  // by node of it: the patch of all elements below, none if they differ
+  std::vector<Index> patch_below_;  // by node: the patch of all elements below, none if they differ
   GrowingArray<List> lists_;        // by vertex
   Workspace workspace_;             // of the loop
 };

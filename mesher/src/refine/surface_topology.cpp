@@ -19,7 +19,7 @@ struct Side {
   std::array<Index, 2> ends;  // sorted
   Index patch;
   Index triangle;
-  std::array<Index, 2> corners;  // of the triangle at these ends, 3 * triangle + i
+  std::array<Index, 2> corners;  // corners of the triangle at these ends, 3 * triangle + i
 
   bool same_place(const Side& other) const { return ends == other.ends && patch == other.patch; }
   friend bool operator<(const Side& a, const Side& b) {
@@ -36,7 +36,7 @@ struct CurveEdge {
 
 std::array<Index, 2> sorted(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
 
-// By mesh vertices first, of which there are so many: few have the same one.
+// Sorts by mesh vertices first: there are many, and few entries have the same one.
 template <class T, class VertexOf>
 void sort_by_vertex(std::vector<T>& values, std::size_t vertices, const VertexOf& vertex_of) {
   std::vector<Index> end(vertices + 1, 0);
@@ -67,9 +67,9 @@ std::vector<Side> sorted_sides(const std::vector<SurfaceTriangle>& triangles, st
 
 }  // namespace
 
-// How many triangles of each of its patches a curve has at each of its segments.
+// Counts the triangles of each of its patches at each segment of a curve.
 void SurfaceTopology::count_curve_sides() {
-  std::vector<CurveEdge> segments;  // the first one of each curve
+  std::vector<CurveEdge> segments;  // by curve: the first one
   segments.reserve(domain_.plc.curves.size());
   curve_sides_.reserve(domain_.plc.curves.size());
   for (Index c = 0; c < domain_.plc.curves.size(); ++c) {

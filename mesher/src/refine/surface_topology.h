@@ -7,15 +7,16 @@
 
 namespace collarmesh {
 
-/// Looks at the topology of the surface as it is extracted, restricted and stitched triangles together: along
-/// its curves each patch has as many triangles as the complex, elsewhere two at each edge; those at a vertex
-/// hang together; and the vertices lie on their patches. Sheets of a smooth patch that are closer than the
-/// distance tolerance miss that at first, because triangles may lead from one to the other: these are split.
+/// Checks the topology of the surface as it is extracted, with restricted and stitched triangles: along its
+/// curves each patch has as many triangles as the complex, elsewhere two at each edge; those at a vertex are
+/// connected; and the vertices lie on their patches. Sheets of a smooth patch that are closer than the
+/// distance tolerance violate this at first, because triangles may lead from one to the other: these are
+/// split.
 ///
-/// State: what the complex has along its curves. The loop asks in the end.
+/// State: the numbers of triangles along the complex's curves. The loop calls it at the end.
 class SurfaceTopology {
  public:
-  /// All are kept by reference.
+  /// Keeps all by reference.
   SurfaceTopology(const Domain& domain, const RefinedMesh& mesh, const CollarCells& collar_cells,
                   const RestrictedSurface& surface, const CurveChains& curves, const RipAndStitch& stitching,
                   TriangleQuality& triangles, SurfaceCheck& surface_check)
@@ -28,7 +29,7 @@ class SurfaceTopology {
         triangles_(triangles),
         surface_check_(surface_check) {}
 
-  /// Precondition: the collars are stitched. False when nothing was queued.
+  /// Checks the surface. Returns false if nothing was queued. Precondition: the collars are stitched.
   bool check();
 
  private:
@@ -43,7 +44,7 @@ class SurfaceTopology {
   const RipAndStitch& stitching_;
   TriangleQuality& triangles_;
   SurfaceCheck& surface_check_;
-  std::vector<std::vector<Index>> curve_sides_;  // by curve: triangles of each of its patches
+  std::vector<std::vector<Index>> curve_sides_;  // by curve: number of triangles of each of its patches
 };
 
 }  // namespace collarmesh

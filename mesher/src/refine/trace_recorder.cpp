@@ -68,7 +68,7 @@ void TraceRecorder::add_patches(TraceStep& step) const {
         {parts_.mesh.face_vertices(face), parts_.domain.plc.patches[parts_.surface.patch(face)].tag});
 }
 
-// The faces between cells inside the collars and outside.
+// Adds the faces between cells inside the collars and outside.
 void TraceRecorder::add_collar_surface(TraceStep& step) const {
   for (Index cell = 0; cell < parts_.mesh.cell_capacity(); ++cell) {
     if (!parts_.mesh.alive(cell) || parts_.collar_cells.inside(cell)) continue;
@@ -80,7 +80,7 @@ void TraceRecorder::add_collar_surface(TraceStep& step) const {
   }
 }
 
-// An end that is no vertex yet becomes a point of its own.
+// Adds segments. An end that is no vertex yet becomes a point of its own.
 void TraceRecorder::add_segments(TraceStep& step) const {
   parts_.curves.visit_places([&](const Subsegment& s, const std::array<Point, 2>& places) {
     std::array<Index, 2> ends = s.ends;

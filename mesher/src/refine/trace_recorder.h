@@ -8,14 +8,14 @@
 
 namespace collarmesh {
 
-/// Records what the refinement has: each time the number of vertices has doubled, up to a bound, so that all
-/// steps together take no more than a few times the largest one.
+/// Records the state of the refinement each time the number of vertices has doubled, up to a bound, so that
+/// all steps together take no more than a few times the memory of the largest one.
 class TraceRecorder {
  public:
   explicit TraceRecorder(const Refined& parts) : parts_(parts) {}
 
   bool due() const { return parts_.mesh.vertex_count() >= next_ && next_ <= most_vertices; }
-  /// Precondition: no insertion is under way. `working_on`: the kind of work done last.
+  /// Records a step. Precondition: no insertion is in progress. `working_on`: the kind of work done last.
   void record(const std::string& stage, WorkQueue::Priority working_on = WorkQueue::priority_count);
   const Trace& trace() const { return trace_; }
 
@@ -33,7 +33,7 @@ class TraceRecorder {
   Trace trace_;
 };
 
-/// The step that comes after the refinement: the mesh, with the collars' balls of the step before.
+/// Returns the step after the refinement: the mesh, with the collars' balls of the step before.
 TraceStep stitched_step(const TetMesh& mesh, const TraceStep& before);
 
 }  // namespace collarmesh

@@ -9,13 +9,13 @@ namespace collarmesh {
 
 namespace {
 
-// The insertion of a centre is moved by a pseudo-random offset of this share of its ball's radius.
+// A centre is inserted with a pseudo-random offset of this share of its ball's radius.
 constexpr double offset_per_radius = 0.1;
 
 }  // namespace
 
-// A surface gap ball lies in the union of its two cells' balls, so the marked faces of the zone are
-// all that the candidate can encroach.
+// Finds an encroached triangle. A surface gap ball lies in the union of its two cells' balls, so the
+// candidate can only encroach marked faces of the zone.
 FaceId TriangleQuality::encroached(const ConflictZone& zone, const Candidate& candidate) const {
   FaceId best = no_face;
   if (candidate.feature.dimension < 3) return best;
@@ -57,7 +57,7 @@ std::optional<Candidate> TriangleQuality::candidate_beside(FaceId face, RandomOf
   return std::nullopt;
 }
 
-// Such a vertex may face the triangle across a gap.
+// Returns whether a vertex of the triangle lies on another sheet; it may face the triangle across a gap.
 bool TriangleQuality::has_vertex_on_another_sheet(FaceId face) const {
   if (surface_.triangle(face).resolved_vertices) return false;
   const auto v = mesh_.face_vertices(face);
@@ -66,7 +66,7 @@ bool TriangleQuality::has_vertex_on_another_sheet(FaceId face) const {
   });
 }
 
-// Where it is split: at the middle of its ball, or near it.
+// Returns the point to insert: the middle of its ball, or a point near it.
 Point TriangleQuality::place(FaceId face, RandomOffsets& random) const {
   const RestrictedTriangle& t = surface_.triangle(face);
   const Index patch = surface_.patch(face);
@@ -151,7 +151,7 @@ double TriangleQuality::target_size(FaceId face, const RestrictedTriangle& t) {
   return std::min(size, sizes_.graded(corners, reach));
 }
 
-// How far is the surface that faces this one across a region, if not farther than `widest`?
+// Returns the distance to the surface that faces this one across a region, if at most `widest`.
 double TriangleQuality::gap_at(const RestrictedTriangle& t, double widest) {
   const auto corners = nodes_.hierarchy().corners(t.triangle);
   Vector normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
@@ -163,7 +163,7 @@ double TriangleQuality::gap_at(const RestrictedTriangle& t, double widest) {
   for (unsigned side = 0; side < 2; ++side) {
     if (patch.regions[side] == 0) continue;
     const Vector way = side == 0 ? -1 * normal : normal;
-    // Not from the plane of its own triangle: that would be one tie after the other.
+    // Starts off the plane of its own triangle, which would cause ties.
     nodes_.crossings(t.x + 1e-6 * widest * way, t.x + widest * way, crossings_);
     for (const auto& [triangle, direction] : crossings_)
       gap = std::min(
@@ -172,7 +172,8 @@ double TriangleQuality::gap_at(const RestrictedTriangle& t, double widest) {
   return gap;
 }
 
-// On a smooth patch: is the triangle's circumcentre farther from the surface than the tolerance?
+// Returns whether the circumcentre of a triangle on a smooth patch is farther from the surface than the
+// tolerance.
 bool TriangleQuality::too_far(FaceId face, const RestrictedTriangle& t) const {
   if (domain_.plc.patches[surface_.patch(face)].planar) return false;
   const double tolerance = domain_.tolerance.at_triangle(t.triangle);

@@ -12,16 +12,16 @@
 
 namespace collarmesh {
 
-/// Which restricted triangles are to be destroyed: unresolved ones, whose vertices lie elsewhere, whose dual
-/// edge crosses several sheets or whose circumcentre is too far from the surface; and large ones. (The first
-/// two are found by RestrictedSurface::restrict_face, when the record is made.)
+/// Decides which restricted triangles to destroy: unresolved ones, whose vertices lie elsewhere, whose dual
+/// edge crosses several sheets or whose circumcentre is too far from the surface; and large ones.
+/// (RestrictedSurface::restrict_face finds the first two when it makes the record.)
 ///
 /// State: the notes of the restricted surface. Invariant: after an insertion every triangle of the new cells
-/// is judged, and those that are to be destroyed are in the queue. The loop and BlockRefinement tell of
-/// insertions and take candidates; SurfaceCheck and SurfaceTopology ask for triangles that are to be split.
+/// is judged, and the queue contains those that must be destroyed. The loop and BlockRefinement report
+/// insertions and take candidates; SurfaceCheck and SurfaceTopology ask for triangles to split.
 class TriangleQuality {
  public:
-  /// All are kept by reference.
+  /// Keeps all by reference.
   TriangleQuality(const Domain& domain, const RefinedMesh& mesh, const SurfaceNodes& nodes,
                   RestrictedSurface& surface, GradedSizes& sizes, FacingSheets& facing_sheets,
                   RandomOffsets& random, WorkQueue& queue)
@@ -34,31 +34,31 @@ class TriangleQuality {
         random_(random),
         queue_(queue) {}
 
-  /// Paper, Procedure 2: the triangle whose surface gap ball a candidate with this zone lies deepest in;
-  /// no_face when it encroaches none.
+  /// Returns the triangle in whose surface gap ball a candidate with this zone lies deepest (paper, Procedure
+  /// 2); no_face if it encroaches none.
   FaceId encroached(const ConflictZone& zone, const Candidate& candidate) const;
-  /// What destroys a triangle, if anything can.
+  /// Returns a candidate that destroys a triangle, if there is one.
   std::optional<Candidate> candidate(FaceId face);
-  /// The same, if no vertex of the triangle lies on another sheet and a cell beside it is in conflict with
-  /// the candidate; else nothing, and only the loop can tell. Several threads may ask at once, each with
-  /// offsets of its own, of triangles in its own block.
+  /// Returns the same, if no vertex of the triangle lies on another sheet and a cell beside it is in conflict
+  /// with the candidate; otherwise nothing, and only the loop can decide. Several threads may call it at
+  /// once, each with its own offsets and for triangles in its own block.
   std::optional<Candidate> candidate_beside(FaceId face, RandomOffsets& random) const;
-  /// Is the entry of the queue that of a triangle that is to be destroyed?
+  /// Returns whether the triangle of a queue entry still must be destroyed.
   bool due(const WorkQueue::Entry& entry) const;
-  /// Queue a triangle again that is still there after something else was inserted in its place.
+  /// Queues a triangle again if another insertion has left it.
   void queue_again(const WorkQueue::Item& item, double squared_radius);
-  /// Nothing could be inserted to destroy a triangle: nothing more is tried.
+  /// Records that no point could be inserted to destroy a triangle, so that it is not tried again.
   void give_up(FaceId face) { surface_.note_given_up(face); }
 
-  /// Precondition: surface and sizes know the new cells and the vertex.
+  /// Judges the triangles of new cells. Precondition: surface and sizes know the new cells and the vertex.
   void cells_made(const ConflictZone& zone);
-  /// The same for a zone in a block. Several threads may tell, each with a queue of its own, as long as no
-  /// size is asked of the caller or kept at vertices.
+  /// Does the same for a zone in a block. Several threads may call it, each with its own queue, if no sizes
+  /// come from the caller or are kept at vertices.
   void cells_made(const ConflictZone& zone, WorkQueue& queue) const;
-  /// Sizes have changed everywhere.
+  /// Judges all triangles because sizes have changed everywhere.
   void judge_all();
-  /// Queue a triangle that is to be split for the sake of its patch, unless it was given up: even one in a
-  /// collar.
+  /// Queues a triangle that must be split for the sake of its patch, even in a collar, unless it was given
+  /// up.
   void split(FaceId face);
 
  private:

@@ -10,11 +10,12 @@
 
 namespace collarmesh {
 
-/// Points that the mesh must have and has not yet: vertices of the complex, seeds, corner points of collars.
+/// Points that the mesh must have and does not have yet: vertices of the complex, seeds, corner points of
+/// collars.
 ///
-/// Invariant: each of them is found from the mesh vertex that is nearest to it, and is in the queue with the
-/// ball around it that is empty, unless it is dormant. Any part may add one; the loop resolves them, when
-/// their turn has come or as what a candidate warps to.
+/// Invariant: each of them is found from the mesh vertex nearest to it, and is in the queue with the empty
+/// ball around it, unless it is dormant. Any part may add one; the loop resolves them, when their turn has
+/// come or when a candidate warps to them.
 class UnresolvedPoints {
  public:
   struct Unresolved {
@@ -23,48 +24,48 @@ class UnresolvedPoints {
     Index object = none;   // in objects_; none when it is resolved or withdrawn
     Index vertex = none;   ///< the mesh vertex that it became
     Index across = none;   ///< the mesh vertex that it faces across a gap
-    bool dormant = false;  ///< comes in only when a candidate warps to it
+    bool dormant = false;  ///< inserted only when a candidate warps to it
     double apart = 0;      ///< a vertex of the same patch that is nearer than this serves as well
   };
 
-  /// All are kept by reference. `theta`: how far to warp (paper, Procedure 2).
+  /// Keeps all by reference. `theta`: how far to warp (paper, Procedure 2).
   UnresolvedPoints(const RefinedMesh& mesh, double theta, WorkQueue& queue)
       : mesh_(mesh), queue_(queue), theta_(theta) {}
 
-  /// `near`: a mesh vertex not far away, if one is known. Points are numbered in their order.
+  /// Adds a point. `near` is a mesh vertex not far away, if one is known. Points are numbered in their order.
   Index add(const Point& p, const Feature& feature, Index near = none) {
     return add(Unresolved{p, feature}, near);
   }
   Index add(Unresolved point, Index near);
-  /// Nobody needs it any more. Precondition: it is not resolved.
+  /// Removes a point that is not needed any more. Precondition: it is not resolved.
   void withdraw(Index point);
   const Unresolved& operator[](Index point) const { return points_[point]; }
   std::size_t size() const { return points_.size(); }
   bool resolved(Index point) const { return points_[point].vertex != none; }
-  /// Is an unresolved point theta_0-medial (paper, section 3.1 and appendix A): is the second nearest mesh
-  /// vertex not much farther than the nearest one?
+  /// Returns whether an unresolved point is theta_0-medial (paper, section 3.1 and appendix A): the second
+  /// nearest mesh vertex is not much farther away than the nearest one.
   bool medial(Index point) const;
-  /// The mesh vertex that a point became, or is nearest to it.
+  /// Returns the mesh vertex that a point became, or the nearest one.
   Index vertex_near(Index point) const {
     const Unresolved& p = points_[point];
     return p.vertex != none ? p.vertex : objects_[p.object].vertex;
   }
-  /// Is a point due whose entry in the queue has this stamp? If not it is queued anew: the mesh has become
-  /// finer there since, and others have larger balls.
+  /// Returns whether a queue entry with this stamp is current. If not, queues the point again: the mesh has
+  /// become finer there since, and other points have larger balls.
   bool due(Index point, std::uint32_t stamp);
-  /// Something else has come in instead of a point: it waits for another turn, if it is still needed.
+  /// Queues a point again after another insertion in its place, if it is still needed.
   void queue_again(Index point) {
     if (points_[point].object != none) queue(point);
   }
-  /// Is any point found from this mesh vertex?
+  /// Returns whether any point is found from this mesh vertex.
   bool any_at(Index mesh_vertex) const { return objects_.first_at(mesh_vertex) != none; }
-  /// A point becomes this vertex, which may be about to come.
+  /// Records that a point becomes this vertex, which may be about to be inserted.
   void resolve(Index point, Index vertex);
 
-  /// Paper, Procedure 2: what a candidate with this zone warps to, the point of lowest containment dimension
-  /// within theta r of the centre of the ball. None if there is none.
+  /// Returns the point that a candidate with this zone warps to (paper, Procedure 2): the one of lowest
+  /// containment dimension within theta r of the centre of the ball. None if there is none.
   Index warp_target(const ConflictZone& zone, const Candidate& candidate) const;
-  /// The only point on a vertex of the complex that is found from this mesh vertex; none if there are
+  /// Returns the only point on a vertex of the complex that is found from this mesh vertex; none if there are
   /// several.
   Index only_vertex_at(Index mesh_vertex) const;
 

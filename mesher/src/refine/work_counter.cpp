@@ -31,7 +31,7 @@ void WorkCounter::note_round(const LargestZone& largest) {
   note_size();
 }
 
-// A hub is connected with all that comes near it.
+// Returns whether the zone lies at a hub, which is connected with everything near it.
 bool WorkCounter::at_hub(const ConflictZone& zone) const {
   return std::any_of(zone.vertices.begin(), zone.vertices.end(), [&](Index v) {
     const Feature& feature = mesh_.feature(v);

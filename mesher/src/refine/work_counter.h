@@ -7,18 +7,18 @@
 
 namespace collarmesh {
 
-/// Counts what insertions cost, for those who ask (MeshOptions::count_work): how many cells one of them
-/// destroys, how large the mesh is meanwhile, and which come while quality has not been restored.
+/// Counts the cost of insertions on request (MeshOptions::count_work): the cells that one insertion destroys,
+/// the size of the mesh meanwhile, and the insertions before quality has been restored.
 ///
-/// State: the extremes so far. The loop tells of insertions and rounds of blocks.
+/// State: the extremes so far. The loop reports insertions and rounds of blocks.
 class WorkCounter {
  public:
-  /// Both are kept by reference.
+  /// Keeps both by reference.
   WorkCounter(const Plc& plc, const RefinedMesh& mesh);
 
-  /// A vertex has come. `too_early`: for the sake of something else, while a skinny cell waited.
+  /// Reports a new vertex. `too_early`: it has another purpose, while a skinny cell waited.
   void note_insertion(const ConflictZone& zone, bool too_early);
-  /// Cells and vertices are many more at once.
+  /// Reports a round, which adds many cells and vertices at once.
   void note_round(const LargestZone& largest);
 
   void fill(WorkCounts& counts) const;

@@ -11,13 +11,13 @@
 
 namespace collarmesh {
 
-/// The paper's work queue (Procedure 1): priorities, and inside a priority the
-/// largest ball first, in buckets of log2(r^2), last in first out inside a bucket, which keeps the
-/// working set in the cache. Entries are never removed early: whoever takes one compares its stamp.
+/// The paper's work queue (Procedure 1): takes priorities in order, and inside a priority the largest ball
+/// first, in buckets of log2(r^2), last in first out inside a bucket, which keeps the working set in the
+/// cache. Entries are never removed early: the caller that takes one compares its stamp.
 class WorkQueue {
  public:
-  /// In the order in which work is taken; doc/architecture/refinement.md and doc/theory.md say why.
-  /// Refinement::run compares priorities and BlockRefinement names some: look there when the order changes.
+  /// The order in which work is taken; doc/architecture/refinement.md and doc/theory.md give the reasons.
+  /// Refinement::run compares priorities and BlockRefinement names some: check both when the order changes.
   enum Priority : unsigned {
     encroached_subsegments,
     skinny_cells,
@@ -39,7 +39,7 @@ class WorkQueue {
     Entry entry;
   };
 
-  /// Balls are compared with this squared radius, the largest to be expected.
+  /// Makes a queue for balls up to this expected squared radius.
   explicit WorkQueue(double largest_squared_radius) : largest_exponent_(std::ilogb(largest_squared_radius)) {}
 
   void push(Priority priority, double squared_radius, Entry entry) {
@@ -49,14 +49,14 @@ class WorkQueue {
     const int below = largest_exponent_ - std::ilogb(std::max(squared_radius, 1e-300));
     return static_cast<unsigned>(std::clamp(below, 0, static_cast<int>(bucket_count) - 1));
   }
-  /// Into a bucket: 0 has the largest balls.
+  /// Puts an entry into a bucket; bucket 0 has the largest balls.
   void put(Priority priority, unsigned bucket, Entry entry) {
     buckets_[priority][bucket].push_back(entry);
     first_[priority] = std::min(first_[priority], bucket);
     ++pushed_;
   }
 
-  /// Take the next entry: largest ball of the first priority that has any. False when empty.
+  /// Takes the next entry: largest ball of the first nonempty priority. Returns false if the queue is empty.
   bool pop(Item& item) {
     for (unsigned priority = 0; priority < priority_count; ++priority)
       if (const unsigned bucket = first_bucket(static_cast<Priority>(priority)); bucket < bucket_count) {
@@ -68,20 +68,20 @@ class WorkQueue {
     return false;
   }
 
-  /// The priority of the next entry; `priority_count` when there is none.
+  /// Returns the priority of the next entry; `priority_count` if there is none.
   Priority first_priority() {
     unsigned priority = 0;
     while (priority < priority_count && first_bucket(static_cast<Priority>(priority)) == bucket_count)
       ++priority;
     return static_cast<Priority>(priority);
   }
-  /// The bucket of a priority that the next entry is in; `bucket_count` when there is none.
+  /// Returns the bucket of the next entry of a priority; `bucket_count` if there is none.
   unsigned first_bucket(Priority priority) {
     unsigned& bucket = first_[priority];
     while (bucket < bucket_count && buckets_[priority][bucket].empty()) ++bucket;
     return bucket;
   }
-  /// Is any entry of a priority still due? Those that are not are dropped on the way.
+  /// Returns whether any entry of a priority is still due. Drops others on the way.
   template <class Due>
   bool any_due(Priority priority, const Due& due) {
     for (unsigned bucket = first_bucket(priority); bucket < bucket_count; bucket = first_bucket(priority)) {
@@ -92,14 +92,14 @@ class WorkQueue {
     return false;
   }
   std::size_t count(Priority priority, unsigned bucket) const { return buckets_[priority][bucket].size(); }
-  /// Take all entries of a bucket.
+  /// Takes all entries of a bucket.
   std::vector<Entry> take(Priority priority, unsigned bucket) {
     return std::exchange(buckets_[priority][bucket], {});
   }
 
   static constexpr unsigned bucket_count = 192;
 
-  /// Entries pushed so far.
+  /// Returns the number of entries pushed so far.
   std::size_t pushed() const { return pushed_; }
 
   std::size_t bytes() const {

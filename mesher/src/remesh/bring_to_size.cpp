@@ -25,10 +25,11 @@ constexpr unsigned rounds = 3, divisions = 2;
 // Edges longer than this times the target are divided.
 constexpr double longest = coarsening::CoarseningRule::longest_new;
 
-// Edges beside short ones are at most so many times as long, and longer by so much of the way from there.
+// Next to a short edge an edge is at most this many times as long; the length grows by this share of the
+// distance.
 constexpr double of_shortest = 1.5, growth = 1;
 
-// Only if there are about so many times the tets, and some more, at most.
+// Graded sizes are used only if they multiply the number of tets by at most this, plus some.
 constexpr double most_times = 2, some = 2000, tets_per_cube = 8;
 
 /// The edges of a mesh, by vertex.
@@ -82,7 +83,7 @@ class Bringing {
  public:
   Bringing(TetMesh& mesh, const Plc& plc, MeshOptions options, const Execution& execution)
       : mesh_(mesh), plc_(plc), options_(std::move(options)), execution_(execution) {
-    options_.edges_per_hole = 0;  // those that are there may be all that a hole has
+    options_.edges_per_hole = 0;  // the existing edges may be all that a hole has
   }
 
   bool run() {
@@ -115,9 +116,9 @@ class Bringing {
  private:
   std::vector<double> sizes() const { return coarsening::target_sizes(mesh_, plc_, options_); }
 
-  /// Beside edges that are shorter than the targets, sizes that grow from them with the distance: edges that
-  /// contraction has left are there to stay, and tets between short and long ones have poor shapes. Along
-  /// thin parts that would take very many tets; then the targets.
+  /// Returns sizes that grow with the distance from edges shorter than the targets: edges that collapses have
+  /// left will stay, and tets between short and long ones have poor shapes. Along thin parts that would take
+  /// very many tets; there the targets count.
   std::vector<double> graded_sizes() const {
     const std::vector<double> targets = sizes();
     std::vector<double> graded = targets;
@@ -130,12 +131,12 @@ class Bringing {
     return tets_of(graded) <= most_times * tets_of(targets) + some ? graded : targets;
   }
 
-  /// Returns about how many tets these sizes, by vertex, make of the mesh.
+  /// Estimates the number of tets for these sizes, by vertex.
   double tets_of(const std::vector<double>& size) const {
     double sum = 0;
     for (const auto& tet : mesh_.tets) {
       const double mean = 0.25 * (size[tet[0]] + size[tet[1]] + size[tet[2]] + size[tet[3]]);
-      double pieces = 1;  // across the tet
+      double pieces = 1;  // pieces across the tet
       for (unsigned i = 0; i < 4; ++i)
         for (unsigned j = i + 1; j < 4; ++j)
           pieces = std::max(pieces, distance(mesh_.points[tet[i]], mesh_.points[tet[j]]) / mean);

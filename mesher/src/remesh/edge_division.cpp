@@ -13,10 +13,10 @@ using improvement::Change;
 
 namespace {
 
-// New tets are at least this share of the worst one at the edge. Halves of a tet have about half of its
-// smallest angle, and later improvement joins what fits better.
+// New tets have at least this share of the worst quality at the edge. Halves of a tet have about half of its
+// smallest angle; later improvement finds better tets.
 constexpr double least_share = 0.4;
-// Tets that are this good may become as bad as that share of it at most.
+// Tets of this quality may at most become as bad as that share of it.
 constexpr double good = 1;
 constexpr std::size_t steps_between_reports = 4096;
 
@@ -52,13 +52,13 @@ double EdgeDivision::ratio(Index a, Index b) const {
   return distance(mesh().points[a], mesh().points[b]) / (0.5 * (sizes_[a] + sizes_[b]));
 }
 
-// A field may ask for less between vertices than at them.
+// Returns the ratio by the size field, which may ask for less between vertices than at them.
 double EdgeDivision::ratio_by_field(const LongEdge& edge) const {
   const Point &a = mesh().points[edge.a], &b = mesh().points[edge.b];
   return std::max(edge.ratio, distance(a, b) / sizing_.default_size(0.5 * (a + b)));
 }
 
-// The field may be the caller's, who expects one call at a time.
+// Finds long edges with one thread: the field may be the caller's, who expects one call at a time.
 std::vector<EdgeDivision::LongEdge> EdgeDivision::long_edges(double longest) const {
   const bool all = sizing_.has_field();
   std::vector<LongEdge> edges =

@@ -14,17 +14,17 @@ namespace collarmesh::remeshing {
 /// regions.
 class EdgeDivision {
  public:
-  /// The workpiece and the options are kept by reference; `sizes`: targets at the vertices that there are.
+  /// Keeps the workpiece and the options by reference; `sizes` are targets at the current vertices.
   EdgeDivision(improvement::Workpiece& workpiece, const MeshOptions& options, std::vector<double> sizes);
 
-  /// Divides each edge once that is longer than `longest` times its target now, the longest by that first,
-  /// and returns how many it divided. Edges where the new tets would be much worse than those before stay.
-  /// `most_vertices`: ends there; 0: no bound.
+  /// Divides once each edge that is longer now than `longest` times its target, the relatively longest first,
+  /// and returns how many it divided. Skips edges where the new tets would be much worse than the old ones.
+  /// Stops at `most_vertices`; 0: no bound.
   std::size_t divide_all(double longest, std::size_t most_vertices, const Execution& execution);
 
  private:
   struct LongEdge {
-    double ratio;  // to the target
+    double ratio;  // length relative to the target
     Index a, b;
   };
 

@@ -57,7 +57,8 @@ class Places {
   std::vector<Index> order_;
 };
 
-/// The part of a mesh that remeshing keeps: its tets and their corners, faces and edges of these.
+/// Returns the part of a mesh that remeshing keeps: its tets and their corners, and the corners of faces and
+/// edges.
 TetMesh corners_of(const TetMesh& mesh) {
   TetMesh kept;
   std::vector<Index> number(mesh.points.size(), none);
@@ -114,7 +115,7 @@ class ComplexBuilder {
  private:
   Tag tag_of(const MeshSide& side) const { return side.face == none ? 0 : mesh_.face_tag[side.face]; }
 
-  /// Lines between nodes that no tet joins could not be kept.
+  /// Throws PlcError for edges between nodes that no tet joins, because they could not be kept.
   void require_edges() const {
     if (mesh_.edges.empty()) return;
     std::vector<Ends> joined;
@@ -204,7 +205,7 @@ class ComplexBuilder {
     return {point_of_[t.points[0]], point_of_[t.points[1]], point_of_[t.points[2]]};
   }
 
-  /// Numbers the connected parts of the mesh's regions, in the order of these.
+  /// Numbers the connected parts of the mesh's regions, in the order of the regions.
   void number_regions() {
     std::vector<Index> firsts;
     for (Index t = 0; t < mesh_.tets.size(); ++t)
@@ -229,7 +230,7 @@ class ComplexBuilder {
     }
   }
 
-  /// A patch looks towards the outside, if it has that on a side.
+  /// Sets the regions of patches. A patch with the outside on one side has it in front.
   void set_regions_of_patches() {
     for (Plc::Patch& patch : plc_.patches) {
       const Index first = patch.first_triangle, last = first + patch.triangle_count;
@@ -309,8 +310,8 @@ class ComplexBuilder {
   const Places places_;
   const MeshSides found_;
   Plc plc_;
-  std::vector<Index> point_of_;  // by point of the complex: that of the mesh
-  std::vector<Index> side_of_;   // by triangle of the complex: among those found
+  std::vector<Index> point_of_;  // by point of the complex: the mesh's point
+  std::vector<Index> side_of_;   // by triangle of the complex: index among the sides
 };
 
 }  // namespace

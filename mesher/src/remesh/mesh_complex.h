@@ -6,16 +6,16 @@
 
 namespace collarmesh::remeshing {
 
-/// A mesh and the complex that its own boundaries, interfaces, facets and curves make, with the features of
+/// A mesh and the complex formed by its own boundaries, interfaces, facets and curves, with the features of
 /// this complex at all its points, faces and edges.
 struct MeshComplex {
   Plc plc;
   TetMesh mesh;  ///< of first order, without points that no tet uses
 };
 
-/// Builds the complex of a mesh. The sides of tets at a boundary or between two regions are its facets, and
+/// Builds the complex of a mesh. Its facets are the sides of tets at a boundary or between two regions, and
 /// listed faces inside a region. If the mesh has edges along all borders between tags of its faces, these
-/// edges are its curves; else folds are, too, as `options.feature_angle` has it. Connected tets of one region
+/// edges are its curves; otherwise folds above `options.feature_angle` are, too. Connected tets of one region
 /// make a region of the complex. Throws PlcError where the tets do not fit each other. Cost: O(n log n).
 MeshComplex complex_of(const TetMesh& mesh, const PlcOptions& options);
 

@@ -16,7 +16,7 @@ namespace {
 struct Use {
   Triangle key;  // sorted corners
   Index tet;     // none: a listed face
-  Index place;   // the corner opposite, or the number of the face
+  Index place;   // the opposite corner, or the number of the face
 
   friend bool operator<(const Use& a, const Use& b) {
     return a.key != b.key ? a.key < b.key : a.tet != b.tet ? a.tet < b.tet : a.place < b.place;

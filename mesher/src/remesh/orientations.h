@@ -5,8 +5,7 @@
 namespace collarmesh::remeshing {
 
 /// Returns whether all tets that a change makes are positively oriented, decided exactly. Qualities are
-/// computed with rounding: between vertices that are 1e-12 of their coordinates apart a good one says
-/// nothing.
+/// computed with rounding: they mean nothing between vertices that are 1e-12 of their coordinates apart.
 bool stays_oriented(const improvement::TetComplex& complex, const improvement::Change& change);
 
 }  // namespace collarmesh::remeshing

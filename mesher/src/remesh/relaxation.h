@@ -15,24 +15,23 @@
 
 namespace collarmesh::remeshing {
 
-/// Brings a mesh of any shapes and lengths near to its sizes, so that coarsening and improvement, which keep
-/// bounds, can do the rest.
+/// Brings a mesh with any shapes and lengths near to its sizes, so that coarsening and improvement, which
+/// keep bounds, can do the rest.
 ///
-/// No operation makes the worst tet around worse than a share of what it was, unless all new ones are good.
-/// Short edges are contracted first, the shortest before all others, and tets made better between; then long
-/// edges are divided.
+/// No operation makes the worst tet around worse than a share of its quality, unless all new ones are good.
+/// Collapses short edges first, shortest first, and improves tets in between; then long edges are divided.
 class Relaxation {
  public:
-  /// Keeps the workpiece and the execution by reference; `sizes`: targets at the vertices.
+  /// Keeps the workpiece and the execution by reference; `sizes` are targets at the vertices.
   Relaxation(improvement::Workpiece& workpiece, const MeshOptions& options, const std::vector<double>& sizes,
              const Execution& execution);
 
-  /// Contracts short edges and makes tets better, for lengths that grow up to the target.
+  /// Collapses short edges and improves tets, for lengths that grow up to the target.
   void contract();
-  /// Makes tets better, and contracts what that permits.
+  /// Improves tets and collapses the edges that this permits.
   void improve();
 
-  /// Returns how many changes were made.
+  /// Returns the number of changes.
   std::size_t changes() const { return contractions_ + others_; }
 
  private:
@@ -40,7 +39,7 @@ class Relaxation {
     double relative_length;
     Index vertex;
   };
-  /// What improvement may do besides removing edges.
+  /// The means of improvement besides removing edges.
   enum class Means { edges, moves, vertices };
   static constexpr unsigned kinds_of_means = 3;
 
@@ -67,11 +66,11 @@ class Relaxation {
   improvement::Operations operations_;
   const Execution& execution_;
   std::vector<Index> star_, neighbours_;
-  std::vector<Near> near_;  // of the vertex asked about last, by length
-  double longest_ = 0;      // edge there, relative to the target
+  std::vector<Near> near_;  // neighbours of the last vertex, by length
+  double longest_ = 0;      // longest edge there, relative to the target
   std::size_t contractions_ = 0, others_ = 0, steps_ = 0;
-  // When tets at a vertex have changed last, and when something was tried last in vain. What has not changed
-  // since need not be tried again.
+  // When tets at a vertex last changed, and when an attempt last failed: an attempt is repeated only after a
+  // change.
   std::uint32_t now_ = 1;
   std::vector<std::uint32_t> changed_, kept_;                          // by vertex
   std::array<std::vector<std::uint32_t>, kinds_of_means> not_better_;  // by tet

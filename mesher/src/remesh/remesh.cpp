@@ -26,19 +26,18 @@ namespace {
 
 using improvement::Workpiece;
 
-// Each round at least halves the longest edges of most tets; far finer sizes are not reached by halving
-// alone.
+// Each round at least halves the longest edges of most tets; halving alone does not reach far finer sizes.
 constexpr unsigned most_rounds = 40, most_passes = 3;
 // A pass of divisions that changes a smaller share of the vertices is the last one.
 constexpr double least_share = 0.01;
 // Edges longer than this times the target are divided: first so that halves are no shorter than an edge that
-// coarsening contracts, then those longer than any that coarsening makes.
+// coarsening collapses, later those longer than any edge that coarsening makes.
 constexpr double longest_at_first = 1.4142, longest_later = coarsening::CoarseningRule::longest_new;
-// Larger than any ratio: then nothing but the worst tet around forbids an operation.
+// Larger than any ratio: then only the worst tet around limits an operation.
 constexpr double any_ratio = 1e12;
-// Smaller than any ratio: then angles alone decide, and slivers of a small ratio are none that may be made.
+// Smaller than any ratio: then angles alone decide, and slivers of a small ratio are forbidden.
 constexpr double no_ratio = 0.1;
-// Degrees: a mesh of this smallest angle, away from creases and narrow places, keeps it.
+// Degrees: a mesh whose smallest angle, away from creases and narrow places, is at least this keeps it.
 constexpr double good_angle = 15;
 
 /// Thrown if a stage stops early; the result says why.
@@ -82,13 +81,14 @@ class Remeshing {
     made_.remeshing.tets_before = mesh().tets.size();
     measure_before();
     choose_size();
-    options_.mesh.edges_per_hole = 0;  // those that are there may be all that a hole has
+    options_.mesh.edges_per_hole = 0;  // the existing edges may be all that a hole has
     if (!options_.mesh.bounds.tolerance)
       options_.mesh.bounds.tolerance = tolerance_of(made_.plc, options_.mesh.bounds, largest_size_);
     choose_bounds();
   }
 
-  /// Chooses the bounds that operations keep: a mesh whose angles are all within some stays within these.
+  /// Chooses the bounds that operations keep: a mesh whose angles are all within some bounds stays within
+  /// these.
   void choose_bounds() {
     kept_ = options_.mesh.bounds;
     for (const double angle : {good_angle, kept_.thin_angle})
@@ -120,7 +120,7 @@ class Remeshing {
     }
   }
 
-  /// Without a size that of the field holds alone, and without a field the lengths that the mesh has.
+  /// Chooses the size: without a size the field alone counts, and without a field the mesh's own lengths.
   void choose_size() {
     MeshOptions& options = options_.mesh;
     const double diagonal = made_.plc.bounds.diagonal();
@@ -194,8 +194,8 @@ class Remeshing {
     return all;
   }
 
-  /// Makes tets better that are poor, by whatever does not make the worst one around worse. `keep_vertices`:
-  /// vertices go and come only where an angle is above the largest of thin tets.
+  /// Improves poor tets by any operation that does not make the worst tet around worse. With `keep_vertices`,
+  /// vertices are inserted and removed only where an angle is above the largest of thin tets.
   void improve_shapes(Workpiece& piece, bool keep_vertices) {
     ImproveOptions options = improve_options(2);
     options.bounds = kept_;
@@ -242,7 +242,8 @@ class Remeshing {
     stop_if_asked(made_.check.cancelled);
   }
 
-  /// Features are told by tags, as in a mesh from a file: their numbers would be those of this complex.
+  /// Removes feature numbers, which would refer to this complex. Tags identify features, as in a mesh from a
+  /// file.
   void forget_numbers() {
     for (TetMesh::VertexFeature& feature : mesh().features) feature.feature = none;
     std::fill(mesh().face_patch.begin(), mesh().face_patch.end(), none);
@@ -305,7 +306,7 @@ class Remeshing {
   Execution inner_;
   RemeshResult made_;
   double largest_size_ = 0;
-  Bounds kept_;  // by operations
+  Bounds kept_;  // bounds that operations keep
   Clock::time_point started_ = Clock::now();
   double from_ = 0, to_ = 0, fraction_ = 0;
   bool stopped_ = false, out_of_time_ = false;

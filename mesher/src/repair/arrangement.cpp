@@ -1,5 +1,5 @@
-// The arrangement of triangles: Zhou, Grinspun, Zorin, Jacobson, "Mesh arrangements for solid geometry",
-// 2016.
+// Computes the arrangement of triangles: Zhou, Grinspun, Zorin, Jacobson, "Mesh arrangements for solid
+// geometry", 2016.
 #include "repair/arrangement.h"
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
@@ -31,7 +31,8 @@ using namespace facets;
 
 using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
 using ExactPoint = Kernel::Point_3;
-// Of an inserted point, counted from 1; 0 for a vertex that the triangulation made where constraints cross.
+// The number of an inserted point, counted from 1; 0 for a vertex that the triangulation made where
+// constraints cross.
 struct Inserted {
   Index number = 0;
 };
@@ -43,22 +44,22 @@ using Edge = std::array<Index, 2>;
 
 constexpr std::size_t most_rounds = 12;
 constexpr std::size_t most_places = 100;
-constexpr std::size_t work_of_a_cut = 1000;  // of a pair of facets, in units of Work
+constexpr std::size_t work_of_a_cut = 1000;  // work of cutting a pair of facets, in units of Work
 
 Edge edge_key(Index a, Index b) { return a < b ? Edge{a, b} : Edge{b, a}; }
 
 Point rounded(const ExactPoint& p) {
-  // Of the exact value, so that equal points are rounded alike.
+  // Round the exact value, so that equal points are rounded to the same doubles.
   return {CGAL::to_double(p.x().exact()), CGAL::to_double(p.y().exact()), CGAL::to_double(p.z().exact())};
 }
 
-// What cuts a triangle inside: points and segments in its plane.
+// Points and segments in a triangle's plane that cut it inside.
 struct Cuts {
   std::vector<ExactPoint> points;
   std::vector<std::array<ExactPoint, 2>> segments;
 };
 
-// One round: the pairs that intersect are cut exactly, then rounded.
+// One round: cuts the pairs that intersect exactly, then rounds.
 class Cutter {
  public:
   Cutter(Draft& draft, const EdgeTable& edges, std::span<const Simplex> simplices)
@@ -102,8 +103,8 @@ class Cutter {
     }
   }
 
-  // Where the sides of s pierce t. False where a corner of one is in the plane of the other or a side meets
-  // an edge: those are taken by their constructions.
+  // Finds where the sides of s pierce t. Returns false if a corner of one lies in the plane of the other or a
+  // side meets an edge: their constructions handle those.
   bool find_piercings(const facets::Corners& s, const facets::Corners& t, Index number,
                       std::vector<ExactPoint>& found) {
     const auto at = [&](Index p) -> const Point& { return draft_.points[p]; };
@@ -129,7 +130,7 @@ class Cutter {
     return true;
   }
 
-  // Once for all triangles at the edge.
+  // Computes the piercing point once for all triangles at the edge.
   ExactPoint piercing(const Edge& edge, const facets::Corners& t, Index number) {
     const auto [at, added] = piercings_.try_emplace({edge[0], edge[1], number});
     if (!added) return at->second;
@@ -141,7 +142,7 @@ class Cutter {
     return at->second;
   }
 
-  // Two triangles that cross each other in general position, with no common corner or one.
+  // Adds the cuts of two triangles that cross in general position, with at most one common corner.
   bool add_crossing(const facets::Corners& s, Index i, const facets::Corners& t, Index j) {
     std::vector<ExactPoint> ends;
     std::size_t common = 0;
@@ -157,7 +158,7 @@ class Cutter {
     return true;
   }
 
-  // Two triangles in one plane: the sides of each cut the other.
+  // Adds the cuts of two triangles in one plane: the sides of each cut the other.
   bool add_coplanar(const facets::Corners& s, Index i, const facets::Corners& t, Index j) {
     const auto at = [&](Index p) -> const Point& { return draft_.points[p]; };
     for (const Index p : t)
@@ -175,8 +176,8 @@ class Cutter {
     return true;
   }
 
-  // What an edge in the plane of a triangle has in common with it: nothing, a point or a segment, of which
-  // the ends are ends of the edge, corners, or crossings with the sides.
+  // Adds the common part of a triangle and an edge in its plane: nothing, a point or a segment, whose ends
+  // are ends of the edge, corners, or crossings with the sides.
   void clip(const Edge& e, const facets::Corners& t, Index number, unsigned axis) {
     if (!clipped_.insert({number, e}).second) return;
     const auto turn = [&](Index p, Index q, Index r) {
@@ -193,7 +194,7 @@ class Cutter {
     }
     std::vector<ExactPoint> common;
     for (unsigned end = 0; end < 2; ++end) add_end(e[end], t, within[end], common);
-    std::array<int, 3> beside{};  // by corner: on which side of the edge
+    std::array<int, 3> beside{};  // by corner: on which side of the edge it lies
     for (unsigned k = 0; k < 3; ++k) beside[k] = turn(e[0], e[1], t[k]);
     for (unsigned k = 0; k < 3; ++k) {
       const unsigned next = (k + 1) % 3;
@@ -208,7 +209,7 @@ class Cutter {
     if (common.size() == 2 && !along) cuts_[number].segments.push_back({common[0], common[1]});
   }
 
-  // The end of an edge, if it is in the triangle.
+  // Adds the end of an edge, if it is in the triangle.
   void add_end(Index p, const facets::Corners& t, const std::array<int, 3>& within,
                std::vector<ExactPoint>& common) {
     if (*std::min_element(within.begin(), within.end()) < 0) return;
@@ -218,7 +219,7 @@ class Cutter {
     on_edge_[edge_key(t[k], t[(k + 1) % 3])].push_back(common.back());
   }
 
-  // Once for both edges.
+  // Computes the crossing once for both edges.
   ExactPoint crossing(const Edge& e, const Edge& f, unsigned axis) {
     const auto [at, added] = crossings_.try_emplace(e < f ? std::pair{e, f} : std::pair{f, e});
     if (!added) return at->second;
@@ -254,7 +255,7 @@ class Cutter {
     std::vector<ExactPoint> operator()(const std::vector<ExactPoint>& polygon) const { return polygon; }
   };
 
-  // A point on an edge is one for all triangles there.
+  // Adds a point. All triangles at an edge share its points.
   void add_point(const Simplex& s, Index number, const ExactPoint& p) {
     std::array<ExactPoint, 3> corners;
     for (unsigned i = 0; i < s.size; ++i) {
@@ -274,7 +275,7 @@ class Cutter {
     cuts_[number].points.push_back(p);
   }
 
-  // The points on an edge from a to b, both included.
+  // Returns the points on an edge from a to b, both included.
   std::vector<ExactPoint> chain(Index a, Index b) const {
     std::vector<ExactPoint> points{exact(a)};
     if (const auto found = on_edge_.find(edge_key(a, b)); found != on_edge_.end()) {
@@ -400,9 +401,9 @@ class Cutter {
   std::map<std::pair<Edge, Edge>, ExactPoint> crossings_;
   std::set<std::pair<Index, Edge>> clipped_;  // triangles, and edges in their planes
   std::map<Index, Cuts> cuts_;                // by triangle
-  // Of the triangle at hand:
+  // Data of the current triangle:
   std::vector<ExactPoint> inserted_;
-  std::vector<Index> ids_;  // of those
+  std::vector<Index> ids_;  // of those points
 };
 
 void note_places(const Draft& draft, std::span<const Simplex> simplices,
@@ -421,7 +422,7 @@ void note_places(const Draft& draft, std::span<const Simplex> simplices,
   }
 }
 
-// Simplices by their corners. Points never move, so what had the same corners was in the same place.
+// Simplices by their corners. Points never move, so simplices with the same corners are at the same place.
 class KnownSimplices {
  public:
   void clear() { corners_.clear(); }
@@ -436,10 +437,10 @@ class KnownSimplices {
   std::vector<Corners> corners_;
 };
 
-// What met nothing in the round before meets only what arose since then.
+// Facets without intersections in the last round, which can only intersect facets created since.
 class Settled {
  public:
-  /// By number: was it there, and met nothing?
+  /// Returns by number whether the simplex existed and met nothing.
   std::vector<bool> among(std::span<const Simplex> simplices) const {
     std::vector<bool> result;
     if (known_.empty()) return result;
@@ -461,16 +462,17 @@ class Settled {
   KnownSimplices known_;
 };
 
-// Corners that come near others or edges become one with them. What was there in the round before need not be
-// compared with itself.
+// Merges corners that come near other corners or edges. Simplices of the last round need not be compared with
+// each other.
 class GrainSnapper {
  public:
   GrainSnapper(Draft& draft, double reach, Work* work, bool cancel)
       : draft_(draft), reach_(reach), work_(work), cancel_(cancel) {}
 
-  // A round was of no help: where snapping undoes what was cut, rounds without it help.
+  // Pauses or resumes snapping after a round that did not help: where snapping undoes cuts, rounds without it
+  // may help.
   void change() { pausing_ = !pausing_; }
-  /// Snap again from now on. False if it was not paused, or never snaps.
+  /// Resumes snapping. Returns false if it was not paused, or never snaps.
   bool resume() { return std::exchange(pausing_, false) && reach_ > 0; }
 
   void run() {
@@ -542,7 +544,7 @@ ArrangementReport arrange(Draft& draft, double grain, Work* work, bool cancel_tw
       report.intersecting_pairs = pairs.size();
       note_places(draft, simplices.list(), pairs, report.places);
     }
-    // Snap what the rounds without snapping left; it is taken back if facets then intersect.
+    // Snap what the rounds without snapping left; undo it if facets then intersect.
     if (report.clean && !clean_before && snapper.resume()) {
       clean_before = draft;
       snapper.run();
@@ -552,7 +554,7 @@ ArrangementReport arrange(Draft& draft, double grain, Work* work, bool cancel_tw
       draft = std::move(*clean_before);
       report.clean = true;
     }
-    // Rounding may make more of them than there were: it does not end then.
+    // Rounding may increase their number; the rounds then do not converge.
     if (report.clean || report.rounds == most_rounds || pairs.size() > 2 * fewest + few) return report;
     if (pairs.size() >= fewest) snapper.change();
     fewest = std::min(fewest, pairs.size());

@@ -8,27 +8,26 @@
 
 namespace collarmesh::repairing {
 
-/// What cutting did.
+/// The result of cutting.
 struct ArrangementReport {
   std::size_t intersecting_pairs = 0;  ///< of triangles, segments and points, in the first round
   std::size_t cut_triangles = 0;
   std::size_t rounds = 0;
   bool clean = false;         ///< nothing intersects any more
-  std::vector<Point> places;  ///< some points where triangles met, in the first round
+  std::vector<Point> places;  ///< some places where triangles met, in the first round
 };
 
-/// Cut the triangles and segments of a draft along their intersections until they meet in common corners and
-/// edges only. Constructions are exact, then rounded, and corners that come within `grain` (absolute) of
-/// others or of edges become one with them, unless that undoes the cuts; what intersects by this is cut in
-/// further rounds. Where that undid the cuts it is tried once more in the end, and taken back if it does so
-/// again. Triangles that cover each other become copies of one: all stay, as their orientations say
-/// what is inside; those that arise near others cancel, unless `cancel_twins` is false. Throws WorkStopped;
-/// the draft is then of no use. Pieces keep their triangle's origin, but for `Origin::facet`, which is
-/// renumbered. Cost: O(n log n) and for k intersecting pairs O(k log k) exact constructions, some 0.1 ms
-/// each.
+/// Cuts the triangles and segments of a draft along their intersections until they only meet in common
+/// corners and edges. Constructions are exact, then rounded. Corners that come within `grain` (absolute) of
+/// other corners or edges are merged with them, unless that undoes the cuts; intersections that this causes
+/// are cut in further rounds. Merges that undid cuts are tried once more at the end, and undone if they do so
+/// again. Triangles that cover each other become copies of one: all stay, because their orientations tell
+/// what is inside; copies created from near triangles cancel, unless `cancel_twins` is false. Throws
+/// WorkStopped; the draft is then unusable. Pieces keep their triangle's origin, except `Origin::facet`,
+/// which is renumbered. Cost: O(n log n), and for k intersecting pairs O(k log k) exact constructions.
 ArrangementReport arrange(facets::Draft& draft, double grain, Work* work = nullptr, bool cancel_twins = true);
 
-/// Make points with equal coordinates one, and drop the triangles and segments that lose a corner in this.
+/// Merges points with equal coordinates, and drops the triangles and segments that lose a corner by this.
 void unify_equal_points(facets::Draft& draft);
 
 }  // namespace collarmesh::repairing

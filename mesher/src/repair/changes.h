@@ -6,21 +6,21 @@
 
 namespace collarmesh::repairing {
 
-/// What differs between two states of a draft, in places: triangles that are gone or came and hang together
-/// by edges. Surfaces stay closed where any of the places is taken back; facets may intersect then.
+/// The difference between two states of a draft, divided into places: removed or added triangles that are
+/// connected by edges. Surfaces stay closed if any of the places is undone; facets may intersect then.
 class Changes {
  public:
-  /// The later state has the points of the earlier one, with the same numbers. Both are kept by reference.
-  /// Cost: O(n log n).
+  /// Keeps both by reference. Precondition: the later state has the points of the earlier one, with the same
+  /// numbers. Cost: O(n log n).
   Changes(const facets::Draft& before, const facets::Draft& after);
 
   Index places() const { return places_; }
-  /// By triangle of the earlier or later state; none: both have it.
+  /// Returns the place by triangle of the earlier or later state; none: both have it.
   const std::vector<Index>& place_of_gone() const { return of_gone_; }
   const std::vector<Index>& place_of_come() const { return of_come_; }
 
-  /// The later state, but for the places that are taken back. `place` becomes where its triangles are from;
-  /// none: both states have them.
+  /// Returns the later state without the undone places. Sets `place` to the place of each triangle; none:
+  /// both states have it.
   facets::Draft without(const std::vector<bool>& taken_back, std::vector<Index>& place) const;
 
  private:
@@ -32,7 +32,8 @@ class Changes {
 
   const facets::Draft &before_, &after_;
   std::vector<Index> of_gone_, of_come_;
-  std::vector<std::pair<std::array<Index, 2>, Index>> edges_;  // of these triangles, and their places; sorted
+  std::vector<std::pair<std::array<Index, 2>, Index>> edges_;  // edges of these triangles, and their places;
+                                                               // sorted
   Index places_ = 0;
 };
 

@@ -15,23 +15,23 @@
 
 namespace collarmesh::repairing {
 
-/// The triangles of a draft while some are replaced by others. They keep their numbers; those at a point,
-/// those at an edge and those near others, and corners near edges are found without looking at all of them.
-/// Holds between calls: the draft's points may have grown, its triangles change by these functions alone.
+/// The triangles of a draft while some are replaced by others. They keep their numbers. Finds the triangles
+/// at a point, at an edge and near others, and corners near edges, without visiting all of them. Between
+/// calls the draft's points may grow; only these functions may change its triangles.
 class ChangingTriangles {
  public:
-  /// Triangles are near each other where their boxes, along the axes of a frame and larger by half of
-  /// `reach` (absolute) on all sides, meet, and each comes within `reach` of the plane of the other. Pairs of
-  /// boxes that meet are spent from `work`.
+  /// Makes the lists. Triangles are near each other if their boxes, along the axes of a frame and larger by
+  /// half of `reach` (absolute) on all sides, meet, and each comes within `reach` of the plane of the other.
+  /// Pairs of boxes that meet are spent from `work`.
   ChangingTriangles(facets::Draft& draft, double reach, Work& work);
 
-  /// How many there are.
+  /// Returns how many there are.
   std::size_t count() const { return count_; }
-  /// One more than the largest number.
+  /// Returns one more than the largest number.
   Index end() const { return static_cast<Index>(draft_.triangles.size()); }
   bool alive(Index triangle) const { return alive_[triangle]; }
 
-  /// Its number.
+  /// Adds a triangle and returns its number.
   Index add(const facets::Corners& corners, const facets::Origin& origin);
   void remove(Index triangle);
 
@@ -42,15 +42,15 @@ class ChangingTriangles {
       for (Index side = first_[point]; side != none; side = next_[side]) visit(side);
   }
   bool uses(Index point) const { return point < first_.size() && first_[point] != none; }
-  /// The sides on an edge, in order.
+  /// Returns the sides on an edge, in order.
   std::vector<Index> sides(const Edge& edge) const;
 
-  /// The unit normal of a triangle, or zero.
+  /// Returns the unit normal of a triangle, or zero.
   const Vector& normal(Index triangle) const { return normals_[triangle]; }
 
-  /// Calls visit(s, t), s < t, once for each pair of triangles near each other of which one at least is
-  /// `changed`; those are alive and in order. Cost: O(k log n + p) for k changed ones and p pairs of boxes;
-  /// O(n log n + p) where k is no small share of n.
+  /// Calls visit(s, t), s < t, once for each pair of triangles near each other of which at least one is
+  /// `changed`; the changed ones exist and are in order. Cost: O(k log n + p) for k changed ones and p pairs
+  /// of boxes; O(n log n + p) if k is a large share of n.
   template <class Visit>
   void for_each_near_pair(const std::vector<Index>& changed, const Visit& visit) {
     std::vector<bool> among(end(), false);
@@ -82,9 +82,9 @@ class ChangingTriangles {
     for (const Index s : changed) trees_.for_each_meeting(box_of(s), [&](Index t) { meet_once(s, t); });
   }
 
-  /// Calls visit(p, edge) for each corner p and edge that it is no end of whose boxes, larger by half of
-  /// `reach` on all sides, meet, if a changed triangle has one of them; for some pairs several times. Corners
-  /// and edges may be gone. Spends these pairs. Cost: as above, however many triangles have a corner.
+  /// Calls visit(p, edge) for each corner p and each edge without it whose boxes, larger by half of `reach`
+  /// on all sides, meet, if a changed triangle has one of them; several times for some pairs. Corners and
+  /// edges may be gone. Spends these pairs. Cost: as above, however many triangles have a corner.
   template <class Visit>
   void for_each_corner_near_edge(const std::vector<Index>& changed, const Visit& visit) {
     const std::vector<Index> corners = corners_of(changed);
@@ -120,37 +120,38 @@ class ChangingTriangles {
       });
   }
 
-  /// The draft without gaps: triangles stay in order, but have other numbers there.
+  /// Returns the draft without gaps: triangles stay in order, but get other numbers.
   facets::Draft compacted() const;
 
  private:
-  static constexpr std::size_t few = 8;  // changed ones of which each is looked for alone, as a share of all
+  static constexpr std::size_t few = 8;  // up to this share of all, changed ones are searched one by one
 
-  // Those that are there, from this number on.
+  // Returns existing triangles from this number on.
   std::vector<Index> triangles_from(Index first) const;
-  // What these have, each once.
+  // Returns their corners, each once.
   std::vector<Index> corners_of(const std::vector<Index>& triangles) const;
   std::vector<Edge> edges_of(const std::vector<Index>& triangles) const;
   static std::array<Edge, 3> edges_of(const facets::Corners& c) {
     return {edge_key(c[0], c[1]), edge_key(c[1], c[2]), edge_key(c[2], c[0])};
   }
   Box box_around(std::span<const Index> points) const;
-  // Does t keep its distance from the plane of s?
+  // Returns whether t keeps its distance from the plane of s.
   bool beyond(Index s, Index t) const;
   void link(Index triangle);
-  /// Do the lists at these points hold sides of triangles that are there, as many as they should?
+  /// Returns whether the lists at these points hold sides of existing triangles, and the right number of
+  /// them.
   bool consistent(const facets::Corners& corners) const;
 
   facets::Draft& draft_;
   double reach_;
   Work& work_;
   const BoxFrame frame_;                                        // of the boxes
-  bool searched_triangles_ = false, searched_corners_ = false;  // for a few changed ones, without trees
+  bool searched_triangles_ = false, searched_corners_ = false;  // found for few changed ones, without trees
   std::size_t count_ = 0;
   std::vector<bool> alive_;
   std::vector<Vector> normals_;
-  std::vector<Index> first_, next_;  // by point and by side: the sides that start there, a list
-  std::vector<Index> degree_;        // by point: how long the list is
+  std::vector<Index> first_, next_;  // by point and by side: linked list of the sides that start there
+  std::vector<Index> degree_;        // by point: length of the list
   ItemTrees<Index> trees_, corner_trees_;
   ItemTrees<Edge> edge_trees_;
 };

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double spacing_by_diagonal = 0.02;
 
-// In an order that two copies share.
+// Rotates and sorts corners into an order that two copies share.
 CornerPoints canonical(CornerPoints t) {
   const auto key = [](const Point& p) { return std::array{p.x, p.y, p.z}; };
   std::sort(t.begin(), t.end(), [&](const Point& a, const Point& b) { return key(a) < key(b); });
@@ -28,7 +28,7 @@ bool before(const CornerPoints& s, const CornerPoints& t) {
   return false;
 }
 
-// Those triangles of which the other surface has no copy.
+// Returns the triangles of which the other surface has no copy.
 std::vector<CornerPoints> without(std::span<const CornerPoints> triangles,
                                   std::span<const CornerPoints> others) {
   std::vector<CornerPoints> sorted;
@@ -46,7 +46,8 @@ unsigned steps(double length, double spacing) {
   return static_cast<unsigned>(std::clamp(std::ceil(length / spacing), 1.0, most));
 }
 
-// Its corners, its centroid, and points on lines along its longest side, no farther apart than the spacing.
+// Visits its corners, its centroid, and points on lines along its longest side, no farther apart than the
+// spacing.
 template <class Visit>
 void for_each_sample(const CornerPoints& t, double spacing, const Visit& visit) {
   unsigned first = 0;
@@ -106,7 +107,7 @@ RepairDistances measure_distances(std::span<const CornerPoints> input, std::span
   constexpr double half = 0.5;
   Index hint = none;
   for (const CornerPoints& t : gone) {
-    // Most of what is gone lies deep inside, far from all that is left.
+    // Most removed triangles lie deep inside, far from all remaining ones.
     const Point centroid = (1.0 / 3) * (t[0] + t[1] + t[2]);
     const double radius =
         std::max({distance(centroid, t[0]), distance(centroid, t[1]), distance(centroid, t[2])});

@@ -17,9 +17,10 @@ using namespace facets;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
 constexpr std::size_t most_edges_for_cubic_time = 200;
-constexpr std::size_t work_of_an_edge = 1000;  // around a hole, in units of Work
+constexpr std::size_t work_of_an_edge = 1000;  // work of an edge around a hole, in units of Work
 
-// The directed edges, by soup, that lack a partner: a surface there goes on from their end to their start.
+// The directed edges, by soup, that lack a partner: the missing surface would have an edge from their end to
+// their start.
 struct OpenEdges {
   std::map<Index, std::vector<std::array<Index, 3>>> of_soup;  // from, to, a triangle there
 };
@@ -27,7 +28,7 @@ struct OpenEdges {
 OpenEdges find_open_edges(const Draft& draft) {
   OpenEdges open;
   const EdgeTable edges(draft.triangles, draft.points.size());
-  std::vector<std::pair<Index, int>> balance;  // soup, times upwards less times downwards
+  std::vector<std::pair<Index, int>> balance;  // soup, number of uses upwards minus downwards
   for (Index e = 0; e < edges.size(); ++e) {
     balance.clear();
     for (const Index side : edges.sides(e)) {
@@ -51,7 +52,7 @@ OpenEdges find_open_edges(const Draft& draft) {
   return open;
 }
 
-// By coordinates: an order that does not depend on that of points and facets.
+// Compares points by coordinates: an order that does not depend on the order of points and facets.
 bool comes_before(const Draft& draft, Index p, Index q) {
   const Point &a = draft.points[p], &b = draft.points[q];
   return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
@@ -59,7 +60,7 @@ bool comes_before(const Draft& draft, Index p, Index q) {
 
 using Loop = std::vector<std::array<Index, 3>>;
 
-// The loop starts at its first point.
+// Rotates the loop so that it starts at its first point in this order.
 void start_first(const Draft& draft, Loop& loop) {
   const auto first = std::min_element(loop.begin(), loop.end(), [&](const auto& e, const auto& f) {
     return comes_before(draft, e[0], f[0]);
@@ -67,8 +68,8 @@ void start_first(const Draft& draft, Loop& loop) {
   std::rotate(loop.begin(), first, loop.end());
 }
 
-// Closed curves of directed edges; where several meet in a point they are parted at it. The edges are in an
-// order by coordinates, so the curves and where they start do not depend on the order of the facets.
+// Finds closed curves of directed edges; where several meet in a point they are separated. The edges are
+// ordered by coordinates, so the curves and their starts do not depend on the order of the facets.
 std::vector<Loop> find_loops(const Draft& draft, std::vector<std::array<Index, 3>> edges) {
   std::sort(edges.begin(), edges.end(), [&](const auto& e, const auto& f) {
     if (comes_before(draft, e[0], f[0])) return true;
@@ -81,7 +82,7 @@ std::vector<Loop> find_loops(const Draft& draft, std::vector<std::array<Index, 3
   for (std::size_t start = 0; start < edges.size(); ++start) {
     if (used[start]) continue;
     Loop path;
-    std::map<Index, std::size_t> place;  // of a point in the path
+    std::map<Index, std::size_t> place;  // position of a point in the path
     std::size_t next = start;
     for (;;) {
       used[next] = true;
@@ -121,7 +122,7 @@ class SurfaceAreas {
   std::map<Index, double> area_;
 };
 
-// No surface with this border has less area than its area vector is long.
+// Returns a lower bound on the area of surfaces with this border: the length of its area vector.
 double least_area(const Draft& draft, const Loop& loop) {
   const Point& origin = draft.points[loop[0][0]];
   Vector twice{};
@@ -145,8 +146,8 @@ std::vector<Corners> triangulate(const Draft& draft, const Loop& loop) {
     Face(int i, int j, int k) : a(i), b(j), c(k) {}
   };
   std::vector<Face> faces;
-  // Among the edges of the Delaunay triangulation of the points; where those hold no triangulation of the
-  // curve, among all, which takes cubic time.
+  // Tries the edges of the Delaunay triangulation of the points first; if these contain no triangulation of
+  // the curve, tries all edges, which takes cubic time.
   CGAL::Polygon_mesh_processing::triangulate_hole_polyline(
       polyline, std::back_inserter(faces),
       CGAL::parameters::do_not_use_cubic_algorithm(corners.size() > most_edges_for_cubic_time));
@@ -154,7 +155,7 @@ std::vector<Corners> triangulate(const Draft& draft, const Loop& loop) {
   triangles.reserve(faces.size());
   const auto at = [&](int i) { return corners[static_cast<std::size_t>(i)]; };
   for (const Face& face : faces) triangles.push_back({at(face.a), at(face.b), at(face.c)});
-  // Whichever way the library turns them: the first edge tells.
+  // The first edge shows how the library has oriented them.
   for (const Corners& t : triangles)
     for (unsigned i = 0; i < 3; ++i)
       if (t[i] == corners[1] && t[(i + 1) % 3] == corners[0]) {

@@ -19,7 +19,7 @@ using namespace facets;
 
 constexpr std::size_t most_places = 100;
 constexpr std::size_t most_asked =
-    3;  // triangles of a shell, a patch or a component, for the winding number there
+    3;  // triangles of a shell, a patch or a component at which the winding number is computed
 
 Point centroid(const Draft& draft, const Corners& t) {
   return (1.0 / 3) * (draft.points[t[0]] + draft.points[t[1]] + draft.points[t[2]]);
@@ -58,14 +58,14 @@ class Largest {
   std::vector<std::pair<double, Index>> items_;
 };
 
-// Triangles of a clean arrangement, copies taken together: a sheet has the corners and the orientation of the
-// first of its copies.
+// The triangles of a clean arrangement, with copies merged: a sheet has the corners and the orientation of
+// the first of its copies.
 struct Sheets {
   struct Copy {
     Index triangle;
-    int sign;  // -1: turned against the sheet
+    int sign;  // -1: opposite to the sheet
   };
-  Draft unique;  // a triangle for each sheet
+  Draft unique;  // one triangle for each sheet
   std::vector<Index> first_copy{0};
   std::vector<Copy> copies;
 
@@ -121,7 +121,7 @@ class BoundaryKeeper {
       if (draft_.soup_is_complex[origin(copy).soup]) return true;
     return false;
   }
-  // How often the soup's triangles cover the sheet, turned ones counted negative.
+  // Returns how often the soup's triangles cover the sheet; opposite ones count negatively.
   int weight(Index sheet, Index soup) const {
     int sum = 0;
     for (const Sheets::Copy& copy : sheets_.of(sheet))
@@ -138,7 +138,7 @@ class BoundaryKeeper {
            ascending(sheets_.unique.triangles, sides[0]) != ascending(sheets_.unique.triangles, sides[1]);
   }
 
-  // What hangs together by edges; tangled where any edge is not plain.
+  // Finds clusters of sheets connected by edges; a cluster is tangled if any of its edges is not plain.
   void find_clusters() {
     DisjointSets sets(sheets_.size());
     std::vector<bool> tangled(sheets_.size(), false);
@@ -150,7 +150,7 @@ class BoundaryKeeper {
     for (Index s = 0; s < sheets_.size(); ++s) tangled_[s] = tangled[sets.find(s)];
   }
 
-  // What hangs together by edges that have two sheets.
+  // Finds patches of sheets connected by edges that have two sheets.
   void find_patches() {
     DisjointSets sets(sheets_.size());
     for (Index e = 0; e < edges_.size(); ++e)
@@ -181,7 +181,7 @@ class BoundaryKeeper {
     return soups;
   }
 
-  // Label the shells that are inside this soup and no earlier one.
+  // Labels the shells that are inside this soup and no earlier one.
   void weigh(Index soup) {
     std::vector<int> weights(sheets_.size());
     for (Index s = 0; s < sheets_.size(); ++s) weights[s] = weight(s, soup);
@@ -213,9 +213,9 @@ class BoundaryKeeper {
     return WindingNumber(std::move(triangles));
   }
 
-  // Patches at edges where the soup is open bound nothing if the winding number there is, without them, that
-  // of one place, not the mean of inside and outside. The smallest one goes first: half a box and a wall amid
-  // the box are closed without the other half, too.
+  // Removes open sheets: patches at edges where the soup is open bound nothing if the winding number there,
+  // without them, is that of a single place and not the mean of inside and outside. Starts with the smallest
+  // one: half a box with a wall inside is closed without the other half, too.
   void remove_open_sheets(Index soup, std::vector<int>& weights) {
     constexpr std::size_t most = 100;
     for (std::size_t count = 0; count < most; ++count) {
@@ -227,10 +227,10 @@ class BoundaryKeeper {
     }
   }
 
-  // The patches without which the soup has less open edges, by length; small ones first.
+  // Returns the patches without which the soup has fewer open edges, by length; small ones first.
   std::vector<Index> open_patches(const std::vector<int>& weights) const {
     std::map<Index, double> gain;
-    std::vector<std::pair<Index, int>> own;  // of each patch at the edge
+    std::vector<std::pair<Index, int>> own;  // patches at the edge
     for (Index e = 0; e < edges_.size(); ++e) {
       int sum = 0;
       own.clear();
@@ -290,7 +290,7 @@ class BoundaryKeeper {
     });
   }
 
-  // What a shell encloses, seen from the chamber that it is a border of.
+  // The space that a shell encloses, as seen from its chamber.
   struct Chamber {
     Point origin;
     double volume = 0, area = 0;
@@ -318,7 +318,8 @@ class BoundaryKeeper {
     return chambers;
   }
 
-  // Each takes the label that it has most area in common with, from what is thick inwards.
+  // Gives each thin chamber the label with which it has the largest common area, starting beside thick
+  // chambers.
   void give_away_thin_chambers() {
     std::map<Index, Chamber> left = thin_chambers();
     while (!left.empty()) {
@@ -332,7 +333,7 @@ class BoundaryKeeper {
                                            [](const auto& a, const auto& b) { return a.second < b.second; });
         labelled.emplace_back(shell, most->first);
       }
-      if (labelled.empty()) return;  // thin ones among themselves
+      if (labelled.empty()) return;  // only thin ones beside each other
       for (const auto& [shell, label] : labelled) {
         if (label_[shell] != label) {
           report_.chamber_volume += left.at(shell).volume;
@@ -383,7 +384,7 @@ class BoundaryKeeper {
     draft_.origins = std::move(origins);
   }
 
-  // Of its own copy where the soup has one.
+  // Returns the origin of the soup's own copy, if it has one.
   Origin origin_for(Index sheet, Index soup) const {
     for (const Sheets::Copy& copy : sheets_.of(sheet))
       if (origin(copy).soup == soup) return origin(copy);
@@ -397,15 +398,15 @@ class BoundaryKeeper {
   std::vector<bool> tangled_;  // by sheet
   std::vector<Index> patch_;   // by sheet
   std::vector<Index> shell_;   // by side of a sheet
-  std::vector<Index> label_;   // by shell: the soup that it is inside of, none outside of all
+  std::vector<Index> label_;   // by shell: the soup that contains it, none outside all
   std::map<Index, Largest> largest_of_shell_, largest_of_patch_;
   std::vector<std::pair<Index, Index>> walls_;  // patch and soup
   InsideReport report_;
 };
 
-// Triangles that hang together by edges that two triangles of one soup share.
+// Triangles connected by edges that two triangles of one soup share.
 struct Components {
-  std::vector<Index> of;  // by triangle: the first one
+  std::vector<Index> of;  // by triangle: the first one of its component
   std::map<Index, std::vector<Index>> triangles;
   std::map<Index, bool> closed;
 
@@ -440,7 +441,7 @@ struct Components {
 
 bool peels_away(const Draft& draft) {
   const EdgeTable edges(draft.triangles, draft.points.size());
-  std::vector<std::size_t> left(edges.size());  // triangles at the edge
+  std::vector<std::size_t> left(edges.size());  // number of triangles left at the edge
   std::vector<bool> gone(draft.triangles.size(), false);
   std::vector<Index> open;
   for (Index e = 0; e < edges.size(); ++e) {
@@ -501,7 +502,7 @@ TurnReport turn_components(Draft& draft) {
 }
 
 FlakeReport drop_flakes(Draft& draft, double thickness) {
-  constexpr double most_of_all = 1e-3;  // of the volume
+  constexpr double most_of_all = 1e-3;  // share of the total volume
   FlakeReport report;
   const Components components(draft);
   const Point origin = draft.bounds.centre();
@@ -530,7 +531,7 @@ FlakeReport drop_flakes(Draft& draft, double thickness) {
     report.places.push_back(centroid(draft, draft.triangles[component]));
   }
   if (report.places.empty()) return report;
-  if (report.places.size() == components.triangles.size()) return {};  // nothing else is there
+  if (report.places.size() == components.triangles.size()) return {};  // all components would be dropped
   std::size_t kept = 0;
   for (Index t = 0; t < draft.triangles.size(); ++t) {
     if (dropped[t]) continue;

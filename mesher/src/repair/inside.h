@@ -7,54 +7,54 @@
 
 namespace collarmesh::repairing {
 
-/// Do the triangles enclose nothing, whatever their orientation? Precondition: they meet in common edges and
-/// corners only, or are copies of each other. True is certain: nothing is left when triangles with an edge of
-/// their own are taken away one after the other, as closed surfaces have none. Only that is looked at, so
-/// false is not. Cost: O(n).
+/// Returns whether the triangles enclose nothing, whatever their orientation. Precondition: they only meet in
+/// common edges and corners, or are copies of each other. Removes triangles with an edge of their own one
+/// after the other: if none is left, they enclose nothing, because closed surfaces have no such triangle. The
+/// converse is not tested. Cost: O(n).
 bool peels_away(const facets::Draft& draft);
 
-/// What `turn_components` did.
+/// The result of `turn_components`.
 struct TurnReport {
   std::size_t turned_components = 0;
   std::vector<Point> places;
 };
 
-/// Turn those closed components of surfaces whose orientation contradicts the rest: those oriented inwards
-/// that lie in nothing, and those inside a component that is turned. A component is what is connected by
-/// edges that two triangles of one soup share. Cost: O(n log n).
+/// Reverses closed components of surfaces whose orientation contradicts the rest: those oriented inwards that
+/// lie in nothing, and those inside a reversed component. A component is connected by edges that two
+/// triangles of one soup share. Cost: O(n log n).
 TurnReport turn_components(facets::Draft& draft);
 
-/// What `drop_flakes` did.
+/// The result of `drop_flakes`.
 struct FlakeReport {
-  double volume = 0;          ///< of all that were dropped
-  std::vector<Point> places;  ///< one in each
+  double volume = 0;          ///< volume of all that were dropped
+  std::vector<Point> places;  ///< a place in each
 };
 
-/// Drop closed components thinner than `thickness` (absolute: twice the volume by the area) with hardly any
-/// of the volume of all. Components are those of `turn_components`; of complexes none is dropped. Cost: O(n
-/// log n).
+/// Drops closed components thinner than `thickness` (absolute: twice the volume by the area) if they have
+/// hardly any of the total volume. Components are those of `turn_components`; those of complexes stay. Cost:
+/// O(n log n).
 FlakeReport drop_flakes(facets::Draft& draft, double thickness);
 
-/// What `keep_boundaries` did.
+/// The result of `keep_boundaries`.
 struct InsideReport {
   std::size_t removed_triangles = 0;  ///< inside a solid, or enclosing nothing
   double removed_area = 0;
   std::size_t internal_facets = 0;  ///< open sheets inside a solid, which stay
   std::size_t dropped_sheets = 0;   ///< triangles of open sheets outside of all solids
-  double dropped_area = 0;          ///< of these
+  double dropped_area = 0;          ///< area of these
   std::vector<Point> places;
-  double chamber_volume = 0;          ///< of thin chambers that became part of their neighbours
-  std::vector<Point> chamber_places;  ///< one in each
+  double chamber_volume = 0;          ///< volume of thin chambers that became part of their neighbours
+  std::vector<Point> chamber_places;  ///< a place in each
 };
 
-/// Of a clean arrangement keep the triangles that bound something. Inside a soup is where the winding number
-/// of its surface is above 1/2; where several soups are inside, the first one is. Each soup then has the
-/// boundary of its place, oriented outwards; what parts two soups has a copy for each. Components of which
-/// every edge has two triangles of one soup, oriented alike, stay as they are. So do the facets of complexes.
-/// A chamber that is thinner than `thickness` (absolute: twice its volume by its area), as sheets that nearly
-/// coincide have many between them, becomes part of what it has most of its area in common with.
-/// Precondition: triangles meet in common edges and corners only, or are copies of each other.
-/// Cost: O(n log n).
+/// Keeps the triangles of a clean arrangement that bound something. A place is inside a soup if the winding
+/// number of its surface is above 1/2 there; if it is inside several soups, the first one counts. Each soup
+/// then has the boundary of its part of space, oriented outwards; triangles between two soups have a copy for
+/// each. Components of which every edge has two triangles of one soup, with consistent orientation, stay as
+/// they are, and so do the facets of complexes. A chamber thinner than `thickness` (absolute: twice its
+/// volume by its area), many of which lie between sheets that nearly coincide, becomes part of the neighbour
+/// with the largest common area. Precondition: triangles only meet in common edges and corners, or are copies
+/// of each other. Cost: O(n log n).
 InsideReport keep_boundaries(facets::Draft& draft, double thickness);
 
 }  // namespace collarmesh::repairing

@@ -16,15 +16,16 @@ std::vector<Box> boxes_of(const std::vector<Item>& items, const BoxOf& box_of) {
   return boxes;
 }
 
-/// Boxes of items that arise with numbered triangles: a tree of most of them, and one of those that came
-/// later. Items may be gone, or be in both.
+/// Boxes of items that belong to numbered triangles: a tree of most of them, and a tree of later ones. Items
+/// may be gone, or be in both.
 template <class Item>
 class ItemTrees {
  public:
   bool empty() const { return !all_.tree; }
 
-  /// Hold the items of all triangles: `items_from(t)` are those of number t and above, `box_of(item)` their
-  /// boxes, `end` is one more than the largest number, `count` how many triangles there are.
+  /// Puts the items of all triangles into the trees. `items_from(t)` returns the items of triangles from
+  /// number t on, `box_of(item)` their boxes; `end` is one more than the largest number, `count` the number
+  /// of triangles.
   template <class ItemsFrom, class BoxOf>
   void renew(Index end, std::size_t count, const ItemsFrom& items_from, const BoxOf& box_of) {
     if (empty() || few * (end - all_.end) > count) all_.build(items_from(0), box_of, end);
@@ -34,7 +35,7 @@ class ItemTrees {
       late_ = Tree();
   }
 
-  /// Calls visit(item) for those whose boxes meet this one.
+  /// Calls visit(item) for items whose boxes meet this one.
   template <class Visit>
   void for_each_meeting(const Box& box, const Visit& visit) const {
     for (const Tree* part : {&all_, &late_})
@@ -42,12 +43,12 @@ class ItemTrees {
   }
 
  private:
-  static constexpr std::size_t few = 8;  // of those that came later as a share of all
+  static constexpr std::size_t few = 8;  // largest share of later items
 
   struct Tree {
     std::vector<Item> items;
     std::unique_ptr<BoxTree> tree;
-    Index end = 0;  // it holds those of triangles before
+    Index end = 0;  // it holds the items of triangles below this number
 
     template <class BoxOf>
     void build(std::vector<Item> new_items, const BoxOf& box_of, Index new_end) {

@@ -28,7 +28,7 @@ double extent(const Plc& plc, Index patch) {
   return box.diagonal();
 }
 
-// Patches that part from each other by less than the tolerance.
+// Returns whether the patches at a crease stay closer to each other than the tolerance.
 bool is_slit(const Plc& plc, const Crease& crease, double tolerance) {
   if (crease.kind != Crease::Kind::facets && crease.kind != Crease::Kind::facets_in_vertex) return false;
   const double radians = crease.angle * std::numbers::pi / 180;

@@ -8,7 +8,7 @@
 
 namespace collarmesh::repairing {
 
-/// Points in a hashed grid, to find those within one distance.
+/// Points in a hashed grid, to find those within a distance.
 class PointGrid {
  public:
   /// `reach` is absolute and positive. The points may grow in number, but not move, while the grid is in use.
@@ -16,8 +16,8 @@ class PointGrid {
 
   void add(Index p);
 
-  /// The nearest one that `accept(point)` takes within the reach; of those as near the lexicographically
-  /// first; `none` if there is none.
+  /// Returns the nearest point within the reach that `accept(point)` takes; among equally near ones the
+  /// lexicographically first; `none` if there is none.
   template <class Accept>
   Index nearest(const Point& p, const Accept& accept) const {
     Index best = none;
@@ -35,7 +35,7 @@ class PointGrid {
     return best;
   }
 
-  /// Calls visit(point) for every one within the reach, some of them more than once.
+  /// Calls visit(point) for every point within the reach, for some of them more than once.
   template <class Visit>
   void for_each_near(const Point& p, const Visit& visit) const {
     for_each_cell(p, [&](std::uint64_t cell) {
@@ -52,7 +52,7 @@ class PointGrid {
 
   std::uint64_t mask() const { return first_.size() - 1; }
   std::int64_t cell(double x) const;
-  // Cells that share a key only cost time.
+  // Returns the key of a cell. Cells that share a key only cost time.
   static std::uint64_t key(std::int64_t x, std::int64_t y, std::int64_t z);
   bool before(Index p, Index q) const;
   void grow();
@@ -71,7 +71,7 @@ class PointGrid {
 
   const std::vector<Point>& points_;
   double reach_;
-  std::vector<Index> first_;  // by key, of a chain of entries
+  std::vector<Index> first_;  // by key: first entry of a chain
   std::vector<Entry> entries_;
 };
 

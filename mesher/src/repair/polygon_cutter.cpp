@@ -34,7 +34,7 @@ class PolygonCutter {
     } catch (const PlaneTriangulation::Intersection_of_constraints_exception&) {
       return std::nullopt;
     }
-    if (mesh_.dimension() < 2) return std::nullopt;  // all in one line
+    if (mesh_.dimension() < 2) return std::nullopt;  // all points lie in one line
     mark_outside();
     return triangles();
   }
@@ -42,7 +42,7 @@ class PolygonCutter {
  private:
   Index next(std::size_t i) const { return cuts_.border[(i + 1) % cuts_.border.size()]; }
 
-  // False where it is above another one.
+  // Inserts a point. Returns false if it lies above another one.
   bool insert(Index p) {
     const auto [at, added] = handles_.try_emplace(p);
     if (!added) return true;
@@ -75,7 +75,7 @@ class PolygonCutter {
     }
   }
 
-  // Nothing unless they have the polygon for a border.
+  // Returns the triangles; nothing unless their border is the polygon.
   std::optional<std::vector<facets::Corners>> triangles() const {
     std::vector<facets::Corners> result;
     std::set<Edge> sides;  // directed

@@ -1,5 +1,4 @@
-// From facets as they come to facets that are a complex. The order of the steps is that of `repair` at the
-// end.
+// Turns facets from files into facets of a complex. `repair` at the end shows the order of the steps.
 #include "collarmesh/repair.h"
 
 #include <fmt/format.h>
@@ -44,9 +43,9 @@ using namespace repairing;
 
 constexpr std::size_t most_places = 100;
 constexpr std::size_t most_rounds = 6;
-// Borders are stitched over at most so much of the diagonal: what is farther apart is meant to be.
+// Borders are stitched over at most this share of the diagonal: wider gaps are intended.
 constexpr double widest_stitch = 1e-3;
-// What leaves more than this share of the area in open sheets is no repair of a solid.
+// A result with more than this share of the area in open sheets is no repair of a solid.
 constexpr double most_in_open_sheets = 0.5;
 constexpr double grain = 1e-3;  // of the arrangement, relative to the tolerance
 
@@ -57,7 +56,7 @@ void add_places(RepairPlaces& places, std::size_t count, double size, const std:
     if (places.where.size() < most_places) places.where.push_back(p);
 }
 
-// The error of coordinates that went through 32 bits, absolute; 0 if some did not.
+// Returns the error of coordinates that were stored in 32 bits, absolute; 0 if some were not.
 double single_precision_error(std::span<const PolygonSoup> soups) {
   double farthest = 0;
   for (const PolygonSoup& soup : soups)
@@ -70,15 +69,15 @@ double single_precision_error(std::span<const PolygonSoup> soups) {
   return half_unit * farthest;
 }
 
-/// A repair that loses most of what the surface encloses.
+/// Thrown by a repair that loses most of the enclosed volume.
 struct LostVolume : PlcError {
   explicit LostVolume(const std::string& message) : PlcError(message, {}) {}
 };
 
 class Repairer {
  public:
-  /// Solids: holes are filled, and what encloses nothing is dropped. Sheets: all stays, open as it is; it is
-  /// cut where it intersects.
+  /// Solids: fills holes, and drops parts that enclose nothing. Sheets: keeps everything, including open
+  /// borders, and cuts intersections.
   enum class Of { solids, sheets };
 
   Repairer(std::span<const PolygonSoup> soups, const RepairOptions& options, const PlcOptions& complex,
@@ -98,11 +97,11 @@ class Repairer {
 
   std::span<const PolygonSoup> input() const { return soups_; }
   double tolerance() const { return tolerance_; }  // absolute
-  /// All is open sheets that do not even meet, or most of it is open sheets.
+  /// Returns whether all sheets are open and do not even meet, or most of the area is in open sheets.
   bool encloses_nothing() const { return encloses_nothing_; }
 
-  /// Of surfaces that are closed, or nearly so; nothing is measured where no part of the input that is far
-  /// from the result is outside of it.
+  /// Measures the volume of surfaces that are closed, or nearly so; measures nothing if no part of the input
+  /// that is far from the result lies outside it.
   KeptVolume kept_volume(const RepairReport& report) const {
     constexpr double far = 10;  // tolerances
     const bool any_complex = std::ranges::any_of(draft_.soup_is_complex, [](bool b) { return b; });
@@ -113,7 +112,7 @@ class Repairer {
     return repairing::kept_volume(input_triangles_, repaired);
   }
 
-  /// How far the result is from the input.
+  /// Measures how far the result is from the input.
   void measure(RepairReport& report) const {
     std::set<Tag> fills;
     for (const FilledHole& hole : report.filled) fills.insert(hole.tag);
@@ -183,7 +182,7 @@ class Repairer {
     orient_components(draft_, edges, one_sided);
   }
 
-  // Borders that nearly meet do; what stays open is filled where it is a hole.
+  // Stitches borders that nearly meet; fills those that stay open if they are holes.
   void close() {
     std::size_t open = count_open_edges(draft_);
     for (const double factor : {1.0, 10.0, 100.0}) {
@@ -204,7 +203,7 @@ class Repairer {
       orient_components(draft_, edges, one_sided);
       report_.filled = fill_holes(draft_, next_tag(), &work_);
     }
-    if (!is_two_sided(draft_)) {  // else its faces alone may be closed, as two sides of nothing
+    if (!is_two_sided(draft_)) {  // otherwise its faces alone may be closed, as two sides of nothing
       const FlakeReport flakes = drop_flakes(draft_, tolerance_);
       add_places(report_.flakes, flakes.places.size(), flakes.volume, flakes.places);
     }
@@ -212,7 +211,7 @@ class Repairer {
     add_places(report_.turned, turned.turned_components, 0, turned.places);
   }
 
-  // None of the input's: those of CAD faces are their numbers.
+  // Returns a tag that the input does not use; tags of CAD faces are their numbers.
   Tag next_tag() const {
     Tag tag = 0;
     for (const PolygonSoup& soup : soups_)
@@ -220,7 +219,7 @@ class Repairer {
     return tag + 1;
   }
 
-  /// What is clean once stays so.
+  /// The state of the draft. Once clean, it stays clean.
   struct State {
     Draft draft;
     RepairReport report;
@@ -237,8 +236,8 @@ class Repairer {
     if (!cut_what_nearly_coincides() || encloses_nothing_) return;
     const State valid = state();
     try_on([&] { snap_in_rounds(); });
-    // Cutting leaves corners that all but touch other facets. Within a small part of the tolerance there are
-    // few such places, and it settles.
+    // Cutting leaves corners that almost touch other facets. Within a small part of the tolerance there are
+    // few such places, so this settles.
     try_on([&] {
       const State clean = state();
       if (!collapse(grain * tolerance_).changed() || !cut_and_keep()) restore(clean);
@@ -246,7 +245,7 @@ class Repairer {
     keep_better_places(valid);
   }
 
-  /// Where that takes too much work the repair is as good as it was.
+  /// Tries a step; if it takes too much work, the repair stays as it was.
   template <class Step>
   void try_on(const Step& step) {
     State clean = state();
@@ -259,8 +258,8 @@ class Repairer {
     restore(std::move(clean));
   }
 
-  // Cutting undoes some of what snapping does. Of the rounds the one stays that leaves the least to snap.
-  // Where snapping spoils what is clean, less far is tried.
+  // Snaps in rounds, because cutting undoes some of the snapping. Keeps the round that leaves the least to
+  // snap. If snapping spoils a clean draft, tries a smaller distance.
   void snap_in_rounds() {
     constexpr std::size_t most_worse = 2;
     double reach = tolerance_;
@@ -290,7 +289,7 @@ class Repairer {
     restore(std::move(best));
   }
 
-  // A place where refinement has more trouble than before is taken back.
+  // Undoes changes at places where refinement would have more trouble than before.
   void keep_better_places(const State& valid) {
     const std::optional<Plc> after = complex_of(draft_);
     const std::vector<Trouble> troubles_after =
@@ -317,8 +316,8 @@ class Repairer {
     }
   }
 
-  // Where facets nearly coincide, rounding what cuts them makes ever more intersections: they are made to
-  // coincide first, no farther than needed.
+  // Cuts facets that nearly coincide: rounding their cuts would make ever more intersections, so they are
+  // made to coincide first, moving no farther than needed.
   bool cut_what_nearly_coincides() {
     const Draft before = draft_;
     const RepairReport report_before = report_;
@@ -343,7 +342,7 @@ class Repairer {
     const ArrangementReport arranged = arrange(draft_, grain * tolerance_, &work_, !two_sided);
     if (report_.cut.count == 0) add_places(report_.cut, arranged.intersecting_pairs, 0, arranged.places);
     if (!arranged.clean) return false;
-    if (of_ == Of::sheets) {  // of those that cover each other one stays
+    if (of_ == Of::sheets) {  // one of several that cover each other stays
       drop_repeated(draft_);
       return true;
     }
@@ -366,7 +365,7 @@ class Repairer {
     return true;
   }
 
-  // Of facets; those of CAD faces are their numbers, and no groups.
+  // Returns lost tags of facets; tags of CAD faces are their numbers, not groups.
   std::vector<Tag> lost_tags(const std::vector<PolygonSoup>& repaired, bool only_groups) const {
     std::set<Tag> before, after;
     for (const PolygonSoup& soup : soups_)
@@ -392,7 +391,8 @@ class Repairer {
   RepairReport report_;
 };
 
-// A try of `build_repaired_plc`. What is wrapped in the end is not worth much work before.
+// Returns the options for a try of `build_repaired_plc`. If the soups can be wrapped in the end, earlier
+// tries are not worth much work.
 RepairOptions for_try(RepairOptions options, double factor) {
   constexpr std::size_t share_of_work = 4;
   options.tolerance *= factor;
@@ -400,7 +400,7 @@ RepairOptions for_try(RepairOptions options, double factor) {
   return options;
 }
 
-// Tags of regions that the soups give, but the complex does not have.
+// Adds the tags of regions that the soups give, but the complex does not have.
 RepairedPlc with_lost_regions(RepairedPlc complex, std::span<const PolygonSoup> soups) {
   std::set<Tag> given, there;
   for (const PolygonSoup& soup : soups) {
@@ -414,7 +414,7 @@ RepairedPlc with_lost_regions(RepairedPlc complex, std::span<const PolygonSoup> 
   return complex;
 }
 
-// Lines of soups without facets that are no curves of the complex.
+// Returns warnings of lines of soups without facets that are no curves of the complex.
 std::vector<Plc::Warning> lost_lines(std::span<const PolygonSoup> soups, const Plc& plc) {
   std::map<Tag, Point> lost;
   for (const PolygonSoup& soup : soups)
@@ -432,7 +432,7 @@ std::vector<Plc::Warning> lost_lines(std::span<const PolygonSoup> soups, const P
   return warnings;
 }
 
-// Throws LostVolume where most of the volume would be lost, else tells what is.
+// Throws LostVolume if most of the volume would be lost, otherwise reports the lost volume.
 void judge_volume(const KeptVolume& kept, Plc& plc) {
   constexpr double most = 0.5, told = 0.05;
   if (kept.lost > most * kept.input)
@@ -448,7 +448,7 @@ void judge_volume(const KeptVolume& kept, Plc& plc) {
          kept.where});
 }
 
-// The complex of what was repaired, and how far it is from the input. Throws PlcError.
+// Builds the complex of the repaired soups, and measures how far it is from the input. Throws PlcError.
 RepairedPlc judged(const Repairer& repairer, RepairResult result, const PlcOptions& options) {
   RepairedPlc complex{build_plc(result.soups, options), std::move(result.report), std::move(result.soups)};
   number_untagged(repairer.input(), complex.plc);
@@ -462,7 +462,7 @@ RepairedPlc judged(const Repairer& repairer, RepairResult result, const PlcOptio
   return with_lost_regions(std::move(complex), repairer.input());
 }
 
-/// Sheets that intersect, cut there. Throws PlcError where they cannot be.
+/// Builds the complex of sheets, cut where they intersect. Throws PlcError if they cannot be cut.
 RepairedPlc build_cut_sheets(std::span<const PolygonSoup> soups, const PlcOptions& options,
                              const RepairOptions& repair_options, const Execution& execution,
                              const PlcError& fault) {
@@ -476,7 +476,7 @@ RepairedPlc build_cut_sheets(std::span<const PolygonSoup> soups, const PlcOption
   return complex;
 }
 
-// Tells which regions of a valid complex its repair took away.
+// Reports the regions of a valid complex that its repair removed.
 void compare_regions(const Plc& before, RepairedPlc& repaired) {
   RepairReport& report = repaired.report;
   const plc::LostRegions lost = plc::lost_regions(before, repaired.plc, report.tolerance);
@@ -486,7 +486,7 @@ void compare_regions(const Plc& before, RepairedPlc& repaired) {
     add_places(report.united, left - repaired.plc.regions.size(), 0, lost.others);
 }
 
-// To 1, 2 or 5 times a power of ten, which a message can name.
+// Rounds down to 1, 2 or 5 times a power of ten, for messages.
 double round_down(double x) {
   if (!(x > 0)) return 0;
   const double ten = std::pow(10, std::floor(std::log10(x)));
@@ -537,7 +537,7 @@ RepairedPlc remove_noise(Plc plc, std::span<const PolygonSoup> soups, const PlcO
       compare_regions(plc, complex);
       return complex;
     } catch (const PlcError&) {
-      // The complex is valid without it.
+      // The complex is valid without this repair.
     }
   }
   plc.warnings.push_back(

@@ -16,7 +16,7 @@ using namespace facets;
 
 constexpr std::size_t most_places = 100;
 
-// By triangle: is it a copy of an earlier one of its soup?
+// Returns for each triangle whether it is a copy of an earlier one of its soup.
 std::vector<bool> find_copies(const Draft& draft) {
   struct Key {
     Corners corners;
@@ -42,7 +42,7 @@ std::vector<bool> find_copies(const Draft& draft) {
   return copy;
 }
 
-// By triangle: does its group of copies, connected by edges, leave the surface more open when it is dropped?
+// Groups of copies connected by edges: finds for each whether dropping it leaves the surface more open.
 class CopyGroups {
  public:
   CopyGroups(const Draft& draft, const std::vector<bool>& copy) : sets_(draft.triangles.size()) {
@@ -81,7 +81,7 @@ class CopyGroups {
   }
 
   DisjointSets sets_;
-  std::map<Index, int> change_;  // by group: open edges with it dropped, less those now
+  std::map<Index, int> change_;  // by group: change of the number of open edges if it is dropped
 };
 
 }  // namespace

@@ -12,7 +12,7 @@ struct RepeatedReport {
   std::vector<Point> where;
 };
 
-/// Drop repeated triangles: those of one soup with the same corners and orientation, where that does not open
+/// Drops duplicate triangles: those of one soup with the same corners and orientation, if that does not open
 /// the surface (two solids may share a facet), and in complexes all copies but one. Cost: O(n log n).
 RepeatedReport drop_repeated(facets::Draft& draft);
 

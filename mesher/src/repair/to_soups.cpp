@@ -57,7 +57,7 @@ class SoupMaker {
     return index[p];
   }
   bool has(Index soup, Index p) const { return !index_[soup].empty() && index_[soup][p] != none; }
-  /// Do segments and points of a soup go when its facets do?
+  /// Returns whether segments and points of a soup are removed with its facets.
   bool needs_facets(Index soup) const {
     return !draft_.soup_is_complex[soup] && soups_[soup].facet_count() > 0;
   }
@@ -66,7 +66,7 @@ class SoupMaker {
     std::set<std::array<Index, 3>> known;
     for (const Segment& s : draft_.segments) {
       if (s.a == s.b || !known.insert({s.soup, std::min(s.a, s.b), std::max(s.a, s.b)}).second) continue;
-      // One whose facets are gone goes with them.
+      // A segment is removed if its facets are gone.
       if (needs_facets(s.soup) && !(has(s.soup, s.a) && has(s.soup, s.b))) continue;
       result_[s.soup].segments.push_back({point(s.soup, s.a), point(s.soup, s.b), s.tag});
     }
@@ -97,7 +97,7 @@ class SoupMaker {
   }
 
   bool sharp(Index s, Index t) const {
-    constexpr double cosine = 0.866;  // of 30 degrees, the default of PlcOptions::feature_angle
+    constexpr double cosine = 0.866;  // cosine of 30 degrees, the default of PlcOptions::feature_angle
     return dot(unit_normal(draft_, s), unit_normal(draft_, t)) < cosine;
   }
 
@@ -113,7 +113,7 @@ class SoupMaker {
     }
   }
 
-  /// Of the soups without facets, in which points may be all there is.
+  /// Returns the tags of points of soups without facets, which may consist of points alone.
   std::vector<std::set<Tag>> tags_of_single_points() const {
     std::vector<std::set<Tag>> tags(soups_.size());
     for (Index s = 0; s < soups_.size(); ++s)

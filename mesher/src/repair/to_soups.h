@@ -8,9 +8,9 @@
 
 namespace collarmesh::repairing {
 
-/// What a draft holds of each soup, as soups again, with all that the old ones say beside their facets. Edges
-/// that arose, from points at or after `first_new_point`, become segments of soups that give their features,
-/// where their facets meet at an angle.
+/// Turns a draft back into soups, with all data of the old soups besides facets. New edges, with a point at
+/// or after `first_new_point`, become segments of soups that give their features, if their facets meet at an
+/// angle.
 std::vector<PolygonSoup> to_soups(std::span<const PolygonSoup> soups, const facets::Draft& draft,
                                   Index first_new_point);
 

@@ -34,7 +34,7 @@ std::vector<Index> cancelled_among(std::vector<Twin> twins, bool in_complex) {
 
 namespace {
 
-// Visit the triangles of one soup with the same corners, where there are several.
+// Visits groups of triangles of one soup with the same corners.
 template <class Visit>
 void for_each_group(const Draft& draft, const Visit& visit) {
   struct Key {
@@ -60,7 +60,7 @@ void for_each_group(const Draft& draft, const Visit& visit) {
   }
 }
 
-// Returns how many.
+// Removes triangles. Returns how many.
 std::size_t drop(Draft& draft, const std::vector<bool>& removed) {
   std::size_t kept = 0;
   for (Index t = 0; t < draft.triangles.size(); ++t) {
@@ -74,7 +74,7 @@ std::size_t drop(Draft& draft, const std::vector<bool>& removed) {
   return count;
 }
 
-// By point: the component of triangles that hang together by corners.
+// Returns by point the component of triangles connected by corners.
 DisjointSets components_of(const Draft& draft) {
   DisjointSets sets(draft.points.size());
   for (const Corners& t : draft.triangles) {
@@ -96,7 +96,7 @@ std::size_t cancel_twins(Draft& draft) {
 }
 
 bool is_two_sided(const Draft& draft) {
-  constexpr double least = 1e-6;  // volume by that of a box with the surface's area
+  constexpr double least = 1e-6;  // volume relative to that of a box with the surface's area
   const Point centre = draft.bounds.centre();
   double six = 0, area = 0;
   for (Index t = 0; t < draft.triangles.size(); ++t) {

@@ -10,7 +10,7 @@ namespace collarmesh::repairing {
 
 /// A triangle among others of its soup with the same corners.
 struct Twin {
-  bool odd;  ///< its corners are an odd permutation of their order: turned against those that are even
+  bool odd;  ///< its corners are an odd permutation of their order, so it is opposite to even ones
   Index triangle;
 
   friend bool operator==(const Twin& a, const Twin& b) = default;
@@ -19,22 +19,21 @@ struct Twin {
   }
 };
 
-/// Is it an odd permutation of its sorted corners?
+/// Returns whether the corners are an odd permutation of the sorted ones.
 bool is_odd(const facets::Corners& corners);
 
-/// Which of these triangles with the same corners, all those of one soup, cancel each other: pairs that are
-/// turned against each other; in a complex, where orientation means nothing, all but one.
+/// Returns which of these triangles with the same corners, all those of one soup, cancel each other: pairs of
+/// opposite orientation; in a complex, where orientation means nothing, all but one.
 std::vector<Index> cancelled_among(std::vector<Twin> twins, bool in_complex);
 
-/// Drop those of all triangles, and tell how many.
-/// Cost: O(n log n).
+/// Drops cancelled triangles and returns how many. Cost: O(n log n).
 std::size_t cancel_twins(facets::Draft& draft);
 
-/// Does a surface enclose no volume by its orientation, as one with two sides everywhere?
+/// Returns whether a surface encloses no volume by its orientation, like one that has two sides everywhere.
 bool is_two_sided(const facets::Draft& draft);
 
-/// Of closed surfaces whose triangles have copies turned against them keep one of each two, turned alike.
-/// Returns how many were dropped. Cost: O(n log n).
+/// Keeps one of each two opposite copies in closed surfaces that consist of them, with consistent
+/// orientation. Returns how many were dropped. Cost: O(n log n).
 std::size_t keep_one_side(facets::Draft& draft);
 
 }  // namespace collarmesh::repairing

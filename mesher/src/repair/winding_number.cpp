@@ -10,7 +10,7 @@ namespace {
 // Beyond this many radii a node's triangles count together.
 constexpr double far = 3;
 
-// Signed solid angle of a triangle (Van Oosterom and Strackee 1983), positive behind it.
+// Returns the signed solid angle of a triangle (Van Oosterom and Strackee 1983), positive behind it.
 double solid_angle(const WeightedTriangle& t, const Point& p) {
   const Vector a = t.corners[0] - p, b = t.corners[1] - p, c = t.corners[2] - p;
   const double la = norm(a), lb = norm(b), lc = norm(c);

@@ -9,11 +9,11 @@
 
 namespace collarmesh::repairing {
 
-/// A triangle that counts a number of times; negative: turned.
+/// A triangle that counts a number of times; negative: with opposite orientation.
 struct WeightedTriangle {
   std::array<Point, 3> corners;
   int weight = 1;
-  Index number = 0;  ///< by which it is left out
+  Index number = 0;  ///< number by which it can be left out
 };
 
 /// The generalized winding number of triangles around points (Jacobson, Kavan, Sorkine-Hornung 2013), with
@@ -21,24 +21,24 @@ struct WeightedTriangle {
 /// that is oriented outwards, 0 outside, and in between where a surface is open.
 class WindingNumber {
  public:
-  /// Cost: O(n).
+  /// Builds the hierarchy. Cost: O(n).
   explicit WindingNumber(std::vector<WeightedTriangle> triangles);
 
-  /// At a point, without the triangles of this number. On a triangle that is left out this is the mean of its
-  /// two sides.
-  /// Cost: O(log n) for a surface that is not folded up around the point.
+  /// Returns the number at a point, without the triangles of this number. On a triangle that is left out this
+  /// is the mean of its two sides. Cost: O(log n) for a surface that is not folded up around the point.
   double at(const Point& p, Index left_out = none) const;
 
-  /// Does another triangle than those pass so closely by the point that rounding decides on which side it is?
+  /// Returns whether another triangle passes so closely by the point that rounding decides on which side it
+  /// is.
   bool is_on_another(const Point& p, Index left_out) const;
 
  private:
   struct Node {
     Point centre;                  // weighted by area
-    double radius;                 // of the ball around it that holds all corners
+    double radius;                 // radius of the ball around the centre that contains all corners
     Vector area;                   // sum of weight * area vectors
     std::array<double, 9> moment;  // sum of weight * (centroid - centre) x area vector, as a matrix
-    Index first, count;            // of a leaf; count 0: the children are the next node and `first`
+    Index first, count;            // triangles of a leaf; count 0: the children are the next node and `first`
   };
   static constexpr Index leaf_size = 8;
 

@@ -6,20 +6,20 @@
 
 namespace collarmesh::repairing {
 
-/// Thrown where repair ends before it is done; caught inside of the library.
+/// Thrown if repair ends before it is done; caught inside the library.
 struct WorkStopped {
-  bool cancelled;  ///< else the work was too much
+  bool cancelled;  ///< false: the work was too much
 };
 
-/// How much repair may do. Work is counted, not timed, so that it ends in the same place on every machine: a
-/// unit is a pair of triangles near each other that is looked at, some 0.1 microseconds.
+/// Limits the work of repair. Work is counted, not timed, so that it ends in the same place on every machine:
+/// a unit is a visited pair of triangles near each other.
 class Work {
  public:
-  /// Any amount, which nobody watches.
+  /// Allows any amount of work, without cancellation.
   Work() = default;
   explicit Work(std::size_t most, const Execution& execution) : left_(most), execution_(&execution) {}
 
-  /// Throws WorkStopped.
+  /// Spends units of work. Throws WorkStopped.
   void spend(std::size_t units) {
     if (execution_ == nullptr) return;
     if (execution_->cancelled()) throw WorkStopped{true};

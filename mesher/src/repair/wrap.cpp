@@ -28,7 +28,7 @@ using Point3 = Kernel::Point_3;
 using Triangle3 = Kernel::Triangle_3;
 using Surface = CGAL::Surface_mesh<Point3>;
 
-// Twice: gaps of four offsets stay open, and convex edges are cut by about an offset.
+// Twice the offset: gaps of four offsets stay open, and convex edges are cut by about an offset.
 constexpr double alpha_by_offset = 2;
 constexpr Tag wrap_tag = 1;
 
@@ -40,7 +40,7 @@ struct Triangles {
   double diagonal = 0;
 };
 
-// All facets, cut into triangles; those without an area are left out.
+// Returns all facets, cut into triangles, without those that have no area.
 Triangles triangles_of(std::span<const PolygonSoup> soups) {
   facets::Draft draft;
   facets::Faults faults;
@@ -84,7 +84,7 @@ std::array<Point3, 7> samples(const Triangle3& t) {
           CGAL::centroid(t)};
 }
 
-// One tag for everything says nothing that would be lost.
+// Returns the lost tags. A single tag for everything carries no information that could be lost.
 std::vector<Tag> lost_tags(std::span<const PolygonSoup> soups) {
   std::set<Tag> tags;
   for (const PolygonSoup& soup : soups)

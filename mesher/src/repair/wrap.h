@@ -22,13 +22,13 @@ namespace collarmesh::repairing {
 /// Hemmer, Cohen-Steiner, Alliez 2022, by CGAL's Alpha_wrap_3.
 PolygonSoup wrap(std::span<const PolygonSoup> soups, double alpha, double offset);
 
-/// The largest distance of a surface of triangles from the facets of the soups, absolute: at corners, the
-/// midpoints of edges and the centroids of triangles. How far facets inside the surface are from it does not
+/// Returns the largest distance of a surface of triangles from the facets of the soups, absolute: at corners,
+/// the midpoints of edges and the centroids of triangles. The distance of facets inside the surface does not
 /// count.
 double largest_distance_from(std::span<const PolygonSoup> soups, const PolygonSoup& surface);
 
-/// The complex of the surface that `wrap` makes with the offset of the options; nothing where that bounds
-/// none.
+/// Builds the complex of the surface that `wrap` makes with the offset of the options; returns nothing if
+/// that bounds no region.
 std::optional<RepairedPlc> build_wrapped_plc(std::span<const PolygonSoup> soups, const PlcOptions& options,
                                              const RepairOptions& repair_options);
 

@@ -8,7 +8,7 @@
 namespace collarmesh::second_order {
 
 /// The Bernstein coefficients of the Jacobian determinant of a tetrahedron of second order, a cubic: all are
-/// six times the volume where its edges are straight, and the determinant is nowhere below the least of them
+/// six times the volume if its edges are straight, and the determinant is nowhere below the smallest of them
 /// (Johnen, Remacle and Geuzaine 2013).
 class JacobianCoefficients {
  public:
@@ -19,11 +19,12 @@ class JacobianCoefficients {
 
   const Values& values() const { return values_; }
   double least() const { return *std::min_element(values_.begin(), values_.end()); }
-  /// Returns the gradient of their sum with these weights, by the six mid-edge nodes.
+  /// Returns the gradient of the weighted sum of the coefficients, by the six mid-edge nodes.
   std::array<Vector, 6> gradient(const Values& weights) const;
 
  private:
-  // Half the derivative along the edge from corner 0 to k + 1 is linear: with this value at corner i.
+  // Half the derivative along the edge from corner 0 to k + 1, a linear function given by its value at each
+  // corner i.
   std::array<std::array<Vector, 4>, 3> derivatives_;
   Values values_;
 };

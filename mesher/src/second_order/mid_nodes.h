@@ -8,9 +8,9 @@
 
 namespace collarmesh::second_order {
 
-/// The edges of a mesh, sorted, each with the feature it lies on: those of its tets, and in a mesh that
-/// misses a guarantee those of faces and curves that are in no tet. The mid-edge node of the edge e is the
-/// point first_node() + e.
+/// The edges of a mesh, sorted, each with the feature it lies on: the edges of tets, and in a mesh that
+/// misses a guarantee also edges of faces and curves that are in no tet. The mid-edge node of the edge e is
+/// the point first_node() + e.
 class MeshEdges {
  public:
   explicit MeshEdges(const TetMesh& mesh);
@@ -21,7 +21,7 @@ class MeshEdges {
     return {static_cast<Index>(keys_[edge] >> 32U), static_cast<Index>(keys_[edge])};
   }
   const TetMesh::VertexFeature& feature(std::size_t edge) const { return features_[edge]; }
-  /// Precondition: ab is an edge of a tet, a face or a curve. Cost: logarithmic.
+  /// Returns the node of an edge. Precondition: ab is an edge of a tet, a face or a curve. Cost: logarithmic.
   Index node(Index a, Index b) const;
 
  private:
@@ -30,7 +30,7 @@ class MeshEdges {
   Index first_node_;
 };
 
-/// Gives each edge of the mesh a node in its middle.
+/// Gives each edge of the mesh a node at its middle.
 void add_mid_nodes(const MeshEdges& edges, TetMesh& mesh);
 
 }  // namespace collarmesh::second_order

@@ -23,7 +23,7 @@ class NearestOnFeatures {
   const TriangleHierarchy& patch(Index id);
 
   const Plc& plc_;
-  std::vector<std::unique_ptr<TriangleHierarchy>> curves_, patches_;  // made when first asked for
+  std::vector<std::unique_ptr<TriangleHierarchy>> curves_, patches_;  // built on first use
 };
 
 }  // namespace collarmesh::second_order

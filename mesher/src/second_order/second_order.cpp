@@ -26,17 +26,17 @@ namespace {
 
 using improvement::UnwantedTet;
 
-// A node that is farther from the middle of its edge than this, relative to the edge, does not belong to it:
-// the nearest point lies on another part of the feature. A half circle has 0.5.
+// A node farther than this from the middle of its edge, relative to the edge, does not belong to it: the
+// nearest point lies on another part of the feature. A half circle has 0.5.
 constexpr double farthest = 0.5;
 
-// Two edges with a smaller area between their tangents than this share of that between themselves have one
-// tangent.
+// Two edges have one tangent if the area between their tangents is smaller than this share of the area
+// between the edges.
 constexpr double least_turn = 0.15;
 
-// Nodes move back by these steps, and below this share of their way go to the middle of their edge.
+// Nodes move back by these steps; below this share of the full distance they go to the middle of their edge.
 constexpr double step = 0.8, least_share = 0.1, forward_precision = 0.04;
-constexpr unsigned steps_per_try = 3;  // after which nodes inside may find room again
+constexpr unsigned steps_per_try = 3;  // after this many steps nodes inside may find room again
 
 // A node on a planar patch or straight curve goes to the exact geometry if that is farther away, relative to
 // the edge.
@@ -92,7 +92,7 @@ class Curving {
     std::erase_if(found, [this](const UnwantedTet& u) { return is_valid(curved_tet(mesh_, u.tet)); });
     return found;
   }
-  /// Precondition: the mesh has its nodes.
+  /// Removes the nodes. Precondition: the mesh has its nodes.
   void take_nodes_back() {
     mesh_.points.resize(edges_.first_node());
     mesh_.features.resize(std::min<std::size_t>(mesh_.features.size(), edges_.first_node()));
@@ -118,11 +118,11 @@ class Curving {
   /// A node that belongs off the middle of its edge.
   struct Move {
     Index edge;
-    Vector way;        ///< from the middle to where it belongs
-    double share = 1;  ///< of the way that it goes
+    Vector way;        ///< from the middle to its intended place
+    double share = 1;  ///< share of that way that it moves
   };
 
-  /// A node on a planar patch that moves by little more than rounding, and always goes all of its way.
+  /// A node on a planar patch that moves by little more than rounding, and always moves all the way.
   struct SlightMove {
     Index edge;
     Vector way;
@@ -153,7 +153,7 @@ class Curving {
         }
         untangling_.keep(e);
       }
-      const bool belongs = length <= farthest * edge_length;  // also false for what is not a number
+      const bool belongs = length <= farthest * edge_length;  // also false for NaN
       moves_.push_back({e, way, belongs ? 1.0 : 0.0});
     }
   }
@@ -265,8 +265,8 @@ class Curving {
     return moved > 0;
   }
 
-  // Any order ends with valid tets: curved nodes only move nearer to the middle of their edge, and a node
-  // inside that was moved back stays there.
+  // Moves nodes back until all tets are valid. Any order ends with valid tets: curved nodes only move nearer
+  // to the middle of their edge, and a node inside that was moved back stays there.
   void draw_back() {
     std::vector<Index> work = curved_;
     while (!work.empty() && !execution_.cancelled()) {
@@ -287,7 +287,7 @@ class Curving {
     }
   }
 
-  // Tries again: nodes that moved back later may have made room.
+  // Moves nodes forward again: nodes that moved back later may have made room.
   void put_forward() {
     std::vector<Index> drawn;
     for (Index m = 0; m < moves_.size(); ++m)
@@ -332,8 +332,8 @@ class Curving {
 
   static void step_back(Move& move) { move.share = move.share > least_share ? step * move.share : 0; }
 
-  // Returns the move with the shortest way whose next step back makes the tet valid, else the longest move;
-  // none if all its edges are straight.
+  // Returns the move with the shortest way whose next step back makes the tet valid, otherwise the longest
+  // move; none if all its edges are straight.
   Index move_at_fault(Index tet) const {
     const CurvedTet nodes = curved_tet(mesh_, tet);
     const std::array<Index, 6> moves = moves_of(tet);
@@ -377,9 +377,9 @@ class Curving {
   MeshEdges edges_;
   NearestOnFeatures nearest_;
   FlatFeatures flat_;
-  ExactGeometry exact_;                   // limited; empty when there is none
+  ExactGeometry exact_;                   // limited; empty if there is none
   std::vector<Move> moves_;               // sorted by edge
-  std::vector<SlightMove> slight_moves_;  // the same
+  std::vector<SlightMove> slight_moves_;  // sorted by edge
   std::vector<Index> curved_;             // tets with moves
   std::vector<std::vector<Index>> tets_at_move_;
   Untangling untangling_;

@@ -15,9 +15,9 @@ namespace {
 // its distance from 1.
 constexpr double barrier_gap = 0.02, barrier_share = 0.1;
 constexpr unsigned most_barriers = 12, steps_per_barrier = 15, remembered_steps = 6, most_halvings = 12;
-// Nodes without room: the objective rises by less than this with one barrier.
+// Nodes have no room if the objective rises by less than this with one barrier.
 constexpr double least_rise = 0.01;
-// Moving nodes in a wider neighbourhood costs some milliseconds: stop after this many failures.
+// Moving nodes in a wider neighbourhood is slow: stop after this many failures.
 constexpr std::size_t most_wide_failures = 100;
 // The first step moves no node farther than this share of the shortest edge.
 constexpr double first_step = 0.05;
@@ -223,7 +223,7 @@ void Untangling::minimize(double barrier) {
       gone = length;
       for (std::size_t f = 0; f < free_.size(); ++f)
         mesh_.points[free_[f].node] = before[f] + length * way[f];
-      has_gradient = h == 0;  // the first length is right most often
+      has_gradient = h == 0;  // the first length is usually right
       after = objective(barrier, has_gradient ? &next_gradient : nullptr);
       if (after <= value + 1e-4 * length * slope) break;
     }

@@ -25,7 +25,7 @@ class Untangling {
   /// Makes a tet valid, and none invalid. Returns the number of moved nodes; 0: it was not possible, and all
   /// nodes are at their old places.
   std::size_t untangle(Index tet) { return untangle_within(tet, false); }
-  /// Does the same with a wider neighbourhood, at some times the cost; gives up after many failures.
+  /// Does the same with a wider neighbourhood, at several times the cost; gives up after many failures.
   std::size_t untangle_farther(Index tet);
   /// Returns whether the node of this edge is inside a region or on a planar patch.
   bool is_free(Index edge) const;
@@ -53,16 +53,16 @@ class Untangling {
   const MeshEdges& edges_;
   const Plc& plc_;
   double least_jacobian_;
-  CellsAtVertices tets_at_vertex_;  // empty until it is needed
-  std::unordered_set<Index> kept_;  // edges
+  CellsAtVertices tets_at_vertex_;  // empty until first needed
+  std::unordered_set<Index> kept_;  // edges of fixed nodes
   std::size_t wide_failures_ = 0;
 
   // State of the current tet:
   std::vector<Free> free_;
   std::unordered_map<Index, Index> free_at_;        // in free_, by node
-  std::vector<Index> tets_;                         // all that have a free node
-  std::vector<std::array<Index, 6>> free_of_tets_;  // in free_, by their nodes; none for those that stay
-  std::vector<double> six_volumes_;                 // of these, straight
+  std::vector<Index> tets_;                         // all tets that have a free node
+  std::vector<std::array<Index, 6>> free_of_tets_;  // in free_, by their nodes; none for fixed ones
+  std::vector<double> six_volumes_;                 // of these tets, straight
 };
 
 }  // namespace collarmesh::second_order

@@ -26,7 +26,7 @@ std::set<Tag> tags_of(const Plc& plc, const std::vector<std::string>& names) {
   return chosen;
 }
 
-/// New numbers for what is kept, and the old ones by these.
+/// New numbers of kept features, and their old ones.
 struct Renumbering {
   std::vector<Index> number, old;
 
@@ -36,7 +36,7 @@ struct Renumbering {
     number[i] = static_cast<Index>(old.size());
     old.push_back(i);
   }
-  /// Those of a list that are kept.
+  /// Returns the kept entries of a list.
   std::vector<Index> operator()(const std::vector<Index>& list) const {
     std::vector<Index> kept;
     for (const Index i : list)

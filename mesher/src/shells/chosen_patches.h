@@ -10,13 +10,13 @@ namespace collarmesh::shells {
 /// Some patches of a complex, with their curves and vertices.
 struct ChosenPatches {
   Plc plc;
-  std::vector<Index> patch, curve;  ///< in the whole complex, by the index in `plc`
+  std::vector<Index> patch, curve;  ///< number in the whole complex, by index in `plc`
 
-  /// Makes the exact geometry and measures of the whole complex those of this part.
+  /// Restricts the exact geometry and measures of the whole complex to this part.
   void adapt(PipelineOptions& options) const;
 };
 
-/// Throws OptionError, with the names that there are, where no patch has a name or number.
+/// Chooses patches. Throws OptionError, with the known names, if no patch has a name or number.
 ChosenPatches choose_patches(const Plc& whole, const std::vector<std::string>& names);
 
 }  // namespace collarmesh::shells

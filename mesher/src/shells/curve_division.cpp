@@ -13,7 +13,7 @@ namespace {
 class EdgesAlong {
  public:
   EdgesAlong(const std::function<double(double)>& size_at, double from, double to) {
-    constexpr double least_step = 1e-4, steps_per_size = 8;  // of the length
+    constexpr double least_step = 1e-4, steps_per_size = 8;  // relative to the length
     const double length = to - from;
     double at = from, count = 0, size = size_at(from);
     places_.push_back(from);
@@ -31,7 +31,7 @@ class EdgesAlong {
   }
 
   double total() const { return counts_.back(); }
-  /// The place before which there are so many.
+  /// Returns the place at which the count reaches this number.
   double at(double count) const {
     const auto after =
         static_cast<std::size_t>(std::lower_bound(counts_.begin(), counts_.end(), count) - counts_.begin());
@@ -112,7 +112,8 @@ std::vector<double> divide_curve(const Plc& plc, const CurvePaths& paths, const 
   at.back() = length;
   std::reverse(at.begin(), at.end());
   std::vector<double> divided;
-  while (!at.empty()) {  // from the first to the last, halved where they are too far from the curve
+  while (!at.empty()) {  // from the first to the last, with intervals halved if they are too far from the
+                         // curve
     const double next = at.back();
     const bool tip = (tips[0] > 0 && divided.size() == 1) || (tips[1] > 0 && at.size() == 1);
     if (!divided.empty() && !tip && next - divided.back() > shortest &&

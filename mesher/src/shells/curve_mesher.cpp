@@ -13,8 +13,8 @@ namespace collarmesh::shells {
 
 namespace {
 
-/// Edges of triangles and tets may be somewhat longer than the size, so that they have it in the mean: not
-/// lines.
+/// Returns the sizes for lines. Edges of triangles and tets may be somewhat longer than the size, so that
+/// their mean is the size; lines may not.
 MeshOptions exact_sizes(const Plc& plc, MeshOptions options) {
   constexpr double factor = 1 / Sizing::edge_per_size;
   options.size = factor * default_size(plc, options);
@@ -96,8 +96,8 @@ class CurveMesher {
     }
   }
 
-  /// With the node at the parameter's middle an edge of second order does not fold if that is within a
-  /// quarter of its length from the middle of the chord, along it.
+  /// Adds the middle of an edge: the node at the parameter's middle. An edge of second order does not fold if
+  /// its node is within a quarter of its length from the middle of the chord, measured along it.
   void add_middle(std::size_t edge) {
     constexpr double most_shift = 0.24;
     const Index curve = mesh_.edge_curve[edge];

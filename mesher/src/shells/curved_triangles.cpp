@@ -33,14 +33,14 @@ class Curving {
     Index point;
     std::array<Index, 2> edge;
     Point middle, wanted;
-    double share = 1;  // of the way from the middle
+    double share = 1;  // share of the way from the middle
   };
 
   Index add(const std::array<Index, 2>& edge, const Point& place, const TetMesh::VertexFeature& feature) {
     const Point middle = 0.5 * (mesh_.points[edge[0]] + mesh_.points[edge[1]]);
     const std::optional<Point> exact =
         exact_ ? exact_(feature.dimension, feature.feature, place) : std::nullopt;
-    // A place on another sheet is none.
+    // Ignore a place on another sheet.
     const double reach = 0.5 * distance(mesh_.points[edge[0]], mesh_.points[edge[1]]);
     const Point wanted = exact && distance(*exact, place) < reach ? *exact : place;
     const auto point = static_cast<Index>(mesh_.points.size());
@@ -85,8 +85,8 @@ class Curving {
     mesh_.points[node.point] = node.middle + share * (node.wanted - node.middle);
   }
 
-  /// The Jacobian's coefficients in the Bernstein basis of degree 2, relative to the straight triangle's: its
-  /// values are between the smallest and the largest one.
+  /// Returns a bound of the Jacobian, relative to the straight triangle's: the smallest of its coefficients
+  /// in the Bernstein basis of degree 2, which enclose its values.
   double least_jacobian_of(std::size_t face) const {
     std::array<Point, 6> p;
     for (unsigned i = 0; i < 3; ++i) {
@@ -143,7 +143,7 @@ class Curving {
   const ExactGeometry& exact_;
   const double least_jacobian_;
   std::vector<Node> nodes_;
-  std::unordered_map<std::uint64_t, Index> node_of_;  // in nodes_, by edge
+  std::unordered_map<std::uint64_t, Index> node_of_;  // index in nodes_, by edge
   SecondOrderReport report_;
 };
 

@@ -8,11 +8,11 @@ namespace collarmesh::shells {
 
 namespace {
 
-// Edges on both sides of a narrow place, relative to its width: angles are 22 degrees where ends of edges
-// face each other, and 39 where they face middles.
+// Length of edges on both sides of a narrow place, relative to its width: angles are 22 degrees where ends of
+// edges face each other, and 39 where they face middles.
 constexpr double length_per_width = 2.5;
-// Edges in narrow places are not much more than this many: where places are narrower, they are longer than
-// the angles ask for.
+// The approximate maximum number of edges in narrow places: in narrower places edges are longer than good
+// angles need.
 constexpr double most_edges = 32'000;
 
 }  // namespace
@@ -28,7 +28,7 @@ void NarrowPlaces::measure() {
   });
 }
 
-/// Bounds from below what edges are divided to, so that there are not too many.
+/// Sets a lower bound for the length of divided edges, so that there are not too many.
 void NarrowPlaces::bound_widths() {
   constexpr unsigned most_steps = 60;
   constexpr double step = 1.3, first = 1e-6;  // relative to the target edge length
@@ -51,7 +51,8 @@ void NarrowPlaces::bound_widths() {
       widths_[e] = std::max(widths_[e], least(e, share));
 }
 
-/// At the ends of edges that are not much longer than what faces them is far away.
+/// Lowers sizes at the ends of edges that are at most slightly longer than the distance to the features
+/// facing them.
 void NarrowPlaces::lower_sizes() {
   constexpr double much_longer = 4;
   for (Index e = 0; e < complex_.edges.size(); ++e) {
@@ -133,7 +134,7 @@ bool NarrowPlaces::divide() {
   for (Index e = 0; e < complex_.edges.size(); ++e)
     if (complex_.edges[e].alive() && complex_.edges[e].tip == none)
       edges.emplace_back(-editor_.length(complex_.edges[e].ends[0], complex_.edges[e].ends[1]), e);
-  // The longest first, lest a curve cross the edges of another one that are longer.
+  // Longest first, because otherwise a curve may cross longer edges of another one.
   std::sort(edges.begin(), edges.end());
   for (const auto& [length, e] : edges)
     if (complex_.vertices.size() < limit_) divided |= divide_edge(e);

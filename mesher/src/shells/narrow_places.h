@@ -9,14 +9,14 @@
 
 namespace collarmesh::shells {
 
-/// A triangle with all corners on curves, and one side.
+/// A triangle with all corners on curves, and one of its sides.
 struct NarrowTriangle {
   Index triangle;
-  Index edge;    ///< its side
+  Index edge;    ///< the side
   double width;  ///< distance of the third corner from the side
 };
 
-/// Calls visit(NarrowTriangle) for all of them. Triangles with two sides on curves are in a corner.
+/// Calls visit(NarrowTriangle) for all of them. Triangles with two sides on curves lie in a corner.
 template <class Visit>
 void for_narrow_triangles(const SurfaceComplex& complex, const Visit& visit) {
   for (Index t = 0; t < complex.triangles.size(); ++t) {
@@ -41,17 +41,18 @@ void for_narrow_triangles(const SurfaceComplex& complex, const Visit& visit) {
   }
 }
 
-/// Divides the curves of a complex where they are nearer to each other, across a patch, than their edges are
-/// long, so that triangles between them have good angles; and lets edge lengths grow from there by the
-/// gradation. How near they are is measured in triangles with all corners on curves, which is more exact the
-/// more these are divided.
+/// Divides the curves of a complex where their distance across a patch is smaller than the length of their
+/// edges, so that triangles between them have good angles; edge lengths grow from there by the gradation. The
+/// distance is measured in triangles with all corners on curves, which becomes more exact as these are
+/// divided.
 class NarrowPlaces {
  public:
   /// Keeps all by reference.
   NarrowPlaces(SurfaceComplex& complex, SurfaceEditor& editor, const SurfaceSizes& sizes,
                const Execution& execution);
 
-  /// Makes so many new vertices at most. Returns whether good angles would need more edges than it makes.
+  /// Runs with at most this many new vertices. Returns whether good angles would need more edges than it
+  /// makes.
   bool run(std::size_t most_vertices);
 
  private:
@@ -68,7 +69,7 @@ class NarrowPlaces {
   SurfaceEditor& editor_;
   const SurfaceSizes& sizes_;
   const Execution& execution_;
-  std::vector<double> widths_;  // by edge, what its length may be for what faces it
+  std::vector<double> widths_;  // by edge: its allowed length with regard to features that face it
   std::size_t limit_ = 0;
   bool bounded_ = false;
 };

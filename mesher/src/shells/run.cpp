@@ -1,4 +1,4 @@
-// Surfaces on their own, from a complex to certified triangles.
+// Meshes surfaces on their own, from a complex to certified triangles.
 #include "shells/run.h"
 
 #include <algorithm>
@@ -21,8 +21,8 @@ namespace collarmesh::shells {
 
 namespace {
 
-// Shares of the tolerance: of the mesh on the complex where its vertices move onto exact geometry afterwards,
-// and of all others.
+// Shares of the tolerance for the mesh's distance from the complex: for meshes whose vertices move onto exact
+// geometry afterwards, and for all others.
 constexpr double share_before_moves = 0.7, share = 0.85;
 
 struct Ended {};
@@ -33,8 +33,9 @@ bool is_solid(const Plc& plc) {
                      [](const Plc::Patch& patch) { return patch.regions[0] > 0 || patch.regions[1] > 0; });
 }
 
-/// Faces that nearly touch bound the distance of volumes, which would vanish there, far below what surfaces
-/// on their own need: it is at least a share of the target edge length here, unless one is asked for.
+/// Returns the tolerance. Faces that nearly touch limit the distance of volumes, which would vanish there, to
+/// far less than surfaces on their own need, so here it is at least a share of the target edge length, unless
+/// one is asked for.
 SurfaceTolerance surface_tolerance(const Plc& plc, const PipelineOptions& options) {
   constexpr double least_per_size = 0.005;
   const Bounds& bounds = options.mesh.bounds;
@@ -102,7 +103,7 @@ class Run {
     stop_if_asked();
   }
 
-  /// Curves alone, for beams.
+  /// Meshes curves alone, for beams.
   void mesh_lines(const Plc& plc, const PipelineOptions& options, PipelineResult& made) {
     if (plc.curves.empty())
       throw PlcError(
@@ -124,7 +125,7 @@ class Run {
                     {.bounds = bounds, .exact = options.exact_measures, .threads = options.mesh.threads});
   }
 
-  /// Calls the stages; a result of one that was stopped has no mesh.
+  /// Calls the stages; if one of them was stopped, the result has no mesh.
   template <class Stages>
   void until_ended(PipelineResult& made, const Stages& stages) {
     try {
@@ -163,7 +164,7 @@ SoupPipelineResult run(ComplexSource& source, const PipelineOptions& options, co
     stages.build(source, all);
     PipelineOptions adapted = stages.options();
     if (!adapted.faces.empty()) {
-      whole = std::move(all.plc);  // what adapts the options may refer to it
+      whole = std::move(all.plc);  // the adapted options may refer to it
       source.adapt(whole, adapted);
       ChosenPatches chosen = choose_patches(whole, adapted.faces);
       chosen.adapt(adapted);

@@ -9,7 +9,7 @@ namespace collarmesh::shells {
 
 namespace {
 
-// Degrees. A triangle in a corner that is not as sharp may be divided in two good ones.
+// Degrees. A triangle in a less sharp corner may be divided into two good ones.
 constexpr double sharp = 2 * least_angle;
 
 unsigned end_of(const SurfaceComplex::Edge& edge, Index vertex) {
@@ -81,7 +81,7 @@ void SharpCorners::find(const SurfaceComplex& complex, Index vertex, std::vector
   }
 }
 
-/// As long as the sizes permit, and so that no much shorter edge remains behind it.
+/// Returns a tip length as long as the sizes permit that leaves no much shorter edge behind it.
 double SharpCorners::tip_length(const Plc& plc, const CurvePaths& paths, const SurfaceSizes& sizes,
                                 const SurfaceTolerance& tolerance, Index vertex,
                                 const std::vector<End>& ends) const {

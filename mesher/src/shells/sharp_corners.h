@@ -10,17 +10,18 @@
 namespace collarmesh::shells {
 
 /// Corners of patches between two curves that are sharper than the angles of good triangles. All curves that
-/// begin there at a sharp angle have a first edge of the same length, its tip, so that a triangle between
-/// two tips closes the corner; what is behind it has no sharp corner.
+/// begin there at a sharp angle have a first edge of the same length, the tip, so that a triangle between two
+/// tips closes the corner, and no sharp corner remains behind it.
 class SharpCorners {
  public:
-  /// `complex`: triangles that lie on the patches of `plc`. Cost: linear.
+  /// Finds the corners. `complex` has triangles on the patches of `plc`. Cost: linear.
   SharpCorners(const SurfaceComplex& complex, const Plc& plc, const CurvePaths& paths,
                const SurfaceSizes& sizes, const SurfaceTolerance& tolerance);
 
-  /// The lengths of the first and of the last edge of a curve; 0 where that is not at a sharp corner.
+  /// Returns the lengths of the first and of the last edge of a curve; 0 if that end is not at a sharp
+  /// corner.
   const std::array<double, 2>& tips(Index curve) const { return tips_[curve]; }
-  /// Notes which edges are tips.
+  /// Marks the edges that are tips.
   void mark(SurfaceComplex& complex) const;
 
  private:

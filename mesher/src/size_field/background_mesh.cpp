@@ -1,4 +1,4 @@
-// Places in a mesh, and a size field that is given on its points.
+// Locates places in a mesh, and makes a size field from sizes at its points.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -31,7 +31,7 @@ class BackgroundMesh {
     return place;
   }
 
-  /// Of a number at each point: linear in the tets, that of the nearest point outside of them.
+  /// Interpolates numbers at the points: linear in the tets, the nearest point's value outside them.
   double value_at(const Point& p, const std::vector<double>& values) const {
     const MeshPlace place = place_of(p);
     if (place.tet == none) return values[place.nearest];
@@ -57,7 +57,7 @@ class BackgroundMesh {
     return triangles;
   }
 
-  /// False when p is outside.
+  /// Computes the shares of a tet's corners at p. Returns false if p is outside.
   bool shares_in(Index tet, const Point& p, std::array<double, 4>& shares) const {
     const auto& v = tets_[tet];
     std::array<Point, 4> corners;

@@ -1,4 +1,4 @@
-// Sizes of a function of many places at once, on nested grids.
+// Samples a function of many places at once on nested grids.
 #include "collarmesh/sampled_sizes.h"
 
 #include <algorithm>
@@ -15,9 +15,9 @@ namespace collarmesh {
 
 namespace {
 
-constexpr double coarsest = 1.0 / 64;  // cells, of the box's longest side
-constexpr unsigned finer_cells = 8;    // along each side of a cell that gets a grid of its own
-constexpr double finest = 1e-12;       // of the box's longest side: shorter cells are not divided
+constexpr double coarsest = 1.0 / 64;  // size of cells, relative to the box's longest side
+constexpr unsigned finer_cells = 8;    // cells along each side of a cell that gets its own grid
+constexpr double finest = 1e-12;       // relative to the box's longest side: shorter cells are not divided
 
 using Counts = std::array<unsigned, 3>;
 
@@ -37,7 +37,7 @@ class Grid {
   }
   void set_sizes(std::vector<double> sizes) { sizes_ = std::move(sizes); }
 
-  /// A cell: its corners, and where in it a place is, by shares of its sides.
+  /// A cell: its corners, and the position of a place in it, by shares of its sides.
   struct Cell {
     Counts at;
     std::array<double, 3> shares;
@@ -74,7 +74,7 @@ class Grid {
     return finer_[(std::size_t{cell.at[0]} * cells_[1] + cell.at[1]) * cells_[2] + cell.at[2]];
   }
 
-  /// Without sizes.
+  /// Makes a grid in a cell, without sizes.
   std::unique_ptr<Grid> make_finer(const Cell& cell) const {
     return std::make_unique<Grid>(node(cell.at[0], cell.at[1], cell.at[2]),
                                   node(cell.at[0] + 1, cell.at[1] + 1, cell.at[2] + 1),
@@ -127,7 +127,7 @@ class SampledSizes {
   }
 
  private:
-  /// The grid in a cell, which is made by the first thread that asks.
+  /// Returns the grid in a cell; the first thread that asks makes it.
   Grid& finer(Grid& grid, const Grid::Cell& cell) {
     std::atomic<Grid*>& place = grid.finer(cell);
     if (Grid* const there = place.load(std::memory_order_acquire)) return *there;
@@ -140,7 +140,8 @@ class SampledSizes {
     return *grids_.back();
   }
 
-  /// Linear along each axis. Beside finite sizes infinite ones count as the largest of these.
+  /// Interpolates linearly along each axis. Beside finite sizes infinite ones count as the largest finite
+  /// one.
   static double between(const std::array<double, 8>& corners, const std::array<double, 3>& shares) {
     double largest = 0;
     for (const double size : corners)

@@ -1,4 +1,4 @@
-// A size field from a file or from a description.
+// Reads a size field from a file or from a description.
 #include "collarmesh/size_field.h"
 
 #include <fmt/format.h>
@@ -23,7 +23,7 @@ using Json = nlohmann::json;
 
 constexpr double default_growth = 0.3;
 constexpr double right_angle = 1e-6;  // largest cosine
-constexpr int deepest = 16;           // levels of JSON; some would exhaust the stack
+constexpr int deepest = 16;           // levels of JSON; deeper nesting could exhaust the stack
 const std::array<std::string, 5> kinds{"ball", "box", "cylinder", "curves", "patches"};
 
 [[noreturn]] void fail(const std::string& place, const std::string& message) {
@@ -71,7 +71,7 @@ Distance distance_from_ball(const Json& ball, const std::string& place) {
   return [=](const Point& p) { return std::max(distance(p, centre) - radius, 0.0); };
 }
 
-// In a frame of its own: a corner and three edges from there, at right angles.
+// Makes a box in its own frame: a corner and three edges from there, at right angles.
 Distance distance_from_turned_box(const Json& box, const std::string& place) {
   allow_only(box, place, {"corner", "edges"});
   const Point corner = point(box, place, "corner");
@@ -176,7 +176,7 @@ struct Source {
   double at(const Point& p) const { return size + growth * std::max(distance(p) - within, 0.0); }
 };
 
-/// "sources[2] (ball)"
+/// Returns the name of a source in messages: "sources[2] (ball)".
 std::string called(std::size_t number, const Json& source) {
   for (const std::string& kind : kinds)
     if (source.contains(kind)) return fmt::format("sources[{}] ({})", number, kind);

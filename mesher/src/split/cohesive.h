@@ -6,7 +6,7 @@
 
 namespace collarmesh::splitting {
 
-/// A triangle of the minus side and the one at its place on the plus side, as faces of the mesh.
+/// A triangle of the minus side and the coincident one of the plus side, as faces of the mesh.
 struct SidePair {
   Index minus, plus;
 };

@@ -19,7 +19,7 @@ struct Candidate {
 /// The internal patches that the options name.
 class PatchChoice {
  public:
-  /// Throws OptionError for a name that no internal patch has.
+  /// Finds the patches. Throws OptionError for a name that no internal patch has.
   PatchChoice(const SplitOptions& options, const TagNames& names, const std::vector<Candidate>& all);
 
   bool contains(const Candidate& candidate) const {

@@ -13,7 +13,7 @@ namespace collarmesh::splitting {
 
 namespace {
 
-/// Is a node at the side opposite a corner?
+/// Returns whether a node lies on the side opposite a corner.
 bool is_at_side(std::uint8_t place, unsigned corner) {
   if (place < 4) return place != corner;
   const auto& [a, b] = mid_node_ends[place - 4U];
@@ -42,7 +42,7 @@ class Star {
     }
   }
 
-  /// The sectors that get a copy of the node.
+  /// Returns the sectors that get a copy of the node.
   std::vector<std::vector<NodeOfTet>> further() {
     struct Sector {
       Index region = none, whole = none;

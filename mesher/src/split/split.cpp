@@ -287,14 +287,14 @@ class Splitter {
 
   TetMesh& mesh_;
   const SplitOptions& options_;
-  io::FaceFinder finder_;                      // of the faces before
-  std::vector<std::array<Index, 4>> tets_;     // after
-  std::vector<std::array<Index, 6>> mids_;     // after
+  io::FaceFinder finder_;                      // of the faces before the split
+  std::vector<std::array<Index, 4>> tets_;     // after the split
+  std::vector<std::array<Index, 6>> mids_;     // after the split
   std::vector<bool> chosen_;                   // by face
   std::vector<bool> marked_;                   // nodes of chosen faces
-  std::vector<Beside> beside_;                 // of faces with a marked corner, in numbers of tets
+  std::vector<Beside> beside_;                 // of faces with a marked corner, as tet numbers
   std::vector<Index> copies_;                  // by node
-  std::map<Tag, SplitReport::Patch> patches_;  // by the tag before
+  std::map<Tag, SplitReport::Patch> patches_;  // by tag before the split
   std::vector<SidePair> pairs_;
   SplitReport report_;
 };

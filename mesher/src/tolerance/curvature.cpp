@@ -25,7 +25,8 @@ class PatchCurvature {
     }
   }
 
-  /// Returns by triangle, from its corners, the largest of the larger curvatures and the mean of the sums.
+  /// Returns for each triangle, from its corners, the largest of the larger curvatures and the mean of the
+  /// sums.
   std::vector<Curvature> by_triangle() const {
     std::vector<AtPoint> smooth(points_.size());
     for (Index i = 0; i < patch_.triangle_count; ++i) {
@@ -71,7 +72,7 @@ class PatchCurvature {
     return points_[entry->second];
   }
 
-  // The second triangle at an edge bends it against the first.
+  // Adds an edge; the second triangle at the edge completes its bend.
   void add_edge(Index a, Index b, const Vector& n) {
     const auto [entry, fresh] = normal_at_.try_emplace(edge_key(a, b), n);
     if (fresh) return;
@@ -94,7 +95,7 @@ class PatchCurvature {
   const Plc::Patch& patch_;
   std::unordered_map<Index, std::size_t> number_;
   std::vector<AtPoint> points_;
-  std::unordered_map<std::uint64_t, Vector> normal_at_;  // of an edge: the first triangle's
+  std::unordered_map<std::uint64_t, Vector> normal_at_;  // by edge: the first triangle's normal
 };
 
 // Returns by segment the larger curvature of its ends.

@@ -10,16 +10,16 @@
 namespace collarmesh {
 
 std::vector<std::array<Index, 3>> corners_of_triangles(const Plc& plc);
-/// Returns whether they are one patch, or have a curve or a vertex in common.
+/// Returns whether they are the same patch, or have a curve or a vertex in common.
 bool are_neighbours(const Plc& plc, Index patch, Index other);
-/// The least cosine between a direction and the normal of a surface that faces it: of neighbours larger, as
-/// they may form a wedge.
+/// Returns the least cosine between a direction and the normal of a surface that faces it: larger for
+/// neighbours, because they may form a wedge.
 double least_facing(bool neighbours);
 
 /// Returns the distance of the point x of a patch, along a unit normal of the patch, from the plane of a
 /// triangle that the ray from x in the direction `way` (the normal or its opposite) crosses; infinite where
 /// the triangle does not face the patch. Patches that meet elsewhere face each other only where they are
-/// almost parallel: else gaps would close in wedges.
+/// almost parallel, because otherwise gaps would close in wedges.
 double facing_distance(const Plc& plc, Index patch, const Point& x, const Vector& normal, const Vector& way,
                        Index triangle, const std::array<Point, 3>& corners);
 
@@ -36,7 +36,8 @@ class FacingSurfaces {
   /// Scratch space of a thread.
   using Crossings = std::vector<TriangleHierarchy::Crossing>;
 
-  /// From a point x of a triangle to the patch's side 0 (behind) or 1 (in front), not farther than `widest`.
+  /// Finds the surface that faces a point x of a triangle on the patch's side 0 (behind) or 1 (in front), not
+  /// farther than `widest`.
   Facing from(const Point& x, Index triangle, unsigned side, double widest, Crossings& crossings) const;
 
   const TriangleHierarchy& triangles() const { return triangles_; }

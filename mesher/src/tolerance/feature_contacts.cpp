@@ -9,7 +9,7 @@ namespace collarmesh {
 
 namespace {
 
-// The patches at a vertex of more are not listed as neighbours of each other.
+// At a vertex with more patches, these are not listed as neighbours of each other.
 constexpr std::size_t patches_at_hub = 64;
 
 }  // namespace

@@ -9,13 +9,14 @@ namespace collarmesh {
 
 namespace {
 
-// Infinite unless each corner of one group is joined to all of the other one, and to none of its own.
+// Returns the distance across; infinite unless each corner of one group is joined to all corners of the other
+// group and to none of its own.
 double distance_across(const std::array<Point, 4>& p, const std::array<unsigned, 4>& across) {
   constexpr unsigned all = 15;
   const unsigned other = across[0], own = all & ~other;
   for (unsigned i = 0; i < 4; ++i)
     if (across[i] != ((own >> i & 1U) != 0 ? other : own)) return INFINITY;
-  std::array<Point, 4> q{};  // those of one group first
+  std::array<Point, 4> q{};  // corners of one group first
   unsigned first = 0, last = 4;
   for (unsigned i = 0; i < 4; ++i) q[(own >> i & 1U) != 0 ? first++ : --last] = p[i];
   const Vector across_both = first == 2   ? cross(q[1] - q[0], q[3] - q[2])

@@ -9,13 +9,14 @@
 
 namespace collarmesh {
 
-/// What short edges leave to a tet, over its longest edge: the length of the shortest of those that `forces`
-/// names by corners, or, where these are all that joins two groups of its corners, the distance between what
-/// the groups span: a corner and a plane, or two lines. 1 if there is none.
+/// Returns the width that short edges leave to a tet, relative to its longest edge: the length of the
+/// shortest edge that `forces` names by its corners. If these edges are all that joins two groups of its
+/// corners, returns the distance between the spans of the groups: a corner and a plane, or two lines. 1 if
+/// there is none.
 double narrowness_of(const std::array<Point, 4>& p, const std::array<unsigned, 4>& across);
 template <class Forces>
 double narrowness_of(const std::array<Point, 4>& p, const Forces& forces) {
-  std::array<unsigned, 4> across{};  // by corner: the corners, as bits, that such an edge joins it to
+  std::array<unsigned, 4> across{};  // by corner: the corners, as bits, to which such an edge joins it
   for (unsigned i = 0; i < 4; ++i)
     for (unsigned j = 0; j < i; ++j)
       if (forces(i, j)) {
@@ -26,30 +27,29 @@ double narrowness_of(const std::array<Point, 4>& p, const Forces& forces) {
 }
 
 /// The edges of a mesh whose lengths the input forces: they join features that have no point in common, or
-/// places of one patch that face opposite ways. Where these are near to each other, as
-/// on the two sides of a thin wall, at a step or at a strip, no tet can have both long edges and large
-/// angles.
+/// places of one patch that face opposite ways. If these are near to each other, as on the two sides of a
+/// thin wall, at a step or at a strip, no tet can have both long edges and large angles.
 class ForcedEdges {
  public:
-  /// Of the vertices that there are now. The complex is kept by reference. `features`: by point, the one of
-  /// lowest dimension; the rest as in a TetMesh. `least_cosine`: of the angle between normals, below which
-  /// they face opposite ways.
+  /// Finds the edges between the current vertices. Keeps the complex by reference. `features`: by point, the
+  /// one of lowest dimension; the others as in a TetMesh. `least_cosine`: of the angle between normals, below
+  /// which they face opposite ways.
   ForcedEdges(const Plc& plc, std::vector<TetMesh::VertexFeature> features, const std::vector<Point>& points,
               const std::vector<std::array<Index, 3>>& faces, const std::vector<Index>& face_patch,
               double least_cosine);
 
-  /// Vertices that came later lie on no feature.
+  /// Returns whether the input forces an edge. Vertices inserted later lie on no feature.
   bool forces(Index a, Index b) const;
-  /// What they leave to a tet (narrowness_of).
+  /// Returns the width that forced edges leave to a tet (narrowness_of).
   double narrowness(const std::array<Point, 4>& p, const std::array<Index, 4>& corners) const;
-  /// The smallest dihedral angle that is asked of a tet of that narrowness, degrees: half of the angle whose
-  /// tangent it is.
+  /// Returns the smallest dihedral angle that a tet of that narrowness must have, degrees: half of the angle
+  /// whose tangent is the narrowness.
   static double smallest_angle(double narrowness);
 
  private:
   FeatureContacts contacts_;
   std::vector<TetMesh::VertexFeature> features_;
-  std::vector<Vector> normals_;  // by vertex on a patch: unit, of the mesh
+  std::vector<Vector> normals_;  // by vertex on a patch: unit normals of the mesh
   double least_cosine_;
 };
 

@@ -8,7 +8,7 @@ namespace collarmesh {
 
 namespace {
 
-// The dimensions of the two features of a crease.
+// Returns the dimensions of the two features of a crease.
 std::pair<std::uint8_t, std::uint8_t> dimensions_of(Crease::Kind kind) {
   switch (kind) {
     case Crease::Kind::segments: return {1, 1};
@@ -35,7 +35,7 @@ bool NarrowPlaces::contain(const std::array<Point, 4>& p, const std::array<Index
   return narrowness_of(p, [&](unsigned i, unsigned j) { return across(corners[i], corners[j]); }) < share_;
 }
 
-// Vertices that came later lie on no feature.
+// Returns whether an edge leads across. Vertices inserted later lie on no feature.
 bool NarrowPlaces::across(Index a, Index b) const {
   if (forced_.forces(a, b)) return true;
   if (in_creases_.empty() || std::max(a, b) >= features_.size()) return false;

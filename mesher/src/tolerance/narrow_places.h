@@ -12,11 +12,11 @@ namespace collarmesh {
 
 /// The places of a mesh where the input leaves no room for tets with a bounded radius-edge ratio: between
 /// features that have no point in common, between two sides of a patch, and between features that meet in a
-/// crease, wherever these are nearer to each other than a share of the longest edge there.
+/// crease, if their distance is below a share of the longest edge there.
 class NarrowPlaces {
  public:
-  /// The complex is kept by reference. `forced` knows the mesh. Features that meet below `crease_angle`,
-  /// degrees, form a crease.
+  /// Keeps the complex by reference. `forced` must be made of this mesh. Features that meet below
+  /// `crease_angle`, degrees, form a crease.
   NarrowPlaces(const Plc& plc, std::vector<TetMesh::VertexFeature> features, ForcedEdges forced,
                double crease_angle, double share);
 
@@ -31,7 +31,7 @@ class NarrowPlaces {
   const Plc& plc_;
   std::vector<TetMesh::VertexFeature> features_;  // by vertex
   ForcedEdges forced_;
-  std::set<std::pair<Feature, Feature>> in_creases_;  // both ways
+  std::set<std::pair<Feature, Feature>> in_creases_;  // pairs in both orders
   double share_;
 };
 

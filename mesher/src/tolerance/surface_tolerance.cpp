@@ -19,31 +19,32 @@ namespace collarmesh {
 
 namespace {
 
-// The largest distance from the surface as a share (doc/architecture/tolerance.md has the measurements) of
-// the thickness of the material, where its opposite sides bend away from each other (a rod) or alike (a
-// shell), and of the width of gaps, likewise.
+// The largest distance from the surface, as a share (doc/architecture/tolerance.md has the measurements) of
+// the thickness of the material where its opposite sides bend away from each other (a rod) or in the same way
+// (a shell), and likewise of the width of gaps.
 constexpr double share_of_rod = 0.05, share_of_shell = 0.15, share_of_hole = 0.1, share_of_slot = 0.5;
-// The share of a region's volume that chords may take or add, by the estimate below; where they would take
-// less, the shares of its thickness may be larger by this factor.
+// The share of a region's volume that chords may remove or add, by the estimate below; where they would
+// remove less, the shares of its thickness may be larger by this factor.
 constexpr double share_of_volume = 0.015, largest_factor = 2;
-// The share of the volume below a patch in a wedge that chords may take, where they would take much of it.
+// The share of the volume below a patch in a wedge that chords may remove, if they would otherwise remove
+// much of it.
 constexpr double share_of_wedge = 0.035, much_of_wedge = 0.25;
-// The smallest tolerance there, relative to the largest one: triangles of CAD faces are hardly nearer.
+// The smallest tolerance in wedges, relative to the largest one: triangles of CAD faces are hardly nearer.
 constexpr double least_share_in_wedges = 0.018;
-// The growth of the tolerance with the distance from there: collars do not bear a leap.
+// The growth of the tolerance with the distance from wedges: collars need a continuous tolerance.
 constexpr double slope_beside_wedges = 0.1;
 // The smallest tolerance, relative to the largest one: finer details are not resolved.
 constexpr double least_share = 5e-4;
-// The mean loss of chords as a share of the tolerance; most chords are nearer than the tolerance allows.
+// The mean loss by chords as a share of the tolerance; most chords are nearer than the tolerance allows.
 constexpr double mean_of_sagitta = 0.42;
 constexpr double sizes_per_diagonal = 20;  // of the default size, as in refine/sizing.cpp
 
 class LocalTolerance {
  public:
   enum class Volumes {
-    kept,    // by the triangles between corners
-    curved,  // by what curved elements enclose
-    any      // for all that is not known of a mesh
+    kept,    // judged by the triangles between corners
+    curved,  // judged by the volume that curved elements enclose
+    any      // for everything unknown about a mesh
   };
   LocalTolerance(const Plc& plc, double size)
       : plc_(plc),
@@ -92,8 +93,9 @@ class LocalTolerance {
     }
   }
 
-  // Where a patch meets the other side of a thin place in a crease, a share of the thickness would vanish
-  // towards the crease: a share of the volume below the patch in all of that place does not.
+  // Keeps the volume of wedges. Where a patch meets the other side of a thin place in a crease, a share of
+  // the thickness would vanish towards the crease, but a share of the volume below the patch in that place
+  // does not.
   void keep_wedges() {
     std::vector<double> at_points(plc_.points.size(), INFINITY);
     bool any = false;
@@ -112,7 +114,7 @@ class LocalTolerance {
       for (const Index p : plc_.triangles[t].points) of_gap_[t] = std::min(of_gap_[t], at_points[p]);
   }
 
-  // Infinite where a wedge is a small part of a patch, as at a fold.
+  // Returns the tolerance that wedges allow; infinite if a wedge is a small part of a patch, as at a fold.
   double allowed_in_wedges(const Plc::Patch& patch) const {
     double all = 0, area = 0, volume = 0;
     for (Index t = patch.first_triangle; t < patch.first_triangle + patch.triangle_count; ++t) {
@@ -157,7 +159,7 @@ class LocalTolerance {
                     least_share * largest_);
   }
 
-  // Where material is on this side; convex material bends by a positive sum.
+  // Returns how material on this side bends; the sum is positive for convex material.
   double bend(Index triangle, unsigned side) const {
     return side == 0 ? curvature_[triangle].sum : -curvature_[triangle].sum;
   }
@@ -172,7 +174,7 @@ class LocalTolerance {
   struct Loss {
     Index triangle;
     double area;     // negative where chords add to the volume
-    double sagitta;  // of chords of the target length both ways, which are not farther off
+    double sagitta;  // largest distance of chords of the target length in both directions
   };
 
   double volume_of(const Loss& loss, double factor) const {
@@ -190,7 +192,7 @@ class LocalTolerance {
     return boundaries;
   }
 
-  // Where chords take from, or add to, what these patches enclose, on their side of a region.
+  // Returns the places where chords change the volume that these patches enclose, on their side of a region.
   std::vector<Loss> losses_on(const std::vector<Index>& patches, Index region) const {
     std::vector<Loss> losses;
     for (const Index p : patches) {
@@ -206,7 +208,7 @@ class LocalTolerance {
     return losses;
   }
 
-  // Returns a factor of the shares of thickness with which these losses stay small beside the volume.
+  // Returns a factor for the shares of thickness with which these losses stay small beside the volume.
   double factor_by_volume(const std::vector<Loss>& losses, double volume) const {
     const auto lost = [&](double factor) {
       double sum = 0;
@@ -220,7 +222,7 @@ class LocalTolerance {
     return factor;
   }
 
-  // Returns factors of the shares of thickness, by patch, with which regions and shells keep their volumes.
+  // Returns factors for the shares of thickness, by patch, with which regions and shells keep their volumes.
   std::vector<double> factors_by_volumes() const {
     std::vector<double> factors(plc_.patches.size(), largest_factor);
     const auto keep = [&](const std::vector<Index>& patches, Index region, double volume) {
@@ -232,7 +234,7 @@ class LocalTolerance {
     std::vector<double> of_regions(plc_.regions.size(), largest_factor);
     for (Index r = 1; r < plc_.regions.size(); ++r)
       of_regions[r] = keep(boundaries[r], r, std::fabs(plc_.regions[r].volume));
-    for (Index p = 0; p < plc_.patches.size(); ++p)  // sheets inside a region, too
+    for (Index p = 0; p < plc_.patches.size(); ++p)  // including sheets inside a region
       factors[p] = std::min(factors[p], of_regions[plc_.patches[p].regions[0]]);
     const std::vector<Shell> shells = shells_of(plc_);
     const std::vector<double> enclosed = measures_of(plc_).shells;
@@ -244,7 +246,7 @@ class LocalTolerance {
   double size_, largest_;
   Thickness thickness_;
   std::vector<Curvature> curvature_;
-  std::vector<double> of_material_, of_gap_;  // by triangle: what its thickness and gaps allow
+  std::vector<double> of_material_, of_gap_;  // by triangle: tolerances by thickness and gaps
   std::vector<double> of_wedge_;              // by triangle: thickness between patches that meet in a crease
 };
 
@@ -287,9 +289,9 @@ bool triangles_resolve(const Plc& plc, const Plc::Patch& patch, const SurfaceTol
     std::array<Index, 2> edge;
     Index triangle;
     Vector normal;
-    double height;  // of the triangle above the edge
+    double height;  // height of the triangle above the edge
   };
-  // A chord of this length between turns of that angle is off its arc by an eighth of both.
+  // A chord of this length between turns of that angle is off its arc by an eighth of their product.
   const auto resolved = [&](const Side& side, double turn) {
     return side.height * turn / 8 <= share_of_triangles * tolerance.at_triangle(side.triangle);
   };

@@ -16,33 +16,33 @@ class Thickness {
   /// Keeps the complex by reference. Cost: near linear in the triangles.
   explicit Thickness(const Plc& plc);
 
-  /// From the centre of a triangle along its smooth normal.
+  /// A ray from the centre of a triangle along its smooth normal.
   struct Ray {
     Point from;
     Vector way;  ///< unit; zero where the normal is not known
   };
   struct Opposite {
     double distance = INFINITY;
-    Index triangle = none;  ///< where the region ends; none where it does not, or at a slant
-    unsigned side = 0;      ///< the side of that triangle that the region lies on
-    double facing = 0;      ///< cosine of the angle between the ray and its normal
+    Index triangle = none;  ///< where the region ends; none if it has no end, or ends at a slant
+    unsigned side = 0;      ///< side of that triangle on which the region lies
+    double facing = 0;      ///< cosine of the angle between the ray and that triangle's normal
   };
   struct Opposites {
-    Opposite apart;         ///< nearest one of a patch that does not meet the triangle's patch in a crease
-    Opposite first;         ///< where the region ends first, at whatever patch and slant
+    Opposite apart;         ///< nearest end at a patch that does not meet the triangle's patch in a crease
+    Opposite first;         ///< first end of the region, at any patch and slant
     bool is_wedge = false;  ///< the patches meet in a crease there
   };
   /// Scratch space of a thread.
   using Crossings = std::vector<TriangleHierarchy::Crossing>;
 
-  /// To side 0 (behind) or 1 (in front).
+  /// Casts a ray to side 0 (behind) or 1 (in front).
   Ray ray(Index triangle, unsigned side) const;
   Opposites at(Index triangle, unsigned side, Crossings& crossings) const;
 
  private:
   const Plc& plc_;
   TriangleHierarchy triangles_;
-  std::set<std::pair<Index, Index>> creases_;  // patches that meet in one: a wedge may be thin
+  std::set<std::pair<Index, Index>> creases_;  // pairs of patches that meet in a crease: a wedge may be thin
   std::vector<Vector>
       normals_;  // by triangle: unit normals of the smooth surface, not of needles of its tessellation
 };

@@ -4,10 +4,10 @@
 
 namespace collarmesh {
 
-/// A triangle from which p is not farther than the tolerance there: the `hint`, if p is near enough to it,
-/// else any one within the `least` tolerance, else the nearest one; none if there is no such triangle. `at`
-/// gives the tolerance of a triangle, from `least` to `most`; `counts` says which triangles count, the hint
-/// among them.
+/// Returns a triangle from which p is no farther than the tolerance there: the `hint`, if p is near enough to
+/// it; otherwise any triangle within the `least` tolerance, or else the nearest one; none if there is no such
+/// triangle. `at` gives the tolerance of a triangle, from `least` to `most`; `counts` tells which triangles
+/// count, the hint included.
 template <class At, class Counts>
 Index triangle_within_tolerance(const TriangleHierarchy& triangles, const Point& p, double least, double most,
                                 const At& at, Index hint, const Counts& counts) {

@@ -21,10 +21,10 @@ PolygonSoup read_soup(const std::string& path, std::string_view format = {});
 /// Throws WriteError.
 void write_soup(const std::string& path, const PolygonSoup& soup, std::string_view format = {});
 
-/// Return whether `read_soup` and `write_soup` know this extension or format.
+/// Returns whether `read_soup` and `write_soup` know this extension or format.
 bool is_soup_format(const std::string& path, std::string_view format = {});
 
-/// Return the extensions.
+/// Returns the extensions.
 std::vector<std::string> soup_formats();
 
 }  // namespace collarmesh::io

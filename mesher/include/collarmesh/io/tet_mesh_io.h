@@ -23,23 +23,24 @@ void write_tet_mesh(const std::string& path, const TetMesh& mesh, std::string_vi
 /// Throws ReadError (path, line or byte).
 TetMesh read_tet_mesh(const std::string& path, std::string_view format = {});
 
-/// The extensions: .vtu (VTK), .pvtu (the same, with a .vtu beside it for each partition), .vtk (its legacy
-/// format), .msh (Gmsh; 4.1 is written), .mesh (Medit), .inp (Abaqus, CalculiX), .unv (I-DEAS), .ele (TetGen,
-/// with .node, .face and .edge beside it); written alone: .bdf (Nastran), .cdb (Ansys), .mfem (MFEM), .exo
-/// (Exodus II), .su2 (SU2), .polymesh (OpenFOAM: the file constant/polyMesh/boundary, with the others beside
-/// it); where they are built in: .xdmf (XDMF 3, with .h5 beside it), .med (SALOME) and, written alone, .cgns.
+/// Returns the extensions: .vtu (VTK), .pvtu (the same, with a .vtu beside it for each partition), .vtk (its
+/// legacy format), .msh (Gmsh; 4.1 is written), .mesh (Medit), .inp (Abaqus, CalculiX), .unv (I-DEAS), .ele
+/// (TetGen, with .node, .face and .edge beside it). Formats that are only written: .bdf (Nastran), .cdb
+/// (Ansys), .mfem (MFEM), .exo (Exodus II), .su2 (SU2), .polymesh (OpenFOAM: the file
+/// constant/polyMesh/boundary, with the others beside it). Optional formats: .xdmf (XDMF 3, with .h5 beside
+/// it), .med (SALOME) and, only written, .cgns.
 std::vector<std::string> written_tet_mesh_formats();
 std::vector<std::string> read_tet_mesh_formats();
-/// Return the extensions of formats that can hold partitions, and ghost cells.
+/// Returns the extensions of formats that can hold partitions, and ghost cells.
 std::vector<std::string> formats_with_partitions();
 std::vector<std::string> formats_with_ghost_cells();
-/// Those that have no elements of second order.
+/// Returns the extensions of formats that have no elements of second order.
 std::vector<std::string> formats_of_first_order();
 
-/// Those that hold meshes of triangles alone, and of curve edges alone.
+/// Returns the extensions of formats that hold meshes of triangles alone, and of curve edges alone.
 std::vector<std::string> formats_of_surfaces();
 
-/// What to do about a format that this program was built without, as a sentence that names the library; empty
+/// Returns a sentence about a format that this program was built without, with the library to install; empty
 /// for all others.
 std::string missing_library(const std::string& path, std::string_view format = {});
 

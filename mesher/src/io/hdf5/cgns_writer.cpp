@@ -1,6 +1,6 @@
-// CGNS (cgns.github.io, "SIDS-to-HDF5 File Mapping Manual") in HDF5: one unstructured zone. A section of
-// elements for each region, each tag of patches and each tag of curves, with their names; the faces of a
-// patch that are on the boundary are a boundary condition, too, whose family has the name.
+// CGNS (cgns.github.io, "SIDS-to-HDF5 File Mapping Manual") in HDF5: one unstructured zone. It has a section
+// of elements for each region, each tag of patches and each tag of curves, with their names; the faces of a
+// patch on the boundary are also a boundary condition, whose family has the name.
 #include <fmt/format.h>
 #include <hdf5.h>
 
@@ -34,7 +34,7 @@ constexpr std::array<std::array<std::int32_t, 4>, 2> element_types{{{0, 3, 5, 10
 class CgnsFile {
  public:
   explicit CgnsFile(std::string path) : target_(std::move(path)) {
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are ours to tell
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // we report errors ourselves
     const hid_t of_file = H5Pcreate(H5P_FILE_CREATE);
     of_group_ = H5Pcreate(H5P_GROUP_CREATE);
     for (const hid_t properties : {of_file, of_group_})
@@ -61,7 +61,7 @@ class CgnsFile {
     write(path, H5T_NATIVE_CHAR, {text.size()}, text.data());
     return path;
   }
-  /// `size`: in the order of Fortran; empty: a list.
+  /// Adds values. `size` is in Fortran's order; empty: a list.
   template <class Number>
   std::string add(const std::string& parent, const std::string& name, const char* label,
                   const std::vector<Number>& values, std::vector<hsize_t> size = {}) {
@@ -116,7 +116,7 @@ class CgnsFile {
     return path;
   }
 
-  /// Attributes have a fixed size.
+  /// Sets an attribute; attributes have a fixed size.
   void set_text(hid_t object, const char* name, std::string text, std::size_t size) const {
     text.resize(size + 1, '\0');
     const hid_t type = H5Tcopy(H5T_C_S1);
@@ -159,7 +159,7 @@ struct Section {
   std::size_t dimension;
   std::string name;
   std::vector<Index> cells;
-  std::size_t outside = 0;  // how many of them are on the boundary; they come first
+  std::size_t outside = 0;  // number of cells on the boundary; they come first
 };
 
 std::vector<Section> sections_of(const TetMesh& mesh) {
@@ -201,7 +201,7 @@ std::vector<std::int32_t> nodes_of(const TetMesh& mesh, const Section& section) 
   return nodes;
 }
 
-/// Lengths in a unit that the file does not know.
+/// Writes points with lengths in an unspecified unit.
 void write_points(CgnsFile& file, const std::string& zone, const std::vector<Point>& points) {
   const std::string grid = file.add(zone, "GridCoordinates", "GridCoordinates_t");
   const std::vector<float> length{0, 1, 0, 0, 0};  // exponents of mass, length, time, temperature, angle

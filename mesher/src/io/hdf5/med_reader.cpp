@@ -1,5 +1,6 @@
-// SALOME's format MED with its library: the first mesh of a file, its tetrahedra, triangles and segments;
-// groups become tags, by our names what they stand for, others numbered and with their names.
+// Reads SALOME's format MED with its library: the first mesh of a file, its tetrahedra, triangles and
+// segments. Groups become tags: groups with names of ours become the tags that these stand for, others are
+// numbered and keep their names.
 #include <fmt/format.h>
 #include <med.h>
 #include <algorithm>
@@ -24,7 +25,7 @@ namespace collarmesh::io {
 
 namespace {
 
-/// The node of MED at each place of TetMesh's. MED's tetrahedra are turned the other way.
+/// MED's node at each place of TetMesh's order. MED's tetrahedra have the opposite orientation.
 constexpr std::array<std::uint8_t, 4> tet_order{0, 2, 1, 3};
 constexpr std::array<std::uint8_t, 10> tet_order_2{0, 2, 1, 3, 6, 5, 4, 7, 9, 8};
 constexpr std::array<std::uint8_t, 6> as_is{0, 1, 2, 3, 4, 5};
@@ -80,7 +81,7 @@ class MedReader {
     name_ = name.data();
   }
 
-  /// The first group of each family.
+  /// Reads the first group of each family.
   void read_families() {
     const med_int count = MEDnFamily(file_, name_.c_str());
     for (med_int i = 1; i <= count; ++i) {
@@ -129,7 +130,7 @@ class MedReader {
     if (MEDmeshElementConnectivityRd(file_, name_.c_str(), MED_NO_DT, MED_NO_IT, MED_CELL, type, MED_NODAL,
                                      MED_FULL_INTERLACE, nodes.data()) < 0)
       fail("its cells cannot be read");
-    // Without families all cells are in none.
+    // Without families no cell is in a group.
     if (MEDmeshEntityFamilyNumberRd(file_, name_.c_str(), MED_NO_DT, MED_NO_IT, MED_CELL, type,
                                     families.data()) < 0)
       families.assign(n, 0);

@@ -1,6 +1,6 @@
-// SALOME's format MED (.med) with its library: one unstructured mesh, named as the file, of tetrahedra,
-// triangles and segments. A family for each tag, in a group named as in label_names.h. Partitions are the
-// whole numbers of a field on the tetrahedra.
+// SALOME's format MED (.med), written with its library: one unstructured mesh, named like the file, of
+// tetrahedra, triangles and segments. Each tag has a family, in a group named as in label_names.h. Partitions
+// are the whole numbers of a field on the tetrahedra.
 #include <fmt/format.h>
 #include <med.h>
 
@@ -23,11 +23,11 @@ namespace collarmesh::io {
 
 namespace {
 
-/// The node of TetMesh at each place. MED's tetrahedra are turned the other way.
+/// TetMesh's node at each place of MED's order. MED's tetrahedra have the opposite orientation.
 constexpr std::array<std::uint8_t, 4> med_tet_order{0, 2, 1, 3};
 constexpr std::array<std::uint8_t, 10> med_tet_order_2{0, 2, 1, 3, 6, 5, 4, 7, 9, 8};
 
-/// Texts of MED have a fixed size.
+/// Pads a text: MED's texts have a fixed size.
 std::string padded(std::string text, std::size_t size) {
   text.resize(size, '\0');
   return text;
@@ -101,7 +101,7 @@ class MedFile {
   }
 
  private:
-  /// Families of cells have negative numbers.
+  /// Returns the family of a tag; families of cells have negative numbers.
   med_int family(std::size_t dimension, Tag tag) {
     const auto [found, added] =
         families_.try_emplace({dimension, tag}, -1 - static_cast<med_int>(families_.size()));
@@ -118,7 +118,7 @@ class MedFile {
     if (result < 0) target_.fail(0);
   }
 
-  std::string name_;  // of the mesh: that of the file
+  std::string name_;  // name of the mesh: the file's name
   UnfinishedFile target_;
   const TetMesh& mesh_;
   med_idt file_;
@@ -141,7 +141,7 @@ void write_med(const std::string& path, const TetMesh& mesh) {
     file.write_cells(mesh, 2, MED_TRIA3, mesh.face_tag, {}, nodes_of_face);
     file.write_cells(mesh, 1, MED_SEG2, mesh.edge_tag, {}, nodes_of_edge);
   }
-  if (!mesh.tet_partition.empty()) {  // of all cells: meshio reads no fields of some
+  if (!mesh.tet_partition.empty()) {  // for all cells, because meshio reads no fields of some cells
     const bool second = mesh.order() == 2;
     file.create_partitions();
     file.write_partitions(mesh.tet_partition, second ? MED_TETRA10 : MED_TETRA4);

@@ -5,8 +5,8 @@
 
 namespace {
 
-/// Files are closed, or could not be written. At the program's end HDF5 would try again to write those, and
-/// crash. Works before the first use of HDF5 only.
+/// By the end of the program all files are closed, or could not be written. HDF5 would try again to write the
+/// latter and crash. Works only before the first use of HDF5.
 const herr_t no_work_at_the_end = H5dont_atexit();
 
 }  // namespace

@@ -1,5 +1,5 @@
-// XDMF as collarmesh, meshio and dolfinx write it: a uniform grid of tetrahedra with its values in HDF5 or in
-// the text, and the tagged faces and edges in files beside it, NAME_faces.xdmf and NAME_edges.xdmf.
+// Reads XDMF as collarmesh, meshio and dolfinx write it: a uniform grid of tetrahedra with its values in HDF5
+// or in the text, and the tagged faces and edges in files beside it, NAME_faces.xdmf and NAME_edges.xdmf.
 #include <fmt/format.h>
 #include <hdf5.h>
 
@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
   throw ReadError(fmt::format("{}: {}", path, message));
 }
 
-/// Names of XDMF's topologies and VTK's numbers of the same cells.
+/// Names of XDMF's topologies, with VTK's numbers for the same cells.
 struct Topology {
   std::string_view name;
   std::int64_t vtk;
@@ -51,7 +51,7 @@ hid_t native_type<std::int64_t>() {
   return H5T_NATIVE_INT64;
 }
 
-/// Closes what it holds.
+/// Closes the HDF5 object that it holds.
 class Handle {
  public:
   Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
@@ -69,7 +69,7 @@ class Handle {
 
 template <class T>
 std::vector<T> read_dataset(const std::string& path, const fs::path& file, const std::string& name) {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are ours to tell
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // we report errors ourselves
   const Handle values(H5Fopen(file.string().c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (values < 0)
     fail(path, fmt::format("its values in {} cannot be read; put that file beside it", file.string()));
@@ -78,7 +78,7 @@ std::vector<T> read_dataset(const std::string& path, const fs::path& file, const
   const Handle space(H5Dget_space(set), H5Sclose);
   const hssize_t count = H5Sget_simple_extent_npoints(space);
   const hsize_t stored = H5Dget_storage_size(set);
-  // A file may say that there is more than it holds.
+  // A file may claim more values than it holds.
   if (count < 0 || static_cast<hsize_t>(count) > 2000 * (stored + 1))
     fail(path,
          fmt::format("{}:{} says that it has {} values in {} bytes", file.string(), name, count, stored));
@@ -111,7 +111,7 @@ class Grid {
     return values;
   }
 
-  /// Add the cells and what the arrays say of them.
+  /// Adds the cells and their data.
   void append(VtkPiece& piece) const {
     const auto nodes = read<std::int64_t>(grid_.child("Topology").child("DataItem"));
     if (nodes.size() % kind_->nodes != 0)
@@ -133,7 +133,7 @@ class Grid {
     for (auto& [name, values] : piece.cell_data) values.resize(before + count);
   }
 
-  /// The names that our files and meshio's have.
+  /// Takes the names in our files and in meshio's.
   void take_names(TetMesh& mesh) const {
     pugi::xml_document names;
     if (!names.load_string(grid_.child("Information").text().as_string())) return;
@@ -233,7 +233,7 @@ TetMesh read_xdmf(const std::string& path) {
     std::error_code ignored;
     if (!fs::exists(beside, ignored)) continue;
     const Grid grid(beside.string());
-    if (grid.coordinates() == coordinates) grid.append(piece);  // else it belongs to another mesh
+    if (grid.coordinates() == coordinates) grid.append(piece);  // otherwise it belongs to another mesh
   }
   TetMesh mesh;
   try {

@@ -1,5 +1,5 @@
 // XDMF 3 with its values in HDF5 (www.xdmf.org, "XDMF Model and Format"), as uniform grids of one kind of
-// cells each, one in a file, as dolfinx and meshio read them. vtk_grid.h describes the arrays.
+// cells, one grid per file, as dolfinx and meshio read them. vtk_grid.h describes the arrays.
 #include <fmt/format.h>
 #include <hdf5.h>
 
@@ -40,7 +40,7 @@ NumberType number_type(double) { return {"Float", 8, H5T_NATIVE_DOUBLE}; }
 class ValueFile {
  public:
   explicit ValueFile(std::string path) : target_(std::move(path)) {
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are ours to tell
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // we report errors ourselves
     file_ = H5Fcreate(target_.temporary().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
     require(file_ >= 0);
   }
@@ -78,11 +78,11 @@ class ValueFile {
 
 /// The contents of one file: the cells of one dimension, as a uniform grid.
 struct Cells {
-  std::string_view name;      ///< of the grid, and of its topology in the HDF5 file
+  std::string_view name;      ///< name of the grid, and of its topology in the HDF5 file
   std::string_view topology;  ///< XDMF's name of the kind of cells
-  std::size_t first, count;   ///< among all cells of the grid
+  std::size_t first, count;   ///< range among all cells of the grid
   std::vector<std::int64_t> nodes;
-  std::vector<std::string_view> arrays;  ///< that these cells have; dolfinx takes the first one for tags
+  std::vector<std::string_view> arrays;  ///< arrays of these cells; dolfinx takes the first one for tags
 };
 
 template <class NodesOf>
@@ -118,7 +118,7 @@ std::array<Cells, 3> cells_by_dimension(const TetMesh& mesh) {
                 {"tag", "feature", "partition"}}};
 }
 
-/// A file and the one with its values, which dolfinx wants to have the same name.
+/// A file and the one with its values; dolfinx requires the same name for both.
 class GridFile {
  public:
   explicit GridFile(const std::filesystem::path& path)
@@ -126,7 +126,7 @@ class GridFile {
         values_name_(std::filesystem::path(path).replace_extension(".h5").filename().string()),
         out_(path.string()) {}
 
-  /// `names`: what they are called, as `names_information` has it.
+  /// Writes a grid. `names` is the text of `names_information`.
   void write(const VtkGrid& grid, const Cells& cells, const std::string& names) {
     const std::size_t nodes = cells.count == 0 ? 1 : cells.nodes.size() / cells.count;
     out_ << "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n<Grid Name=\"" << cells.name
@@ -193,7 +193,7 @@ std::string escaped(const std::string& text) {
   return result;
 }
 
-/// The names of tags that are not called by their number, in the way that meshio has for its field data.
+/// Returns the names of tags that have one, in the form of meshio's field data.
 std::string names_information(const TetMesh& mesh) {
   std::string maps;
   const auto add = [&](std::size_t dimension, const std::vector<Tag>& tags) {
@@ -209,7 +209,8 @@ std::string names_information(const TetMesh& mesh) {
   return fmt::format("<Information Name=\"names\"><![CDATA[<main>{}</main>]]></Information>\n", maps);
 }
 
-/// NAME.xdmf for the tetrahedra, or for triangles alone, NAME_faces.xdmf and NAME_edges.xdmf for the others.
+/// Returns NAME.xdmf for the tetrahedra, or for triangles without tetrahedra, and NAME_faces.xdmf and
+/// NAME_edges.xdmf for the others.
 std::filesystem::path path_of(const std::filesystem::path& path, const Cells& cells) {
   if (cells.first == 0 && cells.name == "mesh") return path;
   return path.parent_path() /

@@ -1,4 +1,4 @@
-// Scotch (www.labri.fr/perso/pelegrin/scotch), as what ../partition.cpp asks of it.
+// Calls Scotch (www.labri.fr/perso/pelegrin/scotch) as ../partition.cpp needs it.
 #include <cstdint>
 #include <cstdio>
 
@@ -10,7 +10,7 @@ namespace {
 
 static_assert(sizeof(SCOTCH_Num) == sizeof(collarmesh::GraphIndex));
 
-/// Scotch's structures; the destructor ends those that were begun.
+/// Scotch's structures; the destructor frees those that were initialized.
 struct Work {
   SCOTCH_Context context;
   SCOTCH_Graph graph, bound;
@@ -31,8 +31,8 @@ struct Work {
   Work(const Work&) = delete;
   Work& operator=(const Work&) = delete;
 
-  /// One thread, and numbers of its own from this seed, so that the result is the same everywhere: by default
-  /// all contexts draw from one sequence.
+  /// Sets up one thread with its own random numbers from this seed, so that the result is the same
+  /// everywhere: by default all contexts share one sequence.
   bool make_repeatable(int seed) {
     if (SCOTCH_contextRandomClone(&context) != 0) return false;
     SCOTCH_contextRandomSeed(&context, seed);

@@ -11,27 +11,28 @@
 
 namespace collarmesh::openmesh_io {
 
-/// Which triangles of a tetrahedral mesh. Regions are TetMesh::tet_region, 0 is the outside.
+/// Selects triangles of a tetrahedral mesh. Regions are TetMesh::tet_region, 0 is the outside.
 struct SurfaceSelection {
-  /// Triangles with `back` behind them and `front` in front, in either order; `any` for whatever else.
+  /// Triangles with `back` behind them and `front` in front, in either order; `any` stands for any region.
   Index back = any, front = 0;
   static constexpr Index any = none;
 
-  /// The triangles between the regions and the outside, seen from outside.
+  /// Selects the triangles between the regions and the outside, seen from outside.
   static SurfaceSelection boundary() { return {any, 0}; }
-  /// All around a region, seen from outside it.
+  /// Selects all triangles around a region, seen from outside it.
   static SurfaceSelection region(Index region) { return {region, any}; }
-  /// Between two regions, seen from the second.
+  /// Selects triangles between two regions, seen from the second.
   static SurfaceSelection interface(Index back, Index front) { return {back, front}; }
 };
 
-/// Selected triangles such that OpenMesh can hold them: around each vertex they form one fan. Where
-/// more than two meet in an edge, or several fans in a vertex, vertices are copied.
+/// Selected triangles in a form that OpenMesh can hold: around each vertex they form one fan. If more than
+/// two meet in an edge, or several fans in a vertex, vertices are copied.
 struct SelectedSurface {
   std::vector<Index> points;                       ///< index in TetMesh::points, by vertex
-  std::vector<std::array<Index, 3>> triangles;     ///< vertices, ordered such that neighbours follow
+  std::vector<std::array<Index, 3>> triangles;     ///< vertices; the order makes each triangle touch earlier
+                                                   ///< ones
   std::vector<Index> faces;                        ///< index in TetMesh::faces, by triangle
-  std::vector<std::array<Index, 2>> face_regions;  ///< behind and in front, by triangle
+  std::vector<std::array<Index, 2>> face_regions;  ///< regions behind and in front, by triangle
   struct Edge {
     Index a, b;  ///< vertices
     Tag tag;
@@ -40,14 +41,13 @@ struct SelectedSurface {
   std::size_t copied_vertices = 0;
 };
 
-/// Throws OptionError for a selection without triangles.
+/// Selects triangles. Throws OptionError for a selection without triangles.
 SelectedSurface select_surface(const TetMesh& mesh, const SurfaceSelection& selection);
 
-/// A surface of a tetrahedral mesh as an OpenMesh mesh of any traits; its properties are those of
-/// properties.h, and edges on curves have the feature bit of their status.
-/// Given back to `to_plc` it becomes the complex it came from: copied vertices are welded, tags kept.
-/// Precondition: the mesh has its boundary triangles, as those of `generate` have.
-/// Throws OptionError for a selection without triangles.
+/// Returns a surface of a tetrahedral mesh as an OpenMesh mesh of any traits; its properties are those of
+/// properties.h, and edges on curves have the feature bit of their status. `to_plc` turns it back into the
+/// complex it came from: copied vertices are welded, tags kept. Precondition: the mesh has its boundary
+/// triangles, as meshes from `generate` do. Throws OptionError for a selection without triangles.
 template <class Mesh>
 Mesh boundary_surface(const TetMesh& mesh, const SurfaceSelection& selection = SurfaceSelection::boundary()) {
   const SelectedSurface surface = select_surface(mesh, selection);

@@ -28,7 +28,8 @@ namespace detail {
 template <class Mesh, template <class> class Handle>
 class TagProperty {
  public:
-  /// An empty name is no property, `optional` may be missing. Throws OptionError.
+  /// Finds the property. An empty name stands for no property; an `optional` one may be missing. Throws
+  /// OptionError.
   TagProperty(const Mesh& mesh, const std::string& name, std::string_view optional) : mesh_(mesh) {
     if (name.empty()) return;
     const bool found =

@@ -15,49 +15,50 @@
 
 namespace collarmesh::openmesh_io {
 
-/// How one OpenMesh mesh is taken. Properties are of type int, unsigned, std::int64_t or std::uint64_t
-/// and are named as in OpenMesh; one that is named here and missing is an OptionError, except that the
-/// defaults, which are what `boundary_surface` writes, may be missing.
+/// Options for reading an OpenMesh mesh. Properties are of type int, unsigned, std::int64_t or std::uint64_t
+/// and are named as in OpenMesh. A missing property is an OptionError, unless it is one of the defaults,
+/// which `boundary_surface` writes.
 struct SurfaceOptions {
-  std::string name = {};                   ///< for messages
-  std::optional<Tag> region = {};          ///< tag of the regions this surface bounds; none: their number
-  std::string region_property = {};        ///< of faces: those of one value are a surface of its own and the
-                                           ///< value is the tag of its regions; empty: one surface
-  std::string patch_property = patch_tag;  ///< of faces: tag of the patch
-  std::string curve_property = curve_tag;  ///< of edges: a value other than 0 makes a curve with that tag
+  std::string name = {};                     ///< for messages
+  std::optional<Tag> region = {};            ///< tag of the regions this surface bounds; none: their number
+  std::string region_property = {};          ///< of faces: faces with the same value form a separate surface,
+                                             ///< and the value is the tag of its regions; empty: one surface
+  std::string patch_property = patch_tag;    ///< of faces: tag of the patch
+  std::string curve_property = curve_tag;    ///< of edges: a value other than 0 makes a curve with that tag
   std::string vertex_property = vertex_tag;  ///< of vertices: tag of the vertex, where it becomes a feature
   bool feature_edges = true;                 ///< edges with the feature bit of their status are curves
 };
 
-/// What was found in an OpenMesh mesh. Nothing of it is an error by itself: `build_plc` decides.
+/// The contents of an OpenMesh mesh. None of them is an error by itself: `build_plc` decides.
 struct SurfaceReport {
   std::string name;
-  std::size_t faces = 0;                  ///< taken
-  std::size_t deleted_faces = 0;          ///< marked as deleted, not collected yet: left out
-  std::size_t isolated_vertices = 0;      ///< without a face: left out
-  std::size_t non_manifold_vertices = 0;  ///< where several fans of faces meet
-  std::size_t border_edges = 0;           ///< with one face; where such edges coincide they are welded
-  std::size_t detached_faces = 0;  ///< that OpenMesh gave vertices of their own, because of an edge or vertex
-                                   ///< that it cannot represent: they are welded to their neighbours again
+  std::size_t faces = 0;                  ///< faces used
+  std::size_t deleted_faces = 0;          ///< faces marked as deleted, not collected yet: left out
+  std::size_t isolated_vertices = 0;      ///< vertices without a face: left out
+  std::size_t non_manifold_vertices = 0;  ///< vertices where several fans of faces meet
+  std::size_t border_edges = 0;           ///< edges with one face; coincident ones are welded
+  /// faces to which OpenMesh gave vertices of their own, because of an edge or vertex that it cannot
+  /// represent: they are welded to their neighbours again
+  std::size_t detached_faces = 0;
 };
 
 struct SurfacesPlc {
-  Plc plc;  ///< plc.cleanup: what was welded and dropped
+  Plc plc;  ///< plc.cleanup lists what was welded and dropped
   std::vector<SurfaceReport> surfaces;
-  /// What a user should know, one sentence each; empty if everything was taken as it was.
+  /// Remarks for the user, one sentence each; empty if everything was used as it was.
   std::vector<std::string> notes;
 };
 
-/// Collects OpenMesh meshes, of different types too, into one complex.
+/// Collects OpenMesh meshes, also of different types, into one complex.
 class Surfaces {
  public:
-  /// Take a TriMesh or PolyMesh of any traits. The mesh is not changed and not referred to later.
-  /// Throws OptionError for a property that is not there.
+  /// Adds a TriMesh or PolyMesh of any traits. The mesh is not changed and not referred to later. Throws
+  /// OptionError for a missing property.
   template <class Mesh>
   void add(const Mesh& mesh, const SurfaceOptions& options = {});
 
-  /// One complex of all; its regions are numbered in the order of the meshes.
-  /// Throws PlcError like `build_plc`: an open border that stays open after welding is such a fault.
+  /// Builds one complex of all meshes; its regions are numbered in the order of the meshes. Throws PlcError
+  /// like `build_plc`: a border that stays open after welding is such a fault.
   SurfacesPlc to_plc(const PlcOptions& options = {}) const;
 
   const std::vector<PolygonSoup>& soups() const { return soups_; }
@@ -69,7 +70,7 @@ class Surfaces {
   std::vector<SurfaceReport> reports_;
 };
 
-/// One mesh as a complex.
+/// Builds the complex of one mesh.
 template <class Mesh>
 SurfacesPlc to_plc(const Mesh& mesh, const SurfaceOptions& options = {}, const PlcOptions& plc_options = {}) {
   Surfaces surfaces;

@@ -10,7 +10,7 @@ namespace collarmesh::brep {
 
 enum class CadFormat { brep, step, iges, other };
 
-/// Of a file by its extension (any case), or as `format` says.
+/// Returns the format of a file by its extension (any case), or as `format` says.
 inline CadFormat cad_format_of(const std::string& path, std::string_view format = {}) {
   std::string extension =
       format.empty() ? std::filesystem::path(path).extension().string() : std::string(format);
@@ -26,7 +26,7 @@ inline bool is_cad_format(const std::string& path, std::string_view format = {})
   return cad_format_of(path, format) != CadFormat::other;
 }
 
-/// The extensions.
+/// Returns the extensions.
 inline std::vector<std::string> cad_formats() { return {".brep", ".brp", ".step", ".stp", ".iges", ".igs"}; }
 
 }  // namespace collarmesh::brep

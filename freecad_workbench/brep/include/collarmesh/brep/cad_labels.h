@@ -10,7 +10,7 @@ namespace collarmesh::brep {
 
 /// Names and colours that a CAD file gives to sub-shapes, by their numbers.
 struct CadLabels {
-  std::map<Tag, std::string> solid_names;  ///< as they are in the file, possibly repeated
+  std::map<Tag, std::string> solid_names;  ///< as in the file, possibly repeated
   TagColours colours;                      ///< of faces and solids
 };
 
