@@ -13,6 +13,8 @@ constexpr double margin = 1.5;
 constexpr double shortest = 0.015;
 // Vertices with more triangles, as a tessellation has them, are not moved or removed: others around them are.
 constexpr std::size_t most_triangles = 24;
+// Of a shape, for which a vertex is moved.
+constexpr double least_gain = 0.1;
 
 }  // namespace
 
@@ -81,56 +83,61 @@ bool ShapeRepair::move_best(Index vertex) {
 }
 
 bool ShapeRepair::move_within(Index vertex) {
-  const unsigned dimension = complex_.vertices[vertex].feature.dimension;
-  if (dimension == 0 || complex_.vertices[vertex].triangles.size() > most_triangles) return false;
-  const double before = editor_.least_shape_at(vertex);
-  double now = before;
-  constexpr double gain = 0.1;
-  const auto note = [&](bool better) {
-    if (better) now = editor_.least_shape_at(vertex);
-    return better;
+  const auto& v = complex_.vertices[vertex];
+  if (v.feature.dimension == 0 || v.triangles.size() > most_triangles) return false;
+  const VertexFan fan(complex_, vertex);
+  return v.feature.dimension == 1 ? move_on_curve(vertex, fan) : move_on_patch(vertex, fan);
+}
+
+// Tries places, and moves to the best one.
+bool ShapeRepair::move_on_curve(Index vertex, const VertexFan& fan) {
+  const auto around = editor_.edges_around(vertex);
+  if (!around || editor_.ends_tip(vertex)) return false;
+  const auto& before = complex_.edges[(*around)[0]].at;
+  const auto& behind = complex_.edges[(*around)[1]].at;
+  const double start = before[1], last = behind[1] - (behind[0] - before[1]), first = before[0];
+  const double now = editor_.least_shape_at(vertex);
+  double at = start, best = now;
+  for (const double share : {0.5, 0.25, 0.1, 0.03})
+    for (const double end : {first, last}) {
+      const double to = at + share * (end - at);
+      const double shape = fan.least_shape(editor_.place_on_curve(vertex, to), best + least_gain);
+      if (shape < best + least_gain) continue;
+      best = shape;
+      at = to;
+    }
+  if (at == start) return false;
+  return editor_.slide(vertex, at, now + least_gain) ||
+         editor_.slide(vertex, 0.5 * (start + at), now + least_gain);
+}
+
+bool ShapeRepair::move_on_patch(Index vertex, const VertexFan& fan) {
+  if (!(norm(fan.normal()) > 0)) return false;
+  const double now = editor_.least_shape_at(vertex);
+  double best = now;
+  Vector way{};
+  const auto look_at = [&](const Vector& step) {
+    const double shape = fan.least_turned_shape(fan.place(step), best + least_gain);
+    if (shape < best + least_gain) return;
+    best = shape;
+    way = step;
   };
-  bool moved = false;
-  if (dimension == 1) {
-    const auto around = editor_.edges_around(vertex);
-    if (!around) return false;
-    for (const double share : {0.5, 0.25, 0.1, 0.03}) {
-      for (const double sign : {-1.0, 1.0}) {
-        const auto& edge = complex_.edges[(*around)[sign < 0 ? 0 : 1]];
-        const double at = complex_.edges[(*around)[0]].at[1] + sign * share * (edge.at[1] - edge.at[0]);
-        moved |= note(editor_.slide(vertex, at, now + gain));
-      }
-    }
-    return moved && now > before;
-  }
-  const std::vector<Index> around = complex_.neighbours(vertex);
-  Point centre{};
-  double reach = 0;
-  for (const Index n : around) {
-    centre = centre + complex_.vertices[n].point / static_cast<double>(around.size());
-    reach = std::max(reach, editor_.length(vertex, n));
-  }
-  moved |= note(editor_.move(vertex, centre, before + gain));
-  Vector normal{};
-  for (const Index t : complex_.vertices[vertex].triangles)
-    normal = normal + area_vector(complex_.corners(t));
-  const double length = norm(normal);
-  if (!(length > 0)) return moved;
-  normal = normal / length;
-  Vector u = complex_.vertices[around.front()].point - complex_.vertices[vertex].point;
-  u = u - dot(u, normal) * normal;
-  if (!(norm(u) > 0)) return moved;
-  u = u / norm(u);
-  const Vector v = cross(normal, u);
-  constexpr unsigned directions = 8;
+  const double diagonal = std::sqrt(0.5);
+  const Vector u = fan.across(), v = cross(fan.normal(), u);
+  look_at(fan.centre());
   for (const double share : {0.3, 0.1, 0.03})
-    for (unsigned i = 0; i < directions; ++i) {
-      const double angle = 2 * std::numbers::pi * i / directions;
-      const Point to =
-          complex_.vertices[vertex].point + share * reach * (std::cos(angle) * u + std::sin(angle) * v);
-      moved |= note(editor_.move(vertex, to, now + gain));
-    }
-  return moved;
+    for (const auto& [x, y] : {std::pair{1.0, 0.0},
+                               {diagonal, diagonal},
+                               {0.0, 1.0},
+                               {-diagonal, diagonal},
+                               {-1.0, 0.0},
+                               {-diagonal, -diagonal},
+                               {0.0, -1.0},
+                               {diagonal, -diagonal}})
+      look_at(way + share * fan.reach() * (x * u + y * v));
+  if (best <= now) return false;
+  return editor_.move(vertex, fan.place(way), now + least_gain) ||
+         editor_.move(vertex, fan.place(0.5 * way), now + least_gain);
 }
 
 bool ShapeRepair::improve_by_moves(Index triangle) {

@@ -5,6 +5,7 @@
 
 #include "collarmesh/progress.h"
 #include "shells/surface_editor.h"
+#include "shells/vertex_fan.h"
 
 namespace collarmesh::shells {
 
@@ -45,6 +46,8 @@ class ShapeRepair {
   bool improve_by_moves(Index triangle);
   bool move_best(Index vertex);
   bool move_within(Index vertex);
+  bool move_on_curve(Index vertex, const VertexFan& fan);
+  bool move_on_patch(Index vertex, const VertexFan& fan);
   bool too_narrow(Index triangle) const;
   bool refine(Index triangle);
   bool divide_curve_beside(Index triangle, const Point& p);
