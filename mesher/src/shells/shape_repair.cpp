@@ -146,6 +146,15 @@ bool ShapeRepair::improve_by_moves(Index triangle) {
   return moved;
 }
 
+/// The same some times for each triangle: small gains go on for long.
+bool ShapeRepair::move_corners(Index triangle) {
+  constexpr unsigned char most = 3;
+  if (triangle >= moves_.size()) moves_.resize(complex_.triangles.size(), 0);
+  if (moves_[triangle] == most || !improve_by_moves(triangle)) return false;
+  ++moves_[triangle];
+  return true;
+}
+
 bool ShapeRepair::improve_connections(Index triangle, double wanted, bool may_contract) {
   const std::array<Index, 3> c = complex_.triangles[triangle].corners;
   for (unsigned i = 0; i < 3; ++i)
@@ -202,8 +211,8 @@ bool ShapeRepair::divide_curve_beside(Index triangle, const Point& p) {
   return false;
 }
 
-/// Walks from the triangle to the one at p, and inserts it there.
-bool ShapeRepair::insert_towards(Index triangle, const Point& p) {
+/// Walks from the triangle to the one at p, and inserts it there, unless a vertex is nearer than `nearest`.
+bool ShapeRepair::insert_towards(Index triangle, const Point& p, double nearest) {
   constexpr unsigned most_steps = 30;
   constexpr double inside = -1e-9;
   Index at = triangle;
@@ -227,7 +236,8 @@ bool ShapeRepair::insert_towards(Index triangle, const Point& p) {
     at = next;
   }
   for (const Index v : complex_.triangles[at].corners)
-    if (distance(complex_.vertices[v].point, p) < shortest * complex_.vertices[v].size) return false;
+    if (distance(complex_.vertices[v].point, p) < std::max(shortest * complex_.vertices[v].size, nearest))
+      return false;
   const std::size_t before = complex_.vertices.size();
   if (divide_curve_beside(at, p)) return complex_.vertices.size() > before;
   const std::array<Index, 3> c = complex_.triangles[at].corners;
@@ -266,30 +276,34 @@ bool ShapeRepair::refine(Index triangle) {
   }
   const Point middle = 0.5 * (corners[(opposite + 1) % 3] + corners[(opposite + 2) % 3]);
   Point p = circumcentre(corners);
+  constexpr double least_share = 0.3;
   // So high above the shortest side its angle is 28 degrees.
   const double high = 2 * shortest_side, height = distance(middle, p);
   if (height > high) p = middle + high / height * (p - middle);
-  return insert_towards(triangle, p);
+  return insert_towards(triangle, p, least_share * shortest_side);
 }
 
 std::size_t ShapeRepair::run(std::size_t most_vertices) {
-  constexpr unsigned most_passes = 50, contracting_passes = 3;
+  constexpr unsigned most_passes = 40, contracting_passes = 3, first_passes = 12;
   const double wanted = least_angle + margin;
   constexpr double refined = 180;  // more than only improved
-  const std::size_t limit = complex_.vertices.size() + most_vertices;
+  std::size_t limit = complex_.vertices.size() + most_vertices, fewest = complex_.triangles.size();
   std::vector<Index> poor_ones;
   Index first = 0;
   for (unsigned pass = 0; pass < most_passes && !execution_.cancelled(); ++pass) {
     bool changed = false;
     poor_ones = poor_triangles(wanted, poor_ones, first);
     first = static_cast<Index>(complex_.triangles.size());
+    fewest = std::min(fewest, poor_ones.size());
+    // Where new vertices make more poor triangles than they cure, as between surfaces that overlap.
+    if (pass > first_passes && poor_ones.size() > fewest + fewest / 4 + 20) limit = 0;
     for (const Index t : poor_ones) {
       if (!poor(t, wanted) || tried(t, refined)) continue;
       // Moves alone do not make a triangle good that is far from it.
       const bool near = editor_.shape(t) > 0.5 * wanted;
       // After some passes no vertex goes, so that those that come do so for good.
-      if (improve_connections(t, wanted, pass < contracting_passes) || (near && improve_by_moves(t)) ||
-          (complex_.vertices.size() < limit && refine(t)) || (!near && improve_by_moves(t)))
+      if (improve_connections(t, wanted, pass < contracting_passes) || (near && move_corners(t)) ||
+          (complex_.vertices.size() < limit && refine(t)) || (!near && move_corners(t)))
         changed = true;
       else
         note_tried(t, refined);
