@@ -14,6 +14,7 @@ struct ChosenPatches {
 
   /// Makes the exact geometry and measures of the whole complex those of this part.
   void adapt(PipelineOptions& options) const;
+  void adapt(ShapeMeasures& exact) const;
 };
 
 /// Throws OptionError, with the names that there are, where no patch has a name or number.
