@@ -42,6 +42,8 @@ Plc build_surfaces(ComplexInput& input, const RunOptions& o, const RepairOptions
 CheckReport check_as_built(const TetMesh& mesh, ComplexInput& input, const RunOptions& o,
                            const RepairOptions& repair, const Execution& execution) {
   const bool solid = !mesh.is_surface() && !mesh.is_curves();
+  if (!o.faces.empty() && !mesh.is_surface())
+    throw OptionError("faces are for meshes of triangles alone; leave them out");
   const Plc plc = solid ? input.build(o.complex, repair) : build_surfaces(input, o, repair);
   const CheckOptions options{.bounds = o.mesh.bounds,
                              .exact = input.exact_measures(plc),
@@ -49,7 +51,8 @@ CheckReport check_as_built(const TetMesh& mesh, ComplexInput& input, const RunOp
                              .threads = o.mesh.threads};
   CheckReport report = solid              ? check(mesh, plc, options, execution)
                        : mesh.is_curves() ? check_lines(mesh, plc, options)
-                                          : check_shells(mesh, plc, options, execution);
+                       : o.faces.empty()  ? check_shells(mesh, plc, options, execution)
+                                          : check_faces(mesh, plc, o.faces, options, execution);
   checks::check_periodic(mesh, report);
   if (const std::string note = note_on_scale(mesh, plc, o.scale); !report.passed() && !note.empty())
     report.notes.push_back(note);

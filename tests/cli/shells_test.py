@@ -71,6 +71,14 @@ class Shells(ProgramTest):
         self.assertEqual([each["tag"] for each in report["complex"]["patch_list"]], [2, 3])
         areas = report["check"]["kept"]["patch_areas"]
         self.assertEqual([round(each["mesh"], 9) for each in areas], [1, 1])
+        against = ("check", self.out, "--against", self.box, "--name", "lid=2")
+        self.assertEqual(self.run_program(*against, "--faces", "lid", "--faces", "3").returncode, 0)
+        self.assertEqual(self.run_program(*against).returncode, 7)
+        self.assertEqual(self.run_program(*against, "--faces", "lid").returncode, 7)
+        self.assertEqual(self.run_program(*against, "--faces", "lid", "--faces", "4").returncode, 7)
+        wrong = self.run_program(*against, "--faces", "base")
+        self.assertEqual(wrong.returncode, 2)
+        self.assertIn("no patch is called 'base'", wrong.stderr)
         self.out.unlink()
         self.expect(2, *named, "--faces", "base", "-o", self.out,
                     says=["no patch is called 'base'", r"1, 2 \(lid\), 3"])

@@ -171,6 +171,8 @@ TEST(ChosenPatches, AreMeshedAlone) {
     EXPECT_GT(dot(normal, middle - Point{0.5, 0.5, 0.5}), 0) << "it looks out of the solid";
   }
   EXPECT_NEAR(area, 2, 1e-9);
+  EXPECT_TRUE(check_faces(mesh, plc, options.faces).passed());
+  EXPECT_FALSE(check_faces(mesh, plc, {std::to_string(first)}).passed());
   options.faces = {"lid"};
   EXPECT_THROW(mesh_shells(plc, options), OptionError);
 }

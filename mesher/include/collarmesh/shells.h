@@ -1,7 +1,10 @@
 #pragma once
 
 #include <functional>
+#include <string>
+#include <vector>
 
+#include "collarmesh/check.h"
 #include "collarmesh/pipeline.h"
 
 namespace collarmesh {
@@ -24,6 +27,12 @@ PipelineResult mesh_shells(const Plc& plc, const PipelineOptions& options = {},
 /// repaired as for solids.
 SoupPipelineResult mesh_shells(ComplexSource& source, const PipelineOptions& options = {},
                                const Execution& execution = {});
+
+/// `check_shells` for a mesh of some patches of a complex: those with these names or numbers
+/// (`PipelineOptions::faces`). The exact measures are those of the whole complex. Throws OptionError where no
+/// patch has a name.
+CheckReport check_faces(const TetMesh& mesh, const Plc& whole, const std::vector<std::string>& faces,
+                        CheckOptions options = {}, const Execution& execution = {});
 
 /// Builds the complex that `mesh_shells` meshes, by a function that builds one with a repair: facets that are
 /// a complex stay as they are, also open ones, which the repair of solids would close; solids are repaired

@@ -282,9 +282,10 @@ std::vector<Option> element_options() {
        .commands = Option::mesh | Option::programs},
       {.name = "faces NAME",
        .place = at<&RunOptions::faces>,
-       .help = "Mesh only this patch (name or number) with triangles; for --dimension 2",
+       .help = "Mesh only this patch (name or number) with triangles; for --dimension 2, and for checking "
+               "such a mesh",
        .details = "see [Shells](shells.md#some-faces-of-a-solid)",
-       .commands = Option::mesh | Option::programs},
+       .commands = Option::mesh | Option::programs | Option::check},
       {.name = "triangle-elements",
        .words = {"shell", "plane-stress", "plane-strain"},
        .place = choice_at<&RunOptions::triangle_elements>,

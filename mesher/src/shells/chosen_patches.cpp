@@ -129,11 +129,15 @@ std::vector<double> part_of(const std::vector<double>& all, const std::vector<In
 
 }  // namespace
 
+void ChosenPatches::adapt(ShapeMeasures& exact) const {
+  exact.areas = part_of(exact.areas, patch);
+  exact.lengths = part_of(exact.lengths, curve);
+  exact.volumes.clear();
+  exact.shells.clear();
+}
+
 void ChosenPatches::adapt(PipelineOptions& options) const {
-  options.exact_measures.areas = part_of(options.exact_measures.areas, patch);
-  options.exact_measures.lengths = part_of(options.exact_measures.lengths, curve);
-  options.exact_measures.volumes.clear();
-  options.exact_measures.shells.clear();
+  adapt(options.exact_measures);
   if (!options.exact) return;
   options.exact = [exact = options.exact, patches = patch, curves = curve](unsigned dimension, Index feature,
                                                                            const Point& p) {

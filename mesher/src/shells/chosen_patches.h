@@ -14,6 +14,7 @@ struct ChosenPatches {
 
   /// Restricts the exact geometry and measures of the whole complex to this part.
   void adapt(PipelineOptions& options) const;
+  void adapt(ShapeMeasures& exact) const;
 };
 
 /// Chooses patches. Throws OptionError, with the known names, if no patch has a name or number.

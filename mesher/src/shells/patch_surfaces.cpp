@@ -24,8 +24,13 @@ PatchSurfaces::PatchSurfaces(const Plc& plc, SurfaceTolerance tolerance)
       normals_(plc.patches.size()),
       at_corners_(plc.triangles.size()),
       hierarchies_(plc.patches.size()),
-      last_found_(plc.patches.size(), 0) {
+      last_found_(plc.patches.size(), 0),
+      least_tolerance_(plc.patches.size(), INFINITY) {
   for (Index patch = 0; patch < plc.patches.size(); ++patch) find_normals(patch);
+  for (Index t = 0; t < plc.triangles.size(); ++t) {
+    double& least = least_tolerance_[plc.triangles[t].patch];
+    least = std::min(least, tolerance_.at_triangle(t));
+  }
 }
 
 // Weighted by areas, in which slivers of a tessellation do not count.
@@ -62,34 +67,64 @@ Vector PatchSurfaces::normal_at(Index patch, Index triangle, const Point& p) con
   return squared_norm(own) > 0 ? unit(own) : normals_[patch];
 }
 
-PatchSurfaces::Foot PatchSurfaces::nearest(Index patch, const Point& p) const {
+/// The triangle that is nearest to p, or one within the share of the patch's least tolerance.
+Index PatchSurfaces::triangle_near(Index patch, const Point& p, double enough) const {
   const TriangleHierarchy& tree = hierarchy(patch);
+  const Index first = plc_.patches[patch].first_triangle;
   Index& found = last_found_[patch];
-  const auto hint = tree.corners(found);
-  tree.squared_distance_to(p, squared_distance_to_triangle(p, hint[0], hint[1], hint[2]), &found);
-  const Index triangle = plc_.patches[patch].first_triangle + found;
+  const auto squared_distance_to = [&](Index triangle) {
+    const auto c = tree.corners(triangle);
+    return squared_distance_to_triangle(p, c[0], c[1], c[2]);
+  };
+  const double most = enough * least_tolerance_[patch], squared_enough = most * most;
+  double bound = squared_distance_to(found);
+  if (bound <= squared_enough) return first + found;
+  const Index root = tree.root();
+  tree.visit_near({&root, 1}, p, bound, [&](Index triangle) {
+    const double squared = squared_distance_to(triangle);
+    if (squared >= bound) return;
+    found = triangle;
+    bound = squared <= squared_enough ? 0 : squared;
+  });
+  return first + found;
+}
+
+PatchSurfaces::Foot PatchSurfaces::foot_on(Index patch, Index triangle, const Point& p) const {
   const auto& [a, b, c] = plc_.triangles[triangle].points;
   const Point foot = nearest_point_on_triangle(p, plc_.points[a], plc_.points[b], plc_.points[c]);
   return {foot, normal_at(patch, triangle, foot), triangle, distance(p, foot),
           tolerance_.at_triangle(triangle)};
 }
 
-double PatchSurfaces::agreement(const Corners& t, Index patch) const { return fit(t, patch).agreement; }
-
-PatchSurfaces::Fit PatchSurfaces::fit(const Corners& t, Index patch) const {
-  const Vector area = area_vector(t);
-  const double size = norm(area);
-  if (planar(patch)) return {size > 0 ? dot(area, normals_[patch]) / size : -1, 0};
-  const Foot foot = nearest(patch, (t[0] + t[1] + t[2]) / 3);
-  return {size > 0 ? dot(area, foot.normal) / size : -1, foot.distance / foot.tolerance};
+PatchSurfaces::Foot PatchSurfaces::nearest(Index patch, const Point& p) const {
+  return foot_on(patch, triangle_near(patch, p, 0), p);
 }
 
-double PatchSurfaces::excess_between(Index patch, const Point& a, const Point& b) const {
+double PatchSurfaces::agreement(const Corners& t, Index patch) const { return fit(t, patch).agreement; }
+
+PatchSurfaces::Fit PatchSurfaces::fit(const Corners& t, Index patch, double enough) const {
+  constexpr double certain = 0.8;  // agreement with a place near enough
+  const Vector area = area_vector(t);
+  const double size = norm(area);
+  const auto agreement = [&](const Vector& normal) { return size > 0 ? dot(area, normal) / size : -1; };
+  if (planar(patch)) return {agreement(normals_[patch]), 0};
+  const Point centre = (t[0] + t[1] + t[2]) / 3;
+  const Foot near = foot_on(patch, triangle_near(patch, centre, enough), centre);
+  const Fit fit{agreement(near.normal), near.distance / near.tolerance};
+  if (!(enough > 0) || fit.agreement > certain || !(size > 0)) return fit;
+  const Foot nearest_one = nearest(patch, centre);
+  return {agreement(nearest_one.normal), nearest_one.distance / nearest_one.tolerance};
+}
+
+double PatchSurfaces::excess_between(Index patch, const Point& a, const Point& b, double enough) const {
   if (planar(patch)) return 0;
   double most = 0;
   for (const double share : {1.0 / 3, 2.0 / 3}) {
-    const Foot foot = nearest(patch, a + share * (b - a));
-    most = std::max(most, foot.distance / foot.tolerance);
+    const Point p = a + share * (b - a);
+    const Index t = triangle_near(patch, p, enough);
+    const auto& [i, j, k] = plc_.triangles[t].points;
+    const double squared = squared_distance_to_triangle(p, plc_.points[i], plc_.points[j], plc_.points[k]);
+    most = std::max(most, std::sqrt(squared) / tolerance_.at_triangle(t));
   }
   return most;
 }

@@ -44,9 +44,11 @@ class PatchSurfaces {
     double agreement = 1;  ///< as above
     double excess = 0;     ///< distance of its centre from the patch by the tolerance there
   };
-  Fit fit(const Corners& t, Index patch) const;
-  /// Returns the largest distance of two points inside a segment from the patch by the tolerance there.
-  double excess_between(Index patch, const Point& a, const Point& b) const;
+  /// A distance within the share `enough` of the tolerance may be too large, but stays within that.
+  Fit fit(const Corners& t, Index patch, double enough = 0) const;
+  /// Returns the largest distance of two points inside a segment from the patch by the tolerance there; see
+  /// above for `enough`.
+  double excess_between(Index patch, const Point& a, const Point& b, double enough) const;
   /// Returns points of a smooth patch that are farther than this share of the tolerance from the triangles on
   /// it, and the nearest triangle of each, at most one for a triangle.
   std::vector<std::pair<Index, Point>> far_points(Index patch, std::span<const Corners> triangles,
@@ -54,6 +56,8 @@ class PatchSurfaces {
 
  private:
   const TriangleHierarchy& hierarchy(Index patch) const;
+  Index triangle_near(Index patch, const Point& p, double enough) const;
+  Foot foot_on(Index patch, Index triangle, const Point& p) const;
   Vector normal_at(Index patch, Index triangle, const Point& p) const;
   void find_normals(Index patch);
 
@@ -63,6 +67,7 @@ class PatchSurfaces {
   std::vector<std::array<Vector, 3>> at_corners_;  // of triangles
   mutable std::vector<std::unique_ptr<TriangleHierarchy>> hierarchies_;
   mutable std::vector<Index> last_found_;  // by patch; the next place is probably near
+  std::vector<double> least_tolerance_;    // of patches
 };
 
 }  // namespace collarmesh::shells

@@ -197,6 +197,13 @@ PipelineResult run(const Plc& plc, const PipelineOptions& options, const Executi
 
 namespace collarmesh {
 
+CheckReport check_faces(const TetMesh& mesh, const Plc& whole, const std::vector<std::string>& faces,
+                        CheckOptions options, const Execution& execution) {
+  const shells::ChosenPatches chosen = shells::choose_patches(whole, faces);
+  chosen.adapt(options.exact);
+  return check_shells(mesh, chosen.plc, options, execution);
+}
+
 RepairedPlc build_shell_complex(const std::function<RepairedPlc(const RepairOptions&)>& build,
                                 const RepairOptions& repair) {
   if (repair.mode != RepairMode::automatic) return build(repair);

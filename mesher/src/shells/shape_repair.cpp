@@ -13,6 +13,8 @@ constexpr double margin = 1.5;
 constexpr double shortest = 0.015;
 // Vertices with more triangles, as a tessellation has them, are not moved or removed: others around them are.
 constexpr std::size_t most_triangles = 24;
+// Of a shape, for which a vertex is moved.
+constexpr double least_gain = 0.1;
 
 }  // namespace
 
@@ -81,62 +83,76 @@ bool ShapeRepair::move_best(Index vertex) {
 }
 
 bool ShapeRepair::move_within(Index vertex) {
-  const unsigned dimension = complex_.vertices[vertex].feature.dimension;
-  if (dimension == 0 || complex_.vertices[vertex].triangles.size() > most_triangles) return false;
-  const double before = editor_.least_shape_at(vertex);
-  double now = before;
-  constexpr double gain = 0.1;
-  const auto note = [&](bool better) {
-    if (better) now = editor_.least_shape_at(vertex);
-    return better;
+  const auto& v = complex_.vertices[vertex];
+  if (v.feature.dimension == 0 || v.triangles.size() > most_triangles) return false;
+  const VertexFan fan(complex_, vertex);
+  return v.feature.dimension == 1 ? move_on_curve(vertex, fan) : move_on_patch(vertex, fan);
+}
+
+// Tries places, and moves to the best one.
+bool ShapeRepair::move_on_curve(Index vertex, const VertexFan& fan) {
+  const auto around = editor_.edges_around(vertex);
+  if (!around || editor_.ends_tip(vertex)) return false;
+  const auto& before = complex_.edges[(*around)[0]].at;
+  const auto& behind = complex_.edges[(*around)[1]].at;
+  const double start = before[1], last = behind[1] - (behind[0] - before[1]), first = before[0];
+  const double now = editor_.least_shape_at(vertex);
+  double at = start, best = now;
+  for (const double share : {0.5, 0.25, 0.1, 0.03})
+    for (const double end : {first, last}) {
+      const double to = at + share * (end - at);
+      const double shape = fan.least_shape(editor_.place_on_curve(vertex, to), best + least_gain);
+      if (shape < best + least_gain) continue;
+      best = shape;
+      at = to;
+    }
+  if (at == start) return false;
+  return editor_.slide(vertex, at, now + least_gain) ||
+         editor_.slide(vertex, 0.5 * (start + at), now + least_gain);
+}
+
+bool ShapeRepair::move_on_patch(Index vertex, const VertexFan& fan) {
+  if (!(norm(fan.normal()) > 0)) return false;
+  const double now = editor_.least_shape_at(vertex);
+  double best = now;
+  Vector way{};
+  const auto look_at = [&](const Vector& step) {
+    const double shape = fan.least_turned_shape(fan.place(step), best + least_gain);
+    if (shape < best + least_gain) return;
+    best = shape;
+    way = step;
   };
-  bool moved = false;
-  if (dimension == 1) {
-    const auto around = editor_.edges_around(vertex);
-    if (!around) return false;
-    for (const double share : {0.5, 0.25, 0.1, 0.03}) {
-      for (const double sign : {-1.0, 1.0}) {
-        const auto& edge = complex_.edges[(*around)[sign < 0 ? 0 : 1]];
-        const double at = complex_.edges[(*around)[0]].at[1] + sign * share * (edge.at[1] - edge.at[0]);
-        moved |= note(editor_.slide(vertex, at, now + gain));
-      }
-    }
-    return moved && now > before;
-  }
-  const std::vector<Index> around = complex_.neighbours(vertex);
-  Point centre{};
-  double reach = 0;
-  for (const Index n : around) {
-    centre = centre + complex_.vertices[n].point / static_cast<double>(around.size());
-    reach = std::max(reach, editor_.length(vertex, n));
-  }
-  moved |= note(editor_.move(vertex, centre, before + gain));
-  Vector normal{};
-  for (const Index t : complex_.vertices[vertex].triangles)
-    normal = normal + area_vector(complex_.corners(t));
-  const double length = norm(normal);
-  if (!(length > 0)) return moved;
-  normal = normal / length;
-  Vector u = complex_.vertices[around.front()].point - complex_.vertices[vertex].point;
-  u = u - dot(u, normal) * normal;
-  if (!(norm(u) > 0)) return moved;
-  u = u / norm(u);
-  const Vector v = cross(normal, u);
-  constexpr unsigned directions = 8;
+  const double diagonal = std::sqrt(0.5);
+  const Vector u = fan.across(), v = cross(fan.normal(), u);
+  look_at(fan.centre());
   for (const double share : {0.3, 0.1, 0.03})
-    for (unsigned i = 0; i < directions; ++i) {
-      const double angle = 2 * std::numbers::pi * i / directions;
-      const Point to =
-          complex_.vertices[vertex].point + share * reach * (std::cos(angle) * u + std::sin(angle) * v);
-      moved |= note(editor_.move(vertex, to, now + gain));
-    }
-  return moved;
+    for (const auto& [x, y] : {std::pair{1.0, 0.0},
+                               {diagonal, diagonal},
+                               {0.0, 1.0},
+                               {-diagonal, diagonal},
+                               {-1.0, 0.0},
+                               {-diagonal, -diagonal},
+                               {0.0, -1.0},
+                               {diagonal, -diagonal}})
+      look_at(way + share * fan.reach() * (x * u + y * v));
+  if (best <= now) return false;
+  return editor_.move(vertex, fan.place(way), now + least_gain) ||
+         editor_.move(vertex, fan.place(0.5 * way), now + least_gain);
 }
 
 bool ShapeRepair::improve_by_moves(Index triangle) {
   bool moved = false;
   for (const Index v : std::array(complex_.triangles[triangle].corners)) moved |= move_best(v);
   return moved;
+}
+
+/// The same some times for each triangle: small gains go on for long.
+bool ShapeRepair::move_corners(Index triangle) {
+  constexpr unsigned char most = 3;
+  if (triangle >= moves_.size()) moves_.resize(complex_.triangles.size(), 0);
+  if (moves_[triangle] == most || !improve_by_moves(triangle)) return false;
+  ++moves_[triangle];
+  return true;
 }
 
 bool ShapeRepair::improve_connections(Index triangle, double wanted, bool may_contract) {
@@ -195,8 +211,8 @@ bool ShapeRepair::divide_curve_beside(Index triangle, const Point& p) {
   return false;
 }
 
-/// Walks from the triangle to the one at p, and inserts it there.
-bool ShapeRepair::insert_towards(Index triangle, const Point& p) {
+/// Walks from the triangle to the one at p, and inserts it there, unless a vertex is nearer than `nearest`.
+bool ShapeRepair::insert_towards(Index triangle, const Point& p, double nearest) {
   constexpr unsigned most_steps = 30;
   constexpr double inside = -1e-9;
   Index at = triangle;
@@ -220,7 +236,8 @@ bool ShapeRepair::insert_towards(Index triangle, const Point& p) {
     at = next;
   }
   for (const Index v : complex_.triangles[at].corners)
-    if (distance(complex_.vertices[v].point, p) < shortest * complex_.vertices[v].size) return false;
+    if (distance(complex_.vertices[v].point, p) < std::max(shortest * complex_.vertices[v].size, nearest))
+      return false;
   const std::size_t before = complex_.vertices.size();
   if (divide_curve_beside(at, p)) return complex_.vertices.size() > before;
   const std::array<Index, 3> c = complex_.triangles[at].corners;
@@ -259,30 +276,34 @@ bool ShapeRepair::refine(Index triangle) {
   }
   const Point middle = 0.5 * (corners[(opposite + 1) % 3] + corners[(opposite + 2) % 3]);
   Point p = circumcentre(corners);
+  constexpr double least_share = 0.3;
   // So high above the shortest side its angle is 28 degrees.
   const double high = 2 * shortest_side, height = distance(middle, p);
   if (height > high) p = middle + high / height * (p - middle);
-  return insert_towards(triangle, p);
+  return insert_towards(triangle, p, least_share * shortest_side);
 }
 
 std::size_t ShapeRepair::run(std::size_t most_vertices) {
-  constexpr unsigned most_passes = 50, contracting_passes = 3;
+  constexpr unsigned most_passes = 40, contracting_passes = 3, first_passes = 12;
   const double wanted = least_angle + margin;
   constexpr double refined = 180;  // more than only improved
-  const std::size_t limit = complex_.vertices.size() + most_vertices;
+  std::size_t limit = complex_.vertices.size() + most_vertices, fewest = complex_.triangles.size();
   std::vector<Index> poor_ones;
   Index first = 0;
   for (unsigned pass = 0; pass < most_passes && !execution_.cancelled(); ++pass) {
     bool changed = false;
     poor_ones = poor_triangles(wanted, poor_ones, first);
     first = static_cast<Index>(complex_.triangles.size());
+    fewest = std::min(fewest, poor_ones.size());
+    // Where new vertices make more poor triangles than they cure, as between surfaces that overlap.
+    if (pass > first_passes && poor_ones.size() > fewest + fewest / 4 + 20) limit = 0;
     for (const Index t : poor_ones) {
       if (!poor(t, wanted) || tried(t, refined)) continue;
       // Moves alone do not make a triangle good that is far from it.
       const bool near = editor_.shape(t) > 0.5 * wanted;
       // After some passes no vertex goes, so that those that come do so for good.
-      if (improve_connections(t, wanted, pass < contracting_passes) || (near && improve_by_moves(t)) ||
-          (complex_.vertices.size() < limit && refine(t)) || (!near && improve_by_moves(t)))
+      if (improve_connections(t, wanted, pass < contracting_passes) || (near && move_corners(t)) ||
+          (complex_.vertices.size() < limit && refine(t)) || (!near && move_corners(t)))
         changed = true;
       else
         note_tried(t, refined);

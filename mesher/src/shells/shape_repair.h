@@ -5,6 +5,7 @@
 
 #include "collarmesh/progress.h"
 #include "shells/surface_editor.h"
+#include "shells/vertex_fan.h"
 
 namespace collarmesh::shells {
 
@@ -43,12 +44,15 @@ class ShapeRepair {
   bool approach_points();
   bool improve_connections(Index triangle, double wanted, bool may_contract);
   bool improve_by_moves(Index triangle);
+  bool move_corners(Index triangle);
   bool move_best(Index vertex);
   bool move_within(Index vertex);
+  bool move_on_curve(Index vertex, const VertexFan& fan);
+  bool move_on_patch(Index vertex, const VertexFan& fan);
   bool too_narrow(Index triangle) const;
   bool refine(Index triangle);
   bool divide_curve_beside(Index triangle, const Point& p);
-  bool insert_towards(Index triangle, const Point& p);
+  bool insert_towards(Index triangle, const Point& p, double nearest);
 
   SurfaceComplex& complex_;
   SurfaceEditor& editor_;
@@ -58,8 +62,9 @@ class ShapeRepair {
     std::size_t changes = 0;  // of its corners
     double wanted = 0;
   };
-  std::vector<Tried> tried_;        // by triangle, the last time in vain
-  std::vector<Index> not_movable_;  // changes of each vertex, and 1, when it was moved in vain
+  std::vector<Tried> tried_;          // by triangle, the last time in vain
+  std::vector<unsigned char> moves_;  // by triangle, of its corners
+  std::vector<Index> not_movable_;    // changes of each vertex, and 1, when it was moved in vain
 };
 
 }  // namespace collarmesh::shells

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "shells/triangle_shape.h"
+
 namespace collarmesh::shells {
 
 namespace {
@@ -22,7 +24,7 @@ Index SurfaceComplex::add_vertex(const Point& point, const TetMesh::VertexFeatur
 
 Index SurfaceComplex::add_triangle(const std::array<Index, 3>& corners, Index patch) {
   const auto number = static_cast<Index>(triangles.size());
-  triangles.push_back({corners, patch});
+  triangles.push_back({corners, patch, shape_of(this->corners(corners))});
   for (const Index v : corners) {
     vertices[v].triangles.push_back(number);
     ++vertices[v].changes;
@@ -33,6 +35,11 @@ Index SurfaceComplex::add_triangle(const std::array<Index, 3>& corners, Index pa
 void SurfaceComplex::remove_triangle(Index triangle) {
   for (const Index v : triangles[triangle].corners) erase_one(vertices[v].triangles, triangle);
   triangles[triangle] = {};
+}
+
+void SurfaceComplex::move_vertex(Index vertex, const Point& to) {
+  vertices[vertex].point = to;
+  for (const Index t : vertices[vertex].triangles) triangles[t].shape = shape_of(corners(t));
 }
 
 Index SurfaceComplex::add_edge(const std::array<Index, 2>& ends, Index curve,
@@ -53,6 +60,23 @@ std::vector<Index> SurfaceComplex::triangles_at(Index a, Index b) const {
   for (const Index t : vertices[a].triangles)
     if (triangles[t].has(b)) found.push_back(t);
   return found;
+}
+
+std::optional<std::array<Index, 2>> SurfaceComplex::two_triangles_at(Index a, Index b) const {
+  std::array<Index, 2> two{};
+  unsigned count = 0;
+  for (const Index t : vertices[a].triangles) {
+    if (!triangles[t].has(b)) continue;
+    if (count == 2) return std::nullopt;
+    two[count++] = t;
+  }
+  if (count != 2) return std::nullopt;
+  return two;
+}
+
+bool SurfaceComplex::have_triangle(Index a, Index b) const {
+  return std::any_of(vertices[a].triangles.begin(), vertices[a].triangles.end(),
+                     [&](Index t) { return triangles[t].has(b); });
 }
 
 Index SurfaceComplex::edge_at(Index a, Index b) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "collarmesh/plc.h"
@@ -15,6 +16,7 @@ class SurfaceComplex {
   struct Triangle {
     std::array<Index, 3> corners{none, none, none};  ///< oriented like the patch; none: removed
     Index patch = none;
+    double shape = 0;  ///< see shape_of
 
     bool alive() const { return corners[0] != none; }
     bool has(Index v) const { return corners[0] == v || corners[1] == v || corners[2] == v; }
@@ -55,11 +57,15 @@ class SurfaceComplex {
   Index add_vertex(const Point& point, const TetMesh::VertexFeature& feature, double size);
   Index add_triangle(const std::array<Index, 3>& corners, Index patch);
   void remove_triangle(Index triangle);
+  void move_vertex(Index vertex, const Point& to);
   Index add_edge(const std::array<Index, 2>& ends, Index curve, const std::array<double, 2>& at);
   void remove_edge(Index edge);
 
   /// The triangles that have both vertices.
   std::vector<Index> triangles_at(Index a, Index b) const;
+  /// The same if there are two.
+  std::optional<std::array<Index, 2>> two_triangles_at(Index a, Index b) const;
+  bool have_triangle(Index a, Index b) const;
   /// The edge of a curve between the vertices, none if there is none.
   Index edge_at(Index a, Index b) const;
   /// The vertices that share a triangle or edge with v, sorted.

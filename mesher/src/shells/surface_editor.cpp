@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "shells/curve_division.h"
+#include "shells/vertex_fan.h"
 
 namespace collarmesh::shells {
 
@@ -35,7 +36,8 @@ double SurfaceEditor::least_shape_at(Index vertex, double bound) const {
 
 unsigned SurfaceEditor::side_too_far(Index triangle) const {
   constexpr unsigned no_side = 3;
-  const auto& [c, patch] = complex_.triangles[triangle];
+  const std::array<Index, 3>& c = complex_.triangles[triangle].corners;
+  const Index patch = complex_.triangles[triangle].patch;
   if (surfaces_.planar(patch)) return no_side;
   unsigned worst = no_side, longest = 0;
   double most = most_excess_, most_length = 0;
@@ -47,13 +49,14 @@ unsigned SurfaceEditor::side_too_far(Index triangle) const {
     }
     if (complex_.edge_at(a, b) != none) continue;
     const double excess =
-        surfaces_.excess_between(patch, complex_.vertices[a].point, complex_.vertices[b].point);
+        surfaces_.excess_between(patch, complex_.vertices[a].point, complex_.vertices[b].point, most_excess_);
     if (excess <= most) continue;
     most = excess;
     worst = i;
   }
   if (worst != no_side) return worst;
-  return surfaces_.fit(complex_.corners(triangle), patch).excess > most_excess_ ? longest : no_side;
+  return surfaces_.fit(complex_.corners(triangle), patch, most_excess_).excess > most_excess_ ? longest
+                                                                                              : no_side;
 }
 
 std::vector<std::pair<Index, Point>> SurfaceEditor::far_points() const {
@@ -75,7 +78,8 @@ std::vector<std::pair<Index, Point>> SurfaceEditor::far_points() const {
 PatchSurfaces::Fit SurfaceEditor::worst_fit(std::span<const Index> triangles) const {
   PatchSurfaces::Fit worst;
   for (const Index t : triangles) {
-    const PatchSurfaces::Fit fit = surfaces_.fit(complex_.corners(t), complex_.triangles[t].patch);
+    const PatchSurfaces::Fit fit =
+        surfaces_.fit(complex_.corners(t), complex_.triangles[t].patch, most_excess_);
     worst = {std::min(worst.agreement, fit.agreement), std::max(worst.excess, fit.excess)};
   }
   return worst;
@@ -87,15 +91,16 @@ bool SurfaceEditor::fit(std::span<const Created> created, std::span<const Index>
   std::optional<PatchSurfaces::Fit> before;
   const auto old = [&] { return before ? *before : *(before = worst_fit(removed)); };
   for (const Created& t : created) {
-    const PatchSurfaces::Fit fit = surfaces_.fit(complex_.corners(t.corners), t.patch);
+    const PatchSurfaces::Fit fit = surfaces_.fit(complex_.corners(t.corners), t.patch, most_excess_);
     if (!(fit.agreement > 0)) return false;
     if (fit.agreement < least_agreement && fit.agreement < old().agreement) return false;
     if (fit.excess > most_excess_ && fit.excess > old().excess) return false;
     if (centre == none || surfaces_.planar(t.patch)) continue;
     for (unsigned i = 0; i < 3; ++i) {
       if (t.corners[i] != centre) continue;
-      const double excess = surfaces_.excess_between(t.patch, complex_.vertices[centre].point,
-                                                     complex_.vertices[t.corners[(i + 1) % 3]].point);
+      const double excess =
+          surfaces_.excess_between(t.patch, complex_.vertices[centre].point,
+                                   complex_.vertices[t.corners[(i + 1) % 3]].point, most_excess_);
       if (excess > most_excess_ && excess > old().excess) return false;
     }
   }
@@ -104,8 +109,9 @@ bool SurfaceEditor::fit(std::span<const Created> created, std::span<const Index>
 
 bool SurfaceEditor::flip(Index a, Index b) {
   if (complex_.edge_at(a, b) != none) return false;
-  const std::vector<Index> two = complex_.triangles_at(a, b);
-  if (two.size() != 2) return false;
+  const auto both = complex_.two_triangles_at(a, b);
+  if (!both) return false;
+  const std::array<Index, 2> two = *both;
   const auto& s = complex_.triangles[two[0]];
   const auto& t = complex_.triangles[two[1]];
   if (s.patch != t.patch) return false;
@@ -120,7 +126,7 @@ bool SurfaceEditor::flip(Index a, Index b) {
   constexpr double least_gain = 1e-6;  // relative: in needles between curves angles are tiny
   for (const Created& n : created)
     if (!(shape_of(complex_.corners(n.corners)) > (1 + least_gain) * before)) return false;
-  if (complex_.edge_at(c, d) != none || !complex_.triangles_at(c, d).empty()) return false;
+  if (complex_.edge_at(c, d) != none || complex_.have_triangle(c, d)) return false;
   if (!fit(created, two, c)) return false;
   for (const Index old : two) complex_.remove_triangle(old);
   for (const Created& n : created) complex_.add_triangle(n.corners, n.patch);
@@ -128,12 +134,13 @@ bool SurfaceEditor::flip(Index a, Index b) {
 }
 
 /// Keeps the topology: what is common to the ends' neighbourhoods is that of the edge.
-bool SurfaceEditor::can_contract(Index from, Index to, std::span<const Index> between) const {
+bool SurfaceEditor::can_contract(Index from, Index to) const {
   const std::vector<Index> around = complex_.neighbours(from), around_to = complex_.neighbours(to);
   std::vector<Index> common, thirds;
   std::set_intersection(around.begin(), around.end(), around_to.begin(), around_to.end(),
                         std::back_inserter(common));
-  for (const Index t : between) thirds.push_back(complex_.triangles[t].third(from, to));
+  for (const Index t : complex_.triangles_at(from, to))
+    thirds.push_back(complex_.triangles[t].third(from, to));
   std::sort(thirds.begin(), thirds.end());
   thirds.erase(std::unique(thirds.begin(), thirds.end()), thirds.end());
   if (common != thirds) return false;
@@ -147,6 +154,33 @@ bool SurfaceEditor::can_contract(Index from, Index to, std::span<const Index> be
     }
   }
   return true;
+}
+
+bool SurfaceEditor::shapes_permit(Index from, Index to, const Contraction& rule) const {
+  const double before = least_shape_at(from);
+  const double least = std::min(before, rule.least_shape);
+  bool any = false;
+  for (const Index t : complex_.vertices[from].triangles) {
+    auto corners = complex_.triangles[t].corners;
+    if (complex_.triangles[t].has(to)) continue;
+    std::replace(corners.begin(), corners.end(), from, to);
+    const double after = shape_of(complex_.corners(corners));
+    if (after < least || (rule.better && after <= before)) return false;
+    any = true;
+  }
+  return any;
+}
+
+bool SurfaceEditor::lengths_permit(Index from, Index to, const Contraction& rule) const {
+  double longest = 0, longest_before = 0;  // of edges, relative to the sizes
+  const auto look_at = [&](Index n) {
+    if (n == to || n == from) return;
+    longest = std::max(longest, length(n, to) / size_of_edge(n, to));
+    longest_before = std::max(longest_before, length(n, from) / size_of_edge(n, from));
+  };
+  for (const Index t : complex_.vertices[from].triangles)
+    for (const Index n : complex_.triangles[t].corners) look_at(n);
+  return longest <= std::max(rule.longest, longest_before);
 }
 
 std::optional<std::array<Index, 2>> SurfaceEditor::edges_around(Index vertex) const {
@@ -182,29 +216,18 @@ void SurfaceEditor::merge_edges(Index from, Index to) {
 bool SurfaceEditor::contract(Index from, Index to, const Contraction& rule) {
   const unsigned dimension = complex_.vertices[from].feature.dimension;
   if (dimension == 0 || ends_tip(from)) return false;
-  const std::vector<Index> between = complex_.triangles_at(from, to);
+  if (dimension == 1 && complex_.edge_at(from, to) == none) return false;
+  if (!shapes_permit(from, to, rule) || !lengths_permit(from, to, rule)) return false;
+  if (dimension == 1 && !curve_permits(from, to, rule)) return false;
+  if (!can_contract(from, to)) return false;
   const std::vector<Index> all = complex_.vertices[from].triangles;
   std::vector<Created> created;
-  double before = INFINITY, after = INFINITY;
   for (const Index t : all) {
-    before = std::min(before, shape(t));
     if (complex_.triangles[t].has(to)) continue;
-    Created n{complex_.triangles[t].corners, complex_.triangles[t].patch};
-    std::replace(n.corners.begin(), n.corners.end(), from, to);
-    after = std::min(after, shape_of(complex_.corners(n.corners)));
-    created.push_back(n);
+    created.push_back({complex_.triangles[t].corners, complex_.triangles[t].patch});
+    std::replace(created.back().corners.begin(), created.back().corners.end(), from, to);
   }
-  if (created.empty() || after < std::min(before, rule.least_shape) || (rule.better && after <= before))
-    return false;
-  double longest = 0, longest_before = 0;  // of edges, relative to the sizes
-  for (const Index n : complex_.neighbours(from)) {
-    if (n == to) continue;
-    longest = std::max(longest, length(n, to) / size_of_edge(n, to));
-    longest_before = std::max(longest_before, length(n, from) / size_of_edge(n, from));
-  }
-  if (longest > std::max(rule.longest, longest_before)) return false;
-  if (dimension == 1 && !curve_permits(from, to, rule)) return false;
-  if (!can_contract(from, to, between) || !fit(created, all, to)) return false;
+  if (!fit(created, all, to)) return false;
   for (const Index t : all) complex_.remove_triangle(t);
   if (dimension == 1) merge_edges(from, to);
   for (const Created& n : created) complex_.add_triangle(n.corners, n.patch);
@@ -337,31 +360,44 @@ void SurfaceEditor::flip_around(Index vertex) {
   }
 }
 
-bool SurfaceEditor::put_if(Index vertex, const Point& p, double least, std::span<const Index> triangles) {
-  std::vector<Created> same;
-  for (const Index t : triangles)
-    same.push_back({complex_.triangles[t].corners, complex_.triangles[t].patch});
-  const Point before = complex_.vertices[vertex].point;
-  complex_.vertices[vertex].point = p;
-  bool good = least_shape_at(vertex, least) >= least;
-  if (good && !fit(same, {}, vertex)) {
-    const auto worst = [&] { return worst_fit(triangles); };
-    const PatchSurfaces::Fit after = worst();
-    complex_.vertices[vertex].point = before;
-    const PatchSurfaces::Fit old = worst();
-    complex_.vertices[vertex].point = p;
-    good = after.agreement > 0 && after.agreement >= std::min(old.agreement, least_agreement) &&
-           after.excess <= std::max(old.excess, most_excess_);
+/// Of the triangles around a vertex, at their centres and at their sides from there: the least agreement,
+/// and by how much they are too far from their patches, all together.
+PatchSurfaces::Fit SurfaceEditor::misfit_around(Index vertex) const {
+  PatchSurfaces::Fit all;
+  const auto add = [&](double excess) { all.excess += std::max(0.0, excess - most_excess_); };
+  for (const Index t : complex_.vertices[vertex].triangles) {
+    const std::array<Index, 3>& c = complex_.triangles[t].corners;
+    const Index patch = complex_.triangles[t].patch;
+    const PatchSurfaces::Fit fit = surfaces_.fit(complex_.corners(c), patch, most_excess_);
+    all.agreement = std::min(all.agreement, fit.agreement);
+    if (!(all.agreement > 0)) return all;
+    if (surfaces_.planar(patch)) continue;
+    add(fit.excess);
+    const auto i = static_cast<unsigned>(std::find(c.begin(), c.end(), vertex) - c.begin());
+    add(surfaces_.excess_between(patch, complex_.vertices[vertex].point,
+                                 complex_.vertices[c[(i + 1) % 3]].point, most_excess_));
   }
-  if (!good) complex_.vertices[vertex].point = before;
-  if (good)
-    for (const Index t : triangles)
-      for (const Index c : complex_.triangles[t].corners) ++complex_.vertices[c].changes;
-  return good;
+  return all;
 }
 
 bool SurfaceEditor::put(Index vertex, const Point& p, double least) {
-  return put_if(vertex, p, least, complex_.vertices[vertex].triangles);
+  const Point before = complex_.vertices[vertex].point;
+  if (VertexFan(complex_, vertex).least_shape(p, least) < least) return false;
+  complex_.move_vertex(vertex, p);
+  const PatchSurfaces::Fit after = misfit_around(vertex);
+  bool good = after.agreement > 0;
+  if (good && (after.agreement < least_agreement || after.excess > 0)) {
+    complex_.move_vertex(vertex, before);
+    const PatchSurfaces::Fit old = misfit_around(vertex);
+    good = after.agreement >= std::min(old.agreement, least_agreement) && after.excess <= old.excess;
+    if (good) complex_.move_vertex(vertex, p);
+  } else if (!good) {
+    complex_.move_vertex(vertex, before);
+  }
+  if (good)
+    for (const Index t : complex_.vertices[vertex].triangles)
+      for (const Index c : complex_.triangles[t].corners) ++complex_.vertices[c].changes;
+  return good;
 }
 
 bool SurfaceEditor::move(Index vertex, const Point& p, double least) {

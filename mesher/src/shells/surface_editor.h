@@ -51,10 +51,14 @@ class SurfaceEditor {
   bool slide(Index vertex, double at, double least);
   /// Puts a vertex exactly at p, which is on the exact geometry of its feature.
   bool put(Index vertex, const Point& p, double least);
+  /// The place on the curve of a vertex, by arc length. Precondition: it is on one curve alone.
+  Point place_on_curve(Index vertex, double at) const {
+    return paths_.point(complex_.vertices[vertex].feature.feature, at);
+  }
 
   void set_most_excess(double share) { most_excess_ = share; }
 
-  double shape(Index triangle) const { return shape_of(complex_.corners(triangle)); }
+  double shape(Index triangle) const { return complex_.triangles[triangle].shape; }
   /// Of its triangles; ends early where one is below a bound.
   double least_shape_at(Index vertex, double bound = 0) const;
   /// Returns the side of a triangle, by its first corner's place, to divide where the triangle is farther
@@ -84,11 +88,13 @@ class SurfaceEditor {
   };
 
   bool fit(std::span<const Created> created, std::span<const Index> removed, Index centre) const;
+  PatchSurfaces::Fit misfit_around(Index vertex) const;
   PatchSurfaces::Fit worst_fit(std::span<const Index> triangles) const;
-  bool can_contract(Index from, Index to, std::span<const Index> between) const;
+  bool can_contract(Index from, Index to) const;
+  bool shapes_permit(Index from, Index to, const Contraction& rule) const;
+  bool lengths_permit(Index from, Index to, const Contraction& rule) const;
   bool curve_permits(Index from, Index to, const Contraction& rule) const;
   void merge_edges(Index from, Index to);
-  bool put_if(Index vertex, const Point& p, double least, std::span<const Index> triangles);
   Index new_vertex(const Point& p, Index patch, std::span<const Index> around);
   Index divide_at(Index a, Index b, std::span<const Index> triangles, const Point& p);
   double size_near(const Point& p, std::span<const Index> around, double asked) const;

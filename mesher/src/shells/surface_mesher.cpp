@@ -162,7 +162,7 @@ void SurfaceMesher::divide_long() {
   while (!queue.empty() && !execution_.cancelled()) {
     const auto [share, a, b] = queue.top();
     queue.pop();
-    if (complex_.triangles_at(a, b).empty() || complex_.edge_at(a, b) != none) continue;
+    if (!complex_.have_triangle(a, b) || complex_.edge_at(a, b) != none) continue;
     const Index v = editor_.divide(a, b);
     if (v == none) continue;
     editor_.flip_around(v);
@@ -186,30 +186,42 @@ void SurfaceMesher::contract_short(double least_shape) {
   const SurfaceEditor::Contraction rule{.longest = long_edge, .least_shape = least_shape};
   for (const auto& [share, a, b] : edges) {
     if (complex_.vertices[a].triangles.empty() || complex_.vertices[b].triangles.empty()) continue;
-    if (complex_.triangles_at(a, b).empty()) continue;
+    if (!complex_.have_triangle(a, b)) continue;
     const auto inside = [&](Index v) { return complex_.vertices[v].feature.dimension == 2; };
     if (inside(a) && editor_.contract(a, b, rule)) continue;
     if (inside(b)) editor_.contract(b, a, rule);
   }
 }
 
+/// Where something changed since the last time.
 void SurfaceMesher::flip_all() {
   constexpr unsigned rounds = 20;
-  std::vector<Index> changed(complex_.vertices.size());
-  for (Index v = 0; v < changed.size(); ++v) changed[v] = v;
+  flipped_.resize(complex_.vertices.size(), 0);
+  std::vector<bool> waiting(complex_.vertices.size(), false);
+  std::vector<Index> changed;
+  for (Index v = 0; v < flipped_.size(); ++v) {
+    waiting[v] = flipped_[v] != complex_.vertices[v].changes + 1;
+    if (waiting[v]) changed.push_back(v);
+  }
   for (unsigned round = 0; round < rounds && !changed.empty(); ++round) {
     std::vector<Index> next;
-    for (const Index v : changed)
+    for (const Index v : changed) {
+      waiting[v] = false;
       for (const Index n : complex_.neighbours(v)) {
-        const std::vector<Index> two = complex_.triangles_at(v, n);
-        if (two.size() != 2) continue;
-        const Index c = complex_.triangles[two[0]].third(v, n), d = complex_.triangles[two[1]].third(v, n);
+        if (waiting[n]) continue;  // it looks at the edge
+        const auto two = complex_.two_triangles_at(v, n);
+        if (!two) continue;
+        const Index c = complex_.triangles[(*two)[0]].third(v, n),
+                    d = complex_.triangles[(*two)[1]].third(v, n);
         if (editor_.flip(v, n)) next.insert(next.end(), {v, n, c, d});
       }
+    }
     std::sort(next.begin(), next.end());
     next.erase(std::unique(next.begin(), next.end()), next.end());
     changed = std::move(next);
+    for (const Index v : changed) waiting[v] = true;
   }
+  for (Index v = 0; v < flipped_.size(); ++v) flipped_[v] = waiting[v] ? 0 : complex_.vertices[v].changes + 1;
 }
 
 void SurfaceMesher::smooth() {
@@ -285,7 +297,7 @@ bool SurfaceMesher::project_vertex(Index vertex, const Point& target) {
   if (!editor_.put(vertex, target, *std::min_element(least.begin(), least.end()))) return false;
   for (std::size_t i = 0; i < least.size(); ++i) {
     if (editor_.shape(complex_.vertices[vertex].triangles[i]) >= least[i]) continue;
-    complex_.vertices[vertex].point = before;
+    complex_.move_vertex(vertex, before);
     return false;
   }
   return true;
@@ -329,7 +341,8 @@ TetMesh SurfaceMesher::mesh() {
     return complex_.triangles[a].patch < complex_.triangles[b].patch;
   });
   for (const Index t : order) {
-    const auto& [corners, patch] = complex_.triangles[t];
+    const std::array<Index, 3>& corners = complex_.triangles[t].corners;
+    const Index patch = complex_.triangles[t].patch;
     mesh.faces.push_back({number[corners[0]], number[corners[1]], number[corners[2]]});
     mesh.face_patch.push_back(patch);
     mesh.face_tag.push_back(plc_.patches[patch].tag);

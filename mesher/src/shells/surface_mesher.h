@@ -63,6 +63,7 @@ class SurfaceMesher {
   ShapeRepair repair_;
   std::vector<Point> middles_;   // of the edges of mesh()
   std::vector<Index> point_of_;  // of the complex, of the first vertices
+  std::vector<Index> flipped_;   // changes of each vertex, and 1, when no edge there was to flip
   std::vector<bool> kept_;       // vertices on curves, where these are divided
 };
 
