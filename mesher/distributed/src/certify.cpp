@@ -62,6 +62,8 @@ checks::Subject subject_of(const Shape& shape, const TetMesh& nothing) {
 struct Expected {
   explicit Expected(const Shape& shape) : subject(subject_of(shape, nothing)), sizes(measures_of(shape.plc)) {
     const Plc& plc = shape.plc;
+    for (Index p = 0; p < plc.patches.size(); ++p)
+      if (plc.patches[p].planar) sizes.areas[p] = area_in_plane(plc, plc.patches[p]);
     for (Index c = 0; c < plc.curves.size(); ++c) measure_turn(plc, c);
     for (const Plc::Patch& patch : plc.patches) area_room.push_back(room_of(plc, patch));
     const checks::RegionVolumes of_regions = checks::expected_volumes(subject);
@@ -81,6 +83,17 @@ struct Expected {
   std::map<Tag, double> volumes, volume_room;
 
  private:
+  // Returns the area of the triangles' projections onto the plane, which depends on the border alone:
+  // triangles of a patch that is planar up to a tolerance may be tilted.
+  static double area_in_plane(const Plc& plc, const Plc::Patch& patch) {
+    double sum = 0;
+    for (Index t = patch.first_triangle; t < patch.first_triangle + patch.triangle_count; ++t) {
+      const auto& [a, b, c] = plc.triangles[t].points;
+      sum += 0.5 * dot(cross(plc.points[b] - plc.points[a], plc.points[c] - plc.points[a]), patch.normal);
+    }
+    return std::fabs(sum);
+  }
+
   // What is moved by d becomes longer or larger by no more than d times what it turns by (Steiner's formula),
   // to first order, and by what its ends move. Turned polygons turn as much as what they approximate.
   void measure_turn(const Plc& plc, Index c) {
@@ -301,15 +314,21 @@ class Certification {
          At{centre}, patch, plc_.patches[patch].tag, least, most_region_[f], wanted.first, wanted.second);
   }
 
+  // Triangles on planar patches are measured by their projections, as the patches are.
   void measure_face(PetscInt face, const std::array<Index, 3>& corners, const std::array<Point, 3>& p,
                     Index patch) {
+    const Plc::Patch& on = plc_.patches[patch];
+    const auto place = [&on](const Point& q) {
+      return on.planar ? q - dot(q - on.origin, on.normal) * on.normal : q;
+    };
     if (order_ == 1) {
-      areas_[patch] += checks::area(p[0], p[1], p[2]);
+      areas_[patch] += checks::area(place(p[0]), place(p[1]), place(p[2]));
       return;
     }
     const std::array<Index, 3> edges = edges_->of_face(face, corners);
-    areas_[patch] += collarmesh::area(
-        CurvedTriangle{p[0], p[1], p[2], nodes_[edges[0]], nodes_[edges[1]], nodes_[edges[2]]});
+    areas_[patch] +=
+        collarmesh::area(CurvedTriangle{place(p[0]), place(p[1]), place(p[2]), place(nodes_[edges[0]]),
+                                        place(nodes_[edges[1]]), place(nodes_[edges[2]])});
   }
 
   void check_edges() {

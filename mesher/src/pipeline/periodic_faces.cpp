@@ -49,20 +49,27 @@ void divide_curves_at_poor_tets(MeshJob& job, TetMesh& mesh) {
 }
 
 /// Coarsens and improves a periodic mesh while it is cut open at one place and then at others, until all
-/// tets fit; vertices are inserted if asked for. Returns how often its tets miss their bounds.
+/// tets fit; vertices are inserted if asked for. Leaves the best mesh of these. Returns how often its tets
+/// miss their bounds.
 std::size_t reshape_across(MeshJob& job, TetMesh& mesh, bool insert) {
-  std::size_t poor = SIZE_MAX;
   using Moved = Recut::Moved;
+  TetMesh best;
+  std::size_t least = SIZE_MAX;
   for (const Moved moved : {Moved::beside_first, Moved::beside_second, Moved::first_half}) {
     change_across(job, mesh, moved, [&](improvement::Workpiece& workpiece, const Recut& recut) {
       MeshOptions options = job.refined_with;
       options.size_field = recut.sizes(options.size_field);
       reshape(job, workpiece, options, insert);
     });
-    poor = count_misshapen(job, mesh);
-    if (poor == 0) break;
+    const std::size_t poor = count_misshapen(job, mesh);
+    if (poor < least) {
+      least = poor;
+      best = mesh;
+    }
+    if (least == 0) break;
   }
-  return poor;
+  mesh = std::move(best);
+  return least;
 }
 
 }  // namespace
@@ -76,13 +83,15 @@ void make_faces_periodic(MeshJob& job) {
   if (!job.given.periodic.any() || made.result.status != MeshStatus::complete) return;
   constexpr unsigned most_tries = 4, most_rounds = 3;
   job.control.begin("periodic faces", 0.75, 0.79);
-  const ImproveReport improvement = made.improvement;
+  ImproveReport improvement = made.improvement;
   const bool from_refined = begins_with_refined(job);
-  TetMesh best, source = std::move(made.result.mesh);
+  TetMesh best, source = std::exchange(made.result.mesh, {});
+  if (from_refined) source = {};
   std::size_t least = SIZE_MAX;
   for (unsigned k = 0; k < most_tries && least > 0; ++k) {
     if (from_refined && k == 1) coarsen_and_improve(job, source = job.refined, {});
     TetMesh mesh = refined_with_nodes_of(job, from_refined && k == 0 ? job.refined : source);
+    if (from_refined && k == 0) improvement = made.improvement;
     const PeriodicReport report =
         make_periodic(mesh, *job.plc, job.options.periodic, job.refined_with.bounds.tolerance->largest());
     periodicity::map_corners(mesh);
@@ -94,7 +103,7 @@ void make_faces_periodic(MeshJob& job) {
         best = mesh;
         made.periodic = report;
       }
-      if (poor == 0 || poor >= before) break;
+      if (poor == 0 || poor >= before || round + 1 == most_rounds) break;
       divide_curves_at_poor_tets(job, mesh);
       if (before == SIZE_MAX && !(from_refined && k == 0)) source = mesh;
       before = poor;
