@@ -1,5 +1,5 @@
-// A surface of any state wrapped by CGAL's Alpha_wrap_3 and the wrap meshed by its Mesh_3, as the meshing of
-// real parts is compared with: wrap_mesh INPUT.off OUT.mesh
+// Wraps any surface with CGAL's Alpha_wrap_3 and meshes the wrap with its Mesh_3, the peer in the benchmark
+// of real parts: wrap_mesh INPUT.off OUT.mesh
 //
 // The wrap closes what is narrower than about a fiftieth of the diagonal and lies a six hundredth of it
 // outside the input; elements are a twentieth of the diagonal.

@@ -8,7 +8,8 @@
 #include <cmath>
 #include <map>
 #include <set>
-#include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "collarmesh/pipeline.h"
@@ -73,6 +74,25 @@ std::multiset<std::pair<std::array<Place, n>, Index>> by_places(
   return places;
 }
 
+/// Turned faces differ, and those whose regions are on the other side.
+auto oriented_faces(const TetMesh& mesh) {
+  std::multiset<std::tuple<std::array<Place, 3>, std::array<Index, 2>, Index>> faces;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    std::array<Place, 3> corners;
+    for (std::size_t k = 0; k < 3; ++k) corners[k] = place_of(mesh, mesh.faces[f][k]);
+    std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+    faces.emplace(corners, mesh.face_regions[f], mesh.face_patch[f]);
+  }
+  return faces;
+}
+
+double least_volume(const TetMesh& mesh) {
+  double least = INFINITY;
+  for (const auto& [a, b, c, d] : mesh.tets)
+    least = std::min(least, six_volume(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]));
+  return least;
+}
+
 double volume(const TetMesh& mesh) {
   double sum = 0;
   for (const auto& [a, b, c, d] : mesh.tets)
@@ -86,8 +106,8 @@ TEST(Recut, AndBackIsTheSameMesh) {
     const TetMesh back = cell.recut(moved).back();
     EXPECT_EQ(by_places(back, back.tets, back.tet_region),
               by_places(cell.mesh, cell.mesh.tets, cell.mesh.tet_region));
-    EXPECT_EQ(by_places(back, back.faces, back.face_patch),
-              by_places(cell.mesh, cell.mesh.faces, cell.mesh.face_patch));
+    EXPECT_GT(least_volume(back), 0);
+    EXPECT_EQ(oriented_faces(back), oriented_faces(cell.mesh));
     EXPECT_EQ(by_places(back, back.edges, back.edge_curve),
               by_places(cell.mesh, cell.mesh.edges, cell.mesh.edge_curve));
     EXPECT_EQ(back.points.size(), cell.mesh.points.size());

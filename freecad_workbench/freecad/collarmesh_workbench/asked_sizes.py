@@ -136,7 +136,7 @@ def _to_subshape(surface, shape, kind, number):
 
 
 def _to_points(places, points):
-    """Returns the distance from the nearest point, block by block."""
+    """Returns each place's distance from the nearest point; works in blocks to bound memory."""
     points = points[:: max(1, math.ceil(len(points) / POINTS))]
     if not len(points):
         return numpy.full(len(places), numpy.inf)

@@ -29,7 +29,7 @@ struct Facet {
 /// own edges exist. Each change or point leaves fewer obstacles, so this ends.
 class BoundaryRecovery {
  public:
-  /// Keeps both by reference. The mesh's first points are those of the complex.
+  /// Keeps both by reference. Precondition: the mesh's first points are those of the complex.
   BoundaryRecovery(Tetrahedra& mesh, const Plc& plc);
 
   /// Recovers all features. Returns false if `go_on` did. Throws PlcError, with the place, where rounded

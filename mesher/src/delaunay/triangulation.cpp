@@ -380,7 +380,7 @@ Renumbering Triangulation::join(std::vector<Block>& blocks) {
   return renumbering;
 }
 
-// Reads only data of bordering cells that do not change.
+// Of cells at the block's border, reads only data that no other block changes.
 void Triangulation::Block::incident_cells(Index vertex, std::vector<Index>& cells) const {
   cells.assign(1, mesh_->vertices_[vertex].cell);
   IndexSet known;

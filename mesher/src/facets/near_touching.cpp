@@ -105,8 +105,8 @@ class NearTouchingFinder {
     return groups;
   }
 
-  // Two curves between the same ends meet there. Where they are near each other everywhere there is nothing
-  // between them: a facet without a height has such sides.
+  // Two curves with the same ends touch at these. If they are also near each other along their whole length,
+  // they enclose nothing, like the two long sides of a facet of zero height.
   void find_slits_between_curves() {
     std::map<std::array<Index, 2>, std::vector<Index>> between;
     for (Index c = 0; c < plc_.curves.size(); ++c) {

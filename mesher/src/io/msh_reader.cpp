@@ -159,7 +159,8 @@ void read_physical_names(MshText values, Contents& contents) {
   }
 }
 
-/// Reads entities. `point_numbers`: a point has 3 coordinates, in 4.0 a box of 6.
+/// Reads the partitioned entities. `point_numbers`: how many numbers place a point entity, 3 coordinates or,
+/// in format 4.0, the 6 of a box.
 template <class Values>
 void read_partition_entities(Values values, int point_numbers, Contents& contents) {
   values.number("the number of partitions");

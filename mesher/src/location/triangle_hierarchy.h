@@ -73,7 +73,7 @@ class TriangleHierarchy {
     Index segment;
     Crossing crossing;
   };
-  /// Does the same for all segments of a bundle, in their order.
+  /// Finds the crossings of all segments of a bundle, in their order.
   void crossings(const SegmentBundle& bundle, std::span<const Index> nodes,
                  std::vector<BundleCrossing>& found) const;
 

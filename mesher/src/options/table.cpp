@@ -103,7 +103,7 @@ std::vector<Option> size_options() {
       {.name = "size LENGTH",
        .place = in_mesh<&MeshOptions::size>,
        .unit = Unit::length,
-       .default_text = "that of the field, else the lengths of the mesh",
+       .default_text = "the size field's, else the mesh's own edge lengths",
        .help = "Target edge length everywhere; 0: the default",
        .commands = Option::remesh},
       {.name = "size-min LENGTH",

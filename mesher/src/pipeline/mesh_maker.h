@@ -13,13 +13,14 @@ namespace collarmesh::pipeline {
 /// much from constrained tetrahedra.
 class MeshMaker {
  public:
-  /// Keeps the job by reference; `source` is that of the complexes, null if there is one only.
+  /// Keeps the job by reference; `source` makes the complexes; null if there is only one.
   MeshMaker(MeshJob& job, ComplexSource* source) : job_(job), source_(source) {}
 
   /// Forgets what is known about the complex before.
   void take_new_complex();
 
-  /// Takes a complex through all stages. Throws Ended, PlcError, and Hopeless where it says so.
+  /// Takes a complex through all stages. Throws Ended and PlcError; Hopeless if it starts with constrained
+  /// tetrahedra, only good hope is allowed, and many tets miss their bounds.
   void make(const Plc& plc, std::uint64_t seed);
 
   /// Meshes a complex; where the refinement takes far too many vertices, from its constrained tetrahedra.

@@ -24,7 +24,7 @@ MeshOptions options_of_refinement(const MeshJob& job, NarrowCells narrow_cells) 
   if (job.options.coarsen) options.narrow_cells = narrow_cells;
   if (!job.exact()) return options;
   options.bounds.tolerance = tolerance_of(*job.plc, options.bounds, 0).scaled(distance_left);
-  if (options.profile == Profile::standard)  // the paper proves nothing for smaller ones than its own
+  if (options.profile == Profile::standard)  // the paper's proofs need its own ratio
     options.bounds.radius_edge = std::max(1.0, ratio_left * options.bounds.radius_edge);
   options.bounds.reserve = angle_reserve;
   return options;

@@ -34,7 +34,7 @@ class PatchFans {
 
   /// Returns the fans around a point, of smooth patches only or of all.
   std::vector<Fan> at(Index point, bool smooth_only);
-  /// Returns the side of the neighbour in the same patch, none at a segment.
+  /// Returns the same edge's side in the neighbouring triangle of the patch, none at a segment.
   Index across(Index side) const;
 
   /// Returns how sharply a smooth patch folds in a fan around the point (degrees, see fold_angle); 180 where

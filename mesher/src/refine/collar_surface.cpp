@@ -115,7 +115,7 @@ bool CollarSurface::poorly_represented(const CollarTriangle& t) {
   const auto v = mesh_.face_vertices(t.face);
   for (const Index vertex : v)
     if (on_crease(vertex)) return true;
-  // A patch between the outer cell and the sphere: the star tet would lie on its other side.
+  // A patch separates the outer cell from the sphere, so the star tet would lie on the patch's other side.
   if (surface_.is_marked(t.face) && !surface_.triangle(t.face).in_collar) return true;
   const CollarBall& ball = collars_.balls()[t.ball];
   const Index centre_vertex = creator_.vertex_of(t.ball);

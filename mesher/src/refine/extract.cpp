@@ -214,7 +214,7 @@ class Extraction {
     add_face(v, regions, patch);
   }
 
-  // Orders faces like tets.
+  // Orders faces by their least point, as tets are.
   void order_faces() {
     std::vector<Index> least;
     least.reserve(mesh_.faces.size());

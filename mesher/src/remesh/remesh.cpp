@@ -87,8 +87,8 @@ class Remeshing {
     choose_bounds();
   }
 
-  /// Chooses the bounds that operations keep: a mesh whose angles are all within some bounds stays within
-  /// these.
+  /// Chooses the bounds that operations keep: if all angles of the mesh lie within stricter bounds already,
+  /// those.
   void choose_bounds() {
     kept_ = options_.mesh.bounds;
     for (const double angle : {good_angle, kept_.thin_angle})

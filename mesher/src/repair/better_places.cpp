@@ -15,7 +15,7 @@ namespace {
 
 using namespace facets;
 
-// Returns the costs of troubles, by the place of the nearest changed triangle.
+// Returns for each place (connected changed triangles, see `Changes`) the cost of the troubles nearest to it.
 std::vector<double> costs(const Draft& draft, const std::vector<Index>& place_of, Index places,
                           const std::vector<Trouble>& troubles, double reach) {
   std::vector<double> cost(places, 0);

@@ -146,7 +146,7 @@ class ChangingTriangles {
   double reach_;
   Work& work_;
   const BoxFrame frame_;                                        // of the boxes
-  bool searched_triangles_ = false, searched_corners_ = false;  // found for few changed ones, without trees
+  bool searched_triangles_ = false, searched_corners_ = false;  // once, without trees, as few had changed
   std::size_t count_ = 0;
   std::vector<bool> alive_;
   std::vector<Vector> normals_;

@@ -28,8 +28,8 @@ class WindingNumber {
   /// is the mean of its two sides. Cost: O(log n) for a surface that is not folded up around the point.
   double at(const Point& p, Index left_out = none) const;
 
-  /// Returns whether another triangle passes so closely by the point that rounding decides on which side it
-  /// is.
+  /// Returns whether the point is so close to another triangle that only rounding decides on which side of it
+  /// the point lies.
   bool is_on_another(const Point& p, Index left_out) const;
 
  private:

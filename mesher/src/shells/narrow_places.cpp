@@ -51,7 +51,7 @@ void NarrowPlaces::bound_widths() {
       widths_[e] = std::max(widths_[e], least(e, share));
 }
 
-/// Lowers sizes at the ends of edges that are at most slightly longer than the distance to the features
+/// Lowers sizes at the ends of edges that are at most four times as long as the distance to the features
 /// facing them.
 void NarrowPlaces::lower_sizes() {
   constexpr double much_longer = 4;

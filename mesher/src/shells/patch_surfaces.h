@@ -28,7 +28,7 @@ class PatchSurfaces {
   /// Returns the place of a patch that is nearest to p.
   Foot nearest(Index patch, const Point& p) const;
   bool planar(Index patch) const { return plc_.patches[patch].planar; }
-  /// Of a planar patch.
+  /// Returns the unit normal of a planar patch.
   const Vector& plane_normal(Index patch) const { return normals_[patch]; }
 
   /// Returns the place of a planar patch's plane that is nearest to p.
@@ -46,8 +46,8 @@ class PatchSurfaces {
   };
   /// A distance within the share `enough` of the tolerance may be too large, but stays within that.
   Fit fit(const Corners& t, Index patch, double enough = 0) const;
-  /// Returns the largest distance of two points inside a segment from the patch by the tolerance there; see
-  /// above for `enough`.
+  /// Returns the larger distance from the patch of two points inside a segment, divided by the tolerance
+  /// there. `enough`: as for `fit`.
   double excess_between(Index patch, const Point& a, const Point& b, double enough) const;
   /// Returns points of a smooth patch that are farther than this share of the tolerance from the triangles on
   /// it, and the nearest triangle of each, at most one for a triangle.

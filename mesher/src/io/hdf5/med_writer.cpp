@@ -141,7 +141,7 @@ void write_med(const std::string& path, const TetMesh& mesh) {
     file.write_cells(mesh, 2, MED_TRIA3, mesh.face_tag, {}, nodes_of_face);
     file.write_cells(mesh, 1, MED_SEG2, mesh.edge_tag, {}, nodes_of_edge);
   }
-  if (!mesh.tet_partition.empty()) {  // for all cells, because meshio reads no fields of some cells
+  if (!mesh.tet_partition.empty()) {  // of all cells: meshio reads no field that some lack
     const bool second = mesh.order() == 2;
     file.create_partitions();
     file.write_partitions(mesh.tet_partition, second ? MED_TETRA10 : MED_TETRA4);
