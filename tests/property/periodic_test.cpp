@@ -12,6 +12,7 @@
 
 #include "collarmesh/error.h"
 #include "collarmesh/pipeline.h"
+#include "support/periodic.h"
 #include "support/plc_shapes.h"
 
 namespace collarmesh {
@@ -88,13 +89,7 @@ TEST(PeriodicFaces, HaveMidEdgeNodesThatAreImages) {
 
 // Regions that the faces cut, along edges and at corners too.
 TEST(PeriodicFaces, AreCutByRegions) {
-  const std::array<double, 4> cuts{0, 0.15, 0.7, 1};
-  std::vector<PolygonSoup> boxes;
-  for (unsigned i = 0; i < 3; ++i)
-    for (unsigned j = 0; j < 3; ++j)
-      for (unsigned k = 0; k < 3; ++k)
-        boxes.push_back(box({cuts[i], cuts[j], cuts[k]}, {cuts[i + 1], cuts[j + 1], cuts[k + 1]}));
-  const PipelineResult made = mesh_of_soups({joined(boxes)}, {"x", "y", "z"}, 0.15);
+  const PipelineResult made = mesh_of_soups({cell_of_boxes({0, 0.15, 0.7, 1})}, {"x", "y", "z"}, 0.15);
   ASSERT_TRUE(made.guarantees_hold()) << made.missed();
   EXPECT_EQ(*std::ranges::max_element(made.result.mesh.tet_region), 27U);
   for (std::size_t axis = 0; axis < 3; ++axis) expect_alike(made.result.mesh, axis);

@@ -1,14 +1,26 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <set>
 #include <utility>
 #include <vector>
 
 #include "collarmesh/tet_mesh.h"
+#include "support/plc_shapes.h"
 
 /// Maps of periodic faces for meshes that no mesher made, by brute force.
 namespace collarmesh::testing {
+
+/// The unit cube in 27 boxes, which its faces cut, along edges and at corners too.
+inline PolygonSoup cell_of_boxes(const std::array<double, 4>& cuts) {
+  std::vector<PolygonSoup> boxes;
+  for (unsigned i = 0; i < 3; ++i)
+    for (unsigned j = 0; j < 3; ++j)
+      for (unsigned k = 0; k < 3; ++k)
+        boxes.push_back(box({cuts[i], cuts[j], cuts[k]}, {cuts[i + 1], cuts[j + 1], cuts[k + 1]}));
+  return joined(boxes);
+}
 
 inline TetMesh::Motion translation(const Vector& shift) {
   TetMesh::Motion motion;
