@@ -9,6 +9,7 @@
 #include "collarmesh/exact_geometry.h"
 #include "collarmesh/improve.h"
 #include "collarmesh/interior_nodes.h"
+#include "collarmesh/layers.h"
 #include "collarmesh/mesher.h"
 #include "collarmesh/periodic.h"
 #include "collarmesh/plc.h"
@@ -53,7 +54,8 @@ struct PipelineOptions {
   /// Number of seeds to try, from `mesh.seed` on, until every guarantee holds; at least 1. The first mesh is
   /// kept if no seed succeeds.
   unsigned seeds = 2;
-  SplitOptions split = {};  ///< internal patches that get nodes of their own on each side, after the check
+  SplitOptions split = {};   ///< internal patches that get nodes of their own on each side, after the check
+  LayerOptions layers = {};  ///< boundary layers, made after the check and before the split
   PeriodicOptions periodic = {};  ///< patches whose meshes are images of each other
   bool trace = false;             ///< fill in PipelineResult::trace
   unsigned partitions = 0;        ///< number of ranks to divide the tets among (see `partition`); 0: no
@@ -79,6 +81,7 @@ struct PipelineResult {
   std::optional<InteriorNodesReport> interior_nodes;  ///< nothing unless each tet had to have an interior
                                                       ///< node
   std::optional<PeriodicReport> periodic;             ///< nothing unless patches were to be periodic
+  std::optional<LayersReport> layers;                 ///< nothing unless layers were to be made
   std::optional<SplitReport> split;                   ///< nothing unless something was to be split
   Trace trace;  ///< trace of the run that made the mesh, or of a refinement that ended early
 

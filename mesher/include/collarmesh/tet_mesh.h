@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "collarmesh/geometry.h"
+#include "collarmesh/layer_cells.h"
 #include "collarmesh/tag_names.h"
 
 namespace collarmesh {
@@ -64,6 +65,8 @@ struct TetMesh {
   std::vector<std::array<Index, 6>> tet_mid_nodes;
   std::vector<std::array<Index, 3>> face_mid_nodes;
   std::vector<Index> edge_mid_nodes;
+
+  LayerCells layers;  ///< cells of boundary layers that are no tets
 
   GroupNames group_names = GroupNames::complex;
   TagNames names;  ///< names to write in place of those labels
