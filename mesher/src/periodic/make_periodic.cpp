@@ -10,6 +10,7 @@
 #include "periodic/make_periodic.h"
 #include "periodic/pair_choice.h"
 #include "periodic/patch_editor.h"
+#include "periodic/sparse_nodes.h"
 
 namespace collarmesh {
 
@@ -42,12 +43,6 @@ std::vector<Point> moved(std::vector<Point> places, const Motion& motion) {
   for (Point& place : places) place = motion(place);
   return places;
 }
-
-/// The place of a node, and the length of the shortest edge from there along its curve or in its patch.
-struct SpacedPlace {
-  Point place;
-  double spacing;
-};
 
 /// Adds places, moved, that are not nearer to those before than half of their own spacing.
 void add_places(std::vector<Point>& places, const std::vector<SpacedPlace>& others, const Motion& motion) {
@@ -99,7 +94,11 @@ struct Surface {
     }
     return places;
   }
-  std::vector<SpacedPlace> spaced_inside(const TetMesh& mesh, Index patch) const {
+  /// Returns the nodes inside a patch; with target edge lengths, by vertex, without nodes that are far nearer
+  /// to others than these ask for.
+  std::vector<SpacedPlace> spaced_inside(const TetMesh& mesh, Index patch,
+                                         const std::vector<double>& targets) const {
+    if (!targets.empty()) return sparse_nodes(mesh, faces[patch], targets);
     std::map<Index, double> spacing;
     for (const Index face : faces[patch])
       for (unsigned i = 0; i < 3; ++i) {
@@ -137,7 +136,7 @@ class Maker {
   Maker(TetMesh& mesh, const Plc& plc, Periodicity periodicity)
       : mesh_(mesh), plc_(plc), periodicity_(std::move(periodicity)), editor_(mesh), surface_(mesh, plc) {}
 
-  std::vector<Index> add_nodes(const TetMesh& source) {
+  std::vector<Index> add_nodes(const TetMesh& source, const std::vector<double>& targets) {
     const Surface of_source(source, plc_);
     std::vector<Index> nodes;
     for (const CurveClass& of : classes()) {
@@ -153,8 +152,8 @@ class Maker {
         const Motion& to_image = periodicity_.pairs[k].motion;
         const std::vector<Point> border = surface_.places_on_border(mesh_, patch);
         std::vector<Point> places = border;
-        add_places(places, of_source.spaced_inside(source, patch), {});
-        add_places(places, of_source.spaced_inside(source, image), inverse(to_image));
+        add_places(places, of_source.spaced_inside(source, patch, targets), {});
+        add_places(places, of_source.spaced_inside(source, image, targets), inverse(to_image));
         places.erase(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(border.size()));
         for (const auto& [at, motion] : {std::pair{patch, Motion()}, std::pair{image, to_image}}) {
           PatchEditor editor(editor_, plc_, at, surface_.faces[at]);
@@ -286,8 +285,9 @@ PeriodicReport make_periodic(TetMesh& mesh, const Plc& plc, const PeriodicOption
 }
 
 std::vector<Index> periodicity::add_periodic_nodes(TetMesh& mesh, const TetMesh& source, const Plc& plc,
-                                                   const PeriodicOptions& options, double distance) {
-  return Maker(mesh, plc, find_periodicity(options, plc, distance)).add_nodes(source);
+                                                   const PeriodicOptions& options, double distance,
+                                                   const std::vector<double>& targets) {
+  return Maker(mesh, plc, find_periodicity(options, plc, distance)).add_nodes(source, targets);
 }
 
 }  // namespace collarmesh

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "coarsen/target_sizes.h"
 #include "common/thread_limit.h"
 #include "improve/cell_bounds.h"
 #include "improve/divide_curves.h"
@@ -22,9 +23,11 @@ using periodicity::Recut;
 
 TetMesh refined_with_nodes_of(MeshJob& job, const TetMesh& source) {
   TetMesh mesh = job.refined;
+  std::vector<double> targets;
+  if (&source == &job.refined) targets = coarsening::target_sizes(source, *job.plc, job.refined_with);
   coarsen_and_improve(job, mesh,
                       periodicity::add_periodic_nodes(mesh, source, *job.plc, job.options.periodic,
-                                                      job.refined_with.bounds.tolerance->largest()));
+                                                      job.refined_with.bounds.tolerance->largest(), targets));
   return mesh;
 }
 
