@@ -31,8 +31,8 @@ struct Plc {
     std::vector<Index> points;  ///< the polyline, at least 2; a closed curve does not repeat its first
     std::array<Index, 2> ends{none, none};  ///< the vertices at its ends; both none for a closed curve
                                             ///< without a vertex; equal for a loop at one vertex
-    bool closed = false;    ///< closed without any vertex on it (ends are none)
-    bool straight = false;  ///< within the planar tolerance of its chord
+    bool closed = false;                    ///< closed without any vertex on it (ends are none)
+    bool straight = false;                  ///< within the planar tolerance of its chord
     Tag tag = 0;
     std::vector<Index> patches;  ///< sorted; the patches that contain it (in their border or interior)
   };

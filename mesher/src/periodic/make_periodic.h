@@ -6,8 +6,8 @@
 
 namespace collarmesh::periodicity {
 
-/// Adds nodes to a mesh at the places of the nodes that the first group of each pair has in `source`, another
-/// mesh of the same complex, and at the images of these places. Returns them.
+/// Adds nodes to a mesh for each pair: at the places that the nodes of the first group have in `source`,
+/// another mesh of the same complex, and at the images of these places. Returns the nodes.
 std::vector<Index> add_periodic_nodes(TetMesh& mesh, const TetMesh& source, const Plc& plc,
                                       const PeriodicOptions& options, double distance);
 
