@@ -505,7 +505,7 @@ def report(path):
     run("chromium", "--headless=new", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader",
         "--enable-unsafe-swiftshader", "--hide-scrollbars", "--window-size=1400,1000", "--virtual-time-budget=20000",
         f"--screenshot={path}", f"{page.as_uri()}#cut=x,0.5&turn=15")
-    Image.open(path).convert("RGB").save(path, optimize=True)  # keeps the legend's colours, which hardly anything else has
+    Image.open(path).convert("RGB").save(path, optimize=True)  # for the legend
 
 
 def coil(path):
