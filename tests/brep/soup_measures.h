@@ -20,7 +20,8 @@ inline double volume_of(const PolygonSoup& soup) {
   return volume;
 }
 
-/// Returns the number of sides that have no triangle in one of both directions.
+/// Returns the number of sides whose triangles do not cancel: each side should be used once in each
+/// direction.
 inline std::size_t open_sides(const PolygonSoup& soup) {
   std::map<std::pair<Index, Index>, int> balance;
   for (Index f = 0; f < soup.facet_count(); ++f) {

@@ -57,7 +57,7 @@ class Guarantees(ProgramTest):
         self.expect(0, model, "-o", self.out, writes=True)
 
     def test_a_failed_run_writes_its_report(self):
-        """Whether the budget, the input or an option fails: there is no mesh, and no earlier report."""
+        """Runs stopped by a budget, the input or an option leave no mesh, and replace an earlier report."""
         tilted = self.write("open.off", off_text(box_points(), BOX_FACES[:3]))
         for code, status, stage, arguments in (
                 (5, "budget_hit", "refine", [self.box, "--size", "0.01", "--max-vertices", "500"]),

@@ -151,7 +151,7 @@ struct Sum {
   }
   /// Returns whether the exact measure and the tessellation agree; otherwise one of them is wrong.
   bool is_plausible() const {
-    constexpr double share = 0.05;  // an arc of 20 degrees is longer than its chord by less than 1%
+    constexpr double share = 0.05;  // relative; an arc of 20 degrees exceeds its chord by less than 1%
     return std::fabs(measure.exact - measure.cut) <= share * measure.cut + allowed;
   }
 };

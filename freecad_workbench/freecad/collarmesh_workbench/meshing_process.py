@@ -179,7 +179,7 @@ class MeshingProcess(QtCore.QObject):
 
 @contextlib.contextmanager
 def _told_in_report_view():
-    """Reports failures after the mesh is in place in the report view; they do not affect the mesh."""
+    """Reports a failure of what follows the mesh in the report view; the mesh itself is not affected."""
     try:
         yield
     except Exception:

@@ -168,7 +168,7 @@ class Coarsening {
   }
 
   struct Candidate {
-    int rank;  // of its shortest edge
+    int rank;  // rank of the length of its shortest edge
     Index vertex;
     bool worth_repairs;
   };
@@ -350,7 +350,7 @@ class Coarsening {
   bool improve_once() {
     rule_.set_mode(Mode::final);
     struct Poor {
-      int rank;  // of its quality
+      int rank;  // rank of its quality
       Index tet;
       double quality;
     };

@@ -104,7 +104,7 @@ class RestrictedSurface {
   // Functions for several threads, each with its own block and the block's workspace:
   /// Returns whether a block has enough records for an insertion with this zone.
   bool has_room(const ConflictZone& zone, const Workspace& workspace) const;
-  /// Do the same as the functions above in a block. Preconditions: `divide` gave the workspace, the zone lies
+  /// Versions of the functions above for a block. Preconditions: `divide` gave the workspace, the zone lies
   /// in its block, and `has_room` is true; without room a record would be added to those that all threads
   /// share.
   void cells_vanish(const ConflictZone& zone, Workspace& workspace);

@@ -62,7 +62,7 @@ class SurfaceNodes {
   };
   /// Makes room for all vertices before some are inserted into blocks.
   void fit_mesh();
-  /// Does the same as `cells_made` for an insertion into a block. Several threads may call it, each with its
+  /// Version of `cells_made` for an insertion into a block. Several threads may call it, each with its own
   /// block.
   void cells_made(const ConflictZone& zone, Index vertex, const Triangulation::Block& block,
                   Workspace& workspace);

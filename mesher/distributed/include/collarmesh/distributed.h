@@ -62,7 +62,7 @@ struct Finding {
 struct Certificate {
   static constexpr std::size_t listed = 20;  ///< maximum number of findings per guarantee and rank
   std::vector<Finding> findings;
-  std::int64_t findings_total = 0;                            ///< all findings, including those not listed
+  std::int64_t findings_total = 0;                            ///< number of findings, listed or not
   std::int64_t tets = 0, vertices = 0, faces = 0, edges = 0;  ///< faces on patches, edges on curves
   AngleBounds angles;
   double largest_distance = 0;  ///< largest distance of vertices from their smooth patches and curves
