@@ -22,7 +22,7 @@ import project  # noqa: E402
 PARTS = ("freecad", "translations", "macros")
 KINDS = {".py", ".svg", ".qm"}
 SITE, MAINTAINER, EMAIL = "https://example.org/collarmesh", "The collarmesh maintainers", "collarmesh@example.org"
-FIRST_DATE = (1980, 1, 1, 0, 0, 0)  # the earliest date that a .zip can hold
+FIRST_DATE = (1980, 1, 1, 0, 0, 0)  # the earliest date that a .zip file can hold
 
 
 def metadata(site=SITE, maintainer=MAINTAINER, email=EMAIL, day=""):
@@ -43,7 +43,7 @@ def escaped(text):
 
 
 def lay_out(folder, **details):
-    """Writes the add-on into a folder, which may exist; `details`: see `metadata`."""
+    """Writes the add-on into a folder, which may exist. `details`: see `metadata`."""
     folder = pathlib.Path(folder)
     for source in sorted(path for part in PARTS for path in (HERE / part).rglob("*")):
         if source.suffix in KINDS and source.name != "update.py":
@@ -56,7 +56,7 @@ def lay_out(folder, **details):
 
 
 def pack(folder, output):
-    """Packs the folder; the same files give the same bytes."""
+    """Packs the folder. The same files give the same bytes."""
     with zipfile.ZipFile(output, "w", zipfile.ZIP_DEFLATED) as archive:
         for path in sorted(path for path in folder.rglob("*") if path.is_file()):
             entry = zipfile.ZipInfo(str(pathlib.Path("collarmesh") / path.relative_to(folder)), FIRST_DATE)

@@ -1,4 +1,4 @@
-// The functions that programs find by name in this module when they load it.
+// The functions that programs look up by name when they load this module.
 #include <string>
 
 #include "collarmesh/openmesh_io/read_om.h"

@@ -1,4 +1,4 @@
-"""How the pictures of meshes are drawn: pieces of grids, and actors of VTK for them."""
+"""Drawing of meshes: pieces of grids, and VTK's actors for them."""
 
 from itertools import combinations
 
@@ -6,7 +6,7 @@ import vtk
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 SOLID, EDGES = (0.80, 0.84, 0.90), (0.13, 0.16, 0.20)
-SCALE = 2.7  # widths of lines and sizes of letters are those of a picture 1040 wide
+SCALE = 2.7  # lines and letters are scaled for a picture 1040 wide
 STAR, BOOK, CREASE = (0.96, 0.62, 0.20), (0.22, 0.50, 0.76), (0.80, 0.08, 0.16)
 
 
@@ -53,7 +53,7 @@ def surface_of(grid):
 
 
 def split_by_origin(kept, whole):
-    """The surface of the kept tets as (part of the whole mesh's surface, cut faces)."""
+    """Splits the surface of the kept tets into (the part on the whole mesh's surface, cut faces)."""
     def key(data, cell):
         return tuple(sorted(data.GetPoint(cell.GetPointId(k)) for k in range(3)))
 
@@ -78,7 +78,7 @@ def surface_cells(surface, cells):
 
 
 def palette():
-    """Angles from poor (warm) to regular (cool)."""
+    """Returns colours for angles from poor (warm) to regular (cool)."""
     colours = vtk.vtkColorTransferFunction()
     colours.SetColorSpaceToLab()
     for angle, rgb in ((0, (0.72, 0.10, 0.12)), (12, (0.94, 0.45, 0.25)), (25, (0.99, 0.83, 0.45)),
@@ -134,7 +134,7 @@ def legend(colours, title="smallest\ndihedral\nangle", numbers="%.0f", log=False
 
 
 def label(text, place):
-    """Words at a place, which things in front of it hide."""
+    """Returns a label at a place; objects in front hide it."""
     actor = vtk.vtkBillboardTextActor3D()
     actor.SetInput(text)
     actor.SetPosition(*place)
@@ -169,7 +169,7 @@ def corners(grid, cell):
 
 
 def crease_edges(tets, edges):
-    """The curve edges whose tets are all books."""
+    """Returns the curve edges whose tets are all books."""
     around = {corners(edges, e): set() for e in range(edges.GetNumberOfCells())}
     for cell, kind in enumerate(array(tets, "collar")):
         for edge in combinations(corners(tets, cell), 2):

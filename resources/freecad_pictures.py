@@ -15,7 +15,7 @@ from PIL import Image
 
 HERE = pathlib.Path(__file__).resolve().parent
 TESTS = HERE.parent / "tests" / "freecad"
-PAGE = {  # by the test that makes them
+PAGE = {  # pictures, by the test that makes them
     "panel_test.py": ("freecad_panel", "freecad_worst_elements", "freecad_message", "freecad_advanced"),
     "preview_gui_test.py": ("freecad_size_colours",),
     "parts_gui_test.py": ("freecad_volumes",),
@@ -24,7 +24,7 @@ PAGE = {  # by the test that makes them
     "sizes_gui_test.py": ("freecad_size_handles", "freecad_sizes"),
     "document_gui_test.py": ("freecad_out_of_date", "freecad_menu", "freecad_statistics"),
 }
-LARGEST = 200000  # bytes of a picture
+LARGEST = 200000  # largest size of a picture, bytes
 STEP = (500, 327)
 BARS = 100  # pixels at the top of FreeCAD's window, the same in all pictures
 GAP = 8
@@ -35,7 +35,7 @@ def take(program, script, folder):
 
 
 def save(picture, path):
-    """With as many colours as fit."""
+    """Saves a picture with as many colours as its size permits."""
     for colours in (256, 192, 128, 96, 64):
         few = picture.convert("RGB").quantize(colours, kmeans=2, dither=Image.Dither.NONE)
         few.save(path, optimize=True)
@@ -45,7 +45,7 @@ def save(picture, path):
 
 
 def strip(folder):
-    """Two rows of three."""
+    """Joins pictures in two rows of three."""
     width, height = STEP
     whole = Image.new("RGB", (3 * width + 2 * GAP, 2 * height + GAP), "white")
     for i in range(6):

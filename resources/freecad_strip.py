@@ -19,7 +19,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "tests" / "
 from window import (child, click, click_command, click_item, close_panel, find, require, rows, run_test,  # noqa: E402
                     screenshot, wait_until)
 
-SIZE = (1040, 780)  # of the window
+SIZE = (1040, 780)  # size of the window
 
 
 def bracket():
@@ -43,7 +43,7 @@ def numbers_are_there():
 
 
 def solve(analysis, solver):
-    """CalculiX; returns what shows the stresses."""
+    """Runs CalculiX; returns the object that shows the stresses."""
     with tempfile.TemporaryDirectory() as folder:
         tools = ccxtools.FemToolsCcx(analysis, solver)
         tools.update_objects()
@@ -59,7 +59,7 @@ def solve(analysis, solver):
 
 
 def move_aside(view):
-    """What is seen, to the left and smaller: the scale of the colours is at the right."""
+    """Makes the scene smaller and moves it to the left, because the scale of the colours is at the right."""
     camera = view.getCameraNode()
     height = 1.25 * camera.height.getValue()
     right = camera.orientation.getValue().multVec(coin.SbVec3f(1, 0, 0))
@@ -116,7 +116,7 @@ async def test():
     stresses.ViewObject.DisplayMode = "Surface"
     stresses.ViewObject.Field = "von Mises Stress"
     settings = FreeCAD.ParamGet("User parameter:BaseApp/Preferences/View")
-    settings.SetBool("ShowNaviCube", False)  # it would be over the scale's numbers
+    settings.SetBool("ShowNaviCube", False)  # it would cover the scale's numbers
     view.setCameraType("Orthographic")
     FreeCADGui.SendMsgToActiveView("ViewFit")
     move_aside(view)

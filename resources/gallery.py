@@ -24,7 +24,7 @@ from drawing import (BOOK, SCALE, STAR, actor_of, array, centres, crease_edges, 
                      split_by_origin, surface_of, tinted, tubes, with_quality)
 
 HERE = pathlib.Path(__file__).resolve().parent
-SIZE = (2800, 1960)  # drawn twice as large as it is kept
+SIZE = (2800, 1960)  # pictures are drawn twice as large as they are saved
 COLOURS = 128
 HUES = ((0.36, 0.56, 0.78), (0.93, 0.66, 0.32), (0.50, 0.72, 0.47), (0.80, 0.46, 0.46), (0.62, 0.53, 0.76),
         (0.40, 0.72, 0.74), (0.88, 0.80, 0.40), (0.72, 0.60, 0.50), (0.86, 0.60, 0.74), (0.58, 0.64, 0.70),
@@ -39,7 +39,7 @@ def run(*command):
 
 
 def mesh(source, *options):
-    """The grid that collarmesh makes: tets, boundary triangles and curve edges with their tags."""
+    """Returns the grid that collarmesh makes: tets, boundary triangles and curve edges with their tags."""
     run("collarmesh", source, "-o", "mesh.vtk", "--quiet", *options)
     return read("mesh.vtk")
 
@@ -116,20 +116,20 @@ def tets(grid):
 
 
 def behind(grid, normal, at):
-    """The cells behind a plane, at a share of the way along its normal."""
+    """Returns the cells behind a plane, whose position is a share of the way along its normal."""
     offsets = centres(grid) @ np.array(normal, float)
     return offsets <= offsets.min() + at * (offsets.max() - offsets.min())
 
 
 def cut_open(grid, normal, at):
-    """Whole tets behind a plane; where it cuts them by their smallest dihedral angle."""
+    """Returns whole tets behind a plane; its cut shows them by their smallest dihedral angle."""
     whole = with_quality(tets(grid))
     outside, inside = split_by_origin(extract(whole, behind(whole, normal, at).nonzero()[0]), whole)
     return [actor_of(outside), actor_of(inside, palette()), legend(palette())]
 
 
 def coloured(grid, values):
-    """A piece of its own colour for each value."""
+    """Returns a piece with its own colour for each value."""
     actors = []
     for k, value in enumerate(sorted(set(values))):
         actors.append(tinted(extract(grid, (values == value).nonzero()[0]), HUES[k % len(HUES)], width=1.1))
@@ -137,7 +137,7 @@ def coloured(grid, values):
 
 
 def surface(path, colour):
-    """The polygons of an .off file."""
+    """Returns the polygons of an .off file."""
     words = pathlib.Path(path).read_text().split()
     count, facets = int(words[1]), int(words[2])
     points, polygons = vtk.vtkPoints(), vtk.vtkCellArray()
@@ -207,7 +207,7 @@ def bracket(path):
 
 
 def names(path):
-    """Each face has a colour and its number, as `info` shows it."""
+    """Draws each face with a colour and its number, as `info` shows it."""
     faces = kind(mesh("bracket.off", "--size", 5), vtk.VTK_TRIANGLE)
     tags = array(faces, "tag")
     renderer = scene(coloured(faces, tags), FRONT, 1.1)
@@ -217,13 +217,13 @@ def names(path):
     locator.BuildLocator()
     for tag in sorted(set(tags)):
         at = middle(faces, (tags == tag).nonzero()[0])
-        if tags[first_cell(locator, eye, at)] == tag:  # else another face hides it
+        if tags[first_cell(locator, eye, at)] == tag:  # otherwise another face hides it
             renderer.AddActor(label(str(tag), at + 8 * (eye - at) / np.linalg.norm(eye - at)))
     picture(path, renderer)
 
 
 def first_cell(locator, eye, at):
-    """The cell that is seen in this direction."""
+    """Returns the cell that is visible in this direction."""
     share, cell, part = vtk.mutable(0.0), vtk.mutable(0), vtk.mutable(0)
     place, within = [0.0] * 3, [0.0] * 3
     beyond = eye + 1.1 * (at - eye)
@@ -232,13 +232,13 @@ def first_cell(locator, eye, at):
 
 
 def middle(grid, cells):
-    """The centre of that cell which is nearest to the middle of these."""
+    """Returns the centre of the cell that is nearest to the middle of these cells."""
     places = centres(grid)[cells]
     return places[np.linalg.norm(places - places.mean(axis=0), axis=1).argmin()]
 
 
 def curved(path):
-    """The same size with straight elements and with curved ones."""
+    """Draws meshes of the same size with straight and with curved elements."""
     options, view = ("--size", 14, "--distance", 1.2), (1.1, -1.5, 1.6)
     straight = actor_of(surface_of(kind(mesh("flange.step", *options), vtk.VTK_TRIANGLE)))
     faces = kind(mesh("flange.step", *options, "--order", 2), vtk.VTK_QUADRATIC_TRIANGLE)
@@ -249,7 +249,7 @@ def curved(path):
 
 
 def subdivided(faces):
-    """The curved triangles as small flat ones."""
+    """Divides curved triangles into small flat ones."""
     filter_ = vtk.vtkDataSetSurfaceFilter()
     filter_.SetInputData(faces)
     filter_.SetNonlinearSubdivisionLevel(3)
@@ -262,7 +262,7 @@ def subdivided(faces):
 
 
 def edges_of(faces):
-    """The curved edges of curved triangles."""
+    """Returns the curved edges of curved triangles."""
     lines, points = vtk.vtkCellArray(), vtk.vtkPoints()
     for c in range(faces.GetNumberOfCells()):
         corner = [np.array(faces.GetPoint(faces.GetCell(c).GetPointId(k))) for k in range(6)]
@@ -305,7 +305,7 @@ def tiny(path):
 
 
 def lengths_palette():
-    """Edge lengths from short (dark) to long, by their logarithm."""
+    """Returns colours for edge lengths from short (dark) to long, by their logarithm."""
     colours = vtk.vtkColorTransferFunction()
     colours.SetScaleToLog10()
     for length, rgb in ((0.005, (0.16, 0.30, 0.55)), (0.02, (0.27, 0.60, 0.70)), (0.08, (0.60, 0.82, 0.62)),
@@ -315,7 +315,7 @@ def lengths_palette():
 
 
 def section(grid, y):
-    """The tets where a plane cuts them, by the edge length of the regular tet of their volume."""
+    """Draws the tets where a plane cuts them, by the edge length of the regular tet with their volume."""
     sizes = vtk.vtkMeshQuality()
     sizes.SetInputData(tets(grid))
     sizes.SetTetQualityMeasureToVolume()
@@ -368,7 +368,7 @@ def collar(path):
 
 
 def fan(path):
-    """Sheets that meet in the axis of a cylinder, at 10 degrees each."""
+    """Draws sheets that meet in the axis of a cylinder, at 10 degrees each."""
     sectors("fan.poly", 36, height=0.8)
     grid = mesh("fan.poly", "--size", 0.12)
     cells = tets(grid)
@@ -389,14 +389,14 @@ def thin(path):
 def repair(path):
     parts = [tube((-2, 0, 0), (2, 0, 0), 0.8), tube((0, -2, 0), (0, 2, 0), 0.8), tube((0, 0, -2), (0, 0, 2), 0.8)]
     points, faces = joined(*parts)
-    write_off("broken.off", points, faces[:1] + faces[2:])      # one end is missing
+    write_off("broken.off", points, faces[:1] + faces[2:])      # without one end
     before = scene([surface("broken.off", (0.90, 0.80, 0.72))], FRONT, 0.85, LEFT)
     after = scene(cut_open(mesh("broken.off", "--size", 0.4), (0, -1, 0), 0.5)[:2], FRONT, 0.85, RIGHT)
     picture(path, before, after)
 
 
 def wrap(path):
-    """Strips that touch nothing, as a drawing may have them."""
+    """Draws strips that touch nothing, as a drawing may contain them."""
     points, faces = [], []
     for k in range(9):
         turn = k * np.pi / 9
@@ -432,7 +432,7 @@ U
 
 
 def displacements(path):
-    """Of the nodes in CalculiX' result file, by their numbers."""
+    """Returns the displacements of the nodes in CalculiX's result file, by their numbers."""
     found, reading = {}, False
     for line in pathlib.Path(path).read_text().splitlines():
         if line.startswith(" -4"):
@@ -475,7 +475,7 @@ def analysis(path):
 
 
 def arrows_at(places, direction, length):
-    """Arrows that end at these places."""
+    """Returns arrows that end at these places."""
     points = vtk.vtkPoints()
     for place in places:
         points.InsertNextPoint(place - length * np.array(direction, float))
@@ -505,11 +505,11 @@ def report(path):
     run("chromium", "--headless=new", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader",
         "--enable-unsafe-swiftshader", "--hide-scrollbars", "--window-size=1400,1000", "--virtual-time-budget=20000",
         f"--screenshot={path}", f"{page.as_uri()}#cut=x,0.5&turn=15")
-    Image.open(path).convert("RGB").save(path, optimize=True)  # the legend has colours that hardly anything else has
+    Image.open(path).convert("RGB").save(path, optimize=True)  # for the legend
 
 
 def coil(path):
-    """A wire of five turns as edges of the tets around it."""
+    """Draws a wire of five turns as edges of the tets around it."""
     grid = mesh("coil_in_box.brep", "--size", 5, "--curve-size", "13=1", "--gradation", 0.5)
     edges = kind(grid, vtk.VTK_LINE)
     wire = extract(edges, np.isin(array(edges, "tag"), (13, 14, 15)).nonzero()[0])
@@ -517,7 +517,7 @@ def coil(path):
 
 
 def crack(path):
-    """The two sides of a sheet with nodes of their own, drawn apart."""
+    """Draws the two sides of a sheet with separate nodes, moved apart."""
     grid = mesh("cracked_box.poly", "--size", 0.2, "--patch-size", "7=0.04", "--name", "crack=7", "--split", "crack")
     is_face = vtk_to_numpy(grid.GetCellTypesArray()) == vtk.VTK_TRIANGLE
     on_sheet = is_face & (np.abs(centres(grid) - 0.5).max(axis=1) < 0.45)
@@ -537,7 +537,7 @@ def crack(path):
 
 
 def cell(path):
-    """A cell with a square fibre and its images on three sides: nodes and triangles fit."""
+    """Draws a cell with a square fibre and its images on three sides: nodes and triangles match."""
     square = ((0.25, 0.25), (0.75, 0.25), (0.75, 0.75), (0.25, 0.75))
     points = [(x, y, z) for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
     points += [(x, y, z) for z in (0, 1) for x, y in square]

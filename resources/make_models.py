@@ -9,11 +9,11 @@ import os
 import re
 import sys
 
-SEGMENTS = 48  # of a full circle
+SEGMENTS = 48  # segments of a full circle
 
 
 class Surface:
-    """A triangulated surface whose triangles see their solid behind them."""
+    """A triangulated surface whose triangles have their solid behind them."""
 
     def __init__(self):
         self.points, self.triangles, self._index = [], [], {}
@@ -33,13 +33,13 @@ class Surface:
         self.triangle(a, c, d)
 
     def wall(self, bottom, top):
-        """The strip between two closed polylines; seen from outside, bottom runs to the right."""
+        """Adds the strip between two closed polylines; seen from outside, `bottom` runs to the right."""
         for k in range(len(bottom)):
             n = (k + 1) % len(bottom)
             self.quad(bottom[k], bottom[n], top[n], top[k])
 
     def check(self):
-        """Every edge is used once in each direction, and the volume is positive."""
+        """Checks that every edge is used once in each direction, and that the volume is positive."""
         edges = [(t[i], t[(i + 1) % 3]) for t in self.triangles for i in range(3)]
         assert len(set(edges)) == len(edges), "an edge is used twice in one direction"
         directed = set(edges)
@@ -75,8 +75,8 @@ def cross_properly(a, b, c, d):
 
 
 def joined(outline, holes):
-    """One polygon from an outline (counterclockwise) and holes (clockwise): each hole is joined by
-    the shortest bridge that crosses nothing."""
+    """Returns one polygon from an outline (counterclockwise) and holes (clockwise). The shortest bridge that
+    crosses nothing joins each hole."""
     loop, holes = list(outline), [list(h) for h in holes]
     while holes:
         edges = [(r[k - 1], r[k]) for r in [loop] + holes for k in range(len(r))]
@@ -97,7 +97,7 @@ def smallest_angle(a, b, c):
 
 
 def ears(outline, holes=()):
-    """Triangles of a polygon with holes, by cutting the ear with the best angle first."""
+    """Returns triangles of a polygon with holes, by cutting off the ear with the best angle first."""
     loop, triangles = joined(outline, holes), []
 
     def ear_quality(k):
@@ -146,7 +146,7 @@ def add_plate(surface, outline, holes, place, thickness, open_edges=()):
 
 
 def chamfered_leg(length, width, chamfer):
-    """Outline of a leg: straight at u = 0 (its last edge), corners cut at u = length."""
+    """Returns the outline of a leg: straight at u = 0 (its last edge), with cut corners at u = length."""
     return [(0, 0), (length - chamfer, 0), (length, chamfer), (length, width - chamfer),
             (length - chamfer, width), (0, width)]
 

@@ -17,13 +17,13 @@ TABLES = re.compile(re.escape(BEGIN) + ".*" + re.escape(END), re.S)
 
 
 def code(text, words=()):
-    """Options are code, and words that can be chosen."""
+    """Formats options, and words that can be chosen, as code."""
     text = re.sub(r"(--[a-z][a-z-]*(?: wrap| \d)?)", r"`\1`", text)
     return re.sub(rf"\b({'|'.join(words)})(?=:)", r"`\1`", text) if words else text
 
 
 def range_of(option):
-    """A range with two ends, unless its numbers are explained one by one."""
+    """Returns a range with two ends, unless its numbers are explained one by one."""
     low, high = option["low"], option["high"]
     if option["kind"] not in ("number", "count") or high is None or high > 1e9:
         return ""
@@ -51,7 +51,7 @@ def row(option):
 
 
 def page(text, program):
-    """The text of the page with the tables of this program."""
+    """Returns the text of the page with the tables of this program."""
     said = subprocess.run([program, "--generate", "options"], check=True, capture_output=True, text=True).stdout
     groups = {}
     for option in json.loads(said):

@@ -63,7 +63,7 @@ def planes(path):
 
 
 def trace(source, *options):
-    """The steps of a run: stages and grids."""
+    """Returns the steps of a run: stages and grids."""
     folder = pathlib.Path(f"trace_of_{pathlib.Path(source).stem}_{len(options)}")
     if not folder.exists():
         subprocess.run(["collarmesh", source, "-o", "mesh.vtu", "--quiet",
@@ -93,7 +93,7 @@ def cells(grid, kind, *states):
 
 
 def below(grid, axis, at):
-    """The cells whose centres lie below a plane."""
+    """Returns the cells whose centres lie below a plane."""
     if grid.GetNumberOfCells() == 0:
         return grid
     return extract(grid, (centres(grid)[:, axis] <= at).nonzero()[0])
@@ -150,7 +150,7 @@ def by_angle(grid):
 
 
 def sliced(grid, colours, y=0.75):
-    """The cells where a plane cuts them, in a colour for each state."""
+    """Returns the cells that a plane cuts, with a colour for each state."""
     plane = vtk.vtkPlane()
     plane.SetOrigin(0, y, 0)
     plane.SetNormal(0, 1, 0)
@@ -170,7 +170,7 @@ def sliced(grid, colours, y=0.75):
 
 
 def outline(y=0.75):
-    """The cross-section of the chisel."""
+    """Returns the cross-section of the chisel."""
     points, lines = vtk.vtkPoints(), vtk.vtkCellArray()
     for x, z in PROFILE:
         points.InsertNextPoint(x, y, z)
@@ -226,7 +226,7 @@ def draw(path, *panels, size=(2800, 1400), view=VIEW, zoom=1.25, around=None):
 
 
 def figure_1(path):
-    """An input of planes and segments; the collar around the crease; its balls."""
+    """Draws an input of planes and segments; the collar around the crease; its balls."""
     planes("planes.poly")
     steps = trace("planes.poly", "--size", 0.25, "--coarsen", "off", "--improve", 0)
     grid = last(steps, "stitch")
@@ -239,7 +239,7 @@ def figure_1(path):
 
 
 def figure_2(path):
-    """The mesh while the input is resolved, where a plane cuts it."""
+    """Draws the mesh while the input is being resolved, cut by a plane."""
     refining = [grid for name, grid in the_run() if name in ("refine", "rip")]
     chosen = [refining[round(k * (len(refining) - 1) / 3)] for k in range(4)]
     draw(path, *([*sliced(grid, SECTION), *outline()] for grid in chosen),
@@ -247,7 +247,8 @@ def figure_2(path):
 
 
 def figure_3(path):
-    """The crease and its balls; refinement stops in them; the collar's surface; the stars that replace what is inside."""
+    """Draws the crease and its balls; the refinement, which stops at them; the collar's surface; the stars
+    that replace the cells inside."""
     steps = the_run()
     before, after = last(steps, "rip"), last(steps, "stitch")
     line = crease((0, 0, 0), (0, 1.5, 0), 0.012)
@@ -258,7 +259,7 @@ def figure_3(path):
 
 
 def inside_surface(grid):
-    """The part of the collars' surface at cells in the region."""
+    """Returns the part of the collars' surface at cells in the region."""
     inner, surface = cells(grid, TET, REGION), cells(grid, COLLAR_SURFACE)
     known = {inner.GetPoint(p) for p in range(inner.GetNumberOfPoints())}
     keep = [c for c in range(surface.GetNumberOfCells())
@@ -267,7 +268,7 @@ def inside_surface(grid):
 
 
 def figure_4(path):
-    """A surface among Voronoi cells; the cells restricted to it; the triangles restricted to it."""
+    """Draws a surface among Voronoi cells; the cells restricted to it; the triangles restricted to it."""
     grid = last(the_run(), "rip")
     spheres = vtk.vtkAppendPolyData()
     found = cells(grid, BALL)

@@ -21,18 +21,18 @@ import window as w  # noqa: E402
 from freecad.collarmesh_workbench import mesh_object, task_panel, view_provider  # noqa: E402
 
 PARTS = int(os.environ.get("COLLARMESH_BENCH_PARTS", 21))
-LIMIT = 120  # seconds for a table
+LIMIT = 120  # seconds to wait for a table
 ROW = ", ".join(f"{which} {{:.2f}} s (processors: FreeCAD {{:.2f}} s, mesher {{:.2f}} s)" for which in ("chosen", "all"))
 
 
 def spread(paths):
-    """So many of them, from the smallest file to the largest."""
+    """Returns this many of the files, from the smallest to the largest."""
     paths = sorted(paths, key=lambda path: path.stat().st_size)
     return [paths[i * (len(paths) - 1) // (PARTS - 1)] for i in range(PARTS)] if len(paths) > PARTS else paths
 
 
 def used_by(process_id):
-    """Seconds of processors that a running process has had, and its children."""
+    """Returns the processor time in seconds that a running process and its children have used."""
     folder = pathlib.Path("/proc", str(process_id))
     words = (folder / "stat").read_text(encoding="utf-8").rpartition(")")[2].split()
     children = (folder / "task" / str(process_id) / "children").read_text(encoding="utf-8").split()
@@ -40,7 +40,8 @@ def used_by(process_id):
 
 
 def now(process=None):
-    """Seconds on the clock, of FreeCAD's processor, and of the mesher's, which is this process."""
+    """Returns seconds: on the clock, of FreeCAD's processor time, and of the mesher's, a child of this
+    process."""
     used = [resource.getrusage(kind) for kind in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
     own, of_ended = (each.ru_utime + each.ru_stime for each in used)
     running = used_by(process.processId()) if process is not None and process.processId() else 0
@@ -48,7 +49,7 @@ def now(process=None):
 
 
 class Watched(task_panel.MeshTaskPanel):
-    """Remembers when the table got its numbers, for which sizes."""
+    """Records the times at which the table got its numbers."""
 
     told = []
 
@@ -62,7 +63,7 @@ view_provider.MeshTaskPanel = Watched
 
 
 def first_when(condition):
-    """None: never."""
+    """Returns the time at which the condition was first met; None: never."""
     return next((moment for moment, *what in Watched.told if condition(*what)), None)
 
 
@@ -75,7 +76,8 @@ def complete(known, _size, presets):
 
 
 async def measured(path):
-    """The number of faces; `now()` since the opening of the panel when the chosen size's row is there, and when all are."""
+    """Prints the number of faces, and the times from opening the panel to the chosen size's row and to all
+    rows."""
     shape = Part.read(str(path))
     document = FreeCAD.newDocument("part")
     part = document.addObject("Part::Feature", "Part")

@@ -20,7 +20,7 @@ from femmesh import gmshtools
 from freecad import collarmesh_workbench
 
 TETS = 100_000
-NEAR = 0.15  # relative
+NEAR = 0.15  # relative difference
 ROUNDS = 3
 
 
@@ -29,7 +29,7 @@ def plate(path):
     for i in range(4):
         for j in range(3):
             shape = shape.cut(Part.makeCylinder(4, 10, FreeCAD.Vector(10 + 20 * i, 10 + 20 * j, 0)))
-    shape.exportStep(path)  # with small fillets Gmsh's default for curvature would make 500k at any size
+    shape.exportStep(path)  # with small fillets Gmsh's default for curvature would make 500k tetrahedra at any size
 
 
 def by_collarmesh(document, part, size):
@@ -46,7 +46,7 @@ def by_gmsh(document, part, size):
 
 
 def run(mesher, path, size):
-    """Seconds and tetrahedra."""
+    """Returns seconds and the number of tetrahedra."""
     begin = time.perf_counter()
     document = FreeCAD.newDocument("bench")
     part = document.addObject("Part::Feature", "Part")

@@ -1,4 +1,4 @@
-"""Varies a parameter of a shape; the part is meshed again each time, in the same object."""
+"""Varies a parameter of a shape. The part is meshed again each time, in the same object."""
 
 import FreeCAD
 from freecad import collarmesh_workbench

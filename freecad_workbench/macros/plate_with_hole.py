@@ -7,7 +7,7 @@ import Part
 from femtools import ccxtools
 from freecad import collarmesh_workbench
 
-WIDTH, RADIUS, THICKNESS, FORCE = 40, 4, 3, 6000  # mm, N
+WIDTH, RADIUS, THICKNESS, FORCE = 40, 4, 3, 6000  # millimetres, newtons
 
 document = FreeCAD.newDocument("plate_with_hole")
 plate = document.addObject("Part::Feature", "Plate")
@@ -16,7 +16,7 @@ plate.Shape = Part.makeBox(80, WIDTH, THICKNESS).cut(hole)
 
 
 def face_at(x):
-    """Returns the name of the plane face with this x."""
+    """Returns the name of the planar face with this x."""
     return next(f"Face{i}" for i, face in enumerate(plate.Shape.Faces, 1)
                 if face.BoundBox.XLength < 1e-9 and abs(face.BoundBox.XMin - x) < 1e-9)
 

@@ -26,7 +26,7 @@ def texts(folder=SOURCES):
 
 
 def texts_in(source, name=""):
-    """Returns {(context, text)} of a source; ValueError for a text that is no constant."""
+    """Returns {(context, text)} of a source. Raises ValueError for a text that is no constant."""
     found = set()
     for node in ast.walk(ast.parse(source)):
         function = getattr(getattr(node, "func", None), "id", "")

@@ -9,29 +9,30 @@ from pathlib import Path
 
 from inputs import Corner, classified
 
-Loop = tuple[int, ...]   # corners; one corner is a point and two are a segment inside the facet
+Loop = tuple[int, ...]   # corners; a loop of one corner is a point, one of two corners a segment inside the facet
 
 
 @dataclass
 class Part:
-    """A .poly file: facets are lists of polygons, the first of three corners or more unless it is a
-    lone segment."""
+    """A .poly file. Facets are lists of polygons; the first polygon has at least three corners, unless the
+    facet is a lone segment."""
     points: list[Corner]
     facets: list[list[Loop]]
 
 
 @dataclass
 class AcuteInput:
-    """`family` and `parameters` are what acute_shape calls them; `copies` of it in a grid, 0: itself."""
+    """An input of the program acute_shape. `family` and `parameters` are its arguments; `copies`: number of
+    copies in a grid, 0: the shape itself."""
     program: Path
     family: str
     parameters: tuple[float, ...]
     copies: int = 0
     feature_angle: float = 0
     suffix = ".poly"
-    volume = diagonal = 1.0   # about: for a first guess of the size that makes so many tets
+    volume = diagonal = 1.0   # approximate, for a first guess of the size for a number of tets
     parts: list[Part] = field(default_factory=list)
-    small_copy: float = 0   # beside it; of polylines
+    small_copy: float = 0   # factor of a smaller copy beside the shape; for polylines
 
     @property
     def name(self) -> str:
@@ -39,16 +40,16 @@ class AcuteInput:
 
     @property
     def polygons(self) -> list[list[Loop]]:
-        """After write()."""
+        """Returns the number of polygons. Call it after write()."""
         return [facet for part in self.parts for facet in part.facets]
 
     @property
     def files(self) -> list[str]:
-        """One for each solid, after write("input")."""
+        """Returns one file for each solid. Call it after write("input")."""
         return [f"input_{k + 1}.poly" for k in range(len(self.parts))]
 
     def write(self, path_without_suffix: Path) -> None:
-        """One file for each solid, and all of them as one."""
+        """Writes one file for each solid, and one file with all of them."""
         self._generate(path_without_suffix)
         merged = merge(self.parts)
         with open(path_without_suffix.with_suffix(".poly"), "w") as out:
@@ -60,7 +61,8 @@ class AcuteInput:
             out.write("0\n0\n")
 
     def write_geo(self, path: Path) -> None:
-        """For Gmsh: curved shapes as a classified surface, else points, lines, plane surfaces and volumes."""
+        """Writes a file for Gmsh: curved shapes as a classified surface, others as points, lines, plane
+        surfaces and volumes."""
         self._generate(path.with_suffix(""))
         if self.feature_angle > 0:
             write_stl(self.parts[0], path.with_suffix(".stl"))
@@ -94,7 +96,7 @@ def read_part(path: Path) -> Part:
 
 
 def merge(parts: list[Part]) -> Part:
-    """Equal points are one, and so are facets with the same corners."""
+    """Merges equal points, and facets with the same corners."""
     numbers: dict[Corner, int] = {}
     facets: dict[frozenset, list[Loop]] = {}
     for part in parts:
@@ -118,8 +120,8 @@ def write_stl(part: Part, path: Path) -> None:
 
 
 class GeoModel:
-    """Gmsh's built-in geometry of some solids. What hangs inside a solid (facets with a free border,
-    lone segments, points and segments in facets) is embedded. Numbers count from 1."""
+    """Gmsh's built-in geometry of some solids. Parts inside a solid (facets with a free border, lone
+    segments, points and segments in facets) are embedded. Numbers start at 1."""
 
     def __init__(self, parts: list[Part]):
         self.lines: dict[frozenset, int] = {}
@@ -153,7 +155,8 @@ class GeoModel:
         return self.numbers[p]
 
     def _line(self, a: int, b: int) -> int:
-        """Negative from b to a; a line goes from the point of lower number."""
+        """Returns the line from a to b, negative if the line goes from b to a. A line begins at the point
+        with the lower number."""
         key = frozenset((a, b))
         if key not in self.lines:
             self.lines[key] = len(self.lines) + 1
@@ -178,7 +181,7 @@ def edges(loop: Loop) -> list[Loop]:
 
 
 def closed_part(facets: list[list[Loop]]) -> list[list[Loop]]:
-    """Without lone segments and without the facets that have a free border, again and again."""
+    """Removes lone segments, and repeatedly all facets with a free border."""
     shell = [facet for facet in facets if len(facet[0]) > 2]
     while True:
         uses = Counter(frozenset(edge) for facet in shell for edge in edges(facet[0]))

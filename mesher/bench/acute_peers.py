@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""collarmesh beside TetGen and Gmsh on shapes whose features meet at acute angles, at one size: whether
-they end, how many tets of which angles, how long. Prints a Markdown table."""
+"""Compares collarmesh with TetGen and Gmsh on shapes whose features meet at acute angles, at one size:
+whether they end, the number of tets, their angles, and the time. Prints a Markdown table."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from processes import ProgramFailed, pin_to_core
 from tables import machine, seconds, table, tets_text
 from tuning import SizeCache
 
-size = 0.3   # the shapes are about 1
+size = 0.3   # the shapes have sizes of about 1
 
 members: list[tuple] = [
     ("wedge", 20, 1), ("wedge", 5, 1), ("wedge", 2, 1), ("wedge", 1, 1),
@@ -58,7 +58,7 @@ def cell(mesher, shape: AcuteInput, folder: Path, program: Path) -> str:
 
 
 def radius_edge(result, made: dict) -> float:
-    """The worst; of ours outside collars."""
+    """Returns the largest ratio; for our meshes, outside collars."""
     return (result.report["check"] if result.report else made)["max_radius_edge"]
 
 

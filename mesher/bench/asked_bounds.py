@@ -28,7 +28,7 @@ from processes import pin_to_core
 from tables import machine, si, table
 from tuning import SizeCache
 
-slow = (("fan", 72, 0), ("pyramid", 64, 5), ("comb", 20, 4))   # more than 5 s each
+slow = (("fan", 72, 0), ("pyramid", 64, 5), ("comb", 20, 4))   # these take more than 5 s each
 judged_surfaces = (".off", ".obj", ".stl", ".ply", ".poly", ".smesh")
 relative_distance = 1e-3
 
@@ -38,7 +38,7 @@ class Case:
     name: str
     files: list[Path]
     options: list[str]
-    surface: Path | None = None   # what the judge compares the mesh with
+    surface: Path | None = None   # the surface with which the judge compares the mesh
     tolerance: list[str] = field(default_factory=list)
 
 
@@ -51,9 +51,9 @@ class Outcome:
     tets: int = 0
     warned: bool = False
     missed: list[str] = field(default_factory=list)     # guarantees, by the certificate
-    differs: list[str] = field(default_factory=list)    # what the judge or the report says otherwise
-    within: bool = False       # no thin tet: the ratio holds everywhere outside collars, by the judge
-    largest: float = 0         # dihedral angle in collars, by the judge
+    differs: list[str] = field(default_factory=list)    # statements of the judge or the report that disagree
+    within: bool = False       # whether no tet is thin, so that the ratio holds everywhere outside collars, by the judge
+    largest: float = 0         # largest dihedral angle in collars, by the judge
 
 
 def acute_cases(generator: Path, folder: Path, with_slow: bool) -> list[Case]:
@@ -112,7 +112,7 @@ def judge(judging: str, case: Case, question: tuple[str, ...], mesh: Path, repor
 
 
 def compare(outcome: Outcome, said: dict, report: dict, ratio: float) -> None:
-    """The judge's findings, and its numbers beside the report's."""
+    """Compares the judge's findings and numbers with the report's."""
     check, of = report["check"], said["quality"]
     inside, outside = of.get("in_collars", {}), of.get("outside_collars", {})
     outcome.within = outside.get("radius_edge_max", 0) <= ratio * (1 + 1e-9)

@@ -1,5 +1,5 @@
-// A surface meshed by CGAL's Mesh_3 with its perturbation and exudation of slivers, as the improvement of
-// elements is compared with: cgal_mesh INPUT.off SIZE DISTANCE OUT.mesh
+// Meshes a surface by CGAL's Mesh_3 with its perturbation and exudation of slivers, for comparison with our
+// improvement: cgal_mesh INPUT.off SIZE DISTANCE OUT.mesh
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/IO/File_medit.h>
 #include <CGAL/Mesh_complex_3_in_triangulation_3.h>

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Balls around creases placed before the refinement and in the pass: tets, vertices inserted and time of the acute
-families, sums over some seeds, and of ever more wedges. Runs of the two modes alternate. Prints Markdown tables."""
+"""Compares balls around creases placed before the refinement and in the pass: tets, inserted vertices and
+time, summed over some seeds, for the acute families and for increasing numbers of wedges. Runs of the two
+modes alternate. Prints Markdown tables."""
 
 from __future__ import annotations
 

@@ -63,7 +63,7 @@ def fans(polygons: list[list[int]]) -> list[tuple[int, int, int]]:
 
 
 def clipped(polygon: list[int], points: np.ndarray) -> list[tuple[int, int, int]]:
-    """Triangles of a polygon that need not be convex: ears, as long as there are some."""
+    """Returns triangles of a polygon that need not be convex, by cutting off ears as long as there are any."""
     if len(polygon) <= 4 and len(polygon) > 2:
         return fans([polygon])
     rest, triangles = list(polygon), []
@@ -131,7 +131,7 @@ def volume(triangles: np.ndarray) -> float:
 
 
 def samples_of(triangles: np.ndarray, count: int, random: np.random.Generator) -> np.ndarray:
-    """All corners' mean and points at random, by area."""
+    """Returns the corners' mean and random points, by area."""
     share = areas(triangles)
     chosen = triangles[random.choice(len(triangles), count, p=share / share.sum())]
     weights = random.dirichlet((1, 1, 1), count)
@@ -148,7 +148,7 @@ def to_segment(p: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def to_triangles(p: np.ndarray, t: np.ndarray) -> np.ndarray:
-    """From each point to the triangle of its row."""
+    """Returns the distance of each point from the triangle in its row."""
     a, b, c = t[:, 0], t[:, 1], t[:, 2]
     normal = np.cross(b - a, c - a)
     length = np.maximum(np.linalg.norm(normal, axis=1), 1e-300)
@@ -161,8 +161,8 @@ def to_triangles(p: np.ndarray, t: np.ndarray) -> np.ndarray:
 
 
 class Nearest:
-    """Distances to triangles. Those with the nearest centres give a bound for each point; then all triangles whose
-    circumscribed ball is within that are measured."""
+    """Measures distances to triangles. The triangles with the nearest centres give a bound for each point;
+    then all triangles whose circumscribed ball is within the bound are measured."""
 
     def __init__(self, triangles: np.ndarray, diagonal: float):
         self.triangles = self.divided(triangles, diagonal / 50)
@@ -172,7 +172,7 @@ class Nearest:
 
     @staticmethod
     def divided(triangles: np.ndarray, longest: float) -> np.ndarray:
-        """Halved at the longest side until all are short."""
+        """Halves triangles at the longest side until all sides are short."""
         done = []
         while len(triangles):
             sides = np.linalg.norm(triangles - np.roll(triangles, -1, 1), axis=2)
@@ -194,7 +194,8 @@ class Nearest:
         return min(bound, to_triangles(np.repeat(point[None], len(near), 0), near).min()) if len(near) else bound
 
     def farthest(self, points: np.ndarray, does_not_count: Callable[[np.ndarray], bool]) -> float:
-        """The largest distance; points with the largest bounds come first, so most need none of their own."""
+        """Returns the largest distance. Points with the largest bounds come first, so most others need not be
+        measured."""
         bounds = self.bounds(points)
         most = 0.0
         for k in np.argsort(-bounds):
@@ -207,7 +208,8 @@ class Nearest:
 
 
 def winding_numbers(triangles: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """After A. Van Oosterom and J. Strackee, 1983; coordinate by coordinate, as that is several times faster."""
+    """Returns winding numbers by A. Van Oosterom and J. Strackee, 1983. Computes coordinate by coordinate,
+    which is several times faster."""
     corners = np.ascontiguousarray(triangles.transpose(1, 2, 0))
     result = np.empty(len(points))
     for i, p in enumerate(points):
@@ -223,7 +225,7 @@ def winding_numbers(triangles: np.ndarray, points: np.ndarray) -> np.ndarray:
 @dataclass
 class Given:
     triangles: np.ndarray
-    solids: list[float] | None   # volumes by OpenCASCADE, of CAD files
+    solids: list[float] | None   # volumes of the solids of CAD files, by OpenCASCADE
 
 
 def read_given(path: Path, folder: Path) -> Given:
@@ -254,7 +256,8 @@ def closed_parts(triangles: np.ndarray, diagonal: float) -> list[np.ndarray]:
 
 
 def place_inside(part: np.ndarray) -> np.ndarray | None:
-    """Half-way from its largest triangle to what is opposite, inwards; none for a part without thickness."""
+    """Returns the point halfway from the part's largest triangle to the opposite side, inwards; none for a
+    part without thickness."""
     largest = part[areas(part).argmax()]
     normal = np.cross(largest[1] - largest[0], largest[2] - largest[0])
     way = -normal / np.linalg.norm(normal) * (1 if volume(part) > 0 else -1)
@@ -272,7 +275,7 @@ def place_inside(part: np.ndarray) -> np.ndarray | None:
 
 
 def changed_bodies(given: np.ndarray, repaired: np.ndarray, diagonal: float) -> tuple[int, list[np.ndarray]]:
-    """How many closed parts there are, and places in those whose inside is no longer what it was."""
+    """Returns the number of closed parts, and places in those whose inside has changed."""
     parts = closed_parts(given, diagonal)
     places = [p for p in (place_inside(part) for part in parts[:500]) if p is not None]
     if not places:
@@ -285,12 +288,12 @@ def changed_bodies(given: np.ndarray, repaired: np.ndarray, diagonal: float) -> 
 @dataclass
 class Row:
     file: str
-    of_repaired: float   # largest distance from the input, a share of the diagonal
+    of_repaired: float   # largest distance from the input, relative to the diagonal
     of_input: float
     told: float
     volume: float
     of_input_volume: float
-    error: float         # one standard deviation of the volume before; 0: exact
+    error: float         # standard deviation of the volume above; 0: exact
     differs: float       # share of the input's volume
     bodies: int
     changed: list[np.ndarray]
@@ -308,7 +311,8 @@ class Row:
 
     @property
     def silent(self) -> bool:
-        """Is it farther off than was told? (Tessellations of CAD files differ by as much as they may.)"""
+        """Returns whether the distance is larger than reported. (Tessellations of CAD files may differ by
+        their tolerance.)"""
         own = 5e-4 if self.solids is not None else 2e-6
         of_repaired = 0.0 if any(
             "filled" in message for message in self.messages) else self.of_repaired   # not measured there
@@ -332,7 +336,8 @@ def repair(path: Path, folder: Path, options: argparse.Namespace) -> tuple[np.nd
 
 
 def input_volume(given: Given, repaired: np.ndarray, count: int, random: np.random.Generator) -> tuple[float, float, float]:
-    """The input's volume, the deviation of that, and the share of it in which the two differ."""
+    """Returns the input's volume, its standard deviation, and the share of it in which input and result
+    differ."""
     corners = given.triangles.reshape(-1, 3)
     low, high = corners.min(0), corners.max(0)
     most = max(len(given.triangles), len(repaired))
@@ -361,7 +366,7 @@ def compare(path: Path, options: argparse.Namespace) -> Row:
     bodies, changed = changed_bodies(given.triangles, repaired, diagonal)
     told, regions = report["repair"], report["complex"]["regions"]
     enclosed = volume(repaired) if len(regions) == 1 else sum(
-        r["volume"] for r in regions)   # interfaces have one side in .off
+        r["volume"] for r in regions)   # in .off interfaces have one side only
     return Row(path.name, of_repaired / diagonal, of_given / diagonal,
                max(told["largest_distance"], told["largest_distance_of_input"]) / diagonal, abs(enclosed),
                *input_volume(given, repaired, count, random), bodies, changed, len(closed_parts(repaired, diagonal)),

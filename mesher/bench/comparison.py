@@ -1,4 +1,5 @@
-"""The command line of a comparison of meshers on the box and on parts of a corpus, at one number of tets."""
+"""The command line of programs that compare meshers on the box and on parts of a corpus, at equal numbers of
+tets."""
 
 from __future__ import annotations
 
@@ -10,7 +11,8 @@ from inputs import Surface, box, read_surface
 
 
 def comparison_options(description: str, default_parts: list[str]) -> argparse.Namespace:
-    """build, corpus, parts, tets, time_limit (seconds) and core; ends the program at a mistake."""
+    """Parses the options build, corpus, parts, tets, time_limit (seconds) and core. Ends the program if they
+    are wrong."""
     parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     root = Path(__file__).resolve().parents[2]
     parser.add_argument("--build", type=Path, default=root / "build" / "bench")

@@ -29,9 +29,9 @@ header = ["input", "triangles or facets", "tets", "CPU s", "refinement s", "TetG
 
 @dataclass
 class CorpusFile:
-    """A file that both programs read as it is."""
+    """A file of the corpus that both programs read unchanged."""
     path: Path
-    polygons: range           # as many as the manifest says
+    polygons: range           # range of the number of polygons by the manifest
     volume: float = 1
     diagonal: float = math.inf
     suffix: str = field(init=False)

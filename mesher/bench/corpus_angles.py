@@ -23,7 +23,7 @@ from tables import machine, seconds, table
 
 
 def on_boundary(tets: np.ndarray, points: int) -> np.ndarray:
-    """By point, whether it is a corner of a side that one tet alone has."""
+    """Returns for each point whether it is a corner of a side that only one tet has."""
     sides = np.sort(np.concatenate([np.delete(tets, corner, axis=1) for corner in range(4)]), axis=1)
     outer, uses = np.unique(sides, axis=0, return_counts=True)
     on = np.zeros(points, bool)

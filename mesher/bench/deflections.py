@@ -22,7 +22,7 @@ from meshers import debian_version, gmsh_part_command
 from processes import ProgramFailed, run
 from tables import machine, table
 
-Nodes = np.ndarray   # n x 3
+Nodes = np.ndarray   # shape (n, 3)
 
 make_shapes = """
 import sys, math
@@ -46,11 +46,11 @@ Part.Wire(helix.Edges).makePipeShell([wire], True, True).exportStep(folder + "/s
 @dataclass
 class Part:
     name: str
-    young: float            # nu is 0 everywhere: then a clamped end disturbs nothing
-    weight: float           # of a unit of volume, along -z
-    expected: float         # deflection by theory
-    held: Callable[[Nodes], list[tuple[np.ndarray, int, int]]]   # nodes with their first and last direction
-    looked_at: Callable[[Nodes], np.ndarray]                     # nodes whose mean deflection counts
+    young: float            # nu is 0 everywhere, so that a clamped end causes no disturbance
+    weight: float           # weight per unit of volume, along -z
+    expected: float         # expected deflection, by theory
+    held: Callable[[Nodes], list[tuple[np.ndarray, int, int]]]   # nodes, first and last direction
+    looked_at: Callable[[Nodes], np.ndarray]                     # returns the nodes whose mean deflection is measured
 
 
 def near(values: np.ndarray, value: float, scale: float) -> np.ndarray:
@@ -64,7 +64,8 @@ def bent_beam(young: float, weight: float, length: float, area: float, inertia: 
 
 
 def sunk_spring(young: float, weight: float, radius: float, pitch: float, turns: float, wire: float) -> float:
-    """The deflection of the upper end of a helix of round wire clamped below, by the unit load theorem."""
+    """Returns the deflection of the upper end of a helix of round wire clamped below, by the unit load
+    theorem."""
     steps = 20000
     angle = np.linspace(0, 2 * math.pi * turns, steps + 1)
     angle = (angle[1:] + angle[:-1]) / 2
@@ -77,7 +78,7 @@ def sunk_spring(young: float, weight: float, radius: float, pitch: float, turns:
     area, inertia = math.pi * wire**2, math.pi * wire**4 / 4
     end = np.array([radius * math.cos(2 * math.pi * turns), radius * math.sin(2 * math.pi * turns), pitch * turns])
     down = np.array([0.0, 0.0, -1.0])
-    # The length beyond each place, and its moment about the place.
+    # The weight of the length beyond each place, and its moment about the place.
     beyond = np.cumsum(np.ones(steps)[::-1])[::-1]
     centroid = np.cumsum(centre[::-1], 0)[::-1] / beyond[:, None]
     moment = np.cross(centroid - centre, down) * (weight * area * piece * beyond)[:, None]
@@ -132,7 +133,7 @@ def deflection(part: Part, mesh: meshio.Mesh, order: int, folder: Path, limit: f
     if any(len(h[0]) == 0 for h in held) or len(looked_at) == 0:
         raise ProgramFailed("no nodes where it is held or looked at")
     with open(folder / "job.inp", "w") as out:
-        out.write("*NODE, NSET=all\n")   # of a number CalculiX reads 20 characters
+        out.write("*NODE, NSET=all\n")   # CalculiX reads 20 characters of a number
         out.writelines("%d, %.12g, %.12g, %.12g\n" % (i + 1, *p) for i, p in enumerate(nodes))
         out.write(f"*ELEMENT, TYPE={element}, ELSET=body\n")
         out.writelines(", ".join(map(str, [i + 1, *t])) + "\n" for i, t in enumerate(tets))

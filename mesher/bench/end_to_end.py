@@ -21,13 +21,13 @@ from processes import ProgramFailed, fetch_memory, pin_to_core
 from tables import exponent, machine, seconds, si, table, tets_text
 from tuning import SizeCache, size_for, tolerance
 
-# Closed, without acute creases, with sharp edges or smooth; all three meshers can do them.
+# Closed parts without acute creases, with sharp edges or smooth, which all three meshers can mesh.
 default_parts = ["joint.off", "spool.off", "plate_holes.STL", "handle.off", "itemb.off"]
 
 
 @dataclass
 class Cell:
-    """One mesher on one input at one count: medians over the rounds, or why there are none."""
+    """One mesher on one input at one count: medians over the rounds, or the reason why there are none."""
     runs: list[MeshRun] = field(default_factory=list)
     triangulation: list[float] = field(default_factory=list)
     failure: str = ""
@@ -41,7 +41,7 @@ class Cell:
 
 
 def measure(meshers, surface: Surface, target: int, options, cache: SizeCache) -> dict[str, Cell]:
-    """One table row each: search the sizes, then run in turn."""
+    """Measures a table row for each mesher: searches the sizes, then runs the programs in turn."""
     cells = {m.name: Cell() for m in meshers}
     sizes = {}
     for mesher in meshers:
@@ -98,7 +98,7 @@ main_header = ["input", "target", "mesher", "tets", "CPU s", "tets/s", "refineme
 
 
 def ratio_row(surface: Surface, target: int, cells: dict[str, Cell]) -> list[str]:
-    """Our refinement's speed over the peers', our time over bare triangulation."""
+    """Returns the ratio of our refinement's speed to the peers', and of our time to bare triangulation."""
     def speed(name: str) -> float | None:
         cell = cells.get(name)
         return None if cell is None or cell.failure else cell.tets / cell.median("refinement_cpu")

@@ -31,7 +31,7 @@ from processes import pin_to_core, run_limited
 from real_parts import cad_suffixes
 from tables import machine, table
 
-reference_share = 1e-4   # of the diagonal
+reference_share = 1e-4   # relative to the diagonal
 tessellate = """
 import sys
 sys.path += ["/usr/lib/freecad-python3/lib", "/usr/lib/freecad/lib"]
@@ -57,15 +57,15 @@ class Row:
     points: int = 0
     smallest: float = math.nan  # dihedral angle, degrees
     largest: float = math.nan
-    to_shape: float = math.nan  # largest distance over the diagonal
+    to_shape: float = math.nan  # largest distance, relative to the diagonal
     to_mesh: float = math.nan
     volume_off: float = math.nan   # relative difference, of all solids together
 
 
 @dataclass
 class Triangles:
-    points: np.ndarray      # n x 3
-    corners: np.ndarray     # m x 3, indices of points
+    points: np.ndarray      # shape (n, 3)
+    corners: np.ndarray     # shape (m, 3), indices of points
 
     def poly_data(self) -> vtk.vtkPolyData:
         data, points, cells = vtk.vtkPolyData(), vtk.vtkPoints(), vtk.vtkCellArray()
@@ -80,7 +80,7 @@ class Triangles:
         return float(np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6)
 
     def distance_of(self, points: np.ndarray) -> float:
-        """The largest distance of points to the triangles."""
+        """Returns the largest distance of points from the triangles."""
         measure = vtk.vtkImplicitPolyDataDistance()
         measure.SetInput(self.poly_data())
         found = vtk.vtkDoubleArray()
@@ -90,7 +90,7 @@ class Triangles:
 
 
 def lattice(n: int) -> tuple[np.ndarray, np.ndarray]:
-    """Barycentric coordinates of a triangle cut into n * n ones, and their corners."""
+    """Returns the barycentric coordinates of a triangle cut into n * n ones, and their corners."""
     index, points = {}, []
     for i in range(n + 1):
         for j in range(n + 1 - i):

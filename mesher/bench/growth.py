@@ -1,10 +1,8 @@
 #!/usr/bin/env python3
-"""Time against the number of acute features and against their spread.
-
-creases: grids of wedges and of fans, and a comb, ever more of them.
-spread: a small wedge above a large one, ever smaller.
-curves: a cube with ever shorter edges along its own, or along a segment across it, and nowhere else.
-Prints Markdown tables; with --plot FOLDER it draws them too (matplotlib)."""
+"""Measures time against the number of acute features and against their spread.
+creases: increasing numbers of wedges and fans in grids, and of teeth of a comb. spread: a small wedge above a
+large one, with decreasing size. curves: a cube with ever shorter edges along its own edges, or along a
+segment across it, and nowhere else. Prints Markdown tables; with --plot FOLDER also draws them (matplotlib)."""
 
 from __future__ import annotations
 
@@ -20,12 +18,12 @@ from processes import ProgramFailed, pin_to_core
 from tables import exponent, machine, seconds, si, table, tets_text
 from tuning import SizeCache
 
-size = 1.0   # the shapes are about 1
+size = 1.0   # the shapes have sizes of about 1
 
 
 @dataclass
 class Series:
-    """Inputs that differ in one number, and what came of them."""
+    """Inputs that differ in one number, and their results."""
     title: str
     inputs: dict[float, AcuteInput]
     runs: dict[float, MeshRun]
@@ -42,9 +40,9 @@ class Series:
 
 
 def crease_series(program: Path, largest: int) -> list[Series]:
-    """By the number of crease segments: one in a wedge of 40 degrees, one in a fan of 4 sheets (the sides of
-    two such wedges, 40 degrees between them), one in a fan of 8 sheets (all in grids of turned copies), one at
-    the tip of each tooth of a comb and none elsewhere. All teeth of a comb are on two facets."""
+    """Measures by the number of crease segments: one in a wedge of 40 degrees, one in a fan of 4 sheets (the
+    sides of two such wedges, 40 degrees between them), one in a fan of 8 sheets (all in grids of turned
+    copies), one at the tip of each tooth of a comb. All teeth of a comb are on two facets."""
     counts = [n for k in range(1, 6) for n in (10 ** k, 3 * 10 ** k) if n <= min(largest, 100000)]
     copies = [Series(title, {n: AcuteInput(program, family, parameters, n) for n in counts if n <= most}, {})
               for title, family, parameters, most in (("wedges of 40 degrees", "wedge", (40, 1), 100000),
@@ -87,8 +85,8 @@ class Cube:
 
 
 def curve_table(program: Path, time_limit: float, folder: Path) -> str:
-    """Beside a cube whose edges are as long as all others: what a tet and a cell of the triangulation, of
-    which there are some outside the regions, take in memory."""
+    """Measures the memory for a tet and for a cell of the triangulation (of which some are outside the
+    regions), beside a cube whose edges are as long as all others."""
     rows = []
     folder.mkdir(parents=True, exist_ok=True)
     fine = [2.0 ** -k for k in range(6, 13)]
@@ -152,7 +150,7 @@ def main() -> int:
     options = parser.parse_args()
     about = machine(options.build)
     pin_to_core(options.core)
-    # The most creases take more than half of the machine's memory.
+    # The largest numbers of creases take more than half of the machine's memory.
     mesher = Collarmesh(options.build / "bin" / "collarmesh", options.time_limit, ["--max-memory", "0"])
     program = options.build / "bin" / "acute_shape"
     folder = SizeCache().folder / "acute"

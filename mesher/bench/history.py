@@ -47,13 +47,13 @@ def processor() -> str:
 
 
 def commit(root: Path) -> str:
-    """With a mark where files differ from it."""
+    """Returns the commit, with a mark if files differ from it."""
     told = subprocess.run(["git", "describe", "--always", "--dirty=+"], cwd=root, capture_output=True, text=True)
     return told.stdout.strip() or "unknown"
 
 
 def speed_of_triangulation(program: Path, mesh: Path, folder: Path, time_limit: float) -> float:
-    """Cells per second."""
+    """Returns the speed in cells per second."""
     told = re.search(r"(\d+) finite cells, ([\d.]+) s", run([str(program), str(mesh)], folder, time_limit).output)
     return int(told.group(1)) / float(told.group(2))
 

@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
-"""Dihedral angles after improvement, beside TetGen -O, Gmsh with its own and with Netgen's optimizer and CGAL's
-Mesh_3 with perturbation and exudation, on the same surfaces at the same number of tetrahedra.
-
+"""Compares dihedral angles after improvement with TetGen -O, Gmsh with its own and with Netgen's optimizer,
+and CGAL's Mesh_3 with perturbation and exudation, on the same surfaces at the same number of tetrahedra.
 Prints a Markdown table: smallest and largest dihedral angle, the first percentile and the mean of the tets'
 smallest angles, the share of tets below 20 degrees, CPU seconds of the whole program. Angles are computed
 here, from the mesh files."""
@@ -26,9 +25,9 @@ header = ["input", "mesher", "tets", "smallest", "1st percentile", "mean", "larg
 
 
 def dihedral_angles(points: np.ndarray, tets: np.ndarray) -> np.ndarray:
-    """Degrees; one row of six per tet."""
+    """Returns dihedral angles in degrees, a row of six per tet."""
     corners = points[tets]
-    normals = []   # of the face opposite each corner, outwards or inwards alike
+    normals = []   # of the face opposite each corner, all outwards or all inwards
     for opposite in range(4):
         a, b, c = (corners[:, k] for k in range(4) if k != opposite)
         n = np.cross(b - a, c - a)

@@ -12,7 +12,7 @@ Corner = tuple[float, float, float]
 
 @dataclass
 class Surface:
-    """Polygons over points; loose points are points that no polygon uses."""
+    """A surface of polygons over points. Loose points are points that no polygon uses."""
     name: str
     points: list[Corner]
     polygons: list[list[int]] = field(default_factory=list)
@@ -70,7 +70,7 @@ class Surface:
             out.write("endsolid surface\n")
 
     def write_geo(self, path: Path) -> None:
-        """Writes a .geo file for Gmsh: the box as a solid, others as a classified surface."""
+        """Writes a .geo file for Gmsh: the box as a solid, other inputs as a classified surface."""
         if self.name == "box":
             path.write_text('SetFactory("OpenCASCADE");\nBox(1) = {0, 0, 0, 1, 1, 1};\n')
             return
@@ -87,13 +87,13 @@ class Surface:
 
 
 def classified(stl: str) -> str:
-    """A Gmsh model: the solid in a triangulated surface whose patches end at angles above 30 degrees."""
+    """Returns a Gmsh model: the solid in a triangulated surface whose patches end at angles above 30 degrees."""
     return (f'Merge "{stl}";\nClassifySurfaces{{30*Pi/180, 1, 1, Pi}};\nCreateGeometry;\n'
             "Surface Loop(1) = Surface{:};\nVolume(1) = {1};\n")
 
 
 def read_surface(path: Path) -> Surface:
-    """.off, .obj and binary .stl, as far as the corpus needs them."""
+    """Reads .off, .obj and binary .stl, as far as the corpus needs them."""
     readers = {".off": _read_off, ".obj": _read_obj, ".stl": _read_stl}
     if path.suffix.lower() not in readers:
         raise ValueError(f"{path}: not one of {' '.join(readers)}")
@@ -188,6 +188,6 @@ def sphere(frequency: int) -> Surface:
 
 
 def _turns_left(a: Corner, b: Corner, c: Corner) -> bool:
-    """Is abc counterclockwise when seen from outside a body around the origin?"""
+    """Returns whether abc is counterclockwise as seen from outside a body around the origin."""
     return (a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2])
             + a[2] * (b[0] * c[1] - b[1] * c[0])) > 0

@@ -1,4 +1,4 @@
-// The Delaunay kernel beside CGAL's: the same points in the same order.
+// The Delaunay kernel compared with CGAL's: the same points in the same order.
 #include <CGAL/Delaunay_triangulation_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <benchmark/benchmark.h>
@@ -18,7 +18,7 @@ using CellHandle = CgalTriangulation::Cell_handle;
 
 Kernel::Point_3 to_cgal(const Point& p) { return {p.x, p.y, p.z}; }
 
-/// Well away from the unit cube, as refinement's own box is from its input.
+/// Returns a box far around the unit cube, as the refinement's box is around its input.
 Box surrounding_box() {
   Box box;
   box.add(Point{-0.87, -0.89, -0.91});
@@ -26,8 +26,8 @@ Box surrounding_box() {
   return box;
 }
 
-/// Walk from `cell` towards p until a cell is in conflict with it. Rounded volumes decide where to
-/// go: a detour costs time only.
+/// Walks from `cell` towards p until a cell is in conflict with it. Rounded volumes decide the way: a detour
+/// only costs time.
 Index conflicting_cell(const Triangulation& mesh, Index cell, const Point& p) {
   FaceId entered = no_face;
   while (!mesh.in_conflict(cell, p)) {
@@ -95,8 +95,8 @@ void insertion_cgal(benchmark::State& state) {
   count_rates(state, points.size(), cells);
 }
 
-/// Points whose conflict zones are looked for: in the order of a space-filling curve too, so that
-/// the caches behave as they do in refinement.
+/// Returns points whose conflict zones are searched. They are in the order of a space-filling curve, too, so
+/// that the caches behave as in refinement.
 std::vector<Point> queries() { return spatially_sorted(random_points(20'000, 17)); }
 
 void conflict_zone(benchmark::State& state) {

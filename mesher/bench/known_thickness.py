@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""How thick rods, tubes, shells and roofs are in their meshes at default options, by rays: of the bodies that
-known_volumes.py writes as STEP files. A ray goes along the normal of the exact outer surface at a place drawn evenly, and the
-thickness is what lies between the first two places where it crosses the mesh's surface, curved faces cut into 16 triangles."""
+"""Measures the thickness of rods, tubes, shells and roofs in their meshes, at default options, for the bodies
+that known_volumes.py writes as STEP files. A ray starts at a random place of the exact outer surface, evenly
+distributed, and goes along the normal. The thickness is the distance between the first two places where it
+crosses the mesh's surface, with curved faces cut into 16 triangles."""
 
 from __future__ import annotations
 
@@ -20,7 +21,7 @@ from known_volumes import diagonal, side
 from processes import ProgramFailed, run
 from tables import table
 
-Rays = tuple[np.ndarray, np.ndarray]   # from outside the body, and unit vectors inwards
+Rays = tuple[np.ndarray, np.ndarray]   # starts outside the body, and unit vectors inwards
 
 
 def around_axis(radius: float, low: float, high: float, length: float, rng: np.random.Generator, count: int) -> Rays:
@@ -28,7 +29,7 @@ def around_axis(radius: float, low: float, high: float, length: float, rng: np.r
     angle = np.radians(rng.uniform(low, high, count))
     outwards = np.stack([np.zeros(count), np.cos(angle), np.sin(angle)], 1)
     start = 1.5 * radius * outwards
-    start[:, 0] = rng.uniform(0.02 * length, 0.98 * length, count)   # off the ends
+    start[:, 0] = rng.uniform(0.02 * length, 0.98 * length, count)   # away from the ends
     return start, -outwards
 
 
@@ -39,7 +40,7 @@ def around_centre(radius: float, rng: np.random.Generator, count: int) -> Rays:
 
 
 def member(name: str) -> tuple[float, Callable[[np.random.Generator, int], Rays]] | None:
-    """The thickness of a member of a family, and rays of it."""
+    """Returns the thickness of a member of a family, and rays for it."""
     family, _, number = name.rpartition("_")
     if family in ("rod", "tube"):
         r = float(number)
@@ -52,7 +53,7 @@ def member(name: str) -> tuple[float, Callable[[np.random.Generator, int], Rays]
 
 
 def first_two(triangles: Triangles, start: np.ndarray, way: np.ndarray) -> float:
-    """Between the first two crossings of a ray; NaN: there are fewer."""
+    """Returns the distance between the first two crossings of a ray; NaN if there are fewer."""
     a, b, c = (triangles.points[triangles.corners[:, k]] for k in range(3))
     across = np.cross(way, c - a)
     determinant = np.einsum("ij,ij->i", b - a, across)
@@ -62,7 +63,7 @@ def first_two(triangles: Triangles, start: np.ndarray, way: np.ndarray) -> float
         v = beside @ way / determinant
         at = np.einsum("ij,ij->i", c - a, beside) / determinant
         met = (u >= -1e-9) & (v >= -1e-9) & (u + v <= 1 + 1e-9) & (at > 0)
-    places = np.unique(np.round(at[met], 9))   # on an edge that two triangles share one place
+    places = np.unique(np.round(at[met], 9))   # crossings on an edge of two triangles count once
     return places[1] - places[0] if len(places) > 1 else math.nan
 
 

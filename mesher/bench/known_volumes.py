@@ -28,7 +28,7 @@ diagonal = 20.0             # so that the target edge length is 1
 side = diagonal / math.sqrt(3)   # of a cube with that diagonal
 cuts = {"coarse": 24, "fine": 96}   # edges per circle
 
-# Run by FreeCAD's Python: lines of "NAME EXPRESSION", an expression makes a list of solids.
+# The script for FreeCAD's Python. It reads lines of "NAME EXPRESSION"; an expression makes a list of solids.
 make_step = """
 import sys, json, math
 sys.path += ["/usr/lib/freecad-python3/lib", "/usr/lib/freecad/lib"]
@@ -55,19 +55,19 @@ for line in sys.stdin:
 
 @dataclass
 class Family:
-    """Members by name; each is written with the volumes of its regions beside it."""
+    """A family of bodies: members by name. Each is written with the volumes of its regions beside it."""
     folder: Path
     step: list[str] = field(default_factory=list)
     given: dict[str, list[float]] = field(default_factory=dict)
 
     def solids(self, name: str, expression: str, volumes: list[float] | None = None) -> None:
-        """Volumes are OpenCASCADE's unless given: it integrates waves badly."""
+        """Adds solids. Their volumes are OpenCASCADE's unless given, because it integrates waves badly."""
         self.step.append(f"{self.folder / name}.step {expression}")
         if volumes:
             self.given[f"{name}.step"] = volumes
 
     def shells(self, name: str, shells: list[Surface]) -> None:
-        """Closed surfaces, each inside the one before it; a region is what lies between two."""
+        """Adds closed surfaces, each inside the one before it; a region lies between two of them."""
         volumes = [s.volume for s in shells] + [0.0]
         self.surfaces(name, shells, [a - b for a, b in zip(volumes, volumes[1:])])
 
@@ -90,7 +90,8 @@ class Family:
 
 
 def turned(profile: list[tuple[float, float]], around: int, closed: bool = False) -> Surface:
-    """A profile of (x, radius) turned about the x axis; one that is not closed begins and ends on the axis."""
+    """Turns a profile of (x, radius) about the x axis. A profile that is not closed begins and ends on the
+    axis."""
     points, rows, polygons = [], [], []
     for x, radius in profile:
         rows.append([len(points) + k if radius else len(points) for k in range(around)])
@@ -182,7 +183,7 @@ def screw(radius: float, height: float, pitch: float, length: float, around: int
 
 
 def write_layers(family: Family, name: str, steps: int, heights: list[float], amplitude: float) -> None:
-    """A block cut by sheets that are waves; each layer is a region."""
+    """Writes a block cut by wavy sheets; each layer is a region."""
     grid = [[(side * (i / steps - 0.5), side * (j / steps - 0.5)) for j in range(steps + 1)] for i in range(steps + 1)]
     flat = (0, len(heights) - 1)
     index, points, polygons, volumes = {}, [], [], []
@@ -245,7 +246,7 @@ def write(folder: Path) -> None:
             family.shells(f"tube_{r}_{cut}", [tube(r, 0.9 * r, diagonal, around)])
         for t in (0.002, 0.01, 0.05, 0.2, 0.5):
             shell = [ball(ball_radius, around), ball(ball_radius - t, around)]
-            # The inner surface bounds a hollow: turned inside out.
+            # The inner surface bounds a hollow, so it is turned inside out.
             shell[1].polygons = [q[::-1] for q in shell[1].polygons]
             family.surfaces(f"hollow_ball_{t}_{cut}", shell, [shell[0].volume - shell[1].volume])
         for r in (0.01, 0.03, 0.1, 0.3):
@@ -277,7 +278,7 @@ class Row:
 
 
 def differences(made: list[float], known: list[float]) -> float:
-    """The largest relative difference; a region that is missing is off by 1."""
+    """Returns the largest relative difference of a region's volume; a missing region counts as 1."""
     if len(made) != len(known):
         return 1.0
     return max(abs(a / b - 1) for a, b in zip(sorted(made), sorted(known)))

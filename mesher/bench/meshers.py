@@ -1,7 +1,6 @@
-"""collarmesh and its peers behind one interface: a surface and a size in, measures out.
-
-The size parameter is a target edge length for all; where a mesher wants a volume it is that of the
-regular tetrahedron with this edge.
+"""collarmesh and its peers behind one interface: a surface and a size as input, measures as result.
+For all meshers the size is a target edge length. If a mesher takes a volume, it gets that of the regular
+tetrahedron with this edge.
 """
 
 from __future__ import annotations
@@ -25,18 +24,18 @@ class MeshRun:
     tets: int
     cpu: float                 # seconds of the whole program
     refinement_cpu: float      # seconds of what the mesher calls refinement
-    peak_bytes: int            # of the whole program
-    structure_bytes: int = 0   # what the mesher says its structures took; 0: says nothing
+    peak_bytes: int            # peak memory of the whole program
+    structure_bytes: int = 0   # memory of the structures by the mesher's output; 0: unknown
     stages: dict | None = None
     guarantee_missed: bool = False
-    cells: int = 0             # of the whole triangulation, outside the solid too; 0: says nothing
+    cells: int = 0             # number in the whole triangulation, including the outside; 0: unknown
     wall: float = 0            # seconds of the whole program
-    volume_wall: float = 0     # seconds of making the tets of a given surface and improving them; 0: not known
-    report: dict | None = None   # what collarmesh measured
+    volume_wall: float = 0     # seconds for making the tets of a given surface and improving them; 0: unknown
+    report: dict | None = None   # collarmesh's own measurements
 
     @property
     def meshing_cpu(self) -> float:
-        """Seconds of the whole program without the check of its result, which peers do not make."""
+        """Returns the seconds of the whole program without the check of its result, which peers do not make."""
         return self.cpu - (self.stages or {}).get("check", 0)
 
 
@@ -49,7 +48,7 @@ def _number(pattern: str, text: str) -> float:
 
 class Collarmesh:
     mesh_file = "mesh.msh"
-    guarantee_missed = 7   # exit code: there is a mesh, but it is not certified
+    guarantee_missed = 7   # exit code: the mesh was written but misses a guarantee
 
     def __init__(self, program: Path, time_limit: float, arguments: list[str] | None = None, improve: int = 0,
                  name: str = "collarmesh"):
@@ -62,7 +61,7 @@ class Collarmesh:
         return printed.stdout.strip().replace("collarmesh ", "")
 
     def signature(self) -> str:
-        """Changes when the meshes may change."""
+        """Returns a text that changes when the meshes may change."""
         state = self.program.stat()
         return f"{state.st_size}-{state.st_mtime_ns} {' '.join(self.arguments)}"
 
@@ -75,7 +74,7 @@ class Collarmesh:
                    "--progress", "none", "-q", *self.arguments]
         measured = run(command, folder, self.time_limit, accepted=(0, self.guarantee_missed))
         report = json.loads((folder / "report.json").read_text())
-        # The report has wall seconds; the share of the core we had turns them into CPU seconds.
+        # The report has wall seconds; the share of the core that the program had turns them into CPU seconds.
         share = min(1.0, measured.cpu / measured.wall)
         stages = {stage: seconds * share for stage, seconds in report["seconds"].items()}
         return MeshRun(report["mesh"]["tets"], measured.cpu, stages["refine"], measured.peak_bytes,
@@ -93,7 +92,7 @@ class Collarmesh:
 
 class TetGen:
     name = "TetGen"
-    mesh_file = "input.1.mesh"   # with the switch g
+    mesh_file = "input.1.mesh"   # written with the switch g
 
     def __init__(self, time_limit: float, program: str = "tetgen", quality: str = "1.414", switches: str = ""):
         self.program, self.time_limit, self.quality, self.switches = program, time_limit, quality, switches
@@ -146,13 +145,14 @@ class Gmsh:
 
     @staticmethod
     def _count(output: str) -> str:
-        """HXT alone says how many tets there are, the others how many elements of all dimensions."""
+        """Returns the number of tets. Only HXT prints it; the other algorithms print the number of elements
+        of all dimensions."""
         hxt = r"Final tet. mesh contains (\d+) tetrahedra"
         return hxt if re.search(hxt, output) else r"\d+ nodes (\d+) elements"
 
 
 class CgalMesh3:
-    """CGAL's Mesh_3 by the program cgal_mesh, with perturbation and exudation."""
+    """CGAL's Mesh_3, by the program cgal_mesh, with perturbation and exudation."""
     name = "CGAL Mesh_3"
     mesh_file = "mesh.mesh"
 
@@ -176,7 +176,7 @@ class CgalMesh3:
 
 
 def gmsh_part_command(part: Path, out: str, order: int = 1) -> list[str]:
-    """Meshes a CAD file or a surface by Gmsh's Python module; without the module this program ends here."""
+    """Meshes a CAD file or a surface by Gmsh's Python module. Ends this program if the module is missing."""
     if importlib.util.find_spec("gmsh") is None:
         sys.exit("Gmsh's Python module is missing: install python3-gmsh, and run this with the Python that has it")
     return [sys.executable, str(Path(__file__).resolve().with_name("gmsh_part.py")), str(part), out, str(order)]
@@ -190,6 +190,6 @@ def debian_version(package: str) -> str:
 
 
 def triangulation_seconds(program: Path, mesh: Path, time_limit: float) -> float:
-    """CPU seconds of CGAL's Delaunay triangulation of a mesh's vertices."""
+    """Returns the CPU seconds of CGAL's Delaunay triangulation of a mesh's vertices."""
     measured: Measured = run([str(program), str(mesh)], mesh.parent, time_limit)
     return _number(r"([\d.e+-]+) s", measured.output)

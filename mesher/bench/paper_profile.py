@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""The paper's profile (--profile paper: every hypothesis of the proofs and nothing else) beside the default and beside
---coarsen off, over acute families and clean shapes, with a size that asks for nothing: tets, vertices, angles, CPU
-seconds, and the counts that the paper's lemmas bound. Prints a Markdown table."""
+"""Compares the paper's profile (--profile paper: every hypothesis of the proofs and nothing else) with the
+defaults and with --coarsen off, over acute families and clean shapes, with a size so large that it has no
+effect: tets, vertices, angles, CPU seconds, and the counts that the paper's lemmas bound. Prints a Markdown
+table."""
 
 from __future__ import annotations
 
@@ -17,7 +18,7 @@ from processes import ProgramFailed, pin_to_core
 from tables import machine, seconds, si, table, tets_text
 from tuning import SizeCache
 
-size = 10   # the shapes are about 1
+size = 10   # the shapes have sizes of about 1
 acute: list[tuple] = [
     ("wedge", 80, 1), ("wedge", 40, 1), ("wedge", 20, 1), ("wedge",
                                                            5, 1), ("wedge", 2, 1), ("wedge_on_a_large_one", 20, 1e-4),
@@ -29,7 +30,7 @@ acute: list[tuple] = [
 clean: list[tuple] = [("wedge", 90, 1), ("fan", 3, 0), ("skew_zigzags",
                                                         200, 135), ("helices", 200), ("torus_knot", 200)]
 ways = {"default": (2, []), "--coarsen off": (2, ["--coarsen", "off"]), "--profile paper": (0, ["--profile", "paper"])}
-counted = ("--coarsen off", "--profile paper")   # the default refines as --coarsen off does, but for narrow places
+counted = ("--coarsen off", "--profile paper")   # the defaults refine as --coarsen off does, except in narrow places
 
 
 @dataclass
@@ -40,7 +41,8 @@ class Total:
 
 
 def mesh_text(run: MeshRun) -> str:
-    """Tets; vertices; dihedral angles outside collars and in them; largest radius-edge ratio outside; CPU seconds."""
+    """Returns: tets; vertices; dihedral angles outside collars and in them; largest radius-edge ratio
+    outside; CPU seconds."""
     check = run.report["check"]
     parts = [tets_text(run), si(check["points"])]
     if check["collar_tets"] < check["tets"]:
@@ -53,8 +55,8 @@ def mesh_text(run: MeshRun) -> str:
 
 
 def counts_text(run: MeshRun) -> str:
-    """Peak cells per vertex; largest cavity outside hubs; largest R_v / r_v; looks for each object; cells for each gap
-    query; vertices that came too early."""
+    """Returns: peak cells per vertex; largest cavity outside hubs; largest R_v / r_v; looks per object; cells
+    per gap query; vertices inserted too early."""
     counts = run.report["statistics"]["counts"]
     aspect, queries = counts["largest_aspect"], counts["gap_queries"]
     return "; ".join([f"{counts['peak_cells_per_vertex']:.1f}", si(counts["largest_cavity_outside_hubs"]),

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""How evenly and with how few cut faces `--partitions` divides meshes, beside Scotch's own program (scotch_gpart
-with its defaults, Debian's package scotch; the median of five runs, which all differ) and Gmsh's METIS
-(gmsh -part). All divide the same mesh. Cut faces and sizes are counted here, by the corners of the tetrahedra.
-
-    partitions.py [--program build/release/bin/collarmesh]"""
+"""Measures how evenly `--partitions` divides meshes and how many faces it cuts, compared with Scotch's own
+program (scotch_gpart with its defaults, Debian's package scotch; the median of five runs, which all differ)
+and Gmsh's METIS (gmsh -part). All divide the same mesh. Cut faces and sizes are counted here, by the corners
+of the tetrahedra.
+partitions.py [--program build/release/bin/collarmesh]"""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from tables import si, table
 sources = Path(__file__).resolve().parents[2]
 models = sources / "resources" / "models"
 partition_counts = (2, 4, 8, 16, 64)
-inputs = {  # with the options of their meshes
+inputs = {  # with the options for their meshes
     "box": ("box.off", "--size", "0.082"),
     "bracket": ("bracket.off", "--size", "3"),
     "bracket, finer": ("bracket.off", "--size", "1.2"),
@@ -38,7 +38,7 @@ def run(*command) -> str:
 
 
 def tetrahedra(path: Path) -> tuple[np.ndarray, np.ndarray | None]:
-    """Corners of the tetrahedra of a .vtu file, (m, 4), and their partitions, (m,)."""
+    """Returns the corners (m, 4) and partitions (m,) of the tetrahedra of a .vtu file."""
     mesh = meshio.read(path)
     return mesh.cells_dict["tetra"], mesh.cell_data_dict.get("partition", {}).get("tetra")
 
@@ -55,7 +55,7 @@ def pairs_with_a_face(tets: np.ndarray) -> np.ndarray:
 
 
 def write_graph(path: Path, tets: int, pairs: np.ndarray) -> None:
-    """Scotch's format of graphs (its user's guide, "Graph files")."""
+    """Writes a graph in Scotch's format (its user's guide, "Graph files")."""
     neighbours: list[list[int]] = [[] for _ in range(tets)]
     for t, u in pairs.tolist():
         neighbours[t].append(u)
@@ -75,7 +75,7 @@ def by_scotch(graph: Path, partitions: int, tets: int) -> np.ndarray:
 
 
 def by_gmsh(mesh: Path, partitions: int) -> tuple[np.ndarray, np.ndarray]:
-    """The tetrahedra in Gmsh's own order: corners, (m, 4), and partitions, (m,)."""
+    """Returns corners (m, 4) and partitions (m,) of the tetrahedra, in Gmsh's own order."""
     out = mesh.with_name("by_gmsh.msh")
     run("gmsh", mesh, "-0", "-part", partitions, "-part_no_topo", "-save_all", "-format", "msh22", "-o", out)
     corners, found = [], []
@@ -89,7 +89,7 @@ def by_gmsh(mesh: Path, partitions: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def judged(partition: np.ndarray, pairs: np.ndarray, partitions: int) -> tuple[int, float]:
-    """Cut faces, and by how much the largest exceeds the mean."""
+    """Returns the number of cut faces, and by how much the largest partition exceeds the mean."""
     sizes = np.bincount(partition, minlength=partitions)
     assert len(sizes) == partitions and partition.min() >= 0
     cut = int((partition[pairs[:, 0]] != partition[pairs[:, 1]]).sum())

@@ -15,8 +15,8 @@ import tempfile
 
 import numpy as np
 
-DIGITS = 12  # vertices are rounded to these, so that opposite faces are images of each other
-ROUNDING = 1e-14  # of places on faces of the unit cube
+DIGITS = 12  # vertices are rounded to this many digits, so that opposite faces are images of each other
+ROUNDING = 1e-14  # rounding of places on faces of the unit cube
 
 
 def grain_polygons(seeds):
@@ -40,8 +40,8 @@ def grain_polygons(seeds):
     for i, point in enumerate(points):
         if np.any(point < -0.7) or np.any(point > 1.7):
             continue
-        # Half spaces n . x <= d: bisectors of the nearest points, and the cube. A bisector is the same number for
-        # both of its points.
+        # Half spaces n . x <= d: bisectors to the nearest points, and the cube. The bisector of two points
+        # has the same number for both.
         near = np.argsort(np.linalg.norm(points - point, axis=1), kind="stable")[1:80]
         planes = [(points[j] - point, 0.5 * (points[j] @ points[j] - point @ point), j) for j in near]
         for axis in range(3):
@@ -61,7 +61,7 @@ def grain_polygons(seeds):
 
 
 def polygon_of(n, d, others):
-    """The part of a plane within half spaces, or None."""
+    """Returns the part of a plane within half spaces, or None."""
     length = np.linalg.norm(n)
     n, d = n / length, d / length
     u = np.cross(n, np.eye(3)[np.argmin(np.abs(n))])
@@ -85,7 +85,8 @@ def polygon_of(n, d, others):
 
 
 def write_grains(path, grains, seed):
-    """A unit cube of so many grains, periodic in all directions, as a complex with a region for each grain."""
+    """Writes a unit cube of `grains` grains, periodic in all directions, as a complex with a region for each
+    grain."""
     rng = np.random.default_rng(seed)
     seeds = rng.random((grains, 3))
     polygons, vertices = grain_polygons(seeds)
@@ -97,7 +98,7 @@ def write_grains(path, grains, seed):
     shifts = np.array(list(itertools.product((-1, 0, 1), repeat=3)), float)
     regions = []
     for k, point in enumerate(seeds):
-        # A grain that the cube's faces cut has a part for each of its images that reaches in.
+        # A grain that the cube's faces cut has a part for each of its images that reaches into the cube.
         for shift in shifts:
             inside = region_point(point + shift, np.concatenate([seeds + s for s in shifts]))
             if inside is not None:
@@ -108,7 +109,8 @@ def write_grains(path, grains, seed):
 
 
 def region_point(point, points):
-    """A point in the cube whose nearest of all points is this one, well inside, or None."""
+    """Returns a point in the cube that is nearest to `point` among all points, and well inside its grain; or
+    None."""
     rng = np.random.default_rng(1)
     samples = np.concatenate([[point], np.clip(point, 0.01, 0.99) + 0.15 * rng.standard_normal((400, 3))])
     best, most = None, 0.0
@@ -125,7 +127,7 @@ def region_point(point, points):
 
 
 def write_spheres(path, spheres, radius, seed):
-    """A unit cube with so many spheres of equal radius, which do not touch, periodic, as a CAD shape."""
+    """Writes a unit cube with `spheres` spheres of equal radius that do not touch, periodic, as a CAD shape."""
     import gmsh
 
     rng = np.random.default_rng(seed)
@@ -133,7 +135,8 @@ def write_spheres(path, spheres, radius, seed):
     centres = []
     while len(centres) < spheres:
         p = rng.random(3)
-        # Not nearly tangent to the cube's faces, edges and corners, where slivers of material would be left.
+        # Avoids spheres that nearly touch the cube's faces, edges and corners, where slivers of material
+        # would be left.
         walls = np.minimum(p, 1 - p)
         edges = [np.hypot(walls[a], walls[b]) for a, b in ((0, 1), (1, 2), (2, 0))]
         if any(abs(d - radius) < 0.15 * radius for d in (*walls, *edges, np.linalg.norm(walls))):
@@ -183,7 +186,8 @@ class Mesh:
 
 
 def verify(mesh):
-    """Opposite faces of the unit cube have the same points, edges and triangles, with one tag for each: by places alone."""
+    """Checks, by places alone, that opposite faces of the unit cube have the same points, edges and
+    triangles, with one tag for each."""
     for axis in range(3):
         image = mesh.images(axis)
         for kind in ("triangle", "line"):
@@ -201,7 +205,8 @@ def verify(mesh):
 
 
 def conductivity(mesh, of_tag):
-    """The homogenized conductivity of a cell whose regions conduct so well, by elements of first order."""
+    """Returns the homogenized conductivity of a cell with these conductivities of regions, by elements of
+    first order."""
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import connected_components
     from scipy.sparse.linalg import spsolve
@@ -236,7 +241,7 @@ def conductivity(mesh, of_tag):
 
 
 def hashin_shtrikman(share, inclusion, matrix):
-    """Bounds on the conductivity of two phases, of which inclusions have this share of the volume."""
+    """Returns bounds on the conductivity of two phases; inclusions have this share of the volume."""
     low, high = sorted((inclusion, matrix))
     share_of_high = share if high == inclusion else 1 - share
     return (low + share_of_high / (1 / (high - low) + (1 - share_of_high) / (3 * low)),
@@ -244,7 +249,8 @@ def hashin_shtrikman(share, inclusion, matrix):
 
 
 def homogenize(kind, mesh):
-    """The conductivity, ten in spheres and one around them, or one to ten by grain, within bounds of its kind."""
+    """Returns the conductivity, with ten in spheres and one around them, or one to ten by grain; checks it
+    against bounds."""
     if kind == "grains":
         made, low, high, _, _ = conductivity(mesh, lambda tag: 1 + 9 * (tag * 7 % 12) / 11)
     else:
@@ -256,7 +262,7 @@ def homogenize(kind, mesh):
 
 
 def run(program, path, *options):
-    """The report of a run, its CPU seconds, and what the program said; the mesh, where there is one."""
+    """Returns the report of a run, its CPU seconds, the program's messages, and the mesh, if there is one."""
     with tempfile.TemporaryDirectory() as folder:
         report = pathlib.Path(folder) / "report.json"
         before = resource.getrusage(resource.RUSAGE_CHILDREN)

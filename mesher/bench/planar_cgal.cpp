@@ -1,6 +1,6 @@
 // A planar domain by CGAL's Delaunay refinement (Ruppert's algorithm, with Shewchuk's changes), for
 // planar_domains.py. Standard input: the number of points, their coordinates; of segments, their two points;
-// of holes, a point in each. Arguments: the smallest angle asked for, degrees, and the longest edge, 0: any.
+// of holes, a point in each. Arguments: the required smallest angle in degrees, and the longest edge, 0: any.
 // Prints the smallest and largest angle, the number of triangles, and the seconds.
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Delaunay_mesh_face_base_2.h>

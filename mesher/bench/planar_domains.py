@@ -17,7 +17,8 @@ ANGLE = 20.7
 
 
 class Domain:
-    """Loops of points, the first one around the others, which are holes with a point in each; segments inside."""
+    """A domain: loops of points, of which the first one surrounds the others; these are holes with a point in
+    each. May have segments inside."""
 
     def __init__(self, name, source, outline, holes=(), inside=()):
         self.name, self.source, self.outline = name, source, outline
@@ -31,7 +32,7 @@ class Domain:
         return math.hypot(max(xs) - min(xs), max(ys) - min(ys))
 
     def numbered(self):
-        """All points, and the segments between their numbers; points at one place are one."""
+        """Returns all points, and the segments by the points' numbers; points at the same place are merged."""
         number, segments = {}, []
         for loop in self.loops():
             ids = [number.setdefault(p, len(number)) for p in loop]
@@ -41,12 +42,12 @@ class Domain:
         return list(number), segments
 
     def poly(self):
-        """One facet of TetGen's format."""
+        """Returns the domain as one facet in TetGen's format."""
         points, _ = self.numbered()
         number = {p: i + 1 for i, p in enumerate(points)}
         polygons = [[number[p] for p in loop] for loop in self.loops()]
         polygons += [[number[a], number[b]] for a, b in self.inside] + [[i + 1]
-                                                                        for i in range(len(points))]  # all are kept
+                                                                        for i in range(len(points))]  # keeps all of them
         lines = [f"{len(points)} 3 0 0"] + [f"{i + 1} {x!r} {y!r} 0" for i, (x, y) in enumerate(points)]
         lines += ["1 0", f"{len(polygons)} {len(self.holes)}"] + \
             [f"{len(p)} " + " ".join(map(str, p)) for p in polygons]
@@ -76,7 +77,7 @@ def letter():
 
 
 def wavy(radius, waves, count):
-    """A closed outline by radii: [(number of waves, share, phase)]."""
+    """Returns a closed outline by its radii: [(number of waves, share, phase)]."""
     points = []
     for i in range(count):
         a = 2 * math.pi * i / count
@@ -169,7 +170,7 @@ def snowflake():
 
 
 def cracked_square():
-    """Segments inside, two of which meet at 9 degrees."""
+    """A square with segments inside, two of which meet at 9 degrees."""
     tip = (5.0, 5.0)
     return Domain("square with cracks", "segments inside, a small angle", [(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0)],
                   inside=[(tip, (8.5, 5.0)), (tip, (8.5, 5.55)), (tip, (2.0, 7.5)), ((3.0, 2.0), (7.0, 2.2))])
@@ -179,7 +180,7 @@ DOMAINS = (letter, lake, guitar, bolted_plate, spiral, comb, gear, airfoil, snow
 
 
 def angles_of(path):
-    """Smallest, largest, and the number of triangles, of a binary STL file."""
+    """Returns the smallest and the largest angle, and the number of triangles, of a binary STL file."""
     data = path.read_bytes()
     least, largest, count = 180.0, 0.0, struct.unpack_from("<I", data, 80)[0]
     for i in range(count):

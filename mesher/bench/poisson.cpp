@@ -22,7 +22,7 @@ using testing::Solution;
 
 bool is_near(double x, double y) { return std::fabs(x - y) < 1e-6; }
 
-// u = sin(a x + 0.3) cos(b y) on 10 by 10; given at the four sides.
+// u = sin(a x + 0.3) cos(b y) on a plate of 10 by 10; values are given at the four sides.
 Solution on_plate() {
   constexpr double a = 0.6, b = 0.5;
   const auto value = [](const Point& p) { return std::sin(a * p.x + 0.3) * std::cos(b * p.y); };
@@ -37,7 +37,7 @@ Solution on_plate() {
           }};
 }
 
-// u = cos(2 phi) sin(b z + 0.2) around the z axis; given at the ends z = 0 and z = 10.
+// u = cos(2 phi) sin(b z + 0.2) around the z axis; values are given at the ends z = 0 and z = 10.
 Solution on_shell() {
   constexpr double b = 0.4;
   const auto value = [](const Point& p) {
@@ -54,8 +54,8 @@ Solution on_shell() {
           [](const Point& p) { return is_near(p.z, 0) || is_near(p.z, 10); }};
 }
 
-// u = exp(-a r^2) cos(b z) around the z axis, which is the edge; given at the back x = 10 and at the ends z =
-// 0 and z = 4.
+// u = exp(-a r^2) cos(b z) around the z axis, which is the edge; values are given at the back x = 10 and at
+// the ends z = 0 and z = 4.
 Solution on_wedge() {
   constexpr double a = 0.05, b = 0.4;
   const auto squared_radius = [](const Point& p) { return p.x * p.x + p.y * p.y; };

@@ -16,15 +16,16 @@ from processes import ProgramFailed, pin_to_core
 from tables import exponent, machine, seconds, si, table
 from tuning import SizeCache
 
-size = 2.0   # the box is a unit cube: the mesh is what the features force
-# Family, further parameters by the number n, and by how much n differs: some make n^2 vertices of n segments.
+size = 2.0   # the box is a unit cube, so only the features determine the mesh
+# Family, further parameters for the number n, and the factor between values of n: some families make n^2
+# vertices of n segments.
 families: list[tuple] = [
     ("skew_zigzags", lambda n: (135,), 1), ("skew_zigzags", lambda n: (45,), 1), ("skew_combs", lambda n: (), 0.1),
     ("helices", lambda n: (), 0.3), ("torus_knot", lambda n: (), 1), ("random_walk", lambda n: (1,), 1),
     ("box_frames", lambda n: (1,), 1), ("graph", lambda n: (1,), 1), ("welded_mesh", lambda n: (), 1),
     ("crossed_wires", lambda n: (1,), 0.05), ("crossed_wires", lambda n: (n / 4,), 0.05),
     ("crossed_strips", lambda n: (1,), 0.02), ("outlines", lambda n: (), 1), ("star", lambda n: (1,), 0.1)]
-squared = ("crossed_wires", "crossed_strips")   # these make n^2 vertices: n grows by the root of the factor
+squared = ("crossed_wires", "crossed_strips")   # these families make n^2 vertices, so n grows by the root of the factor
 names = {("skew_zigzags", (45,)): "skew zigzags, creases", ("crossed_wires", (1,)): "crossed wires, near"}
 
 
@@ -45,7 +46,8 @@ def measure(mesher: Collarmesh, shape: AcuteInput, folder: Path) -> MeshRun | st
 
 
 def counts_of(run: MeshRun) -> list[str]:
-    """An older version counts less: of all vertices, hubs included, and not how large the mesh is meanwhile."""
+    """Returns the counts of a run. An older version counts less: over all vertices, hubs included, and not
+    the size of the mesh meanwhile."""
     counts = run.report["statistics"]["counts"]
     peak, early = counts.get("peak_cells_per_vertex"), counts.get("before_quality")
     looks = counts.get("looks")
@@ -56,7 +58,7 @@ def counts_of(run: MeshRun) -> list[str]:
 
 
 def cells_of(run: MeshRun | str, before: MeshRun | str | None) -> list[str]:
-    """Vertices, seconds, the slope of these over those, counts."""
+    """Returns table cells: vertices, seconds, the slope of seconds over vertices, counts."""
     if isinstance(run, str):
         return ["", run, "", "", "", "", ""]
     vertices = run.report["statistics"]["vertices_inserted"]

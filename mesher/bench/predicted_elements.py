@@ -28,14 +28,14 @@ from tables import machine, seconds, table
 sizes_per_diagonal = 20
 fitted_every = 4
 memory = int(12e9)
-near = 1.4   # a factor either way
+near = 1.4   # largest factor, in either direction, that counts as near
 
 
 @dataclass
 class Made:
     file: str
     order: int
-    share: float         # of the default size
+    share: float         # size relative to the default
     exit_code: int
     size: float = 0
     tets: int = 0
@@ -45,7 +45,7 @@ class Made:
 @dataclass
 class Pair:
     made: Made
-    tets: float          # predicted
+    tets: float          # predicted number of tets
     seconds: float
     fitted: bool
 
@@ -90,7 +90,7 @@ def mesh(path: Path, order: int, share: float, default: float | None, folder: Pa
 
 
 def predict(path: Path, order: int, sizes: list[float], folder: Path, options) -> tuple[list[dict], float]:
-    """The predictions, and the CPU seconds that they took beyond reading the part."""
+    """Returns the predictions, and the CPU seconds that they took in addition to reading the part."""
     command = [str(options.program), "info", str(path), "--json"]
     wishes = ["--order", str(order), "--predict", ",".join(repr(size) for size in sizes)]
     alone = run_limited(command, folder, options.limit, memory)

@@ -1,4 +1,4 @@
-"""Run a program and measure it: CPU seconds, wall seconds, peak memory."""
+"""Runs a program and measures it: CPU seconds, wall seconds, peak memory."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pathlib import Path
 
 
 class ProgramFailed(Exception):
-    """A program ended with an error, was killed or spent its time."""
+    """Raised if a program ended with an error, was killed or used up its time."""
 
 
 @dataclass
@@ -26,7 +26,7 @@ class Measured:
 
 
 def pin_to_core(core: int | None) -> None:
-    """This process and all it starts run on one core: the last one we may use unless named."""
+    """Runs this process and its children on one core: the given one or the last one that is permitted."""
     allowed = sorted(os.sched_getaffinity(0))
     os.sched_setaffinity(0, {allowed[-1] if core is None else core})
 
@@ -47,15 +47,17 @@ for _ in range(int(sys.argv[1]) // block):
 
 
 def fetch_memory(most: int = 4 << 30) -> None:
-    """Use up to so many bytes, and give them back. A virtual machine fetches memory that was not used for a while from
-    its host, slowly (2.4 s for a gigabyte, 0.05 afterwards): a run that is measured next finds it there. A process of its
-    own does it, as programs inherit the largest resident set of the one that starts them."""
+    """Uses up to this many bytes of memory and returns them. A virtual machine gets memory that was unused
+    for a while slowly from its host (2.4 s for a gigabyte, 0.05 s the next time), so the run that is measured
+    next finds it ready. A separate process does this, because programs inherit the largest resident set of
+    their parent."""
     free = os.sysconf("SC_AVPHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     subprocess.run([sys.executable, "-c", use_memory, str(min(most, free * 3 // 4))], check=True)
 
 
 def run(command: list[str], folder: Path, time_limit: float, accepted: tuple[int, ...] = (0,)) -> Measured:
-    """Raises ProgramFailed with the first line of output that tells an error, or the last one, unless the exit code is an accepted one."""
+    """Runs a command. Raises ProgramFailed, with the first line of output that looks like an error or else
+    the last line, unless the exit code is an accepted one."""
     log = folder / "output.txt"
     begin = time.perf_counter()
     with open(log, "wb") as out:
@@ -79,8 +81,9 @@ def run(command: list[str], folder: Path, time_limit: float, accepted: tuple[int
 
 
 def run_limited(command: list[str], folder: Path, cpu_limit: int, memory_limit: int) -> Measured:
-    """Whatever the exit code is; negative: the signal that ended the program. The limits are CPU seconds and bytes of
-    address space; the program is killed, too, when it waits for ten times its CPU seconds."""
+    """Runs a command with limits; any exit code is accepted, and a negative one is the signal that ended the
+    program. The limits are CPU seconds and bytes of address space. The program is also killed if its wall
+    time exceeds ten times its CPU limit."""
     def limit() -> None:
         resource.setrlimit(resource.RLIMIT_CPU, (cpu_limit, cpu_limit + 1))
         resource.setrlimit(resource.RLIMIT_AS, (memory_limit, memory_limit))

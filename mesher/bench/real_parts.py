@@ -35,7 +35,7 @@ from tables import machine, seconds, table
 cad_suffixes = (".step", ".stp", ".brep", ".iges", ".igs")
 surface_suffixes = (".stl", ".obj", ".off", ".ply")
 outcomes = ("meshed", "guarantee missed", "unusable mesh", "refused", "past the limit", "crashed")
-size_share = 20   # the diagonal over this is the size
+size_share = 20   # the diagonal divided by the size
 
 
 @dataclass
@@ -49,9 +49,9 @@ class Row:
     smallest: float = math.nan       # dihedral angle, degrees
     tenth: float = math.nan          # 10th percentile of the tets' smallest dihedral angles
     largest: float = math.nan
-    volume: float = math.nan         # of the mesh
-    input_volume: float = math.nan   # that a surface's triangles enclose, or of a CAD file's solids
-    told: str = ""                   # the error
+    volume: float = math.nan         # volume of the mesh
+    input_volume: float = math.nan   # volume enclosed by a surface's triangles, or of a CAD file's solids
+    told: str = ""                   # error message
 
 
 class Part:
@@ -135,12 +135,12 @@ class WrapProgram:
 
 
 def outcome_of(measured: Measured, cpu_limit: int) -> str:
-    """As far as the exit code and the output tell."""
+    """Returns the outcome, as far as the exit code and the output show it."""
     ended_by = -measured.exit_code if measured.exit_code < 0 else 0
     out_of_memory = re.search(r"bad_alloc|out of memory|cannot allocate", measured.output, re.IGNORECASE)
     if ended_by == signal.SIGXCPU or out_of_memory or ended_by == signal.SIGKILL and measured.cpu >= 0.9 * cpu_limit:
         return "past the limit"
-    # Debian's TetGen throws the number of its error, which nothing catches: 3 when facets intersect, 4 at features
+    # Debian's TetGen throws the number of its error without catching it: 3 if facets intersect, 4 at features
     # too small for it.
     if ended_by == signal.SIGABRT and "throwing an instance of 'int'" in measured.output:
         return "refused"
@@ -154,7 +154,7 @@ def last_error(output: str) -> str:
 
 
 def orientation(corners: np.ndarray) -> Fraction:
-    """Six times the volume, exactly."""
+    """Returns six times the volume, exactly."""
     first, *others = ([Fraction(float(x)) for x in corner] for corner in corners)
     a, b, c = ([x - y for x, y in zip(corner, first)] for corner in others)
     return (a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2])
@@ -162,8 +162,8 @@ def orientation(corners: np.ndarray) -> Fraction:
 
 
 def measure(row: Row, mesh_file: Path) -> None:
-    """Fills in what the mesh is, and the outcome when it has no tets or bad ones."""
-    # meshio takes coordinates of version 1 for single precision, whatever their digits.
+    """Fills in the measures of the mesh, and the outcome if it has no tets or bad ones."""
+    # meshio treats coordinates of version 1 as single precision, however many digits they have.
     mesh_file.write_text(re.sub(r"(MeshVersionFormatted\s+)1", r"\g<1>2", mesh_file.read_text(), count=1))
     cells = meshio.read(mesh_file)
     tets = np.concatenate([np.empty((0, 4), int), *(c.data for c in cells.cells if c.type == "tetra")])
@@ -173,7 +173,7 @@ def measure(row: Row, mesh_file: Path) -> None:
         return
     corners = cells.points[:, :3][tets]
     volumes = np.linalg.det(corners[:, 1:] - corners[:, :1]) / 6
-    turned = -1 if volumes.sum() < 0 else 1   # a format whose tets turn the other way
+    turned = -1 if volumes.sum() < 0 else 1   # this format's tets have the opposite orientation
     row.volume = abs(volumes.sum())
     with np.errstate(all="ignore"):
         angles = dihedral_angles(cells.points[:, :3], tets)
@@ -257,7 +257,7 @@ def wrong_volume(row: Row, expected: float) -> bool:
 
 
 def comparison_table(rows: list[Row], kind: str, names: list[str]) -> str:
-    """Each peer beside ours, medians over the files that both meshed."""
+    """Returns a table that compares each peer with us: medians over the files that both meshed."""
     def meshed(name: str) -> dict[str, Row]:
         return {row.file: row for row in rows if (row.kind, row.mesher, row.outcome) == (kind, name, "meshed")}
 

@@ -1,4 +1,4 @@
-// Complex and refinement alone, without certificate and output: what profile.sh looks at.
+// Builds a complex and refines it, without certificate and output, for profile.sh.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>

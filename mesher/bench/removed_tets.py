@@ -26,9 +26,9 @@ class Costs:
     part: str
     made: int
     left: int
-    removing: float       # microseconds for each tetrahedron removed
-    making: float         # for each made, by refinement
-    making_good: float    # for each refined and improved, with --coarsen off
+    removing: float       # microseconds per removed tetrahedron
+    making: float         # microseconds per tetrahedron made by refinement
+    making_good: float    # microseconds per tetrahedron refined and improved, with --coarsen off
 
     @property
     def over_making(self) -> float:

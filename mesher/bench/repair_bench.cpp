@@ -1,5 +1,5 @@
-// Repair of spheres that run through their neighbours in a cubic lattice, each turned another way, and what
-// it costs where nothing is wrong.
+// Repair of spheres that intersect their neighbours in a cubic lattice, each turned differently; and its cost
+// for valid input.
 #include <benchmark/benchmark.h>
 
 #include <array>
@@ -27,7 +27,7 @@ void add(PolygonSoup& soup, const PolygonSoup& part, double turn, const Vector& 
   }
 }
 
-/// side^3 spheres of 4 * rings^2 triangles each in one soup.
+/// Returns side^3 spheres of 4 * rings^2 triangles each, in one soup.
 PolygonSoup bunch(Index side, Index rings) {
   constexpr double spacing = 1.7;
   PolygonSoup soup;
@@ -53,7 +53,7 @@ void building(benchmark::State& state, const PolygonSoup& soup) {
 }
 
 BENCHMARK_CAPTURE(repairing, bunch, bunch(3, 30))->Unit(benchmark::kMillisecond)->Iterations(1);
-// A valid surface pays for the builder alone: the two lines are alike.
+// A valid surface costs only the builder: both lines should be equal.
 BENCHMARK_CAPTURE(repairing, sphere, sphere(158))->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(building, sphere, sphere(158))->Unit(benchmark::kMillisecond);
 

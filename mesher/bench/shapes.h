@@ -9,19 +9,19 @@
 /// Generated inputs of the micro benchmarks.
 namespace collarmesh::bench {
 
-/// About n well-spaced points in the unit cube, like the vertices of a mesh of one size: a lattice,
-/// each point moved at random by up to 0.4 of its spacing.
+/// Returns about n well-spaced points in the unit cube, like the vertices of a mesh of uniform size: a
+/// lattice whose points are moved at random by up to 0.4 of their spacing.
 std::vector<Point> well_spaced_points(std::size_t n);
 
-/// n independent uniform points in the unit cube.
+/// Returns n independent uniform points in the unit cube.
 std::vector<Point> random_points(std::size_t n, unsigned seed);
 
-/// In the order of a space-filling curve.
+/// Returns the points in the order of a space-filling curve.
 std::vector<Point> spatially_sorted(const std::vector<Point>& points);
 
 PolygonSoup unit_box();
 
-/// The unit sphere, `rings` circles of latitude of 2 * rings points: 4 * rings^2 triangles.
+/// Returns the unit sphere with `rings` circles of latitude of 2 * rings points: 4 * rings^2 triangles.
 PolygonSoup sphere(Index rings);
 
 }  // namespace collarmesh::bench

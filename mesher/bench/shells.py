@@ -45,7 +45,7 @@ SHARP = 20  # degrees
 
 
 def run(command):
-    """Runs a command; returns its exit code, None after the time limit, and its CPU seconds."""
+    """Runs a command; returns its exit code (None if it exceeded the time limit) and its CPU seconds."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     try:
         code = subprocess.run(command, capture_output=True, timeout=LIMIT, check=False).returncode
@@ -115,7 +115,8 @@ def measures_of(path, reference, size):
 
 
 def distance_between(points, reference, size):
-    """The largest distance of the points from the triangles of an STL file, by the size; None without it or vtk."""
+    """Returns the largest distance of the points from the triangles of an STL file, divided by the size; None
+    without that file or vtk."""
     if not pathlib.Path(reference).exists():
         return None
     try:

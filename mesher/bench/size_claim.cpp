@@ -51,7 +51,7 @@ struct Feature {
   unsigned dimension;
   Index index;
   std::vector<std::array<Point, 3>> triangles;  // degenerate below dimension 2
-  std::set<Index> vertices, curves;             // that it contains
+  std::set<Index> vertices, curves;             // vertices and curves that it contains
 };
 
 /// The features of a complex of straight curves and planar patches, and h.
@@ -116,7 +116,8 @@ class FeatureSize {
     return both;
   }
 
-  // Disjoint, or at an acute angle; not one in the border of the other.
+  // Returns whether two features are disjoint or meet at an acute angle, and neither is in the border of the
+  // other.
   bool are_separate(const Feature& f, const Feature& g) const {
     const auto curves = common(f.curves, g.curves), vertices = common(f.vertices, g.vertices);
     if (curves.empty() && vertices.empty()) return true;
@@ -134,7 +135,8 @@ class FeatureSize {
                        [&](Index v) { return !on_common_curve(v) && angle_at_vertex(f, g, v) < acute; });
   }
 
-  // Between the half planes of two patches; a patch on both sides of the curve has two.
+  // Returns the smallest angle between the half planes of two patches; a patch on both sides of the curve has
+  // two half planes.
   double angle_at_curve(const Feature& f, const Feature& g, Index curve) const {
     const auto [a, b] = ends(curve);
     const Vector axis = unit(b - a);
@@ -170,7 +172,7 @@ class FeatureSize {
     return least;
   }
 
-  // Between the rays to the other corners of the feature's triangles at a point.
+  // Returns the sectors between the rays to the other corners of the feature's triangles at a point.
   static std::vector<plc::Sector> sectors(const Feature& f, const Point& p) {
     std::vector<plc::Sector> found;
     for (const auto& t : f.triangles)

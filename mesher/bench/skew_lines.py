@@ -16,7 +16,7 @@ from tuning import SizeCache
 
 
 def measure(mesher, points_per_line: int, folder: Path, rounds: int) -> MeshRun | str:
-    """The run with the median CPU time, or what went wrong."""
+    """Returns the run with the median CPU time, or the error."""
     surface = skew_lines(points_per_line)
     mesher.prepare(surface, folder)
     runs = []
@@ -29,7 +29,7 @@ def measure(mesher, points_per_line: int, folder: Path, rounds: int) -> MeshRun 
 
 
 def size(mesher, diagonal: float) -> float:
-    """None asked for: the mesh is what the points force."""
+    """Returns a size without effect: the points alone determine the mesh."""
     return float("inf") if isinstance(mesher, TetGen) else diagonal
 
 

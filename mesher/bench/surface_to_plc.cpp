@@ -1,4 +1,5 @@
-// Seconds per stage and peak memory of a surface file becoming a complex, on a sphere of 4 RINGS^2 triangles:
+// Measures seconds per stage and peak memory of building a complex from a surface file, on a sphere of 4
+// RINGS^2 triangles:
 //   surface_to_plc write RINGS FILE     write the sphere
 //   surface_to_plc read FILE            read it into a complex
 #include <sys/resource.h>

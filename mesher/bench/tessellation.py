@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""A smooth part's mesh should not cost more because its surface is tessellated finely: spheres of
-1k to 90k triangles meshed at one size. Prints CPU seconds and their ratio to the coarsest sphere's."""
+"""Checks that a finely tessellated surface does not make a smooth part's mesh more expensive: spheres of 1k
+to 90k triangles meshed at one size. Prints CPU seconds and their ratio to those of the coarsest sphere."""
 
 from __future__ import annotations
 

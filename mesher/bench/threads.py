@@ -1,9 +1,8 @@
 #!/usr/bin/env python3
-"""The gain by several threads: the stages of whole runs with one thread and with more.
-
-One thread runs on each of the cores in turn, as cores are not equally fast; more threads run on as many cores. All
-in turn, some rounds, after memory was fetched for each. Prints a Markdown table of medians of wall seconds, and
-how many times as fast more threads are."""
+"""Measures the gain by several threads: the stages of whole runs with one thread and with more.
+Single threads run on each of the cores in turn, because cores are not equally fast; several threads run on as
+many cores. Runs alternate over some rounds, and memory is fetched before each. Prints a Markdown table of
+medians of wall seconds, and the speedup."""
 
 from __future__ import annotations
 

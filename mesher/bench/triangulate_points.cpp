@@ -1,5 +1,5 @@
-// How long CGAL takes for the bare Delaunay triangulation of a mesh's vertices: the yardstick for
-// refinement, which has to find those vertices too.
+// Measures the time that CGAL takes for the bare Delaunay triangulation of a mesh's vertices. It is the
+// yardstick for refinement, which also has to find those vertices.
 #include <CGAL/Delaunay_triangulation_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 

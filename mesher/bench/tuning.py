@@ -1,4 +1,4 @@
-"""Find the size that gives a wanted number of tets, and remember it between runs."""
+"""Finds the size that makes a wanted number of tets, and remembers it between runs."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ import math
 import tempfile
 from pathlib import Path
 
-tolerance = 0.1     # share of the count: larger differences are marked
-near_enough = 0.03  # ends the search
+tolerance = 0.1     # relative difference of the number of tets above which results are marked
+near_enough = 0.03  # relative difference that ends the search
 trials = 8
 
 
 class SizeCache:
-    """A JSON file in the folder for temporary files: sizes and the signature of the mesher that they
-    were found for. When the mesher changes they are still good first guesses."""
+    """A JSON file in the folder for temporary files, with sizes and the signature of the mesher for which
+    they were found. If the mesher has changed, they are still good first guesses."""
 
     def __init__(self) -> None:
         self.folder = Path(tempfile.gettempdir()) / "collarmesh_bench"
@@ -31,9 +31,9 @@ class SizeCache:
 
 
 def size_for(mesher, surface, target: int, folder: Path, cache: SizeCache) -> float:
-    """The size at which `mesher` makes the wanted number of tets, nearly; the nearest
-    one found when its count jumps over it or never gets that low.
-    Raises ProgramFailed when the mesher does."""
+    """Returns the size at which `mesher` makes approximately the wanted number of tets; the nearest size
+    found if the number jumps over the wanted one or never gets that low. Raises ProgramFailed if the mesher
+    does."""
     key = f"{mesher.name} {surface.name} {len(surface.polygons)} {target} {near_enough}"
     size, signature = cache.get(key) or ((surface.volume / (0.12 * target)) ** (1 / 3), None)
     if signature == mesher.signature():
@@ -50,8 +50,8 @@ def size_for(mesher, surface, target: int, folder: Path, cache: SizeCache) -> fl
 
 
 def _next_trial(found: list[tuple[float, float]]) -> float:
-    """A log size nearer to no miss: by the secant, where it makes sense, else as if tets ~ size^-3;
-    between the nearest sizes on both sides once they are known."""
+    """Returns the next logarithm of the size to try: by the secant if that makes sense, else as if tets ~
+    size^-3; between the nearest sizes on both sides once they are known."""
     at, miss = found[-1]
     slope = -3.0
     if len(found) > 1 and found[-2][0] != at:

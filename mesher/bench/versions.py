@@ -27,7 +27,7 @@ class Refined:
 
 
 class RefineProgram:
-    """`refine` of a build folder."""
+    """The program `refine` of a build folder."""
 
     def __init__(self, build: Path, name: str) -> None:
         self.program, self.name = (build / "bin" / "refine").resolve(), name

@@ -35,12 +35,13 @@ class Runs:
         return statistics.median(getattr(run, member) for run in self.by_threads[threads])
 
     def speed(self, threads: int, member: str) -> float:
-        """Tets per second and core."""
+        """Returns tets per second and core."""
         return self.by_threads[threads][-1].tets / self.median(threads, member) / threads
 
 
 def measure(options, makers, surface: Surface, target: int, cache: SizeCache) -> dict[str, Runs]:
-    """`makers`: each makes a mesher with so many threads. One table row each: search the sizes, then run in turn."""
+    """Measures a table row for each mesher: searches the sizes, then runs them in turn. `makers`: each makes
+    a mesher with a given number of threads."""
     results, sizes, folders = {}, {}, {}
     for make in makers:
         mesher = make(1)

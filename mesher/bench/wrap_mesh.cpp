@@ -37,7 +37,7 @@ struct Soup {
   std::vector<std::array<std::size_t, 3>> triangles;
 };
 
-// Without triangles when the file cannot be read.
+// Returns no triangles if the file cannot be read.
 Soup read_triangles(const char* file) {
   Soup soup;
   std::vector<std::vector<std::size_t>> polygons;
@@ -56,8 +56,8 @@ double diagonal_of(const std::vector<Point>& points) {
 Complex mesh_wrap(const Polyhedron& wrap, double size) {
   Domain domain(wrap);
   namespace parameters = CGAL::parameters;
-  // Of a triangle and a tetrahedron whose edges are `size`: circumradii. A wrap's edges are chamfered by its
-  // offset: no features are protected.
+  // Bounds: circumradii of a triangle and a tetrahedron with edges of length `size`. No features are
+  // protected, because a wrap's edges are chamfered by its offset.
   const Criteria criteria(parameters::facet_angle = 25, parameters::facet_size = 0.7 * size,
                           parameters::facet_distance = size / 20, parameters::cell_radius_edge_ratio = 2,
                           parameters::cell_size = 0.79 * size);

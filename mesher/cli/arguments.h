@@ -16,24 +16,25 @@ namespace collarmesh::cli {
 
 using process::ExitCode;
 
-/// The arguments of `collarmesh INPUT... -o OUT`
+/// The arguments of `collarmesh INPUT... -o OUT`.
 struct MeshArguments : report::RequestedRun {
-  std::string batch;  ///< a folder for meshes: each input is a separate part; empty: no batch
+  std::string batch;  ///< a folder for meshes: each input is meshed as a separate part; empty: no batch
   std::string input_format, output_format;  ///< extensions with their dot; empty: the files' own
-  bool tell_losses = false;                 ///< report data for which the output's format has no place
+  bool tell_losses = false;                 ///< report data that the output's format cannot store
 };
 
-/// The arguments of `collarmesh check MESH --against INPUT...`
+/// The arguments of `collarmesh check MESH --against INPUT...`.
 struct CheckArguments : RunOptions {
   std::string mesh_path;
   std::vector<std::string> inputs;
   bool json = false;
 };
 
-/// The arguments of `collarmesh info INPUT...`
+/// The arguments of `collarmesh info INPUT...`.
 struct InfoArguments : RunOptions {
   std::vector<std::string> inputs;
-  std::vector<double> predicted_sizes;  ///< 0: `mesh.size`, or its default; empty: no prediction
+  std::vector<double> predicted_sizes;  ///< target edge lengths to predict for; 0: `mesh.size`, or its
+                                        ///< default; empty: no prediction
   bool json = false;
 };
 
@@ -41,22 +42,23 @@ struct InfoArguments : RunOptions {
 /// standard input or standard output.
 struct ConvertArguments : MeshArguments {
   std::vector<std::string> meshing_options;  ///< given options that only meshing uses
-  bool repairs = false;  ///< repair surfaces that become surfaces, too: --repair was given and is not none
+  bool repairs = false;  ///< whether to repair surfaces that become surfaces: --repair was given and is not
+                         ///< none
 };
 
-/// The arguments of `collarmesh repair IN... -o OUT`; "-" as in ConvertArguments. There is one report at
-/// most.
+/// The arguments of `collarmesh repair IN... -o OUT`; "-" as in ConvertArguments. There is at most one
+/// report.
 struct RepairArguments : MeshArguments {
   bool json = false;
 };
 
-/// The arguments of `collarmesh remesh MESH -o OUT`
+/// The arguments of `collarmesh remesh MESH -o OUT`.
 struct RemeshArguments : MeshArguments {};
 
 using Arguments = std::variant<MeshArguments, CheckArguments, InfoArguments, ConvertArguments,
                                RepairArguments, RemeshArguments>;
 
-/// Adds the options of meshing, without the files, for another program that meshes. The second function
+/// Adds the options of meshing, without the files, for another program that meshes. `check_run_options`
 /// checks combinations of options; it throws CLI::ValidationError.
 void add_run_options(CLI::App& app, MeshArguments& arguments);
 void check_run_arguments(const MeshArguments& arguments);

@@ -28,7 +28,7 @@ using Json = nlohmann::ordered_json;
 volatile std::sig_atomic_t asked_to_stop = 0;
 volatile pid_t running = 0;
 
-/// Passes a signal on; a terminal sends its signals to the running part as well.
+/// Passes a signal on to the running part. A terminal sends its signals to that part as well.
 extern "C" void stop_batch(int number, siginfo_t* information, void*) {
   asked_to_stop = 1;
   if (information->si_code != SI_KERNEL && running > 0) kill(running, number);
@@ -43,7 +43,7 @@ void catch_signals() {
       sigaction(number, &action, nullptr);
 }
 
-/// A folder that is removed with the batch, for reports that the user did not ask for.
+/// A folder that is removed when the batch ends, for reports that the user did not ask for.
 class TemporaryFolder {
  public:
   TemporaryFolder() : path_((fs::temp_directory_path() / "collarmesh-batch-XXXXXX").string()) {
@@ -70,7 +70,7 @@ struct Result {
 };
 
 ExitCode run_apart(const MeshArguments& part, const std::function<ExitCode(const MeshArguments&)>& run) {
-  std::fflush(nullptr);  // otherwise both processes would write the buffered text
+  std::fflush(nullptr);  // if not flushed, both processes would write the buffered text
   const pid_t made = fork();
   if (made == 0) std::exit(static_cast<int>(run(part)));
   if (made < 0) return run(part);

@@ -8,16 +8,16 @@
 
 namespace collarmesh::cli {
 
-/// Returns the arguments for a part of a batch, with its mesh and reports in the batch's folder.
+/// Returns the arguments for a part of a batch. Its mesh and reports go to the batch's folder.
 MeshArguments part_of_batch(const MeshArguments& batch, const std::string& input);
 
-/// Returns two parts whose meshes would have the same name, as "a/x.stl and b/x.off"; empty if there are
+/// Returns two parts whose meshes would have the same name, as in "a/x.stl and b/x.off"; empty if there are
 /// none.
 std::string parts_of_one_name(const MeshArguments& batch);
 
-/// Meshes each input on its own, in a process of its own, and prints a table of the results. Returns
-/// ExitCode::cancelled if the user asked to stop, else the code of the first part without a mesh, else
-/// ExitCode::guarantee_missed if a part had it. `run` does what the program does with one part.
+/// Meshes each input separately, in a process of its own, and prints a table of the results. Returns
+/// ExitCode::cancelled if the user asked to stop; else the code of the first part without a mesh; else
+/// ExitCode::guarantee_missed if a part returned that. `run` meshes one part as the program does.
 ExitCode batch_command(const MeshArguments& batch,
                        const std::function<ExitCode(const MeshArguments& part)>& run);
 

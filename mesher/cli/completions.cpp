@@ -23,7 +23,7 @@ std::string names_of_subcommands(const CLI::App& app) {
   return names;
 }
 
-/// Returns the numbers that an option accepts if they are few, "0 1 2 3"; empty for others.
+/// Returns the numbers that an option accepts, as in "0 1 2 3", if they are few; empty for other options.
 std::string numbers_of(const std::string& name) {
   constexpr double few = 8;
   for (const Option& option : option_table())
@@ -36,8 +36,8 @@ std::string numbers_of(const std::string& name) {
   return {};
 }
 
-/// Returns the words to choose from, as in "on|off"; a name in capitals is no word, but stands for formats or
-/// numbers.
+/// Returns the words to choose from, as in "on|off"; empty for a name in capitals, which stands for formats
+/// or numbers.
 std::string words_of(const CLI::Option& option) {
   std::string words = option.get_type_name();
   if (words == "FORMAT") {
@@ -63,7 +63,7 @@ std::string short_text(const std::string& description) {
   return description.substr(0, description.find(';'));
 }
 
-/// Quotes text with single quotes, for any of the shells; only fish has escapes inside them.
+/// Quotes text with single quotes, for any of the shells. Only in fish backslashes are escapes inside them.
 std::string quoted_text(std::string_view text, bool backslashes_escape) {
   std::string result = "'";
   for (const char c : text)
@@ -88,7 +88,7 @@ std::string bash_completion(const CLI::App& app) {
   std::string options, words;
   for (const CLI::App* sub : subcommands(app))
     options += fmt::format("    {}) options='{}' ;;\n", sub->get_name(), long_names(*sub));
-  std::set<std::string> told;  // options that several commands have
+  std::set<std::string> told;  // options that were described for an earlier command
   std::vector<const CLI::App*> commands = subcommands(app);
   commands.push_back(&app);
   for (const CLI::App* command : commands)

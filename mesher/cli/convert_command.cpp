@@ -55,7 +55,7 @@ void write_soup(const MeshArguments& a, const std::vector<PolygonSoup>& soups) {
   tell_unless_quiet(a, merged.told);
 }
 
-/// Divides the mesh as the option says, or as the input was divided.
+/// Divides the mesh as the option says or, without it, as the input was divided.
 void divide(const MeshArguments& a, TetMesh& mesh) {
   if (a.partitions > 0) partition(mesh, a.partitions);
   const char* const option = a.ghost_cells != io::GhostCells::none ? "--ghost-cells"

@@ -27,14 +27,14 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
-/// The data known before anything fails.
+/// The data of the command that are known before anything fails.
 struct Command {
   std::vector<std::string> reports;
   Json json;
   Clock::time_point begin;
 };
-// Never destroyed: destructors of JSON need memory, and at the end of the program nobody can report a lack of
-// it.
+// Never destroyed: destructors of JSON need memory, and a lack of it could not be reported at the end of the
+// program.
 Command& command = *new Command;
 std::atomic<bool> reported{true};
 
@@ -94,8 +94,8 @@ std::string failure_page(const Json& json) {
       escaped(json["message"].get<std::string>()), escaped(report::json_text(json, 1)));
 }
 
-/// Writes a report. Replaces the file that a link names, but nothing that is no regular file: that may be why
-/// the command failed.
+/// Writes a report. If the path is a link, replaces the file that it names. Replaces regular files only:
+/// another kind of file may be the reason why the command failed.
 void write(const std::string& path, const Json& json) {
   namespace fs = std::filesystem;
   std::error_code error;

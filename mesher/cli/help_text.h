@@ -5,7 +5,7 @@
 
 namespace collarmesh::cli {
 
-/// The help of CLI11 with our usage lines, wrapped for a terminal of 80 columns.
+/// The help of CLI11 with our own usage lines, wrapped for a terminal of 80 columns.
 class HelpText : public CLI::Formatter {
  public:
   HelpText();

@@ -37,8 +37,8 @@ void print_mesh(const TetMesh& mesh, bool as_json) {
   process::print_result(report::json_text(json, 1) + "\n");
 }
 
-/// Builds the complex that would be meshed. Also accepts facets that bound no region, even if repair cannot
-/// change that.
+/// Builds the complex that would be meshed. Also accepts facets that bound no region and that repair cannot
+/// close.
 Plc build_any(files::ComplexInput& input, const RunOptions& options) {
   try {
     return input.build(options.complex, options.repair);
@@ -49,8 +49,8 @@ Plc build_any(files::ComplexInput& input, const RunOptions& options) {
   }
 }
 
-/// Predicts meshes. `read` are the seconds that reading and building the complex took, which the run needs
-/// again.
+/// Predicts meshes. `read` is the time in seconds that reading and building the complex took: the run itself
+/// needs it again.
 std::vector<Prediction> predictions(const InfoArguments& arguments, const Plc& plc, double read) {
   if (arguments.predicted_sizes.empty()) return {};
   PipelineOptions options = arguments;

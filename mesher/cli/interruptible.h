@@ -4,8 +4,8 @@
 
 namespace collarmesh::cli {
 
-/// Returns how to read a command's input: as given, but ending when the command is interrupted, and reporting
-/// work on CAD files to its supervisor.
+/// Returns settings for reading a command's input: the given ones, but reading ends when the command is
+/// interrupted, and work on CAD files is reported to the supervisor.
 files::InputReading interruptible(files::InputReading reading);
 
 }  // namespace collarmesh::cli

@@ -12,7 +12,7 @@ namespace collarmesh::cli {
 
 namespace {
 
-/// Escapes text for roff, so that a dot at the beginning of a line, backslashes and hyphens are printed as
+/// Escapes text for roff, so that backslashes, hyphens and dots at the beginning of a line are printed as
 /// they are.
 std::string roff(std::string_view text) {
   std::string result;

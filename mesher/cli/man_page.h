@@ -5,7 +5,7 @@
 
 namespace collarmesh::cli {
 
-/// Returns a manual page of section 1, in roff. `footer` has exit codes and units.
+/// Returns a manual page of section 1, in roff. `footer` is text about exit codes and units.
 std::string man_page(const CLI::App& app, const std::string& version, const std::string& footer);
 
 }  // namespace collarmesh::cli

@@ -43,7 +43,7 @@ PipelineOptions pipeline_options(const MeshArguments& a) {
   return options;
 }
 
-/// Notes the stage, for the message when the time is up.
+/// Records the stage, for the message when the time is up.
 void note_where_it_stopped(const MeshResult& result) {
   const MeshStatistics& reached = result.statistics;
   const Point& p = result.where;
@@ -55,7 +55,7 @@ void note_where_it_stopped(const MeshResult& result) {
           p.z));
 }
 
-/// Puts the file's name before each line without one, because a quiet run does not print it elsewhere.
+/// Puts the file's name before each line that has none, because a quiet run does not print it elsewhere.
 std::string each_line_of(const std::string& file, const std::string& text) {
   std::string named;
   for (std::size_t at = 0; at < text.size();) {
@@ -127,7 +127,8 @@ class InputSource : public ComplexSource {
   files::ComplexInput& input_;
   Stages& stages_;
   RepairOptions built_with_;
-  std::string told_of_options_;                   // printed once, however many meshes are tried
+  std::string told_of_options_;                   // warnings about options, printed once even if several
+                                                  // meshes are tried
   std::shared_ptr<SizeFieldUse> size_field_use_;  // for the mesh tried last
 };
 
@@ -141,7 +142,7 @@ std::unique_ptr<process::StagedFile> staged_trace(const MeshArguments& arguments
   return staged;
 }
 
-/// Returns how the complex was repaired.
+/// Makes the mesh. Returns the options with which the complex was repaired.
 RepairOptions mesh(const MeshArguments& arguments, files::ComplexInput& input, Stages& stages,
                    report::MeshRun& run) {
   Execution execution;
@@ -240,7 +241,7 @@ void write_files(const MeshArguments& arguments, Stages& stages, report::MeshRun
   process::StagedFile::commit(files);
 }
 
-/// Checks the folder before long work.
+/// Checks the trace folder before long work starts.
 void require_trace_folder(const std::string& folder) {
   if (folder.empty()) return;
   std::error_code error;
@@ -274,7 +275,7 @@ std::unique_ptr<files::ComplexInput> read_inputs(const MeshArguments& arguments)
   const auto tolerance = [&](const Plc& plc) {
     return tolerance_of(plc, arguments.mesh.bounds, arguments.mesh.size, static_cast<int>(arguments.order));
   };
-  // Meshes of surfaces do not need finer triangles of CAD faces to keep volumes.
+  // Meshes of surfaces do not need finer triangles of CAD faces, which only keep volumes.
   return std::make_unique<files::ComplexInput>(
       arguments.inputs,
       interruptible({arguments.input_format, distance,
@@ -301,7 +302,7 @@ ExitCode make_and_write(const MeshArguments& arguments,
   for (const std::string& report : arguments.reports) process::require_writable(report);
   if (!arguments.cell_decomposition.empty()) process::require_writable(arguments.cell_decomposition);
   require_trace_folder(arguments.trace_folder);
-  if (arguments.partitions > 0) require_partitioner();  // checked before long work
+  if (arguments.partitions > 0) require_partitioner();  // fail before long work, not after it
   report::MeshRun run;
   {
     Stages stages(progress_of(arguments), run.times);

@@ -10,7 +10,8 @@
 
 namespace collarmesh::cli {
 
-/// Reads the input, builds the complex, meshes, certifies and writes. Throws the library's exceptions.
+/// Reads the input, builds the complex, meshes it, certifies and writes the mesh. Throws the library's
+/// exceptions.
 ExitCode mesh_command(const MeshArguments& arguments);
 
 /// Makes a mesh and writes it, with reports, and prints a summary: the common part of all commands that make
@@ -28,10 +29,10 @@ struct MadeMesh {
 /// Does everything that `mesh_command` does before it writes. Throws the library's exceptions, and Stopped.
 MadeMesh make_mesh(const MeshArguments& arguments);
 
-/// Reads the input files as `make_mesh` does.
+/// Reads the input files, like `make_mesh`.
 std::unique_ptr<files::ComplexInput> read_inputs(const MeshArguments& arguments);
 
-/// Prints to standard error the problems of a mesh and, unless quiet, its summary.
+/// Prints the problems of a mesh to standard error and, unless quiet, its summary.
 void tell_of(const MeshArguments& arguments, const report::MeshRun& run);
 
 }  // namespace collarmesh::cli

@@ -12,7 +12,7 @@ namespace collarmesh::cli {
 
 namespace {
 
-/// Reads a number that is the whole text.
+/// Reads a number; the text must contain nothing else.
 template <class Number>
 bool read_whole(const std::string& text, Number& number) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);

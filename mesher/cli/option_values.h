@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-/// The syntax of options' values. The error for a wrong value describes the right ones.
+/// The syntax of options' values. The error for a wrong value describes valid ones.
 namespace collarmesh::cli {
 
 /// Accepts a finite number in an interval, so that "nan" and "inf" are rejected as well.

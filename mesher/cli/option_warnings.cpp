@@ -11,13 +11,13 @@ namespace collarmesh::cli {
 
 namespace {
 
-// The proved bound on the ratio. On test shapes refinement also ended with lower bounds, down to 1.1, but
-// never with 1 (doc/theory.md).
+// The bound on the ratio for which termination is proved. On test shapes refinement also ended with lower
+// bounds, down to 1.1, but never with 1 (doc/theory.md).
 constexpr double proved_radius_edge = std::numbers::sqrt2;
 // The lowest bounds that test shapes reached (doc/architecture/collars.md), and that coarsened shapes reached
 // (doc/architecture/coarsening.md).
 constexpr double reached_collar_angle = 130, reached_coarsened = 120;
-// Relative to the diagonal.
+// Limits relative to the diagonal.
 constexpr double small_distance = 1e-5, large_planar_tolerance = 1e-3;
 
 bool is_smooth_anywhere(const Plc& plc) {

@@ -8,8 +8,8 @@
 
 namespace collarmesh::cli {
 
-/// Returns warnings of options beyond the values that are proved or known to work: a full sentence each, with
-/// an alternative.
+/// Returns warnings of options whose values are beyond those that are proved or known to work: for each a
+/// full sentence, with an alternative.
 std::vector<std::string> option_warnings(const MeshArguments& arguments, const Plc& plc);
 
 }  // namespace collarmesh::cli

@@ -78,13 +78,13 @@ ExitCode fail_without_threads() {
               "no thread can be made; nothing was written; raise the limit of threads or memory");
 }
 
-// Returns whether TBB failed to create a thread, which only the message tells.
+// Returns whether TBB failed to create a thread, which shows only in the message.
 bool is_of_threads(const std::exception& error) {
   return std::string_view(error.what()).find("pthread_create") != std::string_view::npos;
 }
 
-// Limits the threads of everything that uses TBB, also outside the stages' arenas, including OpenCASCADE. The
-// limit is never lifted: TBB would then create the threads that had been requested.
+// Limits the number of threads of everything that uses TBB, including OpenCASCADE and code outside the
+// stages' arenas. The limit is never lifted: TBB would then create all threads that were requested before.
 void limit_threads(const Arguments& arguments) {
   const unsigned threads =
       std::visit([](const RunOptions& options) { return options.mesh.threads; }, arguments);

@@ -11,8 +11,8 @@
 
 namespace collarmesh::cli {
 
-/// Shows the progress of a command on standard error: a bar on a terminal, or one JSON object per line. The
-/// stages of the command share the fraction by fixed weights; it never decreases.
+/// Shows the progress of a command on standard error: a bar on a terminal, or one JSON object per line.
+/// Stages have fixed shares of the total fraction, which never decreases.
 class ProgressDisplay {
  public:
   explicit ProgressDisplay(ProgressStyle style);
@@ -23,7 +23,7 @@ class ProgressDisplay {
   /// Begins a stage that takes the part [begin, end] of the whole.
   void begin_stage(std::string phase, double begin, double end);
 
-  /// Prints lines that stay, above the bar.
+  /// Prints lines above the bar; they stay.
   void print(const std::string& text);
 
   /// Shows progress within the stage.
@@ -49,7 +49,7 @@ class ProgressDisplay {
   std::thread drawing_;
 };
 
-/// Returns one line for people, at most `width` wide: "[#####.....] 52% refine 1.2M tets 3 s left".
+/// Returns one line for display, at most `width` wide: "[#####.....] 52% refine 1.2M tets 3 s left".
 std::string progress_line(const std::string& phase, double fraction, std::size_t tets, double seconds,
                           std::size_t width);
 

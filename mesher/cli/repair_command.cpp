@@ -23,7 +23,8 @@ namespace collarmesh::cli {
 
 namespace {
 
-/// Describes a file after reading it again: coordinates may have lost digits, and interfaces their regions.
+/// Reads the written file again and describes it: coordinates may have lost digits, and interfaces their
+/// regions.
 std::string read_again(const std::string& path, const RepairArguments& a) {
   try {
     const PolygonSoup soups[] = {files::read_surface(path, a.output_format)};

@@ -4,7 +4,7 @@
 
 namespace collarmesh::cli {
 
-/// Writes the facets that the mesher would take: repaired, or as they are if they are a valid complex. Throws
+/// Writes the facets that the mesher would use: repaired, or unchanged if they are a valid complex. Throws
 /// PlcError if they cannot be repaired.
 ExitCode repair_command(const RepairArguments& arguments);
 

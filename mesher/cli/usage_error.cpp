@@ -42,8 +42,8 @@ std::string unexpected(const CLI::App& app) {
                          : fmt::format("{}: there is no such option; did you mean {}?", argument, similar);
 }
 
-/// Returns the message for an option that lacks its value or is repeated: the option's name stands before the
-/// colon.
+/// Returns the message for an option that lacks its value or is repeated. In CLI11's message the option's
+/// name stands before the colon.
 std::string mismatch(const CLI::App& app, const std::string& said) {
   const std::string name = said.substr(0, said.find(':'));
   if (said.find("At Most") != std::string::npos)
@@ -88,7 +88,8 @@ std::string usage_message(const CLI::App& app, const CLI::Error& error) {
     return fmt::format("{}; write {}", said,
                        usage_of(&command_of(app) == &app ? "" : command_of(app).get_name()));
   if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) {
-    // Values are checked before they are converted, so this is a flag: "Could not convert: --quiet = 5".
+    // Values are checked before they are converted, so the option must be a flag: "Could not convert: --quiet
+    // = 5".
     const std::size_t begin = said.find("--"), end = said.find(' ', begin);
     const std::string name = begin == std::string::npos ? said : said.substr(begin, end - begin);
     return fmt::format("{}: takes no value; write {} alone", name, name);

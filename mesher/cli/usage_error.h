@@ -5,11 +5,12 @@
 
 namespace collarmesh::cli {
 
-/// Returns a message for a mistake on the command line and what to write instead; one line without its end.
-/// CLI11's own messages mention its types and patterns.
+/// Returns a message for a mistake on the command line, with a correction: one line without its end. CLI11's
+/// own messages mention its types and patterns.
 std::string usage_message(const CLI::App& app, const CLI::Error& error);
 
-/// Returns a message for a first argument that is no file but nearly a command; otherwise empty.
+/// Returns a message for a first argument that is no file but is spelled nearly like a command; otherwise
+/// empty.
 std::string mistaken_command(const std::string& word);
 
 /// Returns the usage line of a command; the one that meshes has an empty name.

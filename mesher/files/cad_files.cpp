@@ -17,11 +17,13 @@ namespace collarmesh::files {
 
 namespace {
 
-// Reads with the module: OpenCASCADE's libraries take longer to load than a small mesh takes to make.
+// Reads a CAD file with the module, which is loaded on first use: OpenCASCADE's libraries take longer to load
+// than a small mesh takes to make.
 std::unique_ptr<brep::CadModel> read_by_module(const std::string& path, std::string_view format,
                                                const brep::CadOptions& options) {
   constexpr const char* module = "collarmesh_cad.so";
-  // Searches along the run path of the program; the module stays loaded as long as its models may live.
+  // Searches along the run path of the program. The module stays loaded, because its models may be used until
+  // the program ends.
   void* const loaded = dlopen(module, RTLD_NOW | RTLD_LOCAL);
   void* const found = loaded == nullptr ? nullptr : dlsym(loaded, COLLARMESH_READ_CAD);
   if (found == nullptr)
@@ -37,7 +39,8 @@ std::unique_ptr<brep::CadModel> read_by_module(const std::string& path, std::str
   return model;
 }
 
-/// Returns the seconds allowed if there is no time limit. Parts of a hundred MB have taken minutes.
+/// Returns the time in seconds that reading a file may take if there is no time limit. Parts of a hundred MB
+/// have taken minutes.
 double patience_with(const std::string& path) {
   constexpr double at_least = 600, for_a_megabyte = 60;
   std::error_code error;
@@ -52,7 +55,7 @@ struct CadFiles::File {
   double deflection;
   unsigned threads;
   Index first_soup, soup_count;
-  mutable std::optional<brep::CadMeasures> measures = {};  // of these soups, when first asked for
+  mutable std::optional<brep::CadMeasures> measures = {};  // measures of these soups, computed on first use
 
   /// Replaces the soups' triangles by finer ones.
   void cut_again(const brep::TessellationOptions& options, std::vector<PolygonSoup>& soups) {

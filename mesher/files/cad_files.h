@@ -20,16 +20,16 @@ struct CadMeasures;
 
 namespace collarmesh::files {
 
-/// Options of reading CAD files.
+/// Options for reading CAD files.
 struct CadReading {
-  std::function<double(double diagonal)>
-      deflection;  ///< distance of the triangles, absolute, from the shape's diagonal
+  std::function<double(double diagonal)> deflection;  ///< returns the largest distance of the triangles from
+                                                      ///< the shape, absolute, given the shape's diagonal
   SolidOverlap overlap = SolidOverlap::first;
   unsigned threads = 0;  ///< maximum number; 0: all cores
 };
 
-/// Tells the process's supervisor what OpenCASCADE is about to do to a file, and how many seconds it may take
-/// (0: any time). The work is over when the returned object is destroyed.
+/// Tells the process's supervisor which work of OpenCASCADE on a file begins, and how many seconds it may
+/// take (0: any time). The work ends when the returned object is destroyed.
 using CadGuard =
     std::function<std::shared_ptr<void>(std::string_view doing, std::string_view file, double seconds)>;
 
@@ -49,15 +49,15 @@ class CadFiles {
   void read(const std::string& path, std::string_view format, const CadReading& reading,
             std::vector<PolygonSoup>& soups);
   bool empty() const;
-  /// Returns the names of the files, for people.
+  /// Returns the names of the files, for messages.
   std::string names() const;
   /// Returns names and colours of the file that all these soups came from; null if they came from several
-  /// files, whose numbers would collide.
+  /// files, whose tags would collide.
   const brep::CadLabels* labels(std::size_t soups) const;
 
-  /// Replaces the soups' triangles by triangles that are finer than the first ones by a factor.
+  /// Replaces the soups' triangles by ones that are finer than the first ones by this factor.
   void tessellate(double finer, std::vector<PolygonSoup>& soups);
-  /// Does the same for some faces, given by the number of their soup and their own.
+  /// Replaces the triangles of some faces only. A face is given by the number of its soup and its tag.
   void tessellate(double finer, const std::set<std::pair<Index, Tag>>& faces,
                   std::vector<PolygonSoup>& soups);
 
@@ -78,14 +78,15 @@ class CadFiles {
   std::string faces_near(const Point& where) const;
   /// Returns the sub-shapes that OpenCASCADE finds invalid, or empty.
   std::string invalid_parts() const;
-  /// Returns faces that were merged with others: the number that is gone and the one in its place.
+  /// Returns faces that were merged with others: pairs of the number that is gone and the number that
+  /// replaces it.
   std::vector<std::pair<Tag, Tag>> replaced_faces() const;
-  /// Returns false if solids that touch or overlap could not be fused; their soups then intersect, however
-  /// fine.
+  /// Returns false if solids that touch or overlap could not be fused. Their soups then intersect, even with
+  /// fine triangles.
   bool fused() const;
-  /// Returns which solids are open, at which edges and where; or empty.
+  /// Returns text on which solids are open, at which edges and where; empty if none is.
   std::string open_edges() const;
-  /// Returns notes on the shapes; `of_solids` adds those on open solids.
+  /// Returns notes on the shapes. With `of_solids`, includes notes on open solids.
   std::vector<std::string> notes(bool of_solids) const;
 
  private:

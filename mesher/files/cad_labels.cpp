@@ -13,7 +13,7 @@ namespace collarmesh::files {
 
 namespace {
 
-constexpr std::size_t longest_name = 60;  // bytes
+constexpr std::size_t longest_name = 60;  // in bytes
 
 /// Returns the length of the UTF-8 character at the front of a text, 0 if there is none.
 std::size_t character_length(std::string_view text) {
@@ -64,7 +64,7 @@ bool is_number(const std::string& name) {
 }  // namespace
 
 void name_regions(const brep::CadLabels& labels, Plc& plc) {
-  std::set<std::string> taken;  // in the form of the formats that keep least
+  std::set<std::string> taken;  // names in the spelling that every format can store
   for (const auto& [tag, name] : plc.names.of(3)) taken.insert(io::capital_word(name));
   TagNames names;
   for (const auto& [number, text] : labels.solid_names) {

@@ -6,8 +6,8 @@
 
 namespace collarmesh::files {
 
-/// Writes the partition of each tet, in their order, to a file that OpenFOAM's decomposePar reads (method
-/// `manual`); gmshToFoam keeps the order. Throws WriteError.
+/// Writes the partition of each tet, in the order of the tets, to a file that OpenFOAM's decomposePar reads
+/// (method `manual`). The program gmshToFoam keeps that order. Throws WriteError.
 void write_cell_decomposition(const std::string& path, const TetMesh& mesh);
 
 }  // namespace collarmesh::files

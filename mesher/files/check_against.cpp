@@ -14,7 +14,7 @@ namespace collarmesh::files {
 
 namespace {
 
-/// Returns a note if a mesh is much larger or smaller than the input it is checked against.
+/// Returns a note if a mesh is much larger or smaller than the input that it is checked against.
 std::string note_on_scale(const TetMesh& mesh, const Plc& plc, double scale) {
   Box box;
   for (const Point& p : mesh.points) box.add(p);
@@ -27,7 +27,7 @@ std::string note_on_scale(const TetMesh& mesh, const Plc& plc, double scale) {
       ratio, scale * ratio);
 }
 
-/// Builds the complex that `mesh_shells` makes of the input.
+/// Builds the complex of the input that `mesh_shells` would mesh.
 Plc build_surfaces(ComplexInput& input, const RunOptions& o, const RepairOptions& repair) {
   PlcOptions any = o.complex;
   any.require_solid = false;
@@ -59,7 +59,8 @@ CheckReport check_as_built(const TetMesh& mesh, ComplexInput& input, const RunOp
   return report;
 }
 
-/// Checks the mesh against further repairs. Keeps the first report if none of them fits.
+/// Checks the mesh against complexes of further repairs. Keeps the first report if the mesh fits none of
+/// them.
 void check_against_further(const TetMesh& mesh, ComplexInput& input, const RunOptions& options,
                            const Execution& execution, CheckReport& report, RepairReport& repair) {
   for (const RepairOptions& further : further_repairs(options.repair, repair)) {
@@ -69,7 +70,7 @@ void check_against_further(const TetMesh& mesh, ComplexInput& input, const RunOp
       report = std::move(other);
     } catch (const PlcError&) {
       continue;
-    } catch (const OptionError&) {  // names that a surface around everything does not have
+    } catch (const OptionError&) {  // a surface around everything may lack named features
       continue;
     }
     repair = input.repaired();

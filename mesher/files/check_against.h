@@ -5,8 +5,8 @@
 
 namespace collarmesh::files {
 
-/// Certifies a mesh against the complex of `input`; if it was made of an input that had to be repaired
-/// further (`further_repairs`), against that complex. Throws as `ComplexInput::build`.
+/// Certifies a mesh against the complex of `input`. If the mesh was made after a further repair
+/// (`further_repairs`), certifies it against that complex. Throws like `ComplexInput::build`.
 CheckReport check_against(const TetMesh& mesh, ComplexInput& input, const RunOptions& options,
                           const Execution& execution = {});
 

@@ -24,7 +24,7 @@ namespace collarmesh::files {
 
 namespace {
 
-constexpr double share_of_triangles = 0.1;  // of the distance that the mesh may keep from the shape
+constexpr double share_of_triangles = 0.1;  // relative to the distance that the mesh may have from the shape
 
 bool may_be_too_coarse(const PlcError& error) {
   return std::all_of(error.faults.begin(), error.faults.end(), [](const PlcFault& fault) {
@@ -80,7 +80,7 @@ ComplexInput::ComplexInput(const std::vector<std::string>& paths, InputReading r
     : reading_(std::move(reading)), cad_(reading_.guard) {
   const CadReading cad{[&](double diagonal) { return share_of_triangles * reading_.distance(diagonal); },
                        reading_.overlap, reading_.threads};
-  Tag largest_named = 0;  // numbers in names refer to their file
+  Tag largest_named = 0;  // numbers in names refer to one file
   for (const std::string& path : paths) {
     reading_.stop();
     const std::string file = existing_file(path);
@@ -114,7 +114,7 @@ Plc ComplexInput::build(const PlcOptions& options, const RepairOptions& repair) 
   return plc;
 }
 
-/// Adds the numbers of faces that were merged where solids of a file touch to those of the complex.
+/// Adds pairs of merged faces, where solids of a file touch, to those of the complex.
 void ComplexInput::add_replaced_faces(Plc& plc) const {
   std::vector<std::pair<Tag, Tag>>& all = plc.cleanup.replaced_tags;
   std::ranges::copy(cad_.replaced_faces(), std::back_inserter(all));
@@ -123,13 +123,13 @@ void ComplexInput::add_replaced_faces(Plc& plc) const {
 }
 
 const brep::CadLabels* ComplexInput::labels() const {
-  return built_.repaired.wrapped ? nullptr : cad_.labels(soups_.size());  // after wrapping, tags are no
+  return built_.repaired.wrapped ? nullptr : cad_.labels(soups_.size());  // after wrapping, tags are not
                                                                           // numbers of faces
 }
 
 TagColours ComplexInput::colours() const { return labels() == nullptr ? TagColours() : labels()->colours; }
 
-/// Names features, by a file or the text itself, and by single names.
+/// Names features as the file or the text and the single names say.
 void ComplexInput::name(Plc& plc) const {
   const std::string& path = reading_.names;
   if (path.empty() && reading_.given_names.empty()) return;
@@ -155,7 +155,7 @@ Plc ComplexInput::build_unnamed(const PlcOptions& options, const RepairOptions& 
       throw with_advice(error, repair, options.require_solid);
     }
   }
-  // Triangles of faces that nearly touch may intersect where finer ones do not.
+  // Triangles of faces that nearly touch may intersect although finer ones do not.
   std::optional<PlcError> first;
   for (const double finer : {1.0, 4.0}) {
     tessellate(finer);
@@ -168,7 +168,8 @@ Plc ComplexInput::build_unnamed(const PlcOptions& options, const RepairOptions& 
     }
   }
   if (repair.mode == RepairMode::off) throw with_advice(*first, repair, options.require_solid);
-  tessellate(may_be_too_coarse(*first) ? 2 : 1);  // fewer finer ones intersect, and there is less to cut
+  tessellate(may_be_too_coarse(*first) ? 2 : 1);  // finer triangles intersect less often, which leaves less
+                                                  // to cut
   try {
     return build_repaired(options, repair);
   } catch (const PlcError&) {
@@ -180,8 +181,8 @@ Plc ComplexInput::build_valid(const PlcOptions& options, const RepairOptions& re
   return take(remove_noise(build_plc(soups_, options), soups_, options, repair, watched()));
 }
 
-/// Builds the complex like `build_valid`, but throws PlcError if there is noise and none is allowed: before
-/// repairing it, which takes the most work.
+/// Builds the complex like `build_valid`, but if there is noise and none is allowed, throws PlcError before
+/// repairing it, which would be the most expensive part.
 Plc ComplexInput::build_finer(const PlcOptions& options, const RepairOptions& repair, bool with_noise) {
   if (with_noise) return build_valid(options, repair);
   Plc plc = build_plc(soups_, options);
@@ -191,15 +192,15 @@ Plc ComplexInput::build_finer(const PlcOptions& options, const RepairOptions& re
   return take(remove_noise(std::move(plc), soups_, options, none, watched()));
 }
 
-/// Returns the complex with finer triangles of the faces whose triangles are too coarse for the mesh, if it
-/// is as good. Where only one side of a wall is cut finely, the wall becomes thinner; then all faces are cut
-/// finely.
+/// Returns the complex with finer triangles on the faces whose triangles are too coarse for the mesh, if that
+/// complex is as good. If only one side of a wall gets finer triangles, the wall becomes thinner; in that
+/// case all faces get finer triangles.
 Plc ComplexInput::resolved(Plc plc, const PlcOptions& options, const RepairOptions& repair) {
   constexpr double finer = 4, little = 2e-3;
   if (!reading_.tolerance || built_.repaired.repaired) return plc;
   std::set<std::pair<Index, Tag>> faces;
   for (const Index patch : coarse_patches(plc, reading_.tolerance(plc)))
-    if (cad_.measures(plc.patches[patch].file))  // of a CAD file
+    if (cad_.measures(plc.patches[patch].file))  // the patch is of a CAD file
       faces.emplace(plc.patches[patch].file, plc.patches[patch].tag);
   if (faces.empty()) return plc;
   const double most_off = std::max(volume_off(plc), little);
@@ -272,7 +273,7 @@ ShapeMeasures ComplexInput::exact_measures(const Plc& plc) const {
 ExactGeometry ComplexInput::exact_geometry(const Plc& plc) const {
   return [this, &plc, files = files_of_curves(plc, soups(), built_.curve_numbers)](
              unsigned dimension, Index feature, const Point& p) -> std::optional<Point> {
-    if (built_.repaired.wrapped) return std::nullopt;  // its tags are no numbers of faces
+    if (built_.repaired.wrapped) return std::nullopt;  // its tags are not numbers of faces
     const Index file = dimension == 2 ? plc.patches[feature].file : files[feature];
     if (file == none) return std::nullopt;
     const Tag number = dimension == 2 ? built_.patch_numbers[feature] : built_.curve_numbers[feature];

@@ -20,25 +20,25 @@
 
 namespace collarmesh::files {
 
-/// Options of reading the files of one complex.
+/// Options for reading the files of one complex.
 struct InputReading {
   std::string format;  ///< overrides the files' extensions; empty: by extension
-  /// Returns the surface distance tolerance, absolute, from the diagonal; the triangles of CAD shapes keep a
-  /// tenth of it.
+  /// Returns the surface distance tolerance, absolute, given the diagonal. The triangles of CAD shapes are at
+  /// most a tenth of it from the shape.
   std::function<double(double diagonal)> distance = [](double diagonal) {
     return default_distance(0, diagonal);
   };
-  /// Returns the tolerance of the mesh that will be made of a complex: triangles of CAD shapes that are too
-  /// coarse for it are cut finer. Empty: none is.
+  /// Returns the tolerance of the mesh that will be made of a complex. Triangles of CAD shapes that are too
+  /// coarse for it are replaced by finer ones. Empty: none are replaced.
   std::function<SurfaceTolerance(const Plc&)> tolerance = {};
   SolidOverlap overlap = SolidOverlap::first;
-  unsigned threads = 0;                       ///< maximum number for CAD shapes; 0: all cores
+  unsigned threads = 0;                       ///< maximum number of threads for CAD shapes; 0: all cores
   std::string names = {};                     ///< names of features: the path of a file, or its text; empty:
                                               ///< none
   std::vector<std::string> given_names = {};  ///< further names, "fixed=11"
   const std::atomic<bool>* cancel = nullptr;  ///< ends the work when it is set
-  CadGuard guard = {};                        ///< guard of work on CAD files
-  std::function<void()> stop = [] {};         ///< called between steps; throws to end the work
+  CadGuard guard = {};                        ///< supervises work on CAD files
+  std::function<void()> stop = [] {};         ///< called between steps; may throw to end the work
 };
 
 /// The files of one complex: surfaces, complexes and CAD shapes, which are triangulated here.
@@ -48,14 +48,15 @@ class ComplexInput {
   /// file that does not exist, and PlcError.
   explicit ComplexInput(const std::vector<std::string>& paths, InputReading reading = {});
 
-  /// Adds a surface that is no file.
+  /// Adds a surface that does not come from a file.
   void add(PolygonSoup soup) { soups_.push_back(std::move(soup)); }
 
-  /// Returns the soups from which the last complex was built; before that, the soups that were read.
+  /// Returns the soups from which the last complex was built or, before the first one, the soups that were
+  /// read.
   const std::vector<PolygonSoup>& soups() const { return built_.soups.empty() ? soups_ : built_.soups; }
   bool has_cad() const { return !cad_.empty(); }
   std::string cad_names() const { return cad_.names(); }
-  /// Returns the changes to CAD shapes, a line each. `dimension` is that of the elements: meshes of surfaces
+  /// Returns the changes to CAD shapes, one per line. `dimension` is that of the elements: meshes of surfaces
   /// and curves need no notes on open solids.
   std::vector<std::string> notes(unsigned dimension = 3) const { return cad_.notes(dimension == 3); }
 
@@ -67,10 +68,10 @@ class ComplexInput {
   /// Returns the changes to the facets of the last complex.
   const RepairReport& repaired() const { return built_.repaired; }
 
-  /// Returns the exact edges and faces behind the last complex, for `run_pipeline`. Both must outlive the
-  /// result.
+  /// Returns the exact edges and faces behind the last complex, for `run_pipeline`. This object and `plc`
+  /// must outlive the result.
   ExactGeometry exact_geometry(const Plc& plc) const;
-  /// Returns their lengths, areas and volumes, where known.
+  /// Returns the lengths, areas and volumes of the exact geometry, where known.
   ShapeMeasures exact_measures(const Plc& plc) const;
 
  private:
@@ -93,14 +94,15 @@ class ComplexInput {
   /// The data of the last complex.
   struct Built {
     RepairReport repaired;
-    std::vector<PolygonSoup> soups;                 // repaired; empty without repairs
-    std::vector<Tag> patch_numbers, curve_numbers;  // before names were given
+    std::vector<PolygonSoup> soups;                 // the repaired soups; empty without repairs
+    std::vector<Tag> patch_numbers, curve_numbers;  // tags before names were applied
   };
 
   InputReading reading_;
-  std::vector<PolygonSoup> soups_;  // as they were read
+  std::vector<PolygonSoup> soups_;  // the soups as they were read
   CadFiles cad_;
-  double finer_ = 1;  // factor relative to the first triangles of CAD shapes; 0 if only some faces are finer
+  double finer_ = 1;  // factor relative to the first triangles of CAD shapes; 0 if only some faces have finer
+                      // ones
   Built built_;
 };
 

@@ -18,22 +18,22 @@ namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-/// Corrects the size of a feature in the complex by the difference between a CAD measure and its
-/// tessellation. Returns NaN if the measure is another feature's.
+/// Corrects the size of a feature of the complex by the difference between its CAD measure and its
+/// tessellation. Returns NaN if the measure belongs to another feature.
 double corrected(double in_complex, const brep::CadMeasure& measure) {
-  constexpr double share = 1e-4;  // share that repair may change without a warning
+  constexpr double share = 1e-4;  // relative change by repair that is accepted without a warning
   if (!(std::fabs(in_complex - measure.cut) <= share * measure.cut)) return unknown;
   return in_complex + (measure.exact - measure.cut);
 }
 
 /// The edge or face of a file.
 struct Source {
-  Index file;  // its first soup
+  Index file;  // the first soup with it
   Tag number;
   friend auto operator<=>(const Source&, const Source&) = default;  // NOLINT(modernize-use-nullptr)
 };
 
-/// The features that edges or faces became.
+/// The edges or faces of files that the features of the complex come from.
 class Origins {
  public:
   explicit Origins(std::size_t features) : exact_(features, unknown) {}
@@ -147,7 +147,7 @@ class Measures {
     return boundaries;
   }
 
-  /// Returns the soups of a CAD file that have the face of a patch; solids may share faces.
+  /// Returns the soups of a CAD file that contain the face of a patch; solids may share faces.
   const std::vector<Index>& soups_with(Index patch) const {
     static const std::vector<Index> no_soups;
     const auto cad = cad_.measures(plc_.patches[patch].file);
@@ -164,7 +164,7 @@ class Measures {
     return areas;
   }
 
-  /// Returns the soup that differs least from a region's boundary.
+  /// Returns the soup whose area differs least from that of a region's boundary.
   std::optional<Index> soup_that_bounds(const std::vector<Index>& patches,
                                         const std::vector<double>& soup_areas) const {
     std::map<Index, double> common;
@@ -182,7 +182,7 @@ class Measures {
     return cad ? cad->measures.volumes[soup - cad->first_soup] : std::nullopt;
   }
 
-  /// Returns the measures of a solid without the solids inside it, whose faces also bound its region.
+  /// Returns the measures of a solid minus those of the solids inside it, whose faces also bound its region.
   std::optional<brep::CadMeasure> solid_without_others(Index own, const std::vector<Index>& boundary) const {
     std::optional<brep::CadMeasure> result = solid(own);
     if (!result) return result;
@@ -203,7 +203,7 @@ class Measures {
   const Plc& plc_;
   const FeatureSources& sources_;
   const CadFiles& cad_;
-  std::vector<double> areas_;                        // of patches
+  std::vector<double> areas_;                        // areas of patches
   std::map<Source, std::vector<Index>> soups_with_;  // by face
 };
 

@@ -8,21 +8,21 @@
 
 namespace collarmesh::files {
 
-/// The soups that a complex was made of, and the tags that it got from them.
+/// The soups from which a complex was made, and the tags that its features got from them.
 struct FeatureSources {
-  const std::vector<PolygonSoup>& soups;  ///< as they were read
-  const std::vector<Tag>& patches;        ///< tags of patches before names were given
+  const std::vector<PolygonSoup>& soups;  ///< the soups as they were read
+  const std::vector<Tag>& patches;        ///< tags of patches before names were applied
   const std::vector<Tag>& curves;
 };
 
-/// Returns for each curve the soup it came from: that of its first patch; for a curve of no patch, the soup
-/// with a segment of its number at one of its points; none if repair moved all its points.
+/// Returns for each curve the soup it came from: the soup of its first patch; for a curve on no patch, the
+/// soup with a segment of its tag at one of its points; none if repair moved all its points.
 std::vector<Index> files_of_curves(const Plc& plc, const std::vector<PolygonSoup>& soups,
                                    const std::vector<Tag>& numbers);
 
-/// Returns lengths, areas and volumes of the CAD shapes behind a complex: the measures of features, corrected
-/// by the difference between shape and tessellation. Features that are only a part of an edge or face have
-/// none, nor have regions that are not a solid without the solids inside it.
+/// Returns lengths, areas and volumes of the CAD shapes behind a complex: the measures of its features,
+/// corrected by the difference between shape and tessellation. NaN for features that are only a part of an
+/// edge or face, and for regions other than a solid minus the solids inside it.
 ShapeMeasures measures_behind(const Plc& plc, const FeatureSources& sources, const CadFiles& cad);
 
 }  // namespace collarmesh::files

@@ -29,7 +29,7 @@ std::vector<fs::path> with_siblings(const fs::path& path, std::initializer_list<
   return files;
 }
 
-/// Returns the file and the files of faces and edges beside it.
+/// Returns the file and its files of faces and edges.
 std::vector<fs::path> parts_of_xdmf(const fs::path& path) {
   std::vector<fs::path> files;
   for (const char* part : {"", "_faces", "_edges"})
@@ -45,14 +45,14 @@ std::vector<fs::path> parts_of_polymesh(const fs::path& path) {
   return files;
 }
 
-/// Returns whether this file has the name of a piece that is written with the .pvtu.
+/// Returns whether this file has a name that the pieces written for the .pvtu have.
 bool is_named_as_piece(const fs::path& file, const fs::path& pvtu) {
   const std::string first = pvtu.stem().string() + "_", stem = file.stem().string();
   return file.extension() == ".vtu" && stem.starts_with(first) && stem.size() > first.size() &&
          stem.find_first_not_of("0123456789", first.size()) == std::string::npos;
 }
 
-/// Returns the file and its existing pieces; how many there will be is not known.
+/// Returns the file and its existing pieces. The number of pieces that will be written is unknown.
 std::vector<fs::path> written_with_pvtu(const fs::path& path) {
   std::vector<fs::path> files{path};
   std::error_code error;
@@ -63,7 +63,7 @@ std::vector<fs::path> written_with_pvtu(const fs::path& path) {
   return files;
 }
 
-/// Returns the file and its pieces, whose names may differ from ours if another program wrote them.
+/// Returns the file and its pieces, which may have other names if another program wrote them.
 std::vector<fs::path> read_with_pvtu(const fs::path& path) {
   std::vector<fs::path> files{path};
   try {
@@ -112,7 +112,7 @@ std::vector<fs::path> files_read(const fs::path& path, const std::string& format
 bool same_file(const fs::path& a, const fs::path& b) {
   std::error_code error;
   if (fs::equivalent(a, b, error) && !error) return fs::is_regular_file(a, error);
-  // A relative path of which nothing exists would stay relative.
+  // A relative path would stay relative if no part of it exists.
   const auto canonical = [&](const fs::path& path) {
     return fs::weakly_canonical(fs::absolute(path, error), error);
   };

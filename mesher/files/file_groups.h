@@ -6,8 +6,8 @@
 
 namespace collarmesh::files {
 
-/// Returns the files that writing `path` makes: the file itself and those that the format (its extension, or
-/// `format`) puts beside it; of the pieces of a .pvtu only existing ones.
+/// Returns the files that writing `path` makes: the file itself and the further files of its format (its
+/// extension, or `format`). Of the pieces of a .pvtu, returns only existing ones.
 std::vector<std::filesystem::path> files_written(const std::filesystem::path& path,
                                                  const std::string& format = {});
 
@@ -18,14 +18,15 @@ bool is_of_several_files(const std::string& format);
 bool may_write(const std::filesystem::path& path, const std::string& format,
                const std::filesystem::path& file);
 
-/// Returns the files that reading `path` may read; for "-" the file behind standard input.
+/// Returns the files that reading `path` may read; for "-", the file that is standard input.
 std::vector<std::filesystem::path> files_read(const std::filesystem::path& path,
                                               const std::string& format = {});
 
 /// Returns whether two paths name the same file, by any name or link.
 bool same_file(const std::filesystem::path& a, const std::filesystem::path& b);
 
-/// Returns which input an output would overwrite: "part.node, a file of the input part.poly"; empty: none.
+/// Returns a text on the input that an output would overwrite: "part.node, a file of the input part.poly";
+/// empty: none.
 std::string overwritten(const std::vector<std::filesystem::path>& written,
                         const std::vector<std::string>& inputs, const std::string& input_format);
 

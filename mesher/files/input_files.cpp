@@ -33,7 +33,7 @@ void require_file(const std::string& path) {
                                   : fmt::format("{}: no such file; did you mean {}?", path, similar));
 }
 
-/// Returns the system's name of "-".
+/// Returns the path to open: for "-", the system's name of standard input.
 std::string opened(const std::string& path) { return path == "-" ? "/dev/stdin" : path; }
 
 }  // namespace

@@ -7,14 +7,14 @@
 
 namespace collarmesh::files {
 
-/// Returns the system's name of an input file; "-" is standard input. Throws ReadError; for a file that does
-/// not exist it proposes the most similar name.
+/// Returns the path to open for an input file; "-" is standard input. Throws ReadError; for a file that does
+/// not exist, the message proposes the most similar name.
 std::string existing_file(const std::string& path);
 
 /// Reads a tetrahedral mesh. `format` overrides the extension. Throws ReadError.
 TetMesh read_mesh(const std::string& path, const std::string& format = {});
 
-/// Does the same for a file that may hold a surface instead; returns nothing then, and for surface formats.
+/// Reads a tetrahedral mesh. Returns nothing if the file contains a surface instead, or has a surface format.
 /// Throws ReadError.
 std::optional<TetMesh> read_mesh_if_there(const std::string& path, const std::string& format = {});
 

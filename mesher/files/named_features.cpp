@@ -20,7 +20,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::array<std::pair<std::string_view, const char*>, 3> groups{
     {{"patch:", "patches"}, {"curve:", "curves"}, {"region:", "regions"}}};
 
-/// A single name that was given.
+/// A name that was given on its own.
 struct Given {
   std::string name, group = "patches";
   std::vector<Tag> numbers;
@@ -54,7 +54,7 @@ Given read(const std::string& text) {
 
 void add(const Given& given, Json& names) {
   Json& group = names[given.group];
-  if (!group.is_null() && !group.is_object()) return;  // the reader of names reports that
+  if (!group.is_null() && !group.is_object()) return;  // leave this error to the reader of names
   Json& members = group[given.name];
   if (members.is_null())
     members = Json::array();

@@ -7,12 +7,12 @@
 
 namespace collarmesh::files {
 
-/// Returns whether the format is OpenMesh's own, by extension or name, and the program was built with
+/// Returns whether the format is OpenMesh's own, by extension or name. False if the program was built without
 /// OpenMesh.
 bool is_om(const std::string& path, std::string_view format);
 
-/// Call openmesh_io::read_om and write_om. OpenMesh is in a module, because loading the library takes as long
-/// as a third of all others. Throw ReadError and WriteError, also if the module is missing.
+/// Call openmesh_io::read_om and write_om. OpenMesh is in a module, because loading it takes a third of the
+/// time that all other libraries take. Throw ReadError and WriteError, also if the module is missing.
 PolygonSoup read_om(const std::string& path);
 void write_om(const std::string& path, const PolygonSoup& soup);
 

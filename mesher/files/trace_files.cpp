@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 enum Kind : std::uint8_t { tet, patch, collar_surface, segment, ball };
 
-/// The data of all cells of a step, cell by cell.
+/// The data of all cells of a step: one array for each quantity.
 struct CellData {
   std::vector<std::uint8_t> types, kind, state, reason;
   std::vector<std::int32_t> region;
@@ -53,7 +53,7 @@ void add_tets(const TraceStep& step, CellData& cells) {
     cells.add(vtk_tetra, tet, v);
     cells.region.back() = static_cast<std::int32_t>(step.region[t]);
     cells.state.back() = static_cast<std::uint8_t>(step.state[t]);
-    // The ratio of a flat cell is infinite, which not all readers accept.
+    // Flat cells have an infinite ratio, which not all readers accept, so this value replaces it.
     constexpr double largest = std::numeric_limits<float>::max();
     cells.radius_edge.back() = static_cast<float>(std::min(quality.radius_edge, largest));
     cells.min_dihedral.back() = static_cast<float>(quality.min_dihedral);

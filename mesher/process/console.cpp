@@ -14,7 +14,8 @@ namespace collarmesh::process {
 void replace_closed_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(stream, F_GETFD) != -1 || errno != EBADF) continue;
-    // The stream's own number is the lowest free one. Opening it in the wrong direction keeps it unusable.
+    // A closed stream's number is the lowest free one, so the device gets it. It is opened in the wrong
+    // direction so that the stream stays unusable.
     const int opened = open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
     if (opened != stream && opened >= 0) close(opened);
   }

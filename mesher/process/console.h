@@ -5,18 +5,17 @@
 #include <string>
 #include <utility>
 
-/// Standard output and standard error may be full, closed, or pipes that nobody reads.
+/// Output to standard output and standard error, which may be full, closed, or pipes that nobody reads.
 namespace collarmesh::process {
 
-/// Opens a device for every standard stream that is closed, so that no file opened later gets its number and
-/// the program's messages. Reading from and writing to the stream still fail.
+/// Opens a device for every standard stream that is closed. Otherwise a file opened later would get its
+/// number, and with it the program's messages. Reading from and writing to the stream still fail.
 void replace_closed_streams();
 
 /// Silences this process. When several ranks do the same work, only one prints.
 void be_silent();
 
-/// Prints a message to standard error. Messages that cannot be written are lost, because a run must not fail
-/// for its messages.
+/// Prints a message to standard error. Ignores errors, because a run must not fail for its messages.
 void tell_text(const std::string& text) noexcept;
 template <class... Values>
 void tell(fmt::format_string<Values...> format, Values&&... values) {

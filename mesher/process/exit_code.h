@@ -2,7 +2,7 @@
 
 namespace collarmesh::process {
 
-/// The program's exit codes. With 0 and 7 the mesh is written, with the others nothing.
+/// The program's exit codes. The mesh is written with codes 0 and 7 only.
 enum class ExitCode {
   success = 0,
   internal_error = 1,

@@ -6,7 +6,7 @@
 
 namespace collarmesh::process {
 
-/// A function to call when a command fails anywhere; it writes reports for programs.
+/// A function that is called when a command fails anywhere; it writes the requested reports.
 using FailureHandler = void (*)(ExitCode code, std::string_view message);
 void on_failure(FailureHandler handler);
 

@@ -40,13 +40,14 @@ double time_limit = 0;
 Clock::time_point deadline = Clock::time_point::max();
 std::string stage_told = "stage: start";
 
-std::mutex stage_mutex;  // guards the variable below; while it is held, only a report of a failure allocates
+std::mutex stage_mutex;  // guards the variable below; a thread that holds it allocates nothing, except to
+                         // report a failure
 StageReached stage_now;
 
 extern "C" void on_interrupt(int number) {
   interrupted.store(true, std::memory_order_relaxed);
   if (signals.fetch_add(1, std::memory_order_relaxed) < 2) return;
-  std::signal(number, SIG_DFL);  // the last resort
+  std::signal(number, SIG_DFL);  // the next signal kills the program
   std::raise(number);
 }
 
@@ -57,8 +58,7 @@ extern "C" void on_processor_time(int) {
 
 extern "C" void on_time(int) { interrupted.store(true, std::memory_order_relaxed); }
 
-/// Sets the flag at the time limit without a watching thread. Stages that check the flag end then; others do
-/// not.
+/// Sets the flag at the time limit, if no thread can watch. Only stages that check the flag end then.
 void set_flag_at_the_deadline() {
   if (deadline == Clock::time_point::max()) return;
   const std::chrono::duration<double> left = deadline - Clock::now();
@@ -78,7 +78,7 @@ bool asked_to_stop() {
   return interrupted.load(std::memory_order_relaxed);
 }
 
-/// Returns advice for the stage in which the time ran out.
+/// Returns advice that depends on the stage in which the time ran out.
 std::string coarser_text() {
   const std::string stage = stage_reached().stage;
   if (stage == "start" || stage == "read")
@@ -113,11 +113,12 @@ void install_interrupt_handlers() {
   action.sa_flags = static_cast<int>(SA_RESTART);
   sigemptyset(&action.sa_mask);
   for (const int number : {SIGINT, SIGTERM}) sigaction(number, &action, nullptr);
-  for (const int number : {SIGHUP, SIGQUIT})  // nohup ignores them
+  for (const int number : {SIGHUP, SIGQUIT})  // keep what nohup set: it ignores them
     if (sigaction(number, nullptr, &before) == 0 && before.sa_handler != SIG_IGN)
       sigaction(number, &action, nullptr);
   std::signal(SIGXCPU, on_processor_time);
-  // `ulimit -t` sets both limits, and the signal of the hard limit cannot be caught.
+  // The CPU seconds, of all threads, that remain to end after the soft limit. `ulimit -t` sets both limits,
+  // and the signal of the hard limit cannot be caught.
   constexpr rlim_t to_end_within = 2;  // CPU seconds of all threads
   rlimit limit = {};
   if (getrlimit(RLIMIT_CPU, &limit) == 0 && limit.rlim_max != RLIM_INFINITY &&
@@ -125,12 +126,13 @@ void install_interrupt_handlers() {
     limit.rlim_cur = limit.rlim_max - to_end_within;
     setrlimit(RLIMIT_CPU, &limit);
   }
-  // Makes a file that grew too large and a pipe that nobody reads write errors like others.
+  // Turns the signals for a file that grows too large and for a pipe that nobody reads into ordinary write
+  // errors.
   for (const int number : {SIGXFSZ, SIGPIPE}) std::signal(number, SIG_IGN);
 }
 
 void set_time_limit(double seconds) {
-  constexpr double a_year = 3e7;  // the clock's type may not hold more
+  constexpr double a_year = 3e7;  // limit, because the clock's type may not hold more
   const std::lock_guard lock(deadline_mutex);
   time_limit = seconds;
   deadline =
@@ -166,10 +168,10 @@ void stop_if_interrupted() {
 
 namespace {
 
-/// Watches a command. Ends with the command, or ends the program in its place.
+/// Watches a command in a thread. If the command does not end in time, ends the program.
 class Watcher {
  public:
-  /// Starts the thread. Throws std::system_error if none can be created.
+  /// Starts the thread. Throws std::system_error if the system can create none.
   Watcher() : thread_([this](const std::stop_token& end) { watch(end); }) {}
 
  private:

@@ -10,13 +10,13 @@
 
 namespace collarmesh::process {
 
-/// Thrown when a command ends before it is done. Nothing was written.
+/// Thrown when a command ends early, without having written anything.
 struct Stopped : std::runtime_error {
   Stopped(ExitCode exit_code, const std::string& message) : std::runtime_error(message), code(exit_code) {}
   ExitCode code;
 };
 
-/// The user asked to stop.
+/// Thrown if the user asked to stop.
 struct Cancelled : Stopped {
   Cancelled() : Stopped(ExitCode::cancelled, "cancelled; nothing was written") {}
 };
@@ -38,16 +38,17 @@ struct StageReached {
   std::size_t vertices = 0, tets = 0;  ///< 0: none yet
 };
 
-/// Records the stage for the message when the time is up and for reports of failures; `told` may describe it
-/// in more detail.
+/// Records the stage, for the message when the time is up and for reports of failures. `told` may describe
+/// the stage in more detail.
 void note_stage(StageReached reached, std::string told = {});
 StageReached stage_reached();
 
 /// Throws Stopped if the user asked to stop or the time is up.
 void stop_if_interrupted();
 
-/// Runs a command so that an interrupt ends the program within a second, whatever it is doing: stages that
-/// check the flag return by themselves, others are abandoned, and their unfinished files are removed.
+/// Runs a command so that an interrupt ends the program within a second, whatever the command is doing.
+/// Stages that check the flag return by themselves; other stages are abandoned, and their unfinished files
+/// are removed.
 ExitCode run_interruptible(const std::function<ExitCode()>& command);
 
 }  // namespace collarmesh::process

@@ -4,8 +4,8 @@
 
 namespace collarmesh::process {
 
-/// Returns the bytes of memory that this program may use: the machine's, or fewer if its control group is
-/// limited.
+/// Returns the number of bytes of memory that this program may use: the machine's, or less if its control
+/// group has a limit.
 std::size_t memory_of_the_machine();
 
 }  // namespace collarmesh::process

@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::string_view program = "collarmesh: ";  // prefix of messages
 
-/// Freed when memory is used up, so that some is left for the end.
+/// A block that is freed when memory is used up, so that ending the program has some.
 std::unique_ptr<char[]> reserve;
 
 [[noreturn]] void end(ExitCode code, std::string_view message) noexcept {
@@ -30,7 +30,7 @@ std::unique_ptr<char[]> reserve;
   reserve.reset();
   const bool abandoned = abandon_staged_files();
   if (!abandoned)
-    code = ExitCode::success;  // all files are in place
+    code = ExitCode::success;  // the files are all in place, so the command succeeded
   else if (write(STDERR_FILENO, message.data(), message.size()) < 0) {
     // Nobody is left to report to.
   }
@@ -65,7 +65,7 @@ void* gmp_reallocate(void* block, std::size_t old_bytes, std::size_t bytes) {
   return grown;
 }
 
-/// Runs before the variables of this program are initialized, which takes a thousand allocations.
+/// Runs before this program's variables are initialized, because that takes a thousand allocations.
 [[gnu::constructor(101)]] void before_all() { std::set_new_handler(end_for_memory); }
 
 /// Returns the bytes of data without allocating.
@@ -77,7 +77,7 @@ std::size_t data_bytes() {
   close(file);
   std::size_t data = 0;
   char* rest = text;
-  // In pages: all, resident, shared, text, libraries, data and stacks.
+  // The file has numbers of pages: all, resident, shared, text, libraries, data and stacks.
   for (int field = 0; read_any && field < 6; ++field) data = std::strtoull(rest, &rest, 10);
   return data * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
 }
@@ -93,7 +93,7 @@ void end_when_memory_is_used_up() {
 }
 
 void limit_memory(std::size_t bytes) {
-  // The memory reserved for threads' stacks counts, used or not.
+  // The limit counts memory reserved for threads' stacks, used or not.
   constexpr std::size_t for_stacks_and_libraries = std::size_t{48} << 20;
   rlimit limit;
   if (bytes == 0 || getrlimit(RLIMIT_DATA, &limit) != 0) return;

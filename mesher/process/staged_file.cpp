@@ -34,7 +34,7 @@ constexpr std::string_view kept_prefix = "kept-";
 
 std::mutex staged_mutex;  // guards the following variables
 
-/// Holds that mutex. The thread may hold it already, if memory is used up while it does.
+/// Locks that mutex. The thread may hold it already, if memory runs out while it does.
 class StagedLock {
  public:
   StagedLock() {
@@ -55,9 +55,9 @@ thread_local int StagedLock::held_ = 0;
 
 std::vector<std::string> staged_folders;
 bool committed = false;
-bool keep_folders = false;  // previous files could not be restored from them
+bool keep_folders = false;  // keep the folders, because their files could not be moved back
 
-/// The completed steps of a commit, so that they can be undone.
+/// The completed moves of a commit, for undoing them.
 struct Done {
   fs::path place, kept;
 };
@@ -83,8 +83,8 @@ void require_place(const fs::path& target) {
     throw WriteError(fmt::format("{}: is no regular file; name one, or - with --format", target.string()));
 }
 
-/// Removes the folders of runs that were killed, whose locks nobody holds. Younger folders may be about to be
-/// locked.
+/// Removes the folders of runs that were killed: nobody holds their locks. Skips young folders, which may be
+/// about to be locked.
 void remove_dead_folders(const fs::path& parent) {
   using namespace std::chrono_literals;
   std::error_code error;
@@ -103,7 +103,7 @@ void remove_dead_folders(const fs::path& parent) {
   }
 }
 
-/// Returns the place where output for standard output is made before it is copied.
+/// Returns the folder for output to standard output before it is copied there.
 fs::path temporary_place() {
   std::error_code error;
   for (const fs::path& place : {fs::temp_directory_path(error), fs::path("/tmp"), fs::path("/var/tmp")})
@@ -122,7 +122,7 @@ fs::path make_folder_beside(const fs::path& target) {
         fmt::format("{}: {} is not a folder; choose another place", target.string(), parent.string()));
   if (target != standard_output) require_place(target);
   remove_dead_folders(parent);
-  // List the folder before it exists, because memory may be used up at any time.
+  // Lists the folder before creating it, because memory may run out at any time.
   staged_folders.push_back((parent / fmt::format("{}XXXXXX", folder_prefix)).string());
   if (mkdtemp(staged_folders.back().data()) == nullptr) {
     const std::string why = reason();
@@ -134,7 +134,7 @@ fs::path make_folder_beside(const fs::path& target) {
   return staged_folders.back();
 }
 
-/// Flushes a file. File systems that cannot flush report one of these error numbers.
+/// Flushes a file. These error numbers mean that the file system cannot flush.
 bool flushed(int file) { return fsync(file) == 0 || errno == EINVAL || errno == ENOTSUP; }
 
 void flush(const fs::path& path, const fs::path& place) {
@@ -145,7 +145,7 @@ void flush(const fs::path& path, const fs::path& place) {
   if (!good) throw WriteError(fmt::format("{}: cannot be written to the disk ({})", place.string(), why));
 }
 
-/// Flushes changes of names, too. The files are in place by now, so a failure loses nothing.
+/// Flushes renamings, too. The files are in place by now, so errors do not matter.
 void flush_folder(const fs::path& folder) {
   const int file = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (file < 0) return;
@@ -164,7 +164,7 @@ void keep_mode_and_owner(const fs::path& before, const fs::path& staged) {
     throw WriteError(fmt::format("{}: cannot keep its mode ({})", before.string(), reason()));
 }
 
-/// Makes a second name for a file, or, where links are not supported, a copy.
+/// Makes a second name for a file or, if links are not supported, a copy.
 bool keep(const fs::path& place, const fs::path& kept) {
   return link(place.c_str(), kept.c_str()) == 0 || rename(place.c_str(), kept.c_str()) == 0;
 }
@@ -179,7 +179,7 @@ void take_back() noexcept {
 
 }  // namespace
 
-// Replaces the file that a symbolic link names, not the link.
+// If the target is a symbolic link, replaces the file that it names, not the link.
 StagedFile::StagedFile(fs::path target) : target_(std::move(target)) {
   std::error_code error;
   if (fs::is_symlink(target_, error))
@@ -214,7 +214,7 @@ std::vector<StagedFile::Move> StagedFile::moves() const {
   for (const auto& entry : fs::directory_iterator(folder_)) names.insert(entry.path().filename());
   names.erase(target_.filename());
   std::vector<fs::path> ordered(names.begin(), names.end());
-  ordered.push_back(target_.filename());  // the target last, so that its readers find the others
+  ordered.push_back(target_.filename());  // the target comes last, so that its readers find the other files
   std::vector<Move> moves;
   for (const fs::path& name : ordered) {
     const fs::path place = target_.parent_path() / name;
@@ -265,7 +265,7 @@ void StagedFile::commit(const std::vector<StagedFile*>& files) {
     if ((!move.kept.empty() && !keep(move.to, move.kept)) ||
         (done.push_back(std::move(next)), rename(move.from.c_str(), move.to.c_str()) != 0)) {
       const std::string why = reason();
-      if (move.kept.empty()) done.pop_back();  // a file that is there now, if any, is another program's
+      if (move.kept.empty()) done.pop_back();  // a file with this name now belongs to another program
       take_back();
       throw WriteError(fmt::format(
           "{}: cannot be replaced ({}); choose another name{}", move.to.string(), why,

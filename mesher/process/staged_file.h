@@ -7,13 +7,11 @@
 
 namespace collarmesh::process {
 
-/// A file that appears under its name when it is complete, or not at all: it is made in a temporary folder in
-/// the same place, and `commit` moves it there, together with further files that its writer makes beside it.
-/// A replaced file passes on its mode and, where permitted, its owner. The target "-" is standard output, to
-/// which the file is copied.
-///
-/// The folder is locked as long as it is in use: unlocked folders were left by runs that were killed, and are
-/// removed.
+/// A file that appears under its name only when it is complete. It is made in a temporary folder beside its
+/// place, and `commit` moves it to its place, together with further files that its writer makes. A replaced
+/// file passes on its mode and, where permitted, its owner. The target "-" is standard output, to which the
+/// file is copied.
+/// The folder is locked while it is in use. Unlocked folders were left by killed runs, so they are removed.
 class StagedFile {
  public:
   /// Makes the temporary folder. Throws WriteError if the folder of `target` cannot be written to.
@@ -22,12 +20,13 @@ class StagedFile {
   StagedFile(const StagedFile&) = delete;
   StagedFile& operator=(const StagedFile&) = delete;
 
-  /// Makes the file: `write` gets the path to write to. Errors name the target instead of it.
+  /// Makes the file by calling `write` with the path to write to. Errors name the target instead of that
+  /// path.
   void write(const std::function<void(const std::string& path)>& write);
 
-  /// Flushes files to the disk and moves them to their places: all of them, or none, leaving the previous
-  /// files as they were. Throws WriteError, also if two would have the same place, or Cancelled if the user
-  /// asked to stop before.
+  /// Flushes files to the disk and moves them to their places: either all of them, or none, which leaves the
+  /// previous files as they were. Throws WriteError, also if two files have the same place. Throws Cancelled
+  /// if the user has asked to stop.
   static void commit(const std::vector<StagedFile*>& files);
 
  private:
@@ -52,8 +51,8 @@ void require_writable(const std::filesystem::path& target,
 void remove_dead_folder(const std::filesystem::path& folder);
 
 /// Removes files that are not committed and blocks later commits, because the program is about to end while
-/// another thread writes. A commit in progress is undone if this thread was making it, otherwise waited for.
-/// Returns false if the commit has taken place; the command is then about to succeed.
+/// another thread writes. Undoes a commit of this thread that is in progress; waits for one of another
+/// thread. Returns false if a commit has been completed: the command is about to succeed.
 bool abandon_staged_files();
 
 }  // namespace collarmesh::process

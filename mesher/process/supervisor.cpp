@@ -31,12 +31,12 @@ constexpr int running = -1;
 
 constexpr Clock::duration never = Clock::time_point::max().time_since_epoch();
 
-/// The data that child and supervisor share. Texts that are too long are cut.
+/// The data that child and supervisor share. Long texts are cut off.
 struct Shared {
   std::atomic<int> result{running};
   std::atomic<bool> in_cad{false};
-  std::atomic<Clock::rep> end{never.count()};      // of the process
-  std::atomic<Clock::rep> cad_end{never.count()};  // of OpenCASCADE's current work
+  std::atomic<Clock::rep> end{never.count()};      // time at which the process must end
+  std::atomic<Clock::rep> cad_end{never.count()};  // time at which OpenCASCADE's current work must end
   std::array<char, 128> doing{};
   std::array<char, 1024> file{};
   std::array<char, 16384> folders{};  // paths, each with its terminating zero
@@ -54,7 +54,7 @@ void copy(std::string_view text, char* place, std::size_t size) {
 volatile std::sig_atomic_t asked_to_stop = 0;
 volatile pid_t child = 0;
 
-/// Passes a signal on. A terminal sends its signals to the child as well.
+/// Passes a signal on to the child. A terminal sends its signals to the child as well.
 extern "C" void pass_on(int number, siginfo_t* information, void*) {
   asked_to_stop = 1;
   if (information->si_code != SI_KERNEL && child > 0) kill(child, number);
@@ -87,7 +87,7 @@ Clock::rep from_now(double seconds) {
       .count();
 }
 
-/// Blocks SIGCHLD while it lives, so that the end of a child can be waited for.
+/// Blocks SIGCHLD during its lifetime, so that the supervisor can wait for the end of a child.
 class ChildSignal {
  public:
   ChildSignal() {
@@ -100,7 +100,7 @@ class ChildSignal {
   ChildSignal& operator=(const ChildSignal&) = delete;
 
   void unblock() const { sigprocmask(SIG_SETMASK, &before_, nullptr); }
-  /// Waits until a child ends, another signal comes or the time, less than a second, is over.
+  /// Waits until a child ends, another signal comes or this time (less than a second) is over.
   void wait(std::chrono::nanoseconds time) const {
     const timespec most{0, time.count()};
     sigtimedwait(&signal_, nullptr, &most);
@@ -110,10 +110,10 @@ class ChildSignal {
   sigset_t signal_, before_;
 };
 
-/// Returns how the child ended; kills it when a limit is over.
+/// Waits for the child and returns how it ended; kills it when a limit is exceeded.
 int wait_for_child(const ChildSignal& ended_signal, bool& out_of_time) {
   using namespace std::chrono_literals;
-  constexpr Clock::duration grace = 3s;  // its own watcher ends it within a second
+  constexpr Clock::duration grace = 3s;  // the child's own watcher ends it within a second
   for (int status = 0;;) {
     const pid_t ended = waitpid(child, &status, WNOHANG);
     if (ended == child) return status;
@@ -171,7 +171,7 @@ ExitCode reason_for(int status, bool out_of_time) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) std::_Exit(static_cast<int>(ExitCode::cancelled));
   const ExitCode code = command();
-  shared->result.store(static_cast<int>(code));  // the exit code stays even if unloading libraries fails
+  shared->result.store(static_cast<int>(code));  // keep the exit code even if unloading libraries fails
   std::exit(static_cast<int>(code));
 }
 

@@ -8,18 +8,18 @@
 
 namespace collarmesh::process {
 
-/// Runs a command in a child of this process, which only watches it. CAD files can make OpenCASCADE crash or
-/// never end; then the child dies, and this process reports the file and the operation, removes unfinished
-/// files and returns the exit code for it. Signals that ask to stop are passed on; the child dies with this
-/// process. If no child can be created, the command runs here. Precondition: there is one thread. Cost: about
-/// a millisecond.
+/// Runs a command in a child process, which this process only watches. CAD files can make OpenCASCADE crash
+/// or run forever. In that case the child dies; this process then reports the file and the operation, removes
+/// unfinished files and returns the exit code of the failure. Passes signals that ask to stop on to the
+/// child; the child dies with this process. Runs the command here if no child can be created. Precondition:
+/// there is only one thread. Cost: about a millisecond.
 ExitCode run_supervised(const std::function<ExitCode()>& command);
 
-/// Reports that OpenCASCADE works on a file, as long as this lives: "cutting faces into triangles". If one
-/// begins while another lives, the inner one counts; one thread makes them.
+/// Reports work of OpenCASCADE on a file, such as "cutting faces into triangles", during its lifetime. The
+/// inner one of two nested objects counts; all must be made by one thread.
 class CadWork {
  public:
-  /// Begins the work. It may take this many seconds, unless the process has its own limit; 0: any time.
+  /// Begins the work. It may take `seconds`, unless the process has its own limit; 0: any time.
   CadWork(std::string_view doing, std::string_view file, double seconds = 0);
   ~CadWork();
   CadWork(const CadWork&) = delete;

@@ -1,5 +1,5 @@
-"""The functions that take options. When the package is built, a line `# options of ...` becomes the options that the
-command takes, in a signature as parameters, in a description as text (write_functions.py)."""
+"""The functions that take options. When the package is built, write_functions.py replaces each line `# options of ...`
+by the options that the command takes: by parameters in a signature, by text in a description."""
 
 import os
 from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, Union
@@ -17,16 +17,16 @@ def mesh(
     input_format: Optional[str] = None,
     progress: Union[bool, Callable[[str, float], Optional[bool]], None] = None,
 ) -> Mesh:
-    """Mesh what surfaces bound, and certify the result.
+    """Mesh the solids that surfaces bound, and certify the result.
 
-    surfaces: paths of files, CAD shapes included; tuples (points, triangles) or (points, triangles, tags) with
-        points of shape (n, 3), triangles of shape (m, 3), rows of points, oriented outwards, and tags of shape (m,),
-        integers by which the faces of the mesh are found again; and `Complex`es. Several are several regions of one
-        mesh, numbered from 1; one inside another and oriented inwards is a cavity.
+    surfaces: paths of files, CAD shapes included; tuples (points, triangles) or (points, triangles, tags); and
+        `Complex`es. Points have shape (n, 3); triangles have shape (m, 3), are rows of points and oriented outwards;
+        tags have shape (m,) and are integers that the faces of the mesh get, too. Each surface bounds a region,
+        numbered from 1; a surface inside another one that is oriented inwards bounds a cavity.
     # options of mesh
-    input_format: extension in place of the files' own, ".stl".
-    progress: True for a bar on standard error; or a callable, which is called with the stage and the fraction that is
-        done of everything, up to 1; if it returns False, the run is cancelled.
+    input_format: extension that replaces the files' own, ".stl".
+    progress: True for a bar on standard error; or a callable that is called with the stage and the fraction of the whole
+        run that is done, up to 1; if it returns False, the run is cancelled.
 
     Returns a `Mesh`; its `passed` says whether every guarantee holds. Raises the subclasses of `Error` that the
     description of the package lists.
@@ -42,13 +42,13 @@ def remesh(
     # options of remesh
     progress: Union[bool, Callable[[str, float], Optional[bool]], None] = None,
 ) -> Mesh:
-    """Adapt a mesh to target edge lengths, finer and coarser, and certify the result. Its regions, surfaces, edges, names and
-    tags stay, and it follows its own surface: no volume moves by more than the certificate says.
+    """Adapt a mesh to target edge lengths, finer or coarser, and certify the result. Keeps its regions, surfaces, edges, names
+    and tags. The result follows the mesh's own surface; the certificate bounds the change of volumes.
 
-    mesh: a `Mesh`, of this or another program, or the path of one. Of a mesh of second order the corners count; with
+    mesh: a `Mesh`, of this or another program, or the path of one. A mesh of second order is remeshed by its corners; with
         `order=2` the result is of second order again.
-    size: a length; lengths for each point or each tetrahedron of the mesh, as `sizes_from_errors` gives them; or a size field,
-        as `size_field` in `collarmesh.mesh`. None: tetrahedra get better, lengths stay as they are.
+    size: a length; lengths for each point or each tetrahedron of the mesh, as `sizes_from_errors` returns them; or a size
+        field, as `size_field` in `collarmesh.mesh`. None: improve tetrahedra and keep the lengths.
     # options of remesh
     progress: as in `collarmesh.mesh`.
 
@@ -66,13 +66,13 @@ def predict(
     # options of mesh
     input_format: Optional[str] = None,
 ) -> List[Prediction]:
-    """How large meshes will be and how long they will take, without making them.
+    """Predict how large meshes will be and how long they will take, without making them.
 
     surfaces, options: as in `collarmesh.mesh`.
-    sizes: target edge lengths, in the place of `size`.
+    sizes: target edge lengths, in place of `size`.
 
-    Returns a dict for each: "size", "tets", and "seconds", of all stages from the refinement to the certificate, as
-    `collarmesh info --predict --json` prints them. Raises `Error`.
+    Returns a dict for each size, as `collarmesh info --predict --json` prints it: "size", "tets", and "seconds", the time
+    of all stages from the refinement to the certificate. Raises `Error`.
     """
     return _core.predict(inputs(surfaces), [float(size) for size in sizes], given(locals()))
 
@@ -80,7 +80,7 @@ def predict(
 def read(path: Path, format: str = "") -> Mesh:
     """Read a tetrahedral mesh.
 
-    path: the file. format: an extension such as ".vtu", in place of the file's own. Raises ReadError.
+    path: the file. format: an extension such as ".vtu" that replaces the file's own. Raises ReadError.
     """
     return Mesh._of(_core.read_mesh(os.fspath(path), format))
 
@@ -90,7 +90,7 @@ def check(
     *against: Input,
     # options of check
 ) -> Dict[str, Any]:
-    """Certify a mesh, of this or another program, against the surfaces it was made of.
+    """Certify a mesh, of this or another program, against the surfaces that it was made from.
 
     mesh: a `Mesh` or the path of one.
     against: the surfaces, as in `collarmesh.mesh`.
@@ -130,13 +130,13 @@ def repair(
     # options of repair
     input_format: Optional[str] = None,
 ) -> Tuple[List[Surface], List[str]]:
-    """The surfaces that would be meshed: repaired where they are no valid complex.
+    """Return the surfaces that would be meshed: repaired if they are no valid complex.
 
     surfaces, options: as in `collarmesh.mesh`.
-    output: a file to which they are written as well.
+    output: a file to which the surfaces are also written.
 
     Returns a list of (points, triangles, tags), one for each surface, with the shapes of `collarmesh.mesh`, and a list
-    of what was done, in sentences with places. Polygons of valid surfaces are divided into fans of triangles. Raises
+    of the changes: sentences with places. Polygons of valid surfaces are divided into fans of triangles. Raises
     `Error`.
     """
     messages: List[str] = []

@@ -12,7 +12,7 @@ WIDTH = 118
 PLACE = re.compile(r"^( +)# options of (\w+)\n", re.M)
 TYPES = {"flag": "bool", "count": "int", "number": "float", "text": "str", "sizes": "Mapping[int, float]",
          "texts": "Sequence[str]"}
-# The types of these options in Python differ from those on the command line.
+# Options whose types in Python differ from those on the command line.
 OTHER_TYPES = {"size_field": "SizeField", "names": "Union[Path, Mapping[str, Any]]", "max_memory": "Union[int, str]"}
 MORE = {
     "size_field": "a path of these; a dict as in such a .json; a tuple (mesh, values) or (points, tets, values), a "
@@ -30,12 +30,12 @@ def type_of(option):
 
 
 def in_python(text):
-    """Names of options as Python has them."""
+    """Returns a text with the names of options as in Python."""
     return re.sub(r"--([a-z-]+)", lambda match: match[1].replace("-", "_"), text)
 
 
 def description(option):
-    """One paragraph: what it is for, what it may be, its default."""
+    """Returns one paragraph: the option's purpose, its allowed values, its default."""
     text = option["help"][0].lower() + option["help"][1:]
     default = option["default_text"]
     if type_of(option) == "bool":

@@ -17,7 +17,7 @@ namespace collarmesh::report {
 
 namespace {
 
-/// The data for which formats have a place; all keep corners of cells and points.
+/// The data that a format can store besides corners of cells and points, which all store.
 struct Kept {
   std::string_view format;
   bool facet_tags = false, segments = false, point_tags = false, regions = false, names = false;
@@ -180,7 +180,7 @@ std::string merge_text(const MergeReport& report) {
 
 namespace {
 
-// Describes patches merged where parts touch: "; there patch 7 is patch 2, 9 is 3".
+// Describes patches that were merged where parts touch: "; there patch 7 is patch 2, 9 is 3".
 std::string replaced_text(const std::vector<std::pair<Tag, Tag>>& replaced) {
   constexpr std::size_t listed = 20;
   std::string text;

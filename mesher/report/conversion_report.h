@@ -11,14 +11,14 @@ namespace collarmesh::report {
 /// Returns the given format, or else the extension of the path, in lower case with its dot.
 std::string format_of(const std::string& path, const std::string& format);
 
-/// Describes the data for which a format has no place; empty if nothing is lost.
+/// Describes the data that a format cannot store; empty if nothing is lost.
 std::vector<std::string> lost_by(const std::string& format, const PolygonSoup& soup);
 std::vector<std::string> lost_by(const std::string& format, const TetMesh& mesh);
 
-/// Returns whether this format of meshes has a place for the names of groups.
+/// Returns whether this format of meshes can store names of groups.
 bool keeps_names(const std::string& format);
 
-// For people, lines of text:
+// Lines of text for display:
 std::string soup_text(const std::string& path, const PolygonSoup& soup);
 std::string tet_mesh_text(const std::string& path, const TetMesh& mesh);
 std::string merge_text(const MergeReport& report);

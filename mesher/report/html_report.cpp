@@ -20,7 +20,7 @@ void append(std::string& bytes, const std::vector<Number>& numbers) {
   bytes.append(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(Number));
 }
 
-/// Returns the text of a script element: no `<` in it can end the script.
+/// Returns JSON as text for a script element. It contains no `<`, which could end the script.
 std::string json_in_page(const Json& json) {
   std::string text = json_text(json), safe;
   safe.reserve(text.size());

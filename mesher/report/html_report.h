@@ -9,8 +9,8 @@
 
 namespace collarmesh::report {
 
-/// Returns a run as one page that needs no network: `report` (`run_json`) to read, and a view of the mesh, in
-/// the same unit of length, that can be turned and cut. The view also shows the steps of `trace`.
+/// Returns a run as one HTML page that needs no network: `report` (`run_json`) as text, and a view of the
+/// mesh, in the same unit of length, that can be turned and cut. The view also shows the steps of `trace`.
 std::string html_report(const nlohmann::ordered_json& report, const ShownMesh& shown,
                         const std::vector<ShownStep>& trace = {});
 

@@ -13,23 +13,23 @@ namespace collarmesh::report {
 /// The triangles, or edges, of a mesh that have one tag.
 struct MeshGroup {
   Tag tag = 0;
-  std::string name;       ///< the name it was given; empty: none
+  std::string name;       ///< given name; empty: none
   std::size_t cells = 0;  ///< triangles or edges
   double measure = 0;     ///< their area or length
-  Point where;            ///< the centre of the largest one
+  Point where;            ///< centre of the largest triangle or edge
 };
 
 /// Returns the groups by tag; measures use corners only. Cost: linear.
 std::vector<MeshGroup> patches_of(const TetMesh& mesh);
 std::vector<MeshGroup> curves_of(const TetMesh& mesh);
 
-/// Returns the name of a tag: the given one, or that of a CAD shape; empty if it has none.
+/// Returns the name of a tag: the given name, or the one in a CAD shape; empty if it has none.
 std::string name_of(const TagNames& given, GroupNames names, std::size_t dimension, Tag tag);
 
 /// Returns the names of regions by their numbers, for regions whose tag has a name.
 std::map<Index, std::string> names_of_regions(const TetMesh& mesh);
 
-/// Describe the groups: for people, a line each, the first ones if there are very many; and for programs.
+/// Describe the groups: as text, one per line, only the first ones if there are very many; and as JSON.
 std::string groups_text(const TetMesh& mesh);
 nlohmann::ordered_json groups_json(const std::vector<MeshGroup>& groups, const char* cells,
                                    const char* measure);

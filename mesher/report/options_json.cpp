@@ -37,7 +37,7 @@ const char* name_of(Option::Unit unit) {
   }
 }
 
-/// Makes an object from keys that are all different, without comparing each key with all before it.
+/// Makes an object from distinct keys, without comparing each key with all earlier ones.
 Json by_tag(const std::map<Tag, double>& sizes) {
   Json::object_t object;
   for (const auto& [tag, size] : sizes) object.emplace_back(std::to_string(tag), size);

@@ -6,7 +6,7 @@
 
 namespace collarmesh::report {
 
-/// Returns the options of a run that its mesh depends on; null if a default depends on the input.
+/// Returns the options that determine the mesh of a run; null for options whose default depends on the input.
 nlohmann::ordered_json options_json(const RunOptions& options);
 
 /// Returns the table of options, for files generated from it.

@@ -18,7 +18,7 @@
 
 namespace collarmesh::report {
 
-/// The request of a run.
+/// The options of a run, and its files.
 struct RequestedRun : RunOptions {
   std::vector<std::string> inputs;
   std::string output;
@@ -27,16 +27,16 @@ struct RequestedRun : RunOptions {
 /// All results of one run of the mesher.
 struct MeshRun : SoupPipelineResult {
   PlcSummary summary;
-  std::vector<std::string> warnings;  ///< of options; those of the input are in the complex
-  std::vector<std::string> notes;     ///< on CAD shapes, a line each
-  TagColours colours;                 ///< of CAD shapes
+  std::vector<std::string> warnings;  ///< warnings of options; those of the input are in the complex
+  std::vector<std::string> notes;     ///< notes on CAD shapes, one per line
+  TagColours colours;                 ///< colours of CAD shapes
   std::vector<WorstTet> worst;
   std::optional<RemeshReport> remeshing;  ///< nothing unless a mesh was adapted
   StageTimes times;
 };
 
-// For programs (--report, --json):
-/// Describes a complex. `names` is how features without a name are called. `colours` are by their tags.
+// As JSON (--report, --json):
+/// Describes a complex. `names` is the style of names for features without a name; `colours` are by tag.
 nlohmann::ordered_json complex_json(const Plc& plc, const PlcSummary& summary,
                                     GroupNames names = GroupNames::complex, const TagColours& colours = {});
 nlohmann::ordered_json measures_json(const TetMesh& mesh, const MeshMeasures& measures);
@@ -49,16 +49,16 @@ nlohmann::ordered_json run_json(const RequestedRun& arguments, const MeshRun& ru
 nlohmann::ordered_json repair_run_json(const RequestedRun& arguments, const Plc& plc,
                                        const PlcSummary& summary, const RepairReport& report);
 
-// For people, lines of text:
-/// Returns "warning: ..." lines of the input, the first ones if there are very many.
+// As lines of text, for display:
+/// Returns "warning: ..." lines for the input; only the first ones if there are very many.
 std::string warnings_text(const Plc& plc);
-/// Returns "repaired: ..." lines, the first ones if there are very many. `quiet`: only changes that may alter
-/// the shape by more than the tolerance.
+/// Returns "repaired: ..." lines; only the first ones if there are very many. `quiet`: only changes that may
+/// alter the shape by more than the tolerance.
 std::string repair_text(const RepairReport& report, bool quiet = false);
 std::string complex_text(const Plc& plc, const PlcSummary& summary, GroupNames names = GroupNames::complex);
 /// Returns a table; empty without predictions.
 std::string predictions_text(const std::vector<Prediction>& predictions);
-/// Returns an empty text for a mesh that is not partitioned.
+/// Returns a line on the partitions; empty for a mesh that is not partitioned.
 std::string partitions_text(const PartitionMeasures& measures);
 std::string mesh_text(const TetMesh& mesh, const MeshMeasures& measures, const CheckReport* judged = nullptr);
 std::string findings_text(const CheckReport& report, std::size_t listed);

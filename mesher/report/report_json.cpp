@@ -20,7 +20,7 @@ Json point_json(const Point& p) { return Json::array({p.x, p.y, p.z}); }
 /// Returns a number, or null for infinity, which JSON does not have.
 Json number_json(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-/// Makes an object from keys that are all different, without comparing each key with all before it.
+/// Makes an object from distinct keys, without comparing each key with all earlier ones.
 template <class Number, class Value>
 Json by_number(const std::map<Number, Value>& values) {
   Json::object_t object;
@@ -169,7 +169,7 @@ Json worst_json(const std::vector<WorstTet>& worst) {
   return list;
 }
 
-/// Returns null for a mesh that is not partitioned.
+/// Returns the measures of the partition; null for a mesh that is not partitioned.
 Json partitions_json(const PartitionMeasures& m) {
   if (m.partitions == 0) return nullptr;
   return {{"count", m.partitions},
@@ -179,13 +179,13 @@ Json partitions_json(const PartitionMeasures& m) {
           {"cut_faces", m.cut_faces}};
 }
 
-/// Returns the name, null if there is none.
+/// Returns the name of a tag; null if it has none.
 Json name_json(const Plc& plc, GroupNames names, std::size_t dimension, Tag tag) {
   const std::string name = name_of(plc.names, names, dimension, tag);
   return name.empty() ? Json(nullptr) : Json(name);
 }
 
-/// Returns the colour, null if the file gave none.
+/// Returns the colour of a tag; null if the file gave none.
 Json colour_json(const std::map<Tag, Colour>& colours, Tag tag) {
   const auto found = colours.find(tag);
   return found == colours.end() ? Json(nullptr) : Json(colour_text(found->second));
@@ -400,7 +400,7 @@ Json remeshing_json(const RemeshReport& r) {
 
 Json run_json(const RequestedRun& arguments, const MeshRun& run) {
   Json seconds = Json::object();
-  for (const auto& [stage, time] : run.times.stages())  // some stages occur twice
+  for (const auto& [stage, time] : run.times.stages())  // add up stages that occur several times
     seconds[stage] = seconds.value(stage, 0.0) + time;
   seconds["total"] = run.times.total();
   Json json{{"program", "collarmesh"},

@@ -17,7 +17,7 @@ namespace {
 
 using Out = std::back_insert_iterator<std::string>;
 
-/// Longer lists are cut; --json has them all.
+/// Number of lines after which lists are cut off; --json has all.
 constexpr std::size_t listed = 20;
 
 std::string in_brackets(const std::string& name) { return name.empty() ? name : fmt::format(" ({})", name); }
@@ -42,7 +42,7 @@ void append_creases(std::string& text, const Plc& plc, const std::vector<Crease>
   if (creases.size() > listed) fmt::format_to(Out(text), "    ... and {} more\n", creases.size() - listed);
 }
 
-/// Describes shapes. A ratio of 0 means that there is no tetrahedron.
+/// Describes shapes. A ratio of 0 means that there is no such tetrahedron.
 std::string shape_text(double min_dihedral, double max_dihedral, double max_radius_edge) {
   if (max_dihedral == 0) return "all tets in collars";
   return fmt::format("dihedral angles from {:.2f} to {:.2f} degrees, {}", min_dihedral, max_dihedral,
@@ -57,8 +57,8 @@ std::string times_text(const StageTimes& times) {
   return text;
 }
 
-/// Returns the changes that are independent of the tolerance: holes filled, parts removed, a surface around
-/// everything.
+/// Returns the part of the report on changes that do not depend on the tolerance: filled holes, removed
+/// parts, a surface around everything.
 RepairReport beyond_tolerance(const RepairReport& report) {
   RepairReport rest;
   rest.turned = report.turned;
@@ -78,7 +78,7 @@ RepairReport beyond_tolerance(const RepairReport& report) {
   return rest;
 }
 
-/// Adds patches by number, as sizes and formats refer to them.
+/// Appends the patches with their numbers, to which sizes and formats refer.
 void append_patches(std::string& text, const Plc& plc, GroupNames names) {
   const std::vector<PatchSummary> patches = summarize_patches(plc);
   for (std::size_t k = 0; k < std::min(patches.size(), listed); ++k) {
@@ -103,7 +103,7 @@ void append_curves(std::string& text, const Plc& plc, GroupNames names) {
     fmt::format_to(Out(text), "  ... and {} more curves (--json lists all)\n", curves.size() - listed);
 }
 
-/// Returns a count without digits beyond the precision of a double.
+/// Returns a count, with no more digits than a double's precision.
 std::string count_text(double count) {
   return count < 1e12 ? fmt::format("{:.0f}", count) : fmt::format("{:.3g}", count);
 }

@@ -38,7 +38,7 @@ bool meets_middle_plane(const TetMesh& mesh, const std::array<Index, 4>& tet, co
   return false;
 }
 
-/// Adds the faces on patches if all their points are shown.
+/// Adds the faces on patches, if all their points are shown.
 void add_faces(const TetMesh& mesh, const std::vector<std::uint32_t>& point_number, ShownMesh& shown) {
   shown.face_tags = mesh.face_tag;
   std::sort(shown.face_tags.begin(), shown.face_tags.end());

@@ -16,19 +16,19 @@ struct ShownMesh {
     Point where;               ///< its centre
   };
 
-  bool complete = true;               ///< all tets of the mesh are included
-  Point centre;                       ///< of the bounding box
+  bool complete = true;               ///< whether all tets of the mesh are included
+  Point centre;                       ///< centre of the bounding box
   std::vector<float> points;          ///< three numbers for each, relative to the centre
   std::vector<std::uint32_t> tets;    ///< four corners for each
   std::vector<std::uint32_t> faces;   ///< on patches: three corners and an index into `face_tags` for each
   std::vector<Tag> face_tags;         ///< sorted
-  std::vector<std::uint16_t> region;  ///< of each tet
-  std::vector<std::uint8_t> marks;    ///< of each tet: 1 in a collar, 2 thin
-  std::vector<ShownWorst> worst;      ///< as given
+  std::vector<std::uint16_t> region;  ///< by tet
+  std::vector<std::uint8_t> marks;    ///< by tet: 1 in a collar, 2 thin
+  std::vector<ShownWorst> worst;      ///< the given worst tets
 };
 
-/// Returns all tets up to `most`; of larger meshes those with a face on the boundary or an interface, those
-/// that meet the planes through the centre, and the worst. Cost: linear.
+/// Returns all tets of a mesh with up to `most` of them. Of larger meshes returns the tets with a face on the
+/// boundary or an interface, those that meet the planes through the centre, and the worst ones. Cost: linear.
 ShownMesh shown_mesh(const TetMesh& mesh, const std::vector<WorstTet>& worst, std::size_t most = 100000);
 
 }  // namespace collarmesh::report

@@ -11,8 +11,8 @@ namespace {
 
 using State = TraceStep::State;
 
-/// Makes a mesh from the tets of a step worth showing, with the faces of their points. Tets about to be
-/// ripped out are marked as both in a collar and thin, a combination that no other tet has.
+/// Makes a mesh from the tets of a step that are worth showing, with the faces between their points. Tets
+/// about to be ripped out are marked as both in a collar and thin, a combination that no other tet has.
 TetMesh mesh_of(const TraceStep& step) {
   TetMesh mesh;
   mesh.points = step.points;
@@ -38,7 +38,7 @@ TetMesh mesh_of(const TraceStep& step) {
   return mesh;
 }
 
-/// Replaces the tags of faces by indices into the mesh's tags; removes faces with other tags, and those with
+/// Replaces the tags of faces by indices into the mesh's tags; removes faces with other tags, and faces with
 /// corners that are not shown.
 void use_tags_of(const ShownMesh& mesh, ShownMesh& cells) {
   std::vector<std::uint32_t> faces;

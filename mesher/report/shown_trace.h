@@ -8,7 +8,7 @@
 
 namespace collarmesh::report {
 
-/// A step of a trace, as a page shows it beside the mesh.
+/// A step of a trace that a page shows beside the mesh.
 struct ShownStep {
   std::string stage, detail;
   ShownMesh cells;           ///< relative to the centre of the mesh shown, with its face tags; marks: 1 in a

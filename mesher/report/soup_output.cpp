@@ -16,8 +16,8 @@ CutFacets cut_for(const std::string& format) {
   return format == ".stl" ? CutFacets::all : CutFacets::complex;
 }
 
-/// Places region and hole points, which define the solid parts of space in a complex; a surface defines them
-/// by its orientation. Returns the text to print.
+/// Adds region and hole points, which define the solid parts of space in a complex (a surface defines them by
+/// its orientation). Returns the text to print.
 std::string place_regions(const std::vector<PolygonSoup>& soups, PlcOptions options, PolygonSoup& merged) {
   options.require_solid = false;
   try {

@@ -10,7 +10,7 @@ namespace collarmesh::report {
 /// Seconds per stage of a command, in order.
 class StageTimes {
  public:
-  /// Ends the stage before and begins this one.
+  /// Ends the previous stage and begins this one.
   void begin(std::string stage) {
     end();
     stages_.emplace_back(std::move(stage), 0.0);

@@ -13,8 +13,8 @@ struct WorstTet {
   std::array<Point, 4> corners;
 };
 
-/// Returns ten tets with the smallest dihedral angles, smallest first, then those of the ten with the largest
-/// ones that are not among them. `measures` must be of this mesh.
+/// Returns the ten tets with the smallest dihedral angles, smallest first, then the tets with the ten largest
+/// angles, without repeating any. `measures` must be of this mesh.
 std::vector<WorstTet> worst_tets(const TetMesh& mesh, const MeshMeasures& measures);
 
 }  // namespace collarmesh::report

@@ -12,7 +12,7 @@
 #include <cstdio>
 #include <vector>
 
-using PolyMesh = OpenMesh::PolyMesh_ArrayKernelT<>;  // floats; any traits will do
+using PolyMesh = OpenMesh::PolyMesh_ArrayKernelT<>;  // with floats; any traits work
 using TriMesh = OpenMesh::TriMesh_ArrayKernelT<>;
 
 /// A box of quads. The face property "side" numbers its sides from 1.
@@ -43,7 +43,7 @@ int main() {
   const om::SurfacesPlc complex = om::to_plc(box, {.name = "box", .patch_property = "side"});
   for (const std::string& note : complex.notes) std::printf("%s\n", note.c_str());
 
-  // ... and the complex a mesh: fine near side 2, the top.
+  // ... and the complex becomes a mesh, fine near side 2, the top.
   collarmesh::PipelineOptions options;
   options.mesh.size = 0.5;
   options.mesh.patch_size[2] = 0.2;

@@ -20,7 +20,7 @@ bool matches(const std::array<Index, 2>& regions, const SurfaceSelection& s) {
   return regions[0] != regions[1] && is(regions[0], s.back) && is(regions[1], s.front);
 }
 
-/// Selects triangles whose back and front are as asked, reversed if necessary.
+/// Selects triangles with the given regions behind and in front, reversed if necessary.
 void select(const TetMesh& mesh, const SurfaceSelection& selection, SelectedSurface& surface) {
   for (Index f = 0; f < mesh.faces.size(); ++f) {
     Triangle corners = mesh.faces[f];
@@ -44,7 +44,7 @@ struct Side {
   auto points() const { return std::pair(low, high); }
 };
 
-/// Finds for each side that of the neighbour across it; none at a border, where more than two triangles meet
+/// Finds for each side the neighbour's side across it; none at a border, where more than two triangles meet,
 /// and where two meet with opposite orientation.
 std::vector<Index> find_neighbours(const std::vector<Triangle>& triangles) {
   std::vector<Side> sides;
@@ -68,7 +68,7 @@ std::vector<Index> find_neighbours(const std::vector<Triangle>& triangles) {
   return neighbour;
 }
 
-/// Gives each fan of triangles around a point a vertex of its own.
+/// Gives each fan of triangles around a point its own vertex.
 void separate_fans(const std::vector<Index>& neighbour, SelectedSurface& surface) {
   std::vector<Index> fan(3 * surface.triangles.size());  // by corner, numbered like the side it begins
   std::iota(fan.begin(), fan.end(), 0);
@@ -100,7 +100,7 @@ void separate_fans(const std::vector<Index>& neighbour, SelectedSurface& surface
       seen.size() - static_cast<std::size_t>(std::unique(seen.begin(), seen.end()) - seen.begin());
 }
 
-/// Orders triangles so that neighbours follow each other: OpenMesh can link a face that touches earlier ones.
+/// Orders triangles so that each touches earlier ones: OpenMesh can link a face in that order.
 void order_by_neighbours(const std::vector<Index>& neighbour, SelectedSurface& surface) {
   const std::size_t count = surface.triangles.size();
   std::vector<Index> order;

@@ -1,4 +1,4 @@
-// The layout is that of OpenMesh/Core/IO/OMFormat.hh: a header, then chunks, each of a 16-bit
+// Checks the layout that OpenMesh/Core/IO/OMFormat.hh defines: a header, then chunks, each with a 16-bit
 // description and its values, all little endian.
 #include "om_layout.h"
 
@@ -88,7 +88,7 @@ class LayoutCheck {
       read_positions(chunk, count);
     else
       skip(count * chunk.components * chunk.value_bytes, "the values of a chunk");
-    // Old files do not give the number of faces that OpenMesh will make.
+    // Old files do not contain the number of faces that OpenMesh will make.
     const bool needed =
         positions || chunk.values == Values::topology || (face_status && version_ >= version_2);
     if (needed) layout_.safe_bytes.append(bytes_.substr(begin, at_ - begin));
@@ -106,12 +106,13 @@ class LayoutCheck {
     }
   }
 
-  /// OpenMesh makes vertices and faces when it reads their first chunk, and uses them in the others.
+  /// Checks the order of chunks: OpenMesh makes vertices and faces when it reads their first chunk, and uses
+  /// them in the others.
   void require_order(const Chunk& chunk) const {
     const bool topology = chunk.values == Values::topology, status = chunk.values == Values::status;
     const bool too_early = (topology && chunk.entity == Entity::vertex && !has_positions_) ||
                            (status && chunk.entity == Entity::face && !has_faces_);
-    // Old files have only the corners of the faces, from which OpenMesh makes the halfedges.
+    // Old files contain only the corners of the faces, from which OpenMesh makes the halfedges.
     const bool too_new = topology && chunk.entity != Entity::face && version_ < version_2;
     if (too_early || too_new) fail("the chunks are not in the order that OpenMesh writes");
   }
@@ -154,8 +155,8 @@ class LayoutCheck {
   }
 
   void read_halfedge(const Chunk& chunk, std::uint64_t halfedges) {
-    read_index(chunk, halfedges, false);         // next
-    read_index(chunk, layout_.vertices, false);  // to
+    read_index(chunk, halfedges, false);         // the next halfedge
+    read_index(chunk, layout_.vertices, false);  // the vertex it points to
     read_index(chunk, layout_.faces, true);
   }
 

@@ -4,14 +4,14 @@
 #include <string>
 #include <string_view>
 
-/// OpenMesh 9's reader of .om files takes counts and indices as they are: a wrong one makes it
-/// allocate gigabytes or write outside its arrays. So a file's layout is checked before OpenMesh sees it.
+/// Checks of .om files. OpenMesh 9's reader trusts counts and indices: a wrong one makes it allocate
+/// gigabytes or write outside its arrays. So a file's layout is checked before OpenMesh reads it.
 namespace collarmesh::openmesh_io {
 
 struct OmLayout {
   std::uint32_t vertices = 0, faces = 0, edges = 0;
-  /// The header and the chunks of positions, topology and deleted faces: the data that is needed and safe to
-  /// read. Custom properties and later data are left out.
+  /// The data that is needed and safe to read: the header and the chunks of positions, topology and deleted
+  /// faces, without custom properties and data after them.
   std::string safe_bytes;
 };
 

@@ -1,8 +1,7 @@
 // Writes a member of the families of the tests (acute shapes, polylines) as .poly files, one for each solid:
-// PREFIX_1.poly, PREFIX_2.poly, ... With --copies N it is N turned copies in a cubic grid, with
-// --small-copy SHARE (of polylines) a copy so small beside it. With --triangulated it is also
-// written as one complex of conforming triangles: PREFIX.off when these bound solids and nothing else, else
-// PREFIX.poly.
+// PREFIX_1.poly, PREFIX_2.poly, ... --copies N writes N turned copies in a cubic grid; --small-copy SHARE
+// (polylines only) adds a copy that is smaller by this factor. --triangulated also writes the member as one
+// complex of conforming triangles: PREFIX.off if all triangles bound solids, else PREFIX.poly.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -140,7 +139,7 @@ void append(PolygonSoup& all, const PolygonSoup& one, const Vector& shift) {
     all.region_points.push_back({point + shift, tag, size});
 }
 
-// The grid leaves half of the diagonal between neighbours, however they are turned.
+// Returns copies in a grid that leaves half of the diagonal between neighbours, however they are turned.
 std::vector<PolygonSoup> copies_of(const acute::Shape& shape, unsigned count) {
   const Box box = bounds(shape.soups);
   const double pitch = 1.5 * box.diagonal();
@@ -203,7 +202,7 @@ void write_triangles(const TriangleComplex& complex, const std::string& prefix) 
 struct Request {
   std::vector<std::string> words;  // prefix, family and parameters
   unsigned copies = 0;
-  double small_copy = 0;  // of polylines
+  double small_copy = 0;  // for polylines
   bool triangulated = false;
 };
 

@@ -16,7 +16,7 @@ namespace collarmesh::testing {
 
 namespace {
 
-// Exact, so that triangles of rounding errors alone beside a facet are not taken for a part of it.
+// Exact, so that triangles made by rounding errors beside a facet do not count as parts of it.
 using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
 using Triangulation = CGAL::Constrained_Delaunay_triangulation_2<
     Kernel,
@@ -24,7 +24,7 @@ using Triangulation = CGAL::Constrained_Delaunay_triangulation_2<
                                          CGAL::Constrained_triangulation_face_base_2<Kernel>>,
     CGAL::No_constraint_intersection_requiring_constructions_tag>;
 using Triangle = std::array<Index, 3>;
-using Edge = std::array<Index, 2>;  // the lower number first
+using Edge = std::array<Index, 2>;  // the lower number comes first
 
 constexpr double relative_tolerance = 1e-12;
 constexpr double relative_width = 1e-6;
@@ -33,15 +33,15 @@ Edge edge_of(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
 
 struct Facet {
   std::vector<Index> outline;
-  Vector normal;  // twice as long as the facet is large
+  Vector normal;  // normal; its length is twice the facet's area
 };
 
-// The soups as one, equal points merged.
+// All soups in one, with equal points merged.
 struct Input {
   std::vector<Point> points;
   std::vector<Facet> facets;
-  std::set<Edge> edges;        // of facets and segments
-  std::vector<Edge> segments;  // those of no facet
+  std::set<Edge> edges;        // edges of facets, and segments
+  std::vector<Edge> segments;  // segments that are no edge of a facet
   double tolerance = 0;
 };
 
@@ -98,7 +98,8 @@ class InputReader {
   Input input_;
 };
 
-// The plane of a facet. Points are projected along the largest component of its normal, which rounds nothing.
+// The plane of a facet. Points are projected along the largest component of its normal, which needs no
+// rounding.
 class Plane {
  public:
   Plane(const Point& origin, const Vector& normal) : origin_(origin), normal_(normal / norm(normal)) {
@@ -126,7 +127,7 @@ class PlaneTriangulator {
     }
   }
 
-  // Those inside the facets, added to `triangles`.
+  // Appends the triangles inside the facets to `triangles`.
   void add_triangles(std::vector<Triangle>& triangles) {
     insert();
     for (const auto& face : triangulation_.finite_face_handles()) {
@@ -177,7 +178,7 @@ class PlaneTriangulator {
   Triangulation triangulation_;
 };
 
-// Large facets first: theirs are the planes that rounding turns least.
+// Begins with large facets, because rounding turns their planes least.
 std::vector<Triangle> triangles_of_facets(const Input& input) {
   std::vector<Facet> facets = input.facets;
   std::stable_sort(facets.begin(), facets.end(), [](const Facet& a, const Facet& b) {
@@ -203,7 +204,7 @@ std::map<Edge, unsigned> edge_uses(const std::vector<Triangle>& triangles) {
   return uses;
 }
 
-// A triangle with a corner at `end` along half of the segment to `other`.
+// Adds a triangle with a corner at `end`, along half of the segment to `other`.
 void add_segment_end(TriangleComplex& complex, Index end, Index other) {
   const Vector half = 0.5 * (complex.points[other] - complex.points[end]);
   const Vector sideways =

@@ -14,19 +14,18 @@ struct TriangleComplex {
   std::vector<std::array<Index, 3>> triangles;  ///< oriented like their facets
 };
 
-/// The complex of some soups, for a judge that knows triangles alone: made of the soups by CGAL, by no code
-/// of the mesher. Points closer than 1e-12 of the diagonal are one. The facets in one plane are triangulated
-/// together, with all points and edges of the complex that lie in it: no triangle is there twice or overlaps
-/// another one, and what meets a facet inside has its edges and corners there.
-///
-/// A segment that is no edge of a triangle is told by the places where it meets something else: from each
-/// such end a triangle leads along half of it, a millionth of it wide. An end that nothing else touches is
-/// not told, as no crease is there.
-///
-/// Throws std::exception on facets with holes, edges that cross, and flat triangles (corners within an edge).
+/// Makes a complex of triangles from some soups, for a judge that only knows triangles. It uses CGAL and no
+/// code of the mesher. Merges points closer than 1e-12 of the diagonal. Triangulates the facets in one plane
+/// together, with all points and edges of the complex in it: no triangle occurs twice or overlaps another
+/// one, and features that meet a facet inside have edges and corners there.
+/// A segment that is no edge of a triangle is represented only where it meets other features: from each such
+/// end a triangle leads along half of the segment, with a width of a millionth of it. Ends that nothing else
+/// touches are left out, as there is no crease.
+/// Throws std::exception on facets with holes, edges that cross, and flat triangles (with a corner on an
+/// edge).
 TriangleComplex conforming_triangles(std::span<const PolygonSoup> soups);
 
-/// Whether the triangles bound solids and nothing else: an even number at every edge.
+/// Returns whether all triangles bound solids: whether every edge has an even number of them.
 bool is_closed(const TriangleComplex& complex);
 
 }  // namespace collarmesh::testing

@@ -30,9 +30,9 @@ namespace {
 
 bool ends_with_brep(const std::string& path) { return path.ends_with(".brep"); }
 
-// OpenCASCADE's distance to a face sometimes misses the nearest point of a spline surface, or of a cylinder
-// that the face goes around more than once, and tells one on the face's border; so a point on the surface
-// that lies within the border counts, too.
+// Returns the distance to a face. OpenCASCADE sometimes misses the nearest point of a spline surface, or of a
+// cylinder that the face goes around more than once, and returns a point of the border; so a point of the
+// surface inside the border counts, too.
 double distance_to_face(const gp_Pnt& p, const TopoDS_Face& face) {
   const BRepExtrema_DistShapeShape extrema(TopoDS_Vertex(BRepBuilderAPI_MakeVertex(p)), face);
   const double found = extrema.IsDone() ? extrema.Value() : INFINITY;
@@ -65,7 +65,7 @@ CadMeshed mesh_of_cad_file(const std::string& path, double relative_size, int or
   PipelineOptions options;
   options.mesh.size = relative_size * meshed.plc.bounds.diagonal();
   options.mesh.bounds.distance = relative_distance * meshed.plc.bounds.diagonal();
-  options.mesh.time_limit = 0;  // sanitizers are slow
+  options.mesh.time_limit = 0;  // no limit, because sanitizers are slow
   options.coarsen = false;
   options.order = static_cast<unsigned>(order);
   options.exact = input.exact_geometry(meshed.plc);

@@ -10,7 +10,7 @@
 #include "collarmesh/project_boundary.h"
 #include "collarmesh/second_order.h"
 
-/// The way from a CAD file to a judged mesh, as the program takes it.
+/// Meshes of CAD files, made and judged as in the program.
 namespace collarmesh::testing {
 
 struct CadMeshed {
@@ -21,19 +21,19 @@ struct CadMeshed {
   CheckReport report;
 };
 
-/// Write a shape to a BREP file and mesh that; sizes are relative to the diagonal.
+/// Writes a shape to a BREP file and meshes it; sizes are relative to the diagonal.
 CadMeshed mesh_of_shape(const TopoDS_Shape& shape, double relative_size = 0.1, int order = 1);
 CadMeshed mesh_of_cad_file(const std::string& path, double relative_size = 0.1, int order = 1);
 
-/// The shape that a file holds, numbered as FreeCAD does.
+/// Returns the shape in a file, numbered as FreeCAD does.
 TopoDS_Shape shape_in(const std::string& path);
 
-/// By OpenCASCADE's search over the whole face with its border: how far the mesh points on faces, mid-side
-/// nodes as well, are from the face that their tag names, at most over about `samples` points. Points in the
-/// projection's exceptions, nodes beside them and straightened nodes are left out.
+/// Returns the largest distance of mesh points on faces, mid-edge nodes included, from the faces that their
+/// tags name, over about `samples` points, by OpenCASCADE's search over the whole face with its border.
+/// Leaves out exceptions of the projection, nodes beside them, and straightened nodes.
 double farthest_from_faces(const CadMeshed& meshed, const TopoDS_Shape& shape, std::size_t samples = 400);
 
-/// Empty when all is right, else what is wrong.
+/// Returns the faults of the mesh as text; empty if there are none.
 std::string faults(const CadMeshed& meshed);
 
 }  // namespace collarmesh::testing

@@ -78,7 +78,7 @@ std::set<Tag> one_to(int n) {
 struct Case {
   const char* name;
   TopoDS_Shape (*make)();
-  int features;  // edges that are no seams and not degenerate
+  int features;  // number of edges except seams and degenerate ones
 };
 
 void PrintTo(const Case& shape, std::ostream* out) { *out << shape.name; }
@@ -120,7 +120,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"plate_with_hole", plate_with_hole, 14}, Case{"filleted_box", filleted_box, 48}),
     [](const auto& info) { return std::string(info.param.name); });
 
-/// Of the chords of the mesh edges with a tag.
+/// Returns the sum of the chords of the mesh edges with a tag.
 double length_of_edges(const TetMesh& mesh, Tag tag) {
   double length = 0;
   for (std::size_t e = 0; e < mesh.edges.size(); ++e)
@@ -180,17 +180,17 @@ TEST(CadMeshingInside, TakesWholeCirclesInOneOfTwoSolids) {
                               BRepPrimAPI_MakeBox(gp_Pnt(10, 2, 2), gp_Pnt(20, 8, 8)).Shape(), ring}));
   EXPECT_EQ(faults(meshed), "");
   const std::set<Tag> edges = tags(meshed.result.mesh.edge_tag);
-  EXPECT_EQ(edges.count(25), 1U);  // after those of the boxes
+  EXPECT_EQ(edges.count(25), 1U);  // its number comes after those of the boxes
   EXPECT_NEAR(length_of_edges(meshed.result.mesh, 25), 6 * M_PI, 0.05 * 6 * M_PI);
 }
 
-// A radius that goes on outside, and a chord: both end on the exact mantle.
+// A radius that continues outside, and a chord: both end on the exact lateral surface.
 TEST(CadMeshingInside, EndsLinesOnCurvedFaces) {
   const double radius = 10, height = 8;
   const TopoDS_Shape cylinder = BRepPrimAPI_MakeCylinder(radius, 20).Shape(),
                      spoke = BRepBuilderAPI_MakeEdge(gp_Pnt(0, 0, height), gp_Pnt(-12, -9, height)).Shape();
   const Tag first = count(cylinder, TopAbs_EDGE) + 1;
-  const double angle = 1.2;  // at which the chord meets it: no crease
+  const double angle = 1.2;  // angle at which the chord meets it: too large for a crease
   const double depth = radius * std::cos(angle), half = radius * std::sin(angle);
   const TopoDS_Shape chord =
       BRepBuilderAPI_MakeEdge(gp_Pnt(depth, -2 * radius, height), gp_Pnt(depth, 2 * radius, height)).Shape();
@@ -213,7 +213,7 @@ TEST(CadMeshingInside, LeavesOutWhatOfALineIsInAHole) {
   for (const double x : {5, 14, 26, 35}) EXPECT_TRUE(has_node_at(meshed.result.mesh, {x, 15, 2}, 1e-9));
 }
 
-// The exact face behind a tag is the one with FreeCAD's number: FaceN's centre of mass.
+// The face with tag N must be FreeCAD's FaceN: compares centres of mass.
 TEST(CadTags, AreFreeCadsNumbers) {
   const TopoDS_Shape shape = BRepPrimAPI_MakeBox(gp_Pnt(1, 2, 3), 10, 20, 30).Shape();
   const CadMeshed meshed = mesh_of_shape(shape, 0.2);
@@ -239,7 +239,7 @@ TEST(CadTags, AreFreeCadsNumbers) {
 }
 
 TEST(CadSolids, ThatTouchShareOneInterface) {
-  // The small box stands amid a face of the large one.
+  // The small box stands in the middle of a face of the large one.
   const TopoDS_Shape large = BRepPrimAPI_MakeBox(gp_Pnt(0, 0, 0), 20, 20, 10).Shape();
   const TopoDS_Shape small = BRepPrimAPI_MakeBox(gp_Pnt(5, 5, 10), 8, 8, 8).Shape();
   const CadMeshed meshed = mesh_of_shape(compound({large, small}));
@@ -306,7 +306,7 @@ TEST(CadFaces, AloneAreSewn) {
   EXPECT_EQ(tags(meshed.result.mesh.face_tag), one_to(6));
 }
 
-// Every CAD file of the corpus; what stays off its face is counted, and little.
+// Meshes every CAD file of the corpus. Vertices that stay off their face are few, and counted.
 TEST(CadCorpus, VerticesLieOnTheirFaces) {
   const char* corpus = std::getenv("COLLARMESH_CORPUS");
   if (corpus == nullptr || *corpus == '\0') GTEST_SKIP() << "COLLARMESH_CORPUS is not set";

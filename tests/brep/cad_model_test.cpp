@@ -1,4 +1,4 @@
-// Reading CAD files, and what is wrong with shapes.
+// Reading CAD files, and faults of shapes.
 #include "collarmesh/brep/cad_model.h"
 
 #include <gtest/gtest.h>
@@ -71,7 +71,7 @@ double volume_in(CadModel model) {
   return volume;
 }
 
-// The writer keeps the numbers and says that they are inches.
+// Writes a file in inches: the numbers stay, and only the unit changes.
 void write_in_inches(const TopoDS_Shape& shape, const std::string& path) {
   const LeaksAllowed of_writer;
   STEPControl_Writer writer;
@@ -111,7 +111,8 @@ std::ptrdiff_t count_threads() {
                        std::filesystem::directory_iterator());
 }
 
-// Threads that OpenCASCADE starts stay. In processes of their own, as earlier tests may have started some.
+// Runs in separate processes, because OpenCASCADE's threads never end, and earlier tests may have started
+// some.
 TEST(CadFilesDeathTest, AreReadWithTheThreadsThatAreAllowed) {
   if (std::thread::hardware_concurrency() < 2) GTEST_SKIP() << "there is one core";
   GTEST_FLAG_SET(death_test_style, "threadsafe");
@@ -142,7 +143,7 @@ TEST(CadFiles, ThatAreNoneAreReadErrors) {
     for (const char* content : {"", "nonsense\n", "ISO-10303-21;\nHEADER;\n"})
       EXPECT_THROW(brep::read_cad(folder.write(name, content)), Error) << name << ": " << content;
   EXPECT_THROW(brep::read_cad(folder.file("missing.step")), ReadError);
-  // OpenCASCADE's own words on a file that is cut off are in the message and nowhere else.
+  // OpenCASCADE's own message on a truncated file must be part of the error and printed nowhere else.
   BRepTools::Write(box(), folder.file("whole.brep").c_str());
   const std::string whole = folder.read("whole.brep");
   ::testing::internal::CaptureStdout();
@@ -165,7 +166,7 @@ TopoDS_Shape point(double x, double y, double z) {
   return BRepBuilderAPI_MakeVertex(gp_Pnt(x, y, z)).Shape();
 }
 
-// For meshes of lines: one soup of segments, with the edges' numbers.
+// Edges alone become one soup of segments with the edges' numbers, for meshes of lines.
 TEST(CadModel, EdgesAloneAreLines) {
   CadModel model(compound({line(gp_Pnt(0, 0, 0), gp_Pnt(4, 0, 0)), line(gp_Pnt(4, 0, 0), gp_Pnt(4, 3, 0)),
                            line(gp_Pnt(0, 3, 0), gp_Pnt(4, 1, 0))}),
@@ -182,8 +183,7 @@ TEST(CadModel, EdgesAloneAreLines) {
   EXPECT_NEAR(distance(*nearest, {4, 2, 0}), 0, 1e-12);
 }
 
-// Wires and points that belong to no face, and are not inside a solid, have no place in the mesh: that is
-// told.
+// Wires and points that belong to no face and lie outside solids are not meshed, which a note tells.
 TEST(CadModel, TellsOfEdgesAndPointsOutsideOfSolids) {
   const TopoDS_Shape solid = box();
   EXPECT_TRUE(CadModel(solid, "part").notes().empty());
@@ -208,7 +208,7 @@ double length_of(const PolygonSoup& soup) {
   return length;
 }
 
-/// Is there a vertex of the soup, with a tag of its own?
+/// Returns whether the soup has a vertex there, with a tag of its own.
 bool has_vertex_at(const PolygonSoup& soup, const Point& p) {
   return std::any_of(soup.vertices.begin(), soup.vertices.end(),
                      [&](Index v) { return soup.point_tags[v] != 0 && distance(soup.points[v], p) < 1e-12; });
@@ -218,9 +218,9 @@ TEST(CadModel, CutsEdgesInsideWhereTheyMeetOneAnother) {
   const TopoDS_Shape first = line(gp_Pnt(2, 5, 5), gp_Pnt(8, 5, 5));
   struct Meeting {
     TopoDS_Shape other;
-    double length;              // of both, what they have in common counted once
-    std::size_t curves;         // that they are cut into
-    std::vector<Point> places;  // where they meet
+    double length;              // of both edges, with their common part counted once
+    std::size_t curves;         // number of curves that they are cut into
+    std::vector<Point> places;  // places where they meet
     const char* note = nullptr;
   };
   const Meeting meetings[] = {{line(gp_Pnt(5, 2, 5), gp_Pnt(5, 8, 5)), 12, 4, {{5, 5, 5}}},
@@ -248,7 +248,7 @@ TEST(CadModel, CutsEdgesInsideWhereTheyMeetOneAnother) {
   }
 }
 
-// The face has a vertex there, which the line ends at; what is outside is left out.
+// Where the line ends on the face, the face gets a vertex; the part outside is left out.
 TEST(CadModel, EndsEdgesAtTheFacesThatTheyMeet) {
   const double top = 30, inside = 10;
   for (const double end : {top, 2 * top}) {
@@ -267,14 +267,14 @@ TEST(CadModel, EndsEdgesAtTheFacesThatTheyMeet) {
   }
 }
 
-// However little of them is inside.
+// Edges are kept even if only a short piece is inside.
 TEST(CadModel, KeepsEdgesThroughThinPlates) {
   const TopoDS_Shape plate = BRepPrimAPI_MakeBox(20, 20, 1).Shape();
   CadModel model(compound({plate, line(gp_Pnt(10, 10, -100), gp_Pnt(10, 10, 100))}), "part");
   EXPECT_NEAR(length_of(model.tessellate({}).at(1)), 1, 1e-12);
   ASSERT_EQ(model.notes().size(), 1U);
   expect_mentions(model.notes()[0], {"is outside of the closed solids in part"});
-  // Lines on faces make no vertices there, and those beside are outside.
+  // Lines on faces make no vertices there, and lines beside faces are outside.
   for (const TopoDS_Shape& beside :
        {line(gp_Pnt(-5, 5, 1), gp_Pnt(15, 5, 1)), line(gp_Pnt(21, 10, -100), gp_Pnt(21, 10, 100))}) {
     CadModel without(compound({plate, beside}), "part");
@@ -283,7 +283,7 @@ TEST(CadModel, KeepsEdgesThroughThinPlates) {
   }
 }
 
-// Faces and edges keep their numbers, also those that come after.
+// Faces and edges keep their numbers, including those that come later in the file.
 TEST(CadModel, KeepsNumbersWhereEdgesMeetFaces) {
   const TopoDS_Shape solids[] = {BRepPrimAPI_MakeBox(10, 10, 10).Shape(),
                                  BRepPrimAPI_MakeBox(gp_Pnt(10, 0, 0), gp_Pnt(20, 10, 10)).Shape()};
@@ -307,7 +307,7 @@ TEST(CadModel, KeepsNumbersWhereEdgesMeetFaces) {
   expect_mentions(with.notes().at(0), {"Edge26 at (0.5, 0, -5) is no part of a face and left out: outside"});
 }
 
-// Edges of a wire that are given apart, too.
+// Also joins edges of a wire that are given separately.
 TEST(CadModel, JoinsEdgesInsideAtTheirEnds) {
   CadModel model(
       compound({box(), line(gp_Pnt(2, 5, 5), gp_Pnt(8, 5, 5)), line(gp_Pnt(8, 5, 5), gp_Pnt(8, 9, 5)),
@@ -372,7 +372,7 @@ TEST(CadModel, LeavesOutEdgesNearerToFacesThanTheTriangles) {
   expect_mentions(model.notes()[0], {"Edge13 at (5, 5, 0.1) is so near to faces", "--distance"});
 }
 
-// The ends are on the exact face, so that coarse triangles may leave all of the chord outside. Its middle is
+// The ends are on the exact face, so with coarse triangles the whole chord may be outside. Its middle is
 // 0.3^2 / 80 below the face.
 TEST(CadModel, LeavesOutChordsOfCurvedFacesThatAreNearerThanTheTriangles) {
   const double radius = 10, length = 0.3, half = std::asin(length / (2 * radius));
@@ -386,7 +386,7 @@ TEST(CadModel, LeavesOutChordsOfCurvedFacesThatAreNearerThanTheTriangles) {
   EXPECT_TRUE(model.notes().empty());
 }
 
-// Their chords would cross; those of straight lines are the lines.
+// The chords of curved edges may cross; those of straight lines are the lines themselves.
 TEST(CadModel, LeavesOutCurvedEdgesNearToOthers) {
   const double radius = 4, apart = 0.002, deflection = 0.01;
   const auto circle = [](double r, double turned) {
@@ -410,7 +410,7 @@ TEST(CadModel, LeavesOutCurvedEdgesNearToOthers) {
   EXPECT_TRUE(lines.notes().empty());
 }
 
-// Coarse triangles of the pin cross those of the hole; the wire is there when they are finer.
+// Coarse triangles of the pin cross those of the hole; with finer ones the wire is there.
 TEST(CadFiles, HaveAsManySoupsWhenCutAgain) {
   const gp_Ax2 axis(gp_Pnt(20, 15, 0), gp::DZ()), turned(axis.Location(), gp::DZ(), gp_Dir(1, 0.2, 0));
   const TopoDS_Shape plate = BRepAlgoAPI_Cut(BRepPrimAPI_MakeBox(40, 30, 10).Shape(),
@@ -422,7 +422,7 @@ TEST(CadFiles, HaveAsManySoupsWhenCutAgain) {
   const std::string path = folder.file("pin.brep");
   BRepTools::Write(compound({plate, pin, wire}), path.c_str());
   files::CadFiles cad;
-  std::vector<PolygonSoup> soups(1);  // of another file
+  std::vector<PolygonSoup> soups(1);  // soups of another file
   cad.read(path, {}, {.deflection = [](double) { return 0.1; }}, soups);
   ASSERT_EQ(soups.size(), 4U);
   EXPECT_TRUE(soups[3].segments.empty());
@@ -462,7 +462,7 @@ TEST(CadTessellation, SomeFacesMayBeFiner) {
                                   BRepPrimAPI_MakeSphere(gp_Pnt(0, 0, 20), radius).Shape())
                      .Shape(),
                  "pin");
-  // Of the centres of a face's triangles from the cylinder or the ball, at most.
+  // Returns the largest distance of the centres of a face's triangles from the cylinder or the ball.
   const auto off = [&](const PolygonSoup& soup, Tag face) {
     double off = 0;
     for (Index f = 0; f < soup.facet_count(); ++f) {

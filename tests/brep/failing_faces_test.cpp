@@ -38,7 +38,7 @@ TopoDS_Shape solid_of(const std::vector<TopoDS_Shape>& faces) {
   return solid;
 }
 
-/// The second outline of a face, its hole, turned around: some programs write such faces.
+/// Reverses the second outline of a face, its hole: some programs write such faces.
 TopoDS_Face with_turned_hole(const TopoDS_Shape& face) {
   TopoDS_Face result = TopoDS::Face(face.Oriented(TopAbs_FORWARD).EmptyCopied());
   BRep_Builder builder;
@@ -115,7 +115,8 @@ TEST(CadFailingFaces, AreCutInAnotherWay) {
   EXPECT_EQ(plc.patches.size(), 7U);
 }
 
-// The side of a cylinder without its outline's edges: what is left is the outline as its neighbours cut it.
+// The side of a cylinder without the edges of its outline: only the outline in the neighbours' points is
+// left.
 TEST(CadFailingFaces, AreCutInTheParameterPlane) {
   const TopoDS_Shape rod = BRepPrimAPI_MakeCylinder(5, 20).Shape();
   const TopoDS_Face side = TopoDS::Face(faces_of(rod).front().EmptyCopied());
@@ -144,7 +145,7 @@ TEST(CadFailingFaces, AreCutInTheParameterPlane) {
   for (const Point& p : mended.points) EXPECT_NEAR(std::hypot(p.x, p.y), 5, 1e-9);
 }
 
-/// A box one of whose faces has no outline that encloses anything.
+/// A box with a face whose outline encloses nothing.
 TEST(CadFailingFaces, WithoutAnOutlineAreLeftOutAndTold) {
   const std::vector<TopoDS_Shape> faces = faces_of(BRepPrimAPI_MakeBox(10, 20, 30).Shape());
   BRep_Builder builder;

@@ -12,7 +12,7 @@ namespace {
 
 using Triangles = std::vector<std::array<Index, 3>>;
 
-// Points of a grid of n x n squares, those of its border first, and its triangles.
+// The points of a grid of n x n squares, border points first, and its triangles.
 struct Grid {
   std::vector<Point> points;
   Triangles triangles;
@@ -60,7 +60,7 @@ TEST(FoldedTriangles, StayWhereThereAreNone) {
   EXPECT_EQ(triangles, grid.triangles);
 }
 
-// Inner points that have moved across a side or two of their stars: most folds go, and nothing else changes.
+// Inner points are moved across a side or two of their stars. Most folds go, and nothing else changes.
 TEST(FoldedTriangles, AreCutAnew) {
   std::mt19937_64 random(3);
   unsigned folded = 0, left = 0;
@@ -81,13 +81,13 @@ TEST(FoldedTriangles, AreCutAnew) {
     EXPECT_EQ(border(triangles), border(grid.triangles));
   }
   EXPECT_GT(folded, 50U);
-  EXPECT_LT(left, folded / 4);  // where no point may move so far
+  EXPECT_LT(left, folded / 4);  // where no point may move that far
 }
 
-// A needle at the border that lies on the triangle beside it: no point inside can go, a side is flipped.
+// A needle at the border lies on the triangle beside it. No inner point can be merged, so a side is flipped.
 TEST(FoldedTriangles, AtTheBorderAreFlipped) {
   const std::vector<Point> points{{0, 0, 0}, {10, 0, 0}, {10, 10, 0}, {5, 0.1, 1e-3}, {0, 10, 0}};
-  // The border is 0 3 1 2 4; the side 0 1 cuts 3 off, which lies on the other side of it.
+  // The border is 0 3 1 2 4; the side 0 1 cuts off 3, which lies on the other side of it.
   Triangles triangles{{0, 3, 1}, {0, 1, 2}, {0, 2, 4}};
   const auto before = border(triangles);
   ASSERT_EQ(count_folds(points, triangles), 1U);

@@ -1,4 +1,4 @@
-// Exact lengths, areas and volumes against formulas, and how they reach the complex.
+// Exact lengths, areas and volumes against formulas, and their use in the complex.
 #include <gtest/gtest.h>
 #include <BRepAlgoAPI_Common.hxx>
 #include <BRepAlgoAPI_Cut.hxx>
@@ -41,7 +41,7 @@ namespace {
 constexpr double pi = M_PI;
 
 struct Expected {
-  std::vector<double> lengths, areas, volumes;  // in order of size
+  std::vector<double> lengths, areas, volumes;  // sorted by size
 };
 
 std::vector<double> exact(const std::map<Tag, brep::CadMeasure>& measures) {
@@ -57,7 +57,7 @@ void expect_near(const std::vector<double>& found, const std::vector<double>& ex
     EXPECT_NEAR(found[i], expected[i], 1e-9 * expected[i]) << what << " " << i;
 }
 
-/// Whatever the tessellation, and wherever the shape is.
+/// Expects these measures with any tessellation and at any place.
 void expect_measures(const TopoDS_Shape& shape, const Expected& expected) {
   gp_Trsf away;
   away.SetTranslation(gp_Vec(1000, 2000, 3000));
@@ -123,7 +123,7 @@ TEST(CadMeasures, OfACapThatNoParameterLinesBound) {
   EXPECT_NEAR(areas[1], 30 * pi, 1e-9 * 30 * pi);
 }
 
-/// A spline through points of a plane curve, on t from 0 to 1.
+/// Makes a spline through points of a plane curve, for t from 0 to 1.
 template <class Curve>
 TopoDS_Edge spline_through(int count, bool closed, const Curve& curve) {
   const Handle(TColgp_HArray1OfPnt) points = new TColgp_HArray1OfPnt(1, count);
@@ -168,7 +168,7 @@ TEST(CadMeasures, OfAWaveThatIsRevolved) {
 }
 
 TEST(CadMeasures, OfOverlappingSolids) {
-  // A pin half in a plate, which gets the common part.
+  // A pin half inside a plate. The plate gets the common part.
   const TopoDS_Shape plate = BRepPrimAPI_MakeBox(gp_Pnt(-10, -10, 0), 20, 20, 4).Shape();
   const TopoDS_Shape pin = BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(0, 0, 2), gp::DZ()), 3, 4).Shape();
   brep::CadModel model(compound({plate, pin}), "part");
@@ -179,7 +179,7 @@ TEST(CadMeasures, OfOverlappingSolids) {
   EXPECT_NEAR(measures.volumes[1].value().exact, 18 * pi, 1e-6);
 }
 
-/// The complex that the program makes of a shape, and what it knows of the measures.
+/// The complex that the program makes of a shape, with its measures.
 struct Known {
   Plc plc;
   ShapeMeasures measures;
@@ -231,7 +231,7 @@ TEST(CadMeasures, OfASolidLackWhatLiesInside) {
 }
 
 TEST(CadMeasures, OfAFaceThatIsTwoPatches) {
-  // A block stands on a plate: its foot parts the plate's top, whose pieces keep one number.
+  // A block stands on a plate: its foot divides the plate's top, whose pieces keep one number.
   const Known known =
       known_of(compound({BRepPrimAPI_MakeBox(10, 10, 1).Shape(),
                          BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(5, 5, 1), gp::DZ()), 2, 3).Shape()}));

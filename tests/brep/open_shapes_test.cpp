@@ -27,7 +27,7 @@ using brep::CadModel;
 
 TopoDS_Shape box() { return BRepPrimAPI_MakeBox(10, 20, 30).Shape(); }
 
-/// The faces of a box, each moved away from its middle: gaps along all edges.
+/// Returns the faces of a box, each moved away from its middle: gaps along all edges.
 std::vector<TopoDS_Shape> loose_faces(double gap) {
   std::vector<TopoDS_Shape> faces;
   for (const TopoDS_Shape& face : faces_of(box())) {
@@ -90,7 +90,7 @@ TEST_P(CadGaps, OfSolidsAreSewn) {
 
 INSTANTIATE_TEST_SUITE_P(Relative, CadGaps, ::testing::Values(0., 3e-6, 3e-5, 1e-4, 3e-4));
 
-// A box without its last face, as a solid and as loose faces: handed over with the hole.
+// A box without its last face, as a solid and as loose faces: the soups have the hole.
 TEST(CadHoles, NameEdgesFacesAndPlaces) {
   std::vector<TopoDS_Shape> faces = faces_of(box());
   faces.pop_back();

@@ -1,4 +1,4 @@
-// Solids that overlap: volumes by inclusion and exclusion, and who gets what they have in common.
+// Solids that overlap: volumes by inclusion and exclusion, and the owners of common parts.
 #include <gtest/gtest.h>
 #include <BRepBuilderAPI_Transform.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
@@ -57,7 +57,7 @@ void expect_volumes(const Read& part, const Volumes& expected, double relative =
     }
 }
 
-/// The complex of the soups is valid, and as large.
+/// Expects that the complex of the soups is valid and has this volume.
 void expect_complex(const Read& part, double volume, double relative = 1e-9) {
   const Plc plc = build_plc(part.soups);
   double sum = 0;
@@ -72,7 +72,7 @@ std::string joined(const std::vector<std::string>& notes) {
 }
 
 TEST(CadOverlaps, OfTwoBoxesBelongToTheFirst) {
-  // 6000 each, 5 x 15 x 25 in common.
+  // Volumes of 6000 each, 5 x 15 x 25 in common.
   const TopoDS_Shape two = compound({box(0, 0, 0, 10, 20, 30), box(5, 5, 5, 10, 20, 30)});
   const Read part = read(two);
   expect_volumes(part, {{1, 6000}, {2, 6000 - 1875}});
@@ -92,7 +92,8 @@ TEST(CadOverlaps, OfTwoBoxesAreARegion) {
 }
 
 TEST(CadOverlaps, OfThreeBoxes) {
-  // Cubes of 10 at a distance of 4 along the diagonal: 216, 8 and 216 in common, 8 of all three.
+  // Cubes of edge 10 at a distance of 4 along the diagonal: 216, 8 and 216 in common in pairs, 8 in all
+  // three.
   const TopoDS_Shape three =
       compound({box(0, 0, 0, 10, 10, 10), box(4, 4, 4, 10, 10, 10), box(8, 8, 8, 10, 10, 10)});
   const Read first = read(three);
@@ -108,7 +109,7 @@ TEST(CadOverlaps, OfThreeBoxes) {
 }
 
 TEST(CadOverlaps, OfTwoCylinders) {
-  // Steinmetz: two cylinders of radius r that cross have 16/3 r^3 in common.
+  // Steinmetz: two crossing cylinders of radius r have 16/3 r^3 in common.
   const double r = 3, pi = M_PI;
   const TopoDS_Shape upright = BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(0, 0, -10), gp::DZ()), r, 20).Shape();
   const TopoDS_Shape lying = BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(-10, 0, 0), gp::DX()), r, 20).Shape();
@@ -152,7 +153,7 @@ TEST(CadOverlaps, KeepFacesInside) {
   expect_complex(part, 1500);
 }
 
-// General fuse would hand back other sub-shapes; those that were not fused are the ones in the file.
+// General fuse would return other sub-shapes; those that were not fused must be the ones in the file.
 TEST(CadSolids, ThatDoNotTouchAreNotFused) {
   const TopoDS_Shape ball = BRepPrimAPI_MakeSphere(gp_Pnt(30, 0, 0), 3).Shape();
   const Read part = read(compound({box(0, 0, 0, 10, 10, 10), ball, box(0, 30, 0, 10, 10, 10)}));
@@ -170,7 +171,7 @@ TEST(CadSolids, OfGroupsApartShareFacesWithinEach) {
   expect_complex(part, 2251);
 }
 
-// As the program reads a file: what `--overlap` says reaches the module that reads CAD files.
+// Reads a file as the program does: the option `--overlap` reaches the module that reads CAD files.
 TEST(CadOverlaps, OptionOfTheProgram) {
   const TemporaryFolder folder;
   const std::string path = folder.file("boxes.brep");

@@ -6,10 +6,10 @@
 
 #include "collarmesh/polygon_soup.h"
 
-/// What soups of triangles enclose.
+/// Volumes enclosed by soups of triangles.
 namespace collarmesh::testing {
 
-/// By the divergence theorem.
+/// Returns the volume by the divergence theorem.
 inline double volume_of(const PolygonSoup& soup) {
   double volume = 0;
   for (Index f = 0; f < soup.facet_count(); ++f) {
@@ -20,7 +20,8 @@ inline double volume_of(const PolygonSoup& soup) {
   return volume;
 }
 
-/// The sides that have no triangle for each direction.
+/// Returns the number of sides whose triangles do not cancel: each side should be used once in each
+/// direction.
 inline std::size_t open_sides(const PolygonSoup& soup) {
   std::map<std::pair<Index, Index>, int> balance;
   for (Index f = 0; f < soup.facet_count(); ++f) {
@@ -35,7 +36,7 @@ inline std::size_t open_sides(const PolygonSoup& soup) {
   return open;
 }
 
-/// By region tag.
+/// Returns the volumes by region tag.
 inline std::map<Tag, double> volumes_of(const std::vector<PolygonSoup>& soups) {
   std::map<Tag, double> volumes;
   for (const PolygonSoup& soup : soups)

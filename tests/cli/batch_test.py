@@ -15,7 +15,7 @@ from program import BOX_FACES, MODELS, PROGRAM, ProgramTest, box_points, off_tex
 
 class Batch(ProgramTest):
     def table(self, run):
-        """The rows by the name of the part."""
+        """Returns the rows of the table by the name of the part."""
         rows = [line.split(maxsplit=5) for line in run.stdout.splitlines()]
         self.assertEqual(rows[0], ["part", "tets", "smallest", "largest", "seconds", "result"])
         return {row[0]: row[1:] for row in rows[1:-1]}

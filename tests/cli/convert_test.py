@@ -111,7 +111,7 @@ class Convert(ProgramTest):
                 check = self.run_program("check", f"b.{extension}", "--against", wedge, "--json")
                 report = json.loads(check.stdout)
                 self.assertTrue(report["passed"], check.stdout)
-                # Where no cell is marked all at the crease count as its collar's.
+                # If no cell is marked, all cells at the crease count as its collar.
                 self.assertGreater(report["thin_tets"] + report["collar_tets"], 0)
                 if extension in ("vtk", "msh", "vtu"):
                     self.assertGreater(report["thin_tets"], 0)
@@ -142,7 +142,7 @@ class Convert(ProgramTest):
 
 
 class Partitions(ProgramTest):
-    """--partitions and --ghost-cells, in meshing and converting."""
+    """The options --partitions and --ghost-cells, in meshing and converting."""
 
     formats = ["vtu", "pvtu", "vtk", "msh", "msh2"] + (["xdmf", "med"] if HAS_HDF5 else [])
 

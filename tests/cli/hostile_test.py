@@ -27,13 +27,13 @@ def limited(kind, value):
 
 class HostileTest(ProgramTest):
     def run_bytes(self, *arguments, **options):
-        """Run with bytes in, bytes out: names need not be UTF-8."""
+        """Runs the program with bytes in and out, because names need not be UTF-8."""
         return subprocess.run([os.fsencode(PROGRAM), *map(os.fsencode, arguments)], cwd=self.folder, timeout=120,
                               **{"capture_output": True, **options})
 
 
 class InputsAreKept(HostileTest):
-    """No output takes the place of an input."""
+    """No output may replace an input."""
 
     def poly(self):
         self.expect_surface("part.poly", self.box)
@@ -140,14 +140,14 @@ class OutputFiles(HostileTest):
         self.assertEqual([folder.exists() for folder in (dead, used, fresh)], [False, True, True])
 
     def test_no_space(self):
-        """Formats written by libraries, too."""
+        """Includes formats that libraries write."""
         for name in ("a.vtu", "a.med", "a.xdmf", "a.ele", "a.msh"):
             for size in (100, 4096, 30000):
                 with self.subTest(name=name, size=size):
                     run = subprocess.run([PROGRAM, BRACKET, "-o", self.folder / name, "-q"], capture_output=True,
                                          text=True, preexec_fn=limited(resource.RLIMIT_FSIZE, size))
                     if "cannot be loaded" in run.stderr or "use .vtu" in run.stderr:
-                        continue  # built without it
+                        continue  # the program was built without it
                     self.assertEqual(run.returncode, 8, run.stderr)
                     self.assertEqual([p.name for p in self.folder.iterdir()], ["box.off"])
 
@@ -247,7 +247,7 @@ class Signals(HostileTest):
                 self.assert_nothing_left()
 
     def test_while_writing(self):
-        """The file from before is whole, or the new one is."""
+        """Afterwards there is either the complete old file or the complete new one."""
         self.expect(0, self.box, "-o", self.out, "--size", "0.05", writes=True)
         before = self.out.read_bytes()
         begin = time.monotonic()
@@ -267,7 +267,7 @@ class Signals(HostileTest):
 
 
 class Libraries(HostileTest):
-    """No library is loaded from the current folder."""
+    """No library may be loaded from the current folder."""
 
     def targets(self):
         root = pathlib.Path(PROGRAM).parents[1]
@@ -284,7 +284,7 @@ class Libraries(HostileTest):
                     self.assertRegex(entry, r"^(/|\$ORIGIN)", f"{target}: {path}")
 
     def plant(self, name):
-        """A library that says it was loaded."""
+        """Makes a library that reports when it is loaded."""
         code = ('#include <unistd.h>\n__attribute__((constructor)) static void here(void) '
                 '{ write(2, "PLANTED\\n", 8); }\n')
         source = self.write("planted.c", code)
@@ -345,7 +345,8 @@ class Memory(HostileTest):
         self.assertLess(usage.ru_maxrss * 1024, 1.1 * 200 * 2**20 + 60 * 2**20)
 
     def test_little_memory(self):
-        """Whatever there is, it is enough or exit code 5 (127: the program could not even be loaded)."""
+        """With any amount of memory, the run succeeds or ends with exit code 5 (127: the program could not
+        even be loaded)."""
         for megabytes in (60, 80, 90, 100, 110, 120, 140, 180, 250, 400):
             with self.subTest(megabytes=megabytes):
                 run = subprocess.run([PROGRAM, BRACKET, "-o", self.out, "-q"], capture_output=True, text=True,
@@ -362,7 +363,7 @@ HOSTILE = pathlib.Path(__file__).resolve().parent / "hostile"
 
 
 def reads_cad():
-    """Is the module there?"""
+    """Returns whether the module for CAD files is there."""
     with tempfile.NamedTemporaryFile(suffix=".step") as empty:
         said = subprocess.run([PROGRAM, "info", empty.name], capture_output=True, text=True).stderr
     return "STEP" in said
@@ -388,7 +389,7 @@ class CadFilesThatCrash(HostileTest):
             self.assertEqual(run.returncode, 3, run.stderr)
 
     def test_the_child_dies_with_the_program_and_is_told_to_stop(self):
-        """A pipe without an end instead of a file: OpenCASCADE waits for it."""
+        """OpenCASCADE waits for a pipe without an end in place of a file."""
         endless = self.folder / "endless.brep"
         os.mkfifo(endless)
         keep_open = os.open(endless, os.O_RDWR)
@@ -413,7 +414,7 @@ class CadFilesThatCrash(HostileTest):
         self.expect(5, "info", endless, "--time-limit", "0.3", says=["time limit"])
 
     def test_a_crash_of_the_child_in_each_stage(self):
-        """Whatever kills it, the program says so and leaves nothing."""
+        """Whatever kills the child, the program reports it and leaves no files."""
         part = HOSTILE / "iges_closed_face" / "sphere.igs"
         for number, code in ((signal.SIGSEGV, (1, 3)), (signal.SIGKILL, (5,))):
             for delay in (0.05, 0.2, 0.4, 0.8):
@@ -439,7 +440,7 @@ class CadFilesThatCrash(HostileTest):
 
 
 class Regions(HostileTest):
-    """No body is lost without a word."""
+    """No body may be lost without a message."""
 
     def volumes(self, path, *options):
         report = self.folder / "report.json"
@@ -454,7 +455,7 @@ class Regions(HostileTest):
             self.assertAlmostEqual(volume, 1, places=9)
 
     def test_any_facets_turned(self):
-        """Two stacked cubes: whatever facets are turned, there are two bodies."""
+        """Two stacked cubes: whichever facets are reversed, there are two bodies."""
         lines = (HOSTILE / "lost_region" / "two_cubes.off").read_text().splitlines()
         for turned in list(range(0, 2048, 37)) + [2047]:
             facets = [line.split() for line in lines[14:25]]
@@ -497,7 +498,7 @@ class Judgement(HostileTest):
         tets = int(lines[at - 1])
         mesh.write_text("\n".join(lines[:at] + [swapped(line)
                         for line in lines[at:at + tets]] + lines[at + tets:]) + "\n")
-        self.expect(0, "check", mesh, "--against", self.box)  # another convention
+        self.expect(0, "check", mesh, "--against", self.box)  # with another convention
 
 
 class Repairs(HostileTest):
@@ -510,7 +511,7 @@ class Repairs(HostileTest):
 
 class Ends(HostileTest):
     def test_slivers_between_bodies(self):
-        """They are meshed, or refused, or end at a budget that is kept."""
+        """They are meshed, refused, or end at a budget that is kept."""
         for path in sorted((HOSTILE / "hang").iterdir()):
             for budget in (("--max-vertices", "20000"), ("--max-memory", "40M")):
                 with self.subTest(path=path.name, budget=budget):

@@ -29,7 +29,7 @@ CHROMIUM = shutil.which("chromium")
 
 
 class Page(html.parser.HTMLParser):
-    """The scripts with an id, and what the page would load."""
+    """Finds the scripts with an id, and everything that the page would load."""
 
     def __init__(self, text):
         super().__init__()
@@ -141,7 +141,7 @@ class Contents(ReportTest):
 @unittest.skipUnless(CHROMIUM, "chromium is not installed")
 class InABrowser(ReportTest):
     def look(self, path, link="", size="1000,800"):
-        """The attributes of the page's body after it was opened, and the picture's bytes."""
+        """Opens the page in a browser. Returns the attributes of its body, and the picture's bytes."""
         picture = self.folder / "picture.png"
         common = [CHROMIUM, "--headless=new", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader",
                   "--enable-unsafe-swiftshader", f"--window-size={size}", "--virtual-time-budget=20000",
@@ -191,8 +191,8 @@ class InABrowser(ReportTest):
         _, dom, _ = self.look(self.report(MODELS / "two_boxes.poly", "--names", names), "#colour=face")
         spans = re.search(r'<div id="labels">.*?</div>', dom, re.S).group()
         labels = {text for look, text in re.findall(r"<span([^>]*)>([^<]*)</span>", spans) if "hidden" not in look}
-        self.assertIn("loaded", labels)  # at the end that is seen
-        self.assertNotIn("patch 1", labels)  # at the other one
+        self.assertIn("loaded", labels)  # at the visible end
+        self.assertNotIn("patch 1", labels)  # at the other end
         legend = re.search(r'<p id="legend">.*?</p>', dom, re.S).group()
         for name in ("loaded", "patch 1", "patch 2"):
             self.assertIn(name, legend)

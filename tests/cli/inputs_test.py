@@ -39,7 +39,7 @@ class Unreadable(ProgramTest):
 
 
 class Hostile(ProgramTest):
-    """Headers that claim two thousand million entities: exit code 3 in a gigabyte of address space."""
+    """Headers that claim two thousand million entities: exit code 3 within a gigabyte of address space."""
 
     FILES = {
         "off": "OFF\n2000000000 2000000000 0\n0 0 0\n",
@@ -119,7 +119,7 @@ class InABox(ProgramTest):
 
 
 class MeshesOfOtherPrograms(ProgramTest):
-    """They pass, or fail for their elements, not for their labels."""
+    """They pass, or fail for their elements, but not for their labels."""
 
     def other_program(self, *command):
         if shutil.which(command[0]) is None:

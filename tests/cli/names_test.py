@@ -1,4 +1,4 @@
-"""Numbers and names of patches from input to output, surfaces in mesh files, and units, as users meet them."""
+"""Numbers and names of patches from input to output, surfaces in mesh files, and units, as users see them."""
 
 import collections
 import itertools
@@ -105,7 +105,7 @@ class Numbers(ProgramTest):
         self.expect(2, self.box, "-o", self.out, "--patch-size", "7=0.1", says=["7", "1, 2, 3, 4, 5, 6"])
 
     def test_where_parts_touch_one_number_stays(self):
-        """It is told which, in the summary and to those who use the other one."""
+        """The summary tells which number stays, and so does the error for the other one."""
         parts = []
         for first, low in ((1, 0), (7, 1)):
             points = box_points((low, 0, 0), (low + 1, 1, 1))
@@ -142,7 +142,7 @@ class Numbers(ProgramTest):
 
 class Names(ProgramTest):
     def stl(self):
-        """The box with a solid for its bottom, one for its top, and one for the rest."""
+        """Writes a box: its bottom is one solid of the file, its top another one, its sides a third."""
         import program as p
 
         points = p.box_points()
@@ -188,7 +188,7 @@ class Names(ProgramTest):
 
 
 class GivenNames(ProgramTest):
-    """--name, beside the JSON of --names."""
+    """The option --name, together with the JSON of --names."""
 
     def names(self, *arguments):
         run = self.run_program(self.box, "-o", "a.msh", "--size", "0.5", *arguments)
@@ -299,7 +299,7 @@ class NamesOfStep(ProgramTest):
 
 @unittest.skipUnless(HAS_CAD, "no OpenCASCADE")
 class WiresOfCadFiles(ProgramTest):
-    """A circle (Edge13) and a point inside a box, and a needle (Edge14) that sticks out of its top."""
+    """A circle (Edge13) and a point inside a box, and a needle (Edge14) that protrudes from its top."""
 
     MODEL = MODELS / "wires_in_box.brep"
     LOOP, NEEDLE = 13, 14
@@ -392,11 +392,11 @@ class NamesInMed(ProgramTest):
                 file["FAS"].visit(names.append)
             self.assertTrue(any("FAM_" in name and "éé" in name for name in names), names)
             for name in names:
-                name.encode()  # half a character cannot be
+                name.encode()  # a half character cannot be encoded
 
 
 class NamesThroughFormats(ProgramTest):
-    """A name that a format has a place for is there when the mesh goes on to another one; a lost one is told."""
+    """A name that a format can store survives conversion to another one; lost names are reported."""
     NAMES = {"patches": {"Fixed end": 1, "loaded": {"at": [0.5, 0.5, 1]}}, "curves": {"rim": 4},
              "regions": {"steel": 1}}
     KEEP = ["vtu", "vtk", "pvtu", "msh", "msh2", "unv"] + ["xdmf"] * HAS_HDF5 + ["med"] * HAS_MED
@@ -493,14 +493,14 @@ class NamesThroughFormats(ProgramTest):
         self.mesh("a.xdmf")
         data = meshio.read(self.folder / "a.xdmf").field_data
         self.assertEqual({(int(d), name) for name, (_, d) in data.items()}, self.all)
-        for extension in ("vtu", "vtk"):  # names beside the cells are in nobody's way
+        for extension in ("vtu", "vtk"):  # names stored beside the cells do no harm
             self.mesh(f"a.{extension}")
             self.assertGreater(len(meshio.read(self.folder / f"a.{extension}").points), 8)
 
 
 class Surfaces(ProgramTest):
     def test_surfaces_in_mesh_files(self):
-        """What gmsh and meshio save of a tagged surface is meshed with its tags."""
+        """Tagged surfaces saved by gmsh and meshio are meshed with their tags."""
         import meshio
         import numpy
         import program as p
@@ -631,7 +631,7 @@ class Generated(ProgramTest):
 
     @unittest.skipUnless(shutil.which("zsh"), "zsh is not installed")
     def test_completion_by_zsh(self):
-        """A line is typed up to the tab, then the shell calls a function that tells its arguments."""
+        """Types a line up to the tab; the shell then calls a function that prints its arguments."""
         self.write("_collarmesh", self.run_program("--generate", "zsh").stdout)
         setup = ("PS1=; PS2=; fpath=($PWD $fpath); autoload -U compinit; compinit -u -D; setopt no_beep no_prompt_cr; "
                  "collarmesh() { print -r -- \"<$*>\" }; print ready\n")
@@ -642,7 +642,7 @@ class Generated(ProgramTest):
                 self.assertIn(f"<{completed}>", self.typed(["zsh", "-f", "-i"], setup, f"{typed}\t\n"))
 
     def typed(self, shell, setup, keys):
-        """What an interactive shell shows when this is typed, up to the function's answer."""
+        """Returns what an interactive shell shows when this is typed, up to the function's answer."""
         master, slave = pty.openpty()
         run = subprocess.Popen(shell, stdin=slave, stdout=slave, stderr=slave, cwd=self.folder, start_new_session=True,
                                env={**os.environ, "HOME": str(self.folder), "TERM": "dumb"})

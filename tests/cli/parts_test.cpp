@@ -215,7 +215,7 @@ TEST(RepairReports, QuietOnesLeaveOutWhatIsWithinTheTolerance) {
   }
 }
 
-// Also a stage that never looks at the clock.
+// Includes a stage that never looks at the clock.
 TEST(TimeLimitDeathTest, EndsAnyStage) {
   testing::FLAGS_gtest_death_test_style = "threadsafe";
   EXPECT_EXIT(process::run_interruptible([] {

@@ -1,4 +1,4 @@
-"""The program as tests run it: where it is, small inputs, what a run must say and leave."""
+"""The program for tests: its path, small inputs, expected messages and files."""
 
 import math
 import os
@@ -30,7 +30,7 @@ def off_text(points, faces):
 
 
 def wedge_text(degrees):
-    """A prism whose cross-section has this angle at the edge from (0, 0, 0) to (0, 0, 1)."""
+    """Returns a prism whose cross-section has this angle at the edge from (0, 0, 0) to (0, 0, 1)."""
     t = math.radians(degrees)
     corners = [(0, 0), (1, 0), (math.cos(t), math.sin(t))]
     points = [(x, y, z) for z in (0, 1) for x, y in corners]
@@ -54,7 +54,7 @@ class ProgramTest(unittest.TestCase):
                               capture_output=True, text=True)
 
     def expect(self, code, *arguments, says=(), writes=False):
-        """Run; check the exit code, what the messages say and whether the mesh is there."""
+        """Runs the program; checks the exit code, the messages and whether the mesh exists."""
         run = self.run_program(*arguments)
         self.assertEqual(run.returncode, code, run.stderr + run.stdout)
         for text in says:

@@ -1,5 +1,4 @@
-"""Meshes are adapted on the command line: sizes, names, reports, and what is wrong with an input.
-
+"""Meshes are adapted on the command line: sizes, names, reports, and errors in inputs.
 Run by ctest with COLLARMESH_PROGRAM set; each class is one ctest.
 """
 

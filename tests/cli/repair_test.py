@@ -11,7 +11,7 @@ from program import BOX_FACES, COORDINATES, ProgramTest, box_points, off_text, w
 
 
 class Repair(ProgramTest):
-    """Input that is no valid complex, by all commands."""
+    """Input that is no valid complex, with all commands."""
 
     def setUp(self):
         super().setUp()
@@ -152,7 +152,7 @@ class Creases(ProgramTest):
         self.assertLessEqual(check["max_radius_edge"], 1.6)
         self.assertIn("warning: --collar-angle 115: collars need not reach",
                       self.run_program(wedge, "-o", self.out, "--collar-angle", "115").stderr)
-        # Where there is no crease there is no collar.
+        # Without a crease there is no collar.
         run = self.expect(0, self.box, "-o", self.out, "--collar-angle", "115", writes=True)
         self.assertNotIn("warning", run.stderr)
 

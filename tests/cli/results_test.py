@@ -40,7 +40,7 @@ class Guarantees(ProgramTest):
         self.assertRegex(run.stderr, r"degrees, all tets thin or in collars \(radius-edge of thin tets \d+")
 
     def test_a_mesh_that_misses_a_guarantee_is_written(self):
-        """A segment that leaves a corner at a small angle, without a collar: edges there become ever shorter."""
+        """A segment leaves a corner at a small angle, without a collar, so edges there become ever shorter."""
         points = box_points() + [(0.5, 0.05, 0.05)]
         lines = [f"{len(points)} 3 0 0", *(f"{k} {p[0]} {p[1]} {p[2]}" for k, p in enumerate(points)),
                  f"{len(BOX_FACES) + 1} 0"]
@@ -57,7 +57,7 @@ class Guarantees(ProgramTest):
         self.expect(0, model, "-o", self.out, writes=True)
 
     def test_a_failed_run_writes_its_report(self):
-        """Whatever fails: the budget, the input, an option; a mesh is not there, and no earlier report."""
+        """Runs stopped by a budget, the input or an option leave no mesh, and replace an earlier report."""
         tilted = self.write("open.off", off_text(box_points(), BOX_FACES[:3]))
         for code, status, stage, arguments in (
                 (5, "budget_hit", "refine", [self.box, "--size", "0.01", "--max-vertices", "500"]),
@@ -179,7 +179,7 @@ class Reports(ProgramTest):
         self.assertIn("warning: ", self.expect(0, "info", outside, writes=True).stdout)
 
     def test_lines_outside_of_every_region_are_told(self):
-        """In no mesh, which nothing else says."""
+        """Nothing else says that the mesh does not contain them."""
         corners = [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)] + [(2, 0.5, 0.5), (3, 0.5, 0.5)]
         sides = ["1 2 4 3", "5 6 8 7", "1 2 6 5", "3 4 8 7", "1 3 7 5", "2 4 8 6"]
         points = "".join(f"{i} {x} {y} {z}\n" for i, (x, y, z) in enumerate(corners, 1))
@@ -251,7 +251,7 @@ class Reports(ProgramTest):
         self.assertGreater(near, straight)
 
     def test_predictions_are_told_one_by_one(self):
-        """In the order of the sizes, each before the program goes on to the next."""
+        """Predictions come in the order of the sizes, each before the program begins the next one."""
         sizes = [0.1, 0.4, 0.2, 0.05]
         asked = ("--predict", ",".join(map(str, sizes)), "--progress", "json")
         run = self.expect(0, "info", self.box, *asked, "--json")
@@ -261,7 +261,7 @@ class Reports(ProgramTest):
         self.assertEqual(self.expect(0, "info", self.box, *asked[:2]).stderr, "")
 
     def test_predictions_do_not_wait_for_the_others(self):
-        """A program that is ended after the first one has not told all."""
+        """If the program is ended after the first prediction, it has not printed all."""
         many = ",".join(str(0.01 + i / 1e5) for i in range(50))
         with subprocess.Popen([PROGRAM, "info", self.box, "--predict", many, "--progress", "json"],
                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) as run:
@@ -284,7 +284,7 @@ class Reports(ProgramTest):
         told = self.predictions(self.box, "--predict", sizes)
         for fine, size in zip(told, (1e-8, 1e-14)):
             self.assertAlmostEqual(math.log10(fine["tets"] * size**3), 1, delta=0.5)
-        self.assertIsNone(told[2]["tets"])  # more than a double holds
+        self.assertIsNone(told[2]["tets"])  # more than a double can represent
         text = self.expect(0, "info", self.box, "--predict", sizes).stdout
         rows = re.findall(r"^ +([\de.-]+) +(\S+) +\S+$", text, re.M)
         for (_, tets), p in zip(rows, told[:2]):

@@ -10,13 +10,13 @@ import unittest
 from program import BOX_FACES, COORDINATES, MODELS, ProgramTest, box_points, off_text
 
 SQUARE = [(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0)]
-# Four points and three lines, the last two of one tag.
+# Four points and three lines; the last two lines have the same tag.
 WIRE = "4 3 0 1\n1 0 0 0 0\n2 10 0 0 0\n3 10 10 0 0\n4 10 10 5 0\n3 1\n" + "".join(
     f"1 0 {tag}\n2 {a} {a + 1}\n" for a, tag in ((1, 7), (2, 8), (3, 9))) + "0\n0\n"
 
 
 def elements_of(path):
-    """{type: [nodes]} of an .inp file."""
+    """Returns {type: [nodes]} of an .inp file."""
     found, kind = {}, None
     for line in path.read_text().splitlines():
         if line.startswith("*"):
@@ -95,7 +95,7 @@ class Shells(ProgramTest):
         self.assertGreater(report["projection"]["vertices"], 0)
 
     def test_elements_of_a_plane(self):
-        """Anticlockwise in the plane z = 0, whichever way the input is turned."""
+        """Elements are counterclockwise in the plane z = 0, whichever way the input is oriented."""
         for corners, kind, order, element in ((SQUARE, "plane-stress", 1, "CPS3"), (SQUARE[::-1], "plane-strain", 2, "CPE6")):
             square = self.write("square.off", off_text(corners, [(0, 1, 2, 3)]))
             run = self.run_program(square, "-o", "s.inp", "--dimension", "2", "--size", "0.5", "--order", order,
@@ -148,7 +148,7 @@ class Shells(ProgramTest):
         self.expect(2, wire, "-o", "w.stl", "--dimension", "1", says=["no place for lines alone|with no place"])
 
     def test_wrong_lines_are_found(self):
-        """What the certificate of lines says of a file that was changed."""
+        """Checks the certificate of lines for a file that was changed."""
         wire = self.write("wire.poly", WIRE)
         self.run_program(wire, "-o", "w.mesh", "--dimension", "1", "--size", "2")
         lines = (self.folder / "w.mesh").read_text().splitlines()

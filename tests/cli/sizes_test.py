@@ -1,5 +1,4 @@
-"""Sizes that have no effect are told, and meshes in other units are checked in the input's.
-
+"""Sizes without effect are reported, and meshes in other units are checked in the input's unit.
 Run by ctest with COLLARMESH_PROGRAM set; each class is one ctest.
 """
 
@@ -21,7 +20,7 @@ class SizesWithoutEffect(ProgramTest):
         return told
 
     def test_sources_of_a_field(self):
-        """Too large, out of reach, and finer: the last one alone has an effect."""
+        """A size that is too large, one out of reach, and a finer one: only the last one has an effect."""
         ball = {"centre": [0, 0, 0], "radius": 0.1}
         field = self.field({"ball": ball, "size": 0.5}, {"ball": {**ball, "centre": [9, 0, 0]}, "size": 0.01},
                            {"box": {"min": [0, 0, 0], "max": [0.1, 0.1, 0.1]}, "size": 0.05, "growth": 1})

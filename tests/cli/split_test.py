@@ -1,4 +1,4 @@
-"""Internal patches with nodes of their own on each side: options, messages, reports."""
+"""Internal patches with separate nodes on each side: options, messages, reports."""
 
 import json
 import sys

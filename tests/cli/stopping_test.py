@@ -1,5 +1,4 @@
-"""Runs that do not come to their end: budgets and signals.
-
+"""Runs that are stopped before they end: budgets and signals.
 Run by ctest with COLLARMESH_PROGRAM set; each class is one ctest.
 """
 
@@ -61,7 +60,7 @@ class Budgets(ProgramTest):
         for share in (0.1, 0.2, 0.3, 0.5, 0.7):
             run = self.run_program(self.box, "-o", self.out, "--size", "0.04", "--time-limit", share * whole)
             codes.add(run.returncode)
-            self.assertIn(run.returncode, (0, 5), run.stderr)  # 0: it was faster this time
+            self.assertIn(run.returncode, (0, 5), run.stderr)  # 0 if the run was faster this time
             self.assertEqual(self.out.exists(), run.returncode == 0)
             if run.returncode == 5:
                 self.assertRegex(run.stderr, "time limit of .*stage: ")
@@ -88,14 +87,14 @@ class Cancelling(ProgramTest):
                 begin = time.monotonic()
                 process.send_signal(number)
                 _, messages = process.communicate(timeout=20)
-                self.assertLess(time.monotonic() - begin, 2)  # a second, on a busy machine
+                self.assertLess(time.monotonic() - begin, 2)  # a second, plus some time on a busy machine
                 self.assertEqual(process.returncode, 6, messages)
                 self.assertIn("cancelled", messages)
                 self.assertFalse(self.out.exists())
                 self.assert_nothing_left()
 
     def test_interrupt_ends_every_stage(self):
-        """As the time limit does: both set the same flag. A stage that does not see it goes on to the next one."""
+        """The time limit sets the same flag. A stage that does not check it continues with the next stage."""
         command = [PROGRAM, str(self.box), "-o", str(self.out), "--size", "0.03", "--order", "2", "--progress", "json"]
 
         def stages(stop_at=None):
@@ -115,7 +114,7 @@ class Cancelling(ProgramTest):
         code, every = stages()
         self.assertEqual(code, 0)
         self.out.unlink()
-        for stage in ("refine", "coarsen", "improve", "check"):  # each takes a while
+        for stage in ("refine", "coarsen", "improve", "check"):  # stages that take a while
             with self.subTest(stage=stage):
                 code, begun = stages(stage)
                 self.assertEqual((code, begun[-1]), (6, stage))
@@ -124,7 +123,7 @@ class Cancelling(ProgramTest):
         for stage in set(every) - {"refine", "coarsen", "improve", "check"}:
             with self.subTest(stage=stage):
                 code, _ = stages(stage)
-                self.assertIn(code, (0, 6))  # it may be too late
+                self.assertIn(code, (0, 6))  # 6, unless the signal comes too late
                 self.assertEqual(self.out.exists(), code == 0)
                 self.out.unlink(missing_ok=True)
                 self.assert_nothing_left()

@@ -1,5 +1,4 @@
-"""Any number of threads makes the same bytes, also more than there are cores.
-
+"""Any number of threads makes the same bytes, even more threads than cores.
 Run by ctest with COLLARMESH_PROGRAM set; each class is one ctest.
 """
 

@@ -23,7 +23,7 @@ MOST_STEPS = 24
 
 class TraceTest(ProgramTest):
     def trace(self, part, *options, code=0):
-        """The names of the steps and the report, after a run."""
+        """Runs the program; returns the names of the steps and the report."""
         run = self.run_program(part, "-o", self.out, "--trace", "steps", "--report", "report.json", *options)
         self.assertEqual(run.returncode, code, run.stderr)
         self.assert_nothing_left()
@@ -38,7 +38,7 @@ class TraceTest(ProgramTest):
         return names, json.loads((self.folder / "report.json").read_text())
 
     def read(self, name):
-        """Values by kind of cell, and the coordinates."""
+        """Returns values by kind of cell, and the coordinates."""
         step = meshio.read(self.folder / "steps" / name)
         data = {key: numpy.concatenate(values) for key, values in step.cell_data.items()}
         return step, data
@@ -75,7 +75,7 @@ class Steps(TraceTest):
         self.assertGreater((after["state"] == BOOK).sum(), 0)
         of_tets = before["state"][before["kind"] == TET]
         self.assertEqual((of_tets == REGION).sum(), (after["state"] == REGION).sum())
-        # The wedge's crease is the line x = y = 0; each ball of a collar says why it is there.
+        # The wedge's crease is the line x = y = 0; each ball of a collar has the reason why it was placed.
         balls = numpy.concatenate([block.data[:, 0] for block in step.cells if block.type == "vertex"])
         reasons = before["reason"][before["kind"] == BALL]
         self.assertEqual(len(balls), len(reasons))

@@ -1,5 +1,4 @@
-"""What the program says of itself, and of how it was called.
-
+"""Help, version, and messages about wrong calls.
 Run by ctest with COLLARMESH_PROGRAM set; each class is one ctest.
 """
 
@@ -107,7 +106,7 @@ class Progress(ProgramTest):
                 self.assertLessEqual(len(line), 80, line)
 
     def complete(self, *words):
-        """What bash proposes for the last word."""
+        """Returns bash's proposals for the last word."""
         script = self.run_program("--generate", "bash").stdout
         line = f"COMP_WORDS=({' '.join(words)} ''); COMP_CWORD={len(words)}; _collarmesh; echo ${{COMPREPLY[@]}}"
         run = subprocess.run(["bash", "-c", script + line], capture_output=True, text=True, cwd=self.folder)

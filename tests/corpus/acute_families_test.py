@@ -56,7 +56,7 @@ CURVED = """
 
 @dataclass
 class Member:
-    words: list[str]  # what acute_shape calls it
+    words: list[str]  # arguments of acute_shape
     name: str
     curved: bool = False
 
@@ -87,7 +87,7 @@ def run_well(*arguments):
 
 
 def mesh_and_judge(program, generator, member, folder):
-    """A line for the table. Throws Failed."""
+    """Returns a line for the table. Raises Failed."""
     prefix = folder / "_".join(member.words)
     run_well(generator, prefix, *member.words, "--triangulated")
     files = sorted(folder.glob(f"{prefix.name}_[0-9]*.poly"))

@@ -26,23 +26,24 @@ CORPUS = os.environ.get("COLLARMESH_CORPUS", "")
 RELATIVE_SIZE = 1 / 25
 COARSE_SIZE = 1 / 8
 REPAIR_LIMIT = 20  # seconds
-# A known fault of the mesher, which the certificate finds: a smooth patch that nearly touches itself once it is
-# repaired.
+# A known fault of the mesher, which the certificate finds: after repair, a smooth patch nearly touches
+# itself.
 KNOWN_MISSES = {"cow.obj": "patch_border"}
 RELATIVE_DISTANCE = 1e-3
-# Facets that are triangles of flat faces, each with a tag of its own: their acute corners in the plane
-# are creases (curves 58 and 59 meet at 0.59 degrees in (19.5, 0, 0)), which the judge does not look for.
+# The facets are triangles of flat faces, each with a tag of its own. Their acute corners in the plane are
+# creases (curves 58 and 59 meet at 0.59 degrees in (19.5, 0, 0)), which the judge does not look for.
 NOT_JUDGED = ("gmsh_compound2.poly",)
-CAD_EXCEPTIONS = 0.1  # of the boundary vertices: those kept off by a bound, mostly in collars where edges meet at a tangent
-EXACT = ("cross", "star", "itemb")  # exactly coplanar ones; every .poly file is, too
-# The manifest calls them open or soups, as their facets have points of their own. Once points in the same place are
-# one, every edge of theirs has two facets (counted apart from the mesher) and they bound solids.
+CAD_EXCEPTIONS = 0.1  # largest share of boundary vertices that a bound keeps off their faces, mostly in collars at tangent edges
+EXACT = ("cross", "star", "itemb")  # files with exactly planar facets, as all .poly files have
+# The manifest calls them open or soups, because their facets have separate points. When points at the same
+# place are merged, each of their edges has two facets (counted independently of the mesher) and they bound
+# solids.
 CLOSED_WHEN_WELDED = ("boeing.off", "octagonal_pocket.stl", "busted.STL", "joined_tetrahedra.obj")
 COORDINATES = re.compile(r"-?\d[\d.e+-]*, ?-?\d[\d.e+-]*, ?-?\d")
 
 
 def expected_code(name, expect):
-    """The exit code that fits what the manifest expects, as the file is."""
+    """Returns the exit code expected by the manifest for the file without repair."""
     return 0 if expect.startswith(("mesh:", "CAD:")) or name in CLOSED_WHEN_WELDED else 4
 
 
@@ -61,7 +62,7 @@ def is_exact(path):
 
 
 def judge(path, expect, mesh, diagonal, radius_edge=math.inf):
-    """An independent word on a mesh: ", judged". Inputs that are no clean surface have no volume or
+    """Judges a mesh independently; returns ", judged". Inputs that are no clean surface have no volume or
     boundary to compare with; their meshes are judged by themselves."""
     if not JUDGE or path.name in NOT_JUDGED:
         return ""
@@ -74,7 +75,8 @@ def judge(path, expect, mesh, diagonal, radius_edge=math.inf):
 
 
 def projected(report):
-    """The vertices on a CAD shape's edges and faces, and those that stayed off them by more than 1e-9: ", ..."."""
+    """Returns the numbers of vertices on a CAD shape's edges and faces and of those more than 1e-9 off: ",
+    ..."."""
     projection = report.get("projection")
     if not projection:
         return ""
@@ -85,7 +87,8 @@ def projected(report):
 
 
 def place_collars_up_front(program, path, expect, mesh, options, diagonal):
-    """The other way to make collars meets every guarantee, too; not coarsened, with a radius-edge bound everywhere."""
+    """The alternative way to make collars keeps every guarantee, too; without coarsening, with a radius-edge
+    bound everywhere."""
     if not expect.startswith("mesh:"):
         return
     report = mesh.with_suffix(".json")
@@ -98,8 +101,8 @@ def place_collars_up_front(program, path, expect, mesh, options, diagonal):
 
 
 def ask_for_a_ratio(program, path, expect, mesh, diagonal):
-    """Vertices that move onto exact faces leave no cell beyond a ratio that is asked for, where sizes are as large as
-    walls are thick."""
+    """When vertices move onto exact faces, no cell exceeds a requested ratio, with sizes as large as walls
+    are thick."""
     if not expect.startswith("CAD:"):
         return
     asked = ["--size", diagonal * COARSE_SIZE, "--distance", diagonal * RELATIVE_DISTANCE, "--radius-edge", 2]
@@ -109,7 +112,7 @@ def ask_for_a_ratio(program, path, expect, mesh, diagonal):
 
 
 def mesh_one(program, path, expect, folder):
-    """What happened, as a line for the table. Throws Failed."""
+    """Meshes a file; returns a line for the table. Raises Failed."""
     diagonal = diagonal_of(program, path)
     mesh = folder / (path.name + ".vtu")
     size = [] if diagonal is None else ["--size", diagonal * RELATIVE_SIZE, "--distance", diagonal * RELATIVE_DISTANCE]
@@ -137,7 +140,7 @@ def mesh_one(program, path, expect, folder):
 
 
 def repaired(program, path, mesh):
-    """What repair makes of a file that is no complex: a mesh that keeps every guarantee, or a clear error."""
+    """Repairs a file that is no complex: the result is a mesh that keeps every guarantee, or a clear error."""
     result = run(program, path, "-o", mesh, "--time-limit", REPAIR_LIMIT)
     known = KNOWN_MISSES.get(path.name)
     if result.returncode == 7 and known and f"missed: {known}" in result.stderr:

@@ -13,7 +13,7 @@ import sys
 
 JUDGE = os.environ.get("COLLARMESH_JUDGE", "")
 TIME_LIMIT = 120  # seconds
-MOST_TETS = math.inf if os.environ.get("COLLARMESH_LONG") else 4000  # of meshes in addition
+MOST_TETS = math.inf if os.environ.get("COLLARMESH_LONG") else 4000  # larger additional meshes are not judged
 
 
 class Failed(Exception):
@@ -28,8 +28,8 @@ def run(*arguments, limit=TIME_LIMIT):
 
 
 def verdict(mesh, *against, radius_edge=2):
-    """What the judge says last of a mesh that it finds nothing wrong with. It knows no thin tetrahedra, so that those
-    of coarsened meshes need an infinite bound. Throws Failed."""
+    """Runs the judge; returns its last line if it finds no fault. The judge knows no thin tetrahedra, so
+    coarsened meshes need an infinite bound. Raises Failed."""
     result = run(sys.executable, JUDGE, mesh, *against, "--rho", radius_edge)
     last = (result.stdout + result.stderr or "it says nothing").strip().splitlines()[-1]
     if result.returncode != 0:

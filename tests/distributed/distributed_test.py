@@ -36,7 +36,7 @@ def has(module):
 
 
 def wedge(path, angle=20):
-    """A prism over a triangle with this angle, degrees, between two sides of length 1."""
+    """Writes a prism over a triangle with this angle (degrees) between two sides of length 1."""
     a = math.radians(angle)
     below = [(0, 0, 0), (1, 0, 0), (math.cos(a), math.sin(a), 0)]
     points = below + [(x, y, 1) for x, y, _ in below]
@@ -46,7 +46,7 @@ def wedge(path, angle=20):
 
 
 class Mesh:
-    """The arrays of NAME.xdmf and its faces and edges."""
+    """The arrays of NAME.xdmf and of its faces and edges."""
 
     def __init__(self, path):
         import h5py
@@ -72,7 +72,7 @@ class Mesh:
         return numpy.einsum("ij,ij->i", numpy.cross(b - a, c - a), d - a) / 6
 
     def dihedrals(self):
-        """Degrees, six for each tet."""
+        """Returns the six dihedral angles of each tet, degrees."""
         p = self.corners(self.tets, 4)
         found = []
         for i, j in itertools.combinations(range(4), 2):
@@ -84,14 +84,15 @@ class Mesh:
         return numpy.degrees(numpy.array(found))
 
     def boundary(self):
-        """The triangles of tets that no other tet has, by sorted corners."""
+        """Returns the triangles that only one tet has, by sorted corners."""
         triangles = numpy.concatenate([self.tets[:, list(c)] for c in itertools.combinations(range(4), 3)])
         found, counts = numpy.unique(numpy.sort(triangles, axis=1), axis=0, return_counts=True)
         assert counts.max() <= 2
         return found[counts == 1]
 
     def hash(self):
-        """Of all cells with their labels by the exact places of their nodes, whatever their numbers."""
+        """Returns a hash of all cells with their labels and the exact places of their nodes, independent of
+        numbers."""
         digest = hashlib.sha256()
         for cells, labels in ((self.tets, [self.tags, self.collar]), (self.faces, [self.face_tags]), (self.edges, [self.edge_tags])):
             places = (self.points[cells] + 0.0).view(numpy.int64).reshape(len(cells), cells.shape[1], 3)
@@ -118,7 +119,7 @@ class DistributedTest(unittest.TestCase):
         return json.loads((self.folder / "report.json").read_text())
 
     def assert_same_on_all_ranks(self, part, *options, levels=2):
-        """The mesh and its report."""
+        """Returns the mesh and its report."""
         hashes, fingerprints = set(), set()
         for ranks in RANKS:
             report = self.mesh(ranks, part, "--levels", levels, *options)
@@ -135,7 +136,8 @@ class DistributedTest(unittest.TestCase):
         return mesh, report
 
     def assert_sound(self, mesh, report):
-        """What the certificate says is true of the files. `coarse_angles` has the mesher's bound for the greatest in collars."""
+        """Checks that the files have what the certificate says. `coarse_angles` has the mesher's bound on the
+        largest angle in collars."""
         volumes = mesh.volumes()
         self.assertGreater(volumes.min(), 0)
         for tag, volume in report["region_volumes"].items():
@@ -190,7 +192,7 @@ class Cad(DistributedTest):
         plate, pin = 40 * 30 * 8, math.pi * 49 * 12
         self.assertAlmostEqual(report["region_volumes"]["1"], plate, delta=1e-6 * plate)
         self.assertAlmostEqual(report["region_volumes"]["2"], pin, delta=1e-2 * pin)
-        # On the exact cylinder, not on the triangles of the complex.
+        # The area is that of the exact cylinder, not of the complex's triangles.
         side = [tag for tag, area in report["patch_areas"].items() if abs(area - 2 * math.pi * 7 * 12) < 5]
         self.assertEqual(len(side), 1)
         points = mesh.points[numpy.unique(mesh.faces[mesh.face_tags == int(side[0])])]
@@ -201,7 +203,7 @@ class Cad(DistributedTest):
         self.assertEqual(mesh.tets.shape[1], 10)
         self.assertGreater(report["second_order"]["curved"], 0)
         pin = math.pi * 49 * 12
-        self.assertAlmostEqual(report["region_volumes"]["2"], pin, delta=1e-4 * pin)  # a hundred times nearer
+        self.assertAlmostEqual(report["region_volumes"]["2"], pin, delta=1e-4 * pin)  # a hundred times more exact
 
 
 class Files(DistributedTest):
@@ -246,7 +248,8 @@ class Files(DistributedTest):
 
 class Failures(DistributedTest):
     def assert_fails(self, run, code, *words, by_each_rank=False):
-        """With one message, which ranks that fail at once may repeat, and nothing but what was there."""
+        """Checks that a run fails with one message, which ranks that fail at once may repeat, and leaves no
+        new files."""
         self.assertEqual(run.returncode, code, run.stderr)
         said = [line for line in run.stderr.splitlines() if line.startswith("collarmesh")]
         if by_each_rank:
@@ -287,7 +290,7 @@ class Failures(DistributedTest):
         self.assert_fails(run, 3, "part.off", "rank 1")
 
     def test_full_disk(self):
-        """Files may have 1 MB, the mesh takes more."""
+        """Files may have 1 MB, but the mesh takes more."""
         for output in "out.h5", "out.pvtu":
             run = self.mpirun(
                 2, "bash", "-c", f"ulimit -f 1000; exec {PROGRAM} {MODELS / 'bracket.off'} -o {output} --size 6 --levels 2 -q")

@@ -1,4 +1,4 @@
-// What a refinement may use, and what it comes to: budget and outcome.
+// The resources that a refinement may use, and its result: budget and outcome.
 #include "refine/budget.h"
 
 #include <gtest/gtest.h>

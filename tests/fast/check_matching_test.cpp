@@ -1,4 +1,4 @@
-// A mesh without feature indices, as files have it, is matched to the complex by tags and position.
+// A mesh without feature indices, as files contain it, is matched to the complex by tags and position.
 #include <gtest/gtest.h>
 
 #include "check/subject.h"

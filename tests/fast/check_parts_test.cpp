@@ -59,7 +59,7 @@ TEST(Measure, InvertedAndFlat) {
   EXPECT_EQ(flat.max_dihedral, 180);
 }
 
-// Two long edges that cross at a small distance: the sphere is known, the angles are near 0 and 180.
+// Two long edges cross at a small distance: the sphere is known, and the angles are near 0 and 180.
 TEST(Measure, SliverKeepsItsDigits) {
   for (const double h : {1e-3, 1e-6, 1e-9}) {
     const Point a{1, 0, -h}, b{-1, 0, -h}, c{0, 1, h}, d{0, -1, h};
@@ -67,7 +67,7 @@ TEST(Measure, SliverKeepsItsDigits) {
     const double radius = std::hypot(1.0, h), shortest = std::hypot(std::sqrt(2.0), 2 * h);
     EXPECT_NEAR(q.radius_edge / (radius / shortest), 1, 1e-8) << h;
     EXPECT_NEAR(std::fabs(q.volume) / (4 * 2 * h / 6), 1, 1e-12) << h;
-    const double steep = std::atan2(2 * h, 1.0) * 2;  // at the long edges, from flat
+    const double steep = std::atan2(2 * h, 1.0) * 2;  // 180 degrees minus the angle at the long edges
     EXPECT_NEAR((180 - q.max_dihedral) * M_PI / 180 / steep, 1, 1e-2 + h) << h;
     EXPECT_GT(q.max_dihedral, 179);
   }

@@ -1,4 +1,4 @@
-// The certificate of periodic faces: right ones pass, and whatever is wrong is named, with its place.
+// The certificate of periodic faces: correct ones pass, and every fault is named, with its place.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -139,7 +139,7 @@ TEST(CheckPeriodic, NodesOffTheFacesAndOutOfRange) {
 
 TEST(CheckPeriodic, AFlippedEdgeHasTrianglesWithoutImages) {
   TetMesh mesh = periodic_box();
-  // The two triangles of a square of the side x = 1 get the other diagonal.
+  // The two triangles of a square on the side x = 1 get the other diagonal.
   Index f = 0, g = 0;
   for (f = 0; f < mesh.faces.size(); ++f) {
     if (mesh.face_tag[f] != 2) continue;

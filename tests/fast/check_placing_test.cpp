@@ -145,7 +145,8 @@ TEST(RegionLocator, Sphere) {
   EXPECT_EQ(locator.region_at({}), 1U);
 }
 
-// Gmsh lists the edges along which it cuts faces; without tags nothing tells them from those on curves.
+// Gmsh lists the edges along which it divides faces; without tags nothing distinguishes them from edges on
+// curves.
 TEST(CheckPlacing, EdgesOnNoCurve) {
   MeshedComplex m = meshed_box(3);
   for (Plc::Curve& curve : m.plc.curves) curve.tag = 0;

@@ -1,4 +1,4 @@
-// The predicates that a whole mesh and the parts of one on many ranks are judged by.
+// The predicates that judge a whole mesh, and the parts of a mesh on several ranks.
 #include "check/predicates.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ using Corners = std::array<Point, 4>;
 
 constexpr Corners unit{Point{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 
-/// A straight tet of second order.
+/// Returns a straight tet of second order.
 CurvedTet with_middles(const Corners& p) {
   const auto middle = [&](unsigned i, unsigned j) { return 0.5 * (p[i] + p[j]); };
   return {p[0],         p[1],         p[2],         p[3],         middle(0, 1),

@@ -1,4 +1,4 @@
-// The inputs that other tests use are what they say.
+// The inputs of other tests have the properties that they claim.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ using namespace collarmesh::testing;
 
 constexpr double pi = std::numbers::pi;
 
-// Twice the enclosed volume's sixths, by the divergence theorem over fans of the polygons.
+// Returns the enclosed volume, by the divergence theorem over fans of the polygons.
 double enclosed_volume(const PolygonSoup& soup) {
   double sum = 0;
   for (Index f = 0; f < soup.facet_count(); ++f) {

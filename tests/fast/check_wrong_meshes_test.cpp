@@ -1,4 +1,4 @@
-// For each guarantee a mesh that breaks it: the certificate names it, and nothing else that holds.
+// For each guarantee, a mesh that breaks it: the certificate names it and no guarantee that holds.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ using namespace collarmesh::testing;
 using namespace collarmesh::guarantee;
 using Names = std::set<std::string>;
 
-// The findings are those of one thread, in the same order.
+// Expects that the findings equal those of one thread, in the same order.
 void expect_same_findings(const CheckReport& a, const CheckReport& b) {
   EXPECT_EQ(a.findings_total, b.findings_total);
   ASSERT_EQ(a.findings.size(), b.findings.size());
@@ -98,7 +98,7 @@ Index patch_with_tag(const Plc& plc, Tag tag) {
   return first_index(plc.patches.size(), [&](Index p) { return plc.patches[p].tag == tag; });
 }
 
-// The arrays
+// Arrays
 
 TEST(CheckWrongMeshes, ArrayTooShort) {
   MeshedComplex m = meshed_box(2);
@@ -176,7 +176,7 @@ TEST(CheckWrongMeshes, WrongFeatureOfPoint) {
   }
 }
 
-// The tets
+// Tets
 
 TEST(CheckWrongMeshes, InvertedTet) {
   MeshedComplex m = meshed_box(4);
@@ -231,7 +231,7 @@ TEST(CheckWrongMeshes, RadiusEdgeAboveTheBound) {
   EXPECT_EQ(broken(m), Names{radius_edge});
 }
 
-// The regions
+// Regions
 
 TEST(CheckWrongMeshes, MissingTet) {
   MeshedComplex m = meshed_box(4);
@@ -348,7 +348,7 @@ TEST(CheckWrongMeshes, EdgeTwice) {
 }
 
 TEST(CheckWrongMeshes, EdgeOfNoTet) {
-  // Two edges of a curve in one piece: the curve is covered, the mesh does not have that edge.
+  // Two edges of a curve become one: the curve is covered, but no tet has that edge.
   MeshedComplex m = meshed_box(2);
   TetMesh& mesh = m.mesh;
   const Index p = point_of_dimension(mesh, 1);
@@ -377,7 +377,7 @@ TEST(CheckWrongMeshes, CurveVertexOffTheCurve) {
       const Point& q = m.mesh.points[i];
       return m.mesh.features[i].dimension == 1 && q.y == 0 && q.z == 0;
     });
-    m.mesh.points[p].z += off;  // in the plane of one patch, off that of the other
+    m.mesh.points[p].z += off;  // it stays in the plane of one patch and leaves the other's
     const Names names = broken(m);
     EXPECT_EQ(names.count(curve_distance), 1U) << off;
     EXPECT_EQ(names.count(patch_plane), 1U) << off;
@@ -404,10 +404,10 @@ TEST(CheckWrongMeshes, SmoothCurveTooCoarse) {
 }
 
 TEST(CheckWrongMeshes, CurveLeavesALoopOut) {
-  // A detour of the curve that no vertex or edge of the mesh follows.
+  // The curve makes a detour that no vertex or edge of the mesh follows.
   MeshedComplex m = meshed_cylinder(12, 4);
   const Plc::Curve& curve = m.plc.curves[0];
-  const Index i = curve.points[2];  // between two vertices of the mesh
+  const Index i = curve.points[2];  // a point between two vertices of the mesh
   m.plc.points[i] = 1.5 * m.plc.points[i];
   EXPECT_EQ(broken(m, {.bounds = {.distance = 0.05}}).count(curve_distance), 1U);
 }
@@ -556,7 +556,7 @@ TEST(CheckWrongMeshes, FindingsAreCountedBeyondThoseListed) {
   EXPECT_EQ(report.findings_total, 6 * 27U);
 }
 
-// Many findings in a mesh that is large enough for every thread to have a part of it.
+// Makes many findings in a mesh that is large enough for every thread to get a part of it.
 TEST(CheckWrongMeshes, AnyNumberOfThreadsFindsTheSame) {
   MeshedComplex m = meshed_box(20);
   TetMesh& mesh = m.mesh;

@@ -1,4 +1,4 @@
-// Seeds of patches that have no border: where there is a vertex already, none comes beside it.
+// Seeds of patches without a border: if a vertex is there already, no seed is put beside it.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,8 +17,8 @@ struct Seeded : testing::KnownCurves {
   SurfaceCheck check{domain, mesh, nodes, collars, collar_cells, surface, triangles, points, chains, outcome};
 };
 
-// Beneath a vertex across a gap another one is made, maybe where a seed waits for its turn. It lies there but
-// for rounding, and an edge so short would end the refinement.
+// A vertex is made beneath another one across a gap, perhaps where a seed waits for its turn. It lies at the
+// seed's place but for rounding; the tiny edge between them would end the refinement.
 TEST(ClosedPatchSeeds, TakeAVertexThatIsThereButForRounding) {
   const PolygonSoup soup = testing::icosphere(1, 4);
   const Plc plc = build_plc({&soup, 1}, {.feature_angle = 60});

@@ -1,4 +1,4 @@
-// The parts that make collars and look at surfaces, with a test in place of the loop.
+// The parts that make collars and judge surfaces, with the test in place of the loop.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -55,14 +55,14 @@ struct Parts : testing::KnownCurves {
     creator.create_at_vertex(vertex, mesh.last_vertex(), BallReason::vertex_inserted);
     chains.point_resolved(vertex);
   }
-  // Split all subsegments whose balls hold vertices, as the loop does.
+  // Splits all subsegments whose balls contain vertices, as the loop does.
   void split_encroached() {
     WorkQueue::Item item;
     while (queue.first_priority() == WorkQueue::encroached_subsegments && queue.pop(item))
       if (chains.due(item.entry) && !creator.create_at_subsegment(item.entry.id))
         chains.split_ahead(*chains.split_of(item.entry.id));
   }
-  // The pieces of a curve by their parameters, sorted.
+  // Returns the pieces of a curve by their parameters, sorted.
   std::vector<std::array<double, 2>> pieces_of(Index curve) const {
     std::vector<std::array<double, 2>> pieces;
     chains.visit([&](Index, const Subsegment& s) {
@@ -71,7 +71,7 @@ struct Parts : testing::KnownCurves {
     std::sort(pieces.begin(), pieces.end());
     return pieces;
   }
-  // The radius of the ball on whose sphere a point lies.
+  // Returns the radius of the ball whose sphere a point lies on.
   double radius_around(const Point& p) const {
     const auto off = [&](const CollarBall& ball) {
       return std::fabs(distance(p, ball.centre) / ball.radius - 1);
@@ -82,7 +82,7 @@ struct Parts : testing::KnownCurves {
     EXPECT_LT(off(*nearest), 1e-6);
     return nearest->radius;
   }
-  // Repairs keep a distance from all vertices; so they end.
+  // Repairs all queued faults. Repairs keep a distance from all vertices, so this ends.
   void mend_what_is_queued() {
     for (WorkQueue::Item item; queue.pop(item);) {
       if (item.priority != WorkQueue::exposed_crease_vertices &&
@@ -166,18 +166,18 @@ TEST(CollarParts, InThePassNoBallIsPlacedAtTheStart) {
   parts.creator.create_at_vertex(end, parts.mesh.last_vertex(), BallReason::vertex_inserted);
   EXPECT_EQ(observed, 1U);
   EXPECT_FALSE(parts.creator.waits_for_ball(end));
-  EXPECT_NE(parts.open_creases.chain(open[0]).ends[0], none);  // it leaves the ball
+  EXPECT_NE(parts.open_creases.chain(open[0]).ends[0], none);  // the point where it leaves the ball
   EXPECT_TRUE(parts.collar_cells.near(parts.mesh.last_vertex()));
 }
 
-// A subsegment that would be split makes way for the balls of its crease.
+// A subsegment that would be split is replaced by the balls of its crease.
 TEST(CollarParts, ACreaseGetsItsBallsInsteadOfASplit) {
   const Plc plc = build(testing::wedge(25, 1));
   Parts parts(plc, Parts::with(CollarCreation::in_pass));
   const Index curve = parts.open_creases.curves().at(0);
   for (const Index end : plc.curves[curve].ends) parts.resolve_vertex_with_ball(end);
   const auto& chain = parts.open_creases.chain(curve);
-  EXPECT_GT(chain.unresolved, 0U);  // where it leaves the balls there are no vertices yet
+  EXPECT_GT(chain.unresolved, 0U);  // there are no vertices yet where it leaves the balls
   for (const Index point : std::array<Index, 2>(chain.ends)) {
     const UnresolvedPoints::Unresolved p = parts.points[point];
     parts.points.resolve(point, parts.mesh.vertex_count());
@@ -196,8 +196,8 @@ TEST(CollarParts, ACreaseGetsItsBallsInsteadOfASplit) {
   parts.chains.visit([&](Index, const Subsegment& piece) { EXPECT_NE(piece.curve, curve); });
 }
 
-// One that was split while its ends were missing gets them as soon as these are there, and what splits it
-// goes.
+// A crease that was split while its ends were missing gets its balls as soon as its ends are there; the
+// points that split it are removed.
 TEST(CollarParts, ACreaseThatIsSplitAheadGetsItsBallsWhenItsEndsAreThere) {
   const Plc plc = build(testing::wedge(25, 1));
   Parts parts(plc, Parts::with(CollarCreation::in_pass));
@@ -258,7 +258,7 @@ TEST(CollarParts, AChainThatIsSplitBeginsOnTheSphereOfTheBallAtItsEnd) {
   }
 }
 
-// What came near last is asked first: that changes no answer.
+// The explorer tests first what was nearest last time; this must not change any answer.
 TEST(CollarParts, ExplorersThatRememberAnswerAsThoseThatDoNot) {
   std::size_t isolated = 0, others = 0;
   for (const auto& shape : {testing::acute::lens(40), testing::acute::star_prism(9, 0.4)}) {
@@ -306,16 +306,16 @@ TEST(CollarParts, RepairsEndWithACollarSurfaceThatCanBeStitched) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> unit(-0.1, 1.1);
   std::size_t looks = 0;
-  for (int again = 0; again < 3; ++again) {  // what was found right may become poor
+  for (int again = 0; again < 3; ++again) {  // triangles that were good may become poor
     for (int k = 0; k < 200; ++k) {
-      const double share = k < 100 ? 1 : 0.2;  // of the wedge, from its edge
+      const double share = k < 100 ? 1 : 0.2;  // positions across the wedge, from its edge
       const Point p{share * unit(random), share * 0.5 * unit(random), unit(random)};
       const Index v = parts.mesh.nearest_vertex(p);
       if (parts.collars.ball_containing(p) == none && distance(p, parts.mesh.point(v)) > 0.02)
         parts.insert_and_tell(p, {3, none});
       for (const Index cell : parts.zone.created)
         for (unsigned corner = 0; corner < 4 && parts.mesh.alive(cell); ++corner)
-          EXPECT_FALSE(parts.collar_surface.is_off(face_id(cell, corner)));  // nobody has asked yet
+          EXPECT_FALSE(parts.collar_surface.is_off(face_id(cell, corner)));  // nothing has been asked yet
     }
     for (parts.mend_what_is_queued(); parts.review.check(); parts.mend_what_is_queued()) ++looks;
   }
@@ -339,7 +339,7 @@ TEST(CollarParts, RepairsEndWithACollarSurfaceThatCanBeStitched) {
     for (const Index v : parts.mesh.face_vertices(t.face)) EXPECT_FALSE(parts.collar_surface.on_crease(v));
   }
   EXPECT_GT(inside, 10U);
-  // What is asked again without an insertion is answered without one.
+  // Without an insertion in between, the answer is known.
   EXPECT_FALSE(parts.review.check());
   RipAndStitch stitching(parts.domain, parts.mesh, parts.nodes, parts.collars, parts.surface, parts.points,
                          parts.chains, parts.creator, parts.collar_surface);
@@ -402,7 +402,7 @@ TEST(SurfaceParts, AClosedPatchIsSeededAndAMissedOneMore) {
   const std::size_t seeds = parts.points.size();
   EXPECT_GT(seeds, 3U);
   for (Index point = 0; point < seeds; ++point) EXPECT_EQ(parts.points[point].feature, (Feature{2, 0}));
-  EXPECT_TRUE(parts.check.check());  // no triangle of it yet
+  EXPECT_TRUE(parts.check.check());  // it has no triangle yet
   EXPECT_GT(parts.points.size(), 2 * seeds);
 }
 

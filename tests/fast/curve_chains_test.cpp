@@ -1,4 +1,4 @@
-// The chains of curves: what guards them, how subsegments are split, what insertions tell them.
+// The chains of curves: encroachment, splits, and the effects of insertions.
 #include "refine/curve_chains.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 namespace collarmesh {
 namespace {
 
-/// Curves beside the parts they need; the test is the loop.
+/// Curves with the parts that they need; the test replaces the loop.
 struct Curves : testing::KnownCurves {
   explicit Curves(const Plc& plc, double size) : KnownCurves(plc, options(size)) { chains.start(); }
   static MeshOptions options(double size) {
@@ -45,7 +45,7 @@ struct Curves : testing::KnownCurves {
     return n;
   }
   std::size_t count() const { return count(true) + count(false); }
-  /// Do what the queue asks for, as the loop does, until nothing is left. Returns the number of splits.
+  /// Does what the queue asks for, as the loop does, until it is empty. Returns the number of splits.
   std::size_t work_off() {
     std::size_t splits = 0;
     for (WorkQueue::Item item; queue.pop(item);) {
@@ -68,7 +68,7 @@ struct Curves : testing::KnownCurves {
     insert_and_tell(split.candidate.point, split.candidate.feature);
     chains.split_at(split, mesh.last_vertex());
   }
-  /// How many of each kind are in the queue, which is emptied.
+  /// Returns the number of entries of each kind in the queue, and empties it.
   std::size_t queued(WorkQueue::Priority priority) {
     std::set<Index> found;
     for (WorkQueue::Item item; queue.pop(item);)
@@ -79,7 +79,7 @@ struct Curves : testing::KnownCurves {
     if (s.ends[side] != none) return mesh.point(s.ends[side]);
     return domain.paths.point(s.curve, s.parameters[side]);
   }
-  /// The number of the mesh vertices in a subsegment's ball.
+  /// Returns the number of mesh vertices in a subsegment's ball.
   std::size_t encroaching(const Subsegment& s) const {
     std::size_t n = 0;
     for (Index v = 0; v < mesh.vertex_count(); ++v)
@@ -87,7 +87,7 @@ struct Curves : testing::KnownCurves {
            squared_distance(mesh.point(v), s.centre) < s.squared_radius;
     return n;
   }
-  /// Does each curve that no balls cover consist of its subsegments, with equal points where they meet?
+  /// Expects that each curve without balls consists of its subsegments, with equal points where they meet.
   void expect_covered(double length) const {
     std::vector<std::vector<std::pair<double, double>>> pieces(domain.plc.curves.size());
     chains.visit([&](Index, const Subsegment& s) {
@@ -131,7 +131,7 @@ TEST(CurveChains, ASubsegmentIsResolvedWhenItsEndsAreInTheMesh) {
   EXPECT_EQ(curves.count(true), 12U);
 }
 
-// Else the whole skeleton would come in at once, one end after the other.
+// Otherwise the whole skeleton would be inserted at once, one end after the other.
 TEST(CurveChains, TheirOwnEndsEncroachNoSubsegments) {
   const Plc plc = box();
   Curves curves(plc, 10);
@@ -146,7 +146,7 @@ TEST(CurveChains, ACandidateThatEncroachesAnUnresolvedOneMakesWayForAMedialEnd) 
   Curves curves(plc, 10);
   const Point near = curves.points[plc.curves[0].ends[0]].point,
               far = curves.points[plc.curves[0].ends[1]].point;
-  // Away from it at first: its ball is found from ever nearer vertices.
+  // The vertices approach it from far away: its ball is found from ever nearer ones.
   std::mt19937_64 random(2);
   std::uniform_real_distribution<double> unit(-0.3, 1.3);
   for (int k = 0; k < 200; ++k) {
@@ -160,14 +160,14 @@ TEST(CurveChains, ACandidateThatEncroachesAnUnresolvedOneMakesWayForAMedialEnd) 
   ASSERT_NE(subsegment, none);
   EXPECT_EQ(curves.chains.curve_of(subsegment), 0U);
   EXPECT_EQ(curves.chains.end_to_resolve(subsegment, candidate), plc.curves[0].ends[0]);
-  // A vertex beside each end: now it would be a bad place for another one.
+  // Puts a vertex beside each end, which makes it a bad place for another one.
   curves.insert_and_tell(near + 1e-4 * (near - far));
   EXPECT_EQ(curves.chains.end_to_resolve(subsegment, candidate), plc.curves[0].ends[1]);
   curves.insert_and_tell(far + 1e-4 * (far - near));
   EXPECT_EQ(curves.chains.end_to_resolve(subsegment, candidate), none);
 }
 
-// No vertex comes in for it, as the mesh may have skinny cells.
+// No vertex is inserted for it, because the mesh may have skinny cells.
 TEST(CurveChains, WhatAVertexEncroachesIsSplitAheadOfTheMesh) {
   const Plc plc = box();
   Curves curves(plc, 10);

@@ -1,4 +1,4 @@
-// The sign of the Jacobian over a whole tetrahedron of second order, beside dense sampling.
+// The sign of the Jacobian over a whole tetrahedron of second order, compared with dense sampling.
 #include "collarmesh/curved_tet.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,8 @@ CurvedTet straight(const Point& a, const Point& b, const Point& c, const Point& 
 
 CurvedTet unit_tet() { return straight({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}); }
 
-// By the derivatives of the shape functions: l (2 l - 1) at corners, 4 l l' amid edges.
+// Returns the Jacobian by the derivatives of the shape functions: l (2 l - 1) at corners, 4 l l' at mid-edge
+// nodes.
 double jacobian_at(const CurvedTet& nodes, const std::array<double, 4>& l) {
   std::array<Vector, 4> derivative;  // by each barycentric coordinate
   for (std::size_t i = 0; i < 4; ++i) derivative[i] = (4 * l[i] - 1) * nodes[i];
@@ -52,8 +53,8 @@ TEST(CurvedTet, StraightTetsAreJudgedByTheirCorners) {
 }
 
 TEST(CurvedTet, AMidNodeBeyondTheQuarterOfItsEdgeInverts) {
-  // Along the edge the map is t -> 4 m t (1 - t) + t (2 t - 1): its derivative 4 m - 1 at the corner vanishes
-  // at m = 1/4.
+  // Along the edge the map is t -> 4 m t (1 - t) + t (2 t - 1). Its derivative at the corner, 4 m - 1,
+  // vanishes at m = 1/4.
   CurvedTet nodes = unit_tet();
   nodes[4] = {0.2501, 0, 0};
   EXPECT_TRUE(jacobian_exceeds(nodes));
@@ -61,10 +62,10 @@ TEST(CurvedTet, AMidNodeBeyondTheQuarterOfItsEdgeInverts) {
   EXPECT_FALSE(jacobian_exceeds(nodes));
 }
 
-// The determinant is negative in the middle of an edge alone: corners do not tell.
+// The determinant is negative only in the middle of an edge, which its values at corners do not show.
 TEST(CurvedTet, FindsAnInversionBetweenTheCorners) {
   CurvedTet nodes = unit_tet();
-  nodes[5] = {0.5, 0, 0.05};  // along ab the directions to c and d turn round once, together
+  nodes[5] = {0.5, 0, 0.05};  // along ab the directions to c and d turn around once, together
   nodes[8] = {0.5, 0.05, 0};
   for (std::size_t i = 0; i < 4; ++i) {
     std::array<double, 4> corner{};
@@ -95,7 +96,7 @@ TEST(CurvedTet, AgreesWithSamples) {
         EXPECT_GT(sample, bound) << "trial " << trial;
       } else {
         ++invalid;
-        // The determinant's second derivatives bound how far below the samples it can be.
+        // The determinant's second derivatives bound how far it can be below the samples.
         EXPECT_LT(sample, bound + 0.02 * straight_one) << "trial " << trial;
         const double at_corners =
             std::min({jacobian_at(nodes, {1, 0, 0, 0}), jacobian_at(nodes, {0, 1, 0, 0}),

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint16_t block_count = 8;
 
-// The block of a point is its octant of the unit cube.
+// Returns the block of a point: its octant of the unit cube.
 std::uint16_t octant(const Point& p) {
   return static_cast<std::uint16_t>((p.x > 0.5 ? 1 : 0) + (p.y > 0.5 ? 2 : 0) + (p.z > 0.5 ? 4 : 0));
 }
@@ -48,7 +48,7 @@ class DelaunayBlocks : public ::testing::Test {
     for (Index v = 8; v < mesh_.vertex_count(); ++v) owners_[v] = octant(mesh_.point(v));
   }
 
-  // The circumcentres of all cells that lie in one block, as far as there is room.
+  // Inserts the circumcentres of all cells that lie in one block, as long as there is room.
   static Index refine(const Triangulation& mesh, Triangulation::Block& block,
                       const std::vector<Index>& cells) {
     ConflictZone zone;
@@ -77,7 +77,7 @@ class DelaunayBlocks : public ::testing::Test {
     return cells;
   }
 
-  // With a thread for each block, or one block after the other, the last one first.
+  // Uses a thread for each block, or handles the blocks one after the other, the last one first.
   Index refine_blocks(Index room, bool together) {
     const auto cells = cells_of_blocks();
     const std::vector<Index> rooms(block_count, room);

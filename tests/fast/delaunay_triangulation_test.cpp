@@ -1,4 +1,4 @@
-// The kernel against CGAL's triangulation and exact arithmetic.
+// The kernel compared with CGAL's triangulation and exact arithmetic.
 #include "delaunay/triangulation.h"
 
 #include <CGAL/Delaunay_triangulation_3.h>
@@ -147,7 +147,7 @@ TEST_P(DelaunayTriangulation, EveryConflictDecisionIsExact) {
     const auto& v = mesh.corners(cell);
     const double r = std::sqrt(mesh.squared_radius(cell));
     std::vector<Point> queries{mesh.circumcentre(cell), mesh.point(v[0]), mesh.point(v[3])};
-    for (int k = 0; k < 6; ++k) {  // on the sphere up to rounding, and a little off it
+    for (int k = 0; k < 6; ++k) {  // points on the sphere up to rounding, and a little off it
       const Vector d{normal(random), normal(random), normal(random)};
       queries.push_back(mesh.circumcentre(cell) + (r * (1 + 1e-15 * k)) / norm(d) * d);
     }
@@ -194,8 +194,8 @@ TEST_P(DelaunayTriangulation, HasTheCellsOfTheOracle) {
     theirs.insert(key);
   }
   EXPECT_NEAR(double(mine.size()), double(theirs.size()), 0.1 * double(theirs.size()));
-  // Up to ties (the box's corners tie in every set): a cell of one that the other lacks has a fifth
-  // point on its sphere.
+  // Up to ties (the box's corners tie in every set): a cell that only one of both has must have a fifth point
+  // on its sphere.
   std::vector<Cell> missing;
   std::set_difference(mine.begin(), mine.end(), theirs.begin(), theirs.end(), std::back_inserter(missing));
   for (const Cell& cell : missing) {
@@ -222,7 +222,7 @@ INSTANTIATE_TEST_SUITE_P(PointSets, DelaunayTriangulation,
                          [](const auto& info) { return info.param.name; });
 
 TEST(DelaunayTriangulationZone, OfAVertexWithManyNeighboursIsLinked) {
-  // A vertex in the middle of a sphere of others: more than the square table takes.
+  // A vertex inside a sphere of others: too many for the square table.
   const PointSet sphere = on_sphere(600);
   Box box;
   box.add(Point{-4, -4.1, -4.2});

@@ -1,4 +1,4 @@
-// Which edges the input forces to be short, and what they leave to a tet, by brute force.
+// Edges that the input forces to be short, and the angles that they leave to a tet, by brute force.
 #include "tolerance/forced_edges.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ namespace {
 using Corners = std::array<Point, 4>;
 constexpr std::array<Index, 4> four{0, 1, 2, 3};
 
-// All points that the complex has on a feature and on its border.
+// Returns all points of the complex on a feature and on its border.
 std::set<Index> points_of(const Plc& plc, unsigned dimension, Index feature) {
   if (dimension == 0) return {plc.vertices[feature].point};
   if (dimension == 1) return {plc.curves[feature].points.begin(), plc.curves[feature].points.end()};
@@ -57,7 +57,7 @@ TEST(FeatureContacts, AreThoseWithACommonPoint) {
   expect_contacts_by_points(complex_of(testing::two_boxes()));
   expect_contacts_by_points(complex_of(testing::l_shape()));
   expect_contacts_by_points(complex_of(testing::cylinder(1, 2, 24), 40));
-  // 80 flat faces meet in its tip, more than are listed as neighbours of each other.
+  // 80 flat faces meet in its tip: too many to be listed as neighbours of each other.
   expect_contacts_by_points(complex_of(testing::cone(1, 1, 80), 0));
 }
 
@@ -75,7 +75,7 @@ double longest(const Corners& p) {
   return most;
 }
 
-// The faces of a unit box that two of its opposite corners are on: one pair of them has no point in common.
+// The faces of a unit box at two opposite corners: one pair of them has no point in common.
 struct OppositeFaces {
   Plc plc = complex_of(testing::box());
   Index below = none, above = none, beside = none;
@@ -120,7 +120,7 @@ TEST(ForcedEdges, BetweenTwoCornersAndTwoItIsTheDistanceOfLines) {
                                              ? std::array{faces.below, faces.above, faces.below, faces.above}
                                              : std::array{faces.above, faces.above, faces.below, faces.below};
     std::array<Point, 4> q = k % 2 == 0 ? std::array{p[0], p[2], p[1], p[3]} : p;
-    // The nearest points of two lines, by turns.
+    // Finds the nearest points of two lines by alternating projections.
     double s = 0, t = 0;
     const Vector u = q[1] - q[0], v = q[3] - q[2];
     for (unsigned step = 0; step < 20000; ++step) {
@@ -129,7 +129,7 @@ TEST(ForcedEdges, BetweenTwoCornersAndTwoItIsTheDistanceOfLines) {
     }
     const double between = distance(q[0] + s * u, q[2] + t * v);
     const double sine = norm(cross(u, v)) / (norm(u) * norm(v));
-    if (sine < 0.05) continue;  // the turns take too many
+    if (sine < 0.05) continue;  // alternating would take too many steps
     EXPECT_NEAR(faces.with(patches).narrowness(p, four), between / longest(p), 1e-9);
   }
 }
@@ -172,7 +172,8 @@ TEST(ForcedEdges, ThinTetsMayBeAsSharpAsTheyLeaveThem) {
     const Corners prism{Point{0, 0, 0}, Point{1, 0, 0}, Point{0, 1, 0}, Point{0, 0, height}};
     EXPECT_TRUE(with.contains(prism, four)) << height;
     EXPECT_EQ(without.contains(prism, four), height > 0.1) << height;
-    // Beside the triangle, in the plane of one of its sides: blunt, however narrow the place.
+    // The apex lies beside the triangle, in the plane of one of its sides: the angle is obtuse in any narrow
+    // place.
     const Corners blunt{Point{0, 0, 0}, Point{1, 0, 0}, Point{0, 1, 0}, Point{0.6, 0.6, 0.1 * height}};
     EXPECT_FALSE(with.contains(blunt, four)) << height;
   }

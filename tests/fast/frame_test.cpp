@@ -1,4 +1,4 @@
-// The frame that input far from the origin is moved into.
+// The frame for input far from the origin.
 #include "refine/frame.h"
 
 #include <gtest/gtest.h>

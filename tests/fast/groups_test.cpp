@@ -11,13 +11,13 @@ namespace {
 
 struct Item {
   std::size_t giver;
-  int number;  // among the giver's
+  int number;  // number among the items of its giver
 
   friend bool operator==(const Item&, const Item&) = default;
 };
 using Items = std::vector<Item>;
 
-// Each giver has some items for some groups, drawn from a seed of its own.
+// Each giver has some items for some groups, drawn with its own seed.
 template <class Give>
 void items_of(std::size_t giver, std::size_t groups, const Give& give) {
   std::mt19937_64 random(giver);
@@ -45,7 +45,7 @@ TEST(Groups, HoldTheirItemsInOrder) {
   expect_groups(7, 100);
   expect_groups(1024, 9000);
   expect_groups(5000, 40000);
-  expect_groups(1100 * 1024, 20000);  // more ranges than there may be
+  expect_groups(1100 * 1024, 20000);  // more ranges than are allowed
 }
 
 TEST(Groups, MayBeEmpty) {

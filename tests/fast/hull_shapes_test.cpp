@@ -1,4 +1,4 @@
-// Tets that are measured in pairs have the shape that they have one by one.
+// Tets measured in pairs have the same shape as tets measured one by one.
 #include "improve/hull_shapes.h"
 
 #include <gtest/gtest.h>
@@ -28,8 +28,7 @@ struct Hull {
   }
 };
 
-/// Faces of any shape, some of them turned the other way, some with corners in line or with the apex in their
-/// plane.
+/// Returns faces of any shape: some reversed, some with collinear corners, some with the apex in their plane.
 Hull any_hull(std::size_t size, std::mt19937& random) {
   std::normal_distribution<double> normal;
   const double scale = std::pow(10, std::uniform_int_distribution(-20, 20)(random)),
@@ -66,7 +65,7 @@ TEST(HullShapes, AnglesAreThoseOfEachTet) {
       const double longest = std::sqrt(std::max(
           {squared_distance(p[0], p[1]), squared_distance(p[0], p[2]), squared_distance(p[0], p[3])}));
       const double six_volume = std::fabs(dot(p[1] - p[0], cross(p[2] - p[0], p[3] - p[0])));
-      // A volume of rounding errors has no sign.
+      // If the volume is only rounding errors, its sign is arbitrary.
       if (six_volume > 1e-12 * longest * longest * longest) {
         EXPECT_EQ(found.positive, expected.positive);
       }
@@ -80,7 +79,7 @@ TEST(HullShapes, AnglesAreThoseOfEachTet) {
   EXPECT_GT(others, 20000U);
 }
 
-// The sines of the extreme angles over those of their bounds.
+// Qualities are the sines of the extreme angles relative to those of their bounds.
 TEST(HullShapes, QualitiesOfCoarseningAreThoseOfTheAngles) {
   std::mt19937 random(12);
   const Plc plc;
@@ -91,7 +90,7 @@ TEST(HullShapes, QualitiesOfCoarseningAreThoseOfTheAngles) {
   coarsening::CoarseningRule rule(thin, cells, 2, sizes);
   constexpr std::array<Index, 4> corners{0, 1, 2, 3};
   constexpr double radians = std::numbers::pi / 180;
-  std::array<unsigned, 3> seen{};  // without volume, with an angle too large, others
+  std::array<unsigned, 3> seen{};  // without volume, with an angle too large, other
   for (std::size_t k = 0; k < 5000; ++k)
     for_each_tet(any_hull(1 + k % 9, random), [&](const Corners& p, const ExtremeCosines& paired) {
       const auto angles = improvement::extreme_angles(p);

@@ -1,5 +1,5 @@
-// Files of .inp, .vtk, .unv, .ele and binary .msh that other programs write, and files that nobody should
-// write: an error with the line or byte, or the same mesh.
+// Files of .inp, .vtk, .unv, .ele and binary .msh, as other programs write them and as nobody should: reading
+// gives the right mesh, or an error with the line or byte.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -86,7 +86,7 @@ TEST(IoAbaqus, ReadsRangeUpToTheLargestNumber) {
   EXPECT_EQ(mesh.tet_tag, (std::vector<Tag>{2, 1})) << "the set has no element that is there";
 }
 
-/// Each range and name is short and stands for all elements.
+/// Each range and each name is short, but stands for all elements.
 TEST(IoAbaqus, RefusesSetsThatGrowWithoutBound) {
   std::string ranges, names, sides;
   for (int i = 0; i < 200; ++i) {
@@ -152,7 +152,7 @@ TEST(IoVtk, RefusesBadFiles) {
                  "the number of points is 2000000000");
 }
 
-/// Cells that come after the data of others would have none.
+/// Cells after the data of other cells would have no data.
 TEST(IoVtk, RefusesSectionsAfterTheirData) {
   const std::string more_cells =
       "CELLS 4 19\n4 0 1 2 3\n4 1 2 3 4\n4 0 1 2 3\n3 0 1 2\nCELL_TYPES 4\n10\n10\n10\n5\n";
@@ -166,7 +166,7 @@ TEST(IoVtk, RefusesSectionsAfterTheirData) {
 
 // .vtu
 
-/// Pieces of so many points and one tet that share their arrays.
+/// Makes pieces of some points and one tet that share their arrays.
 std::string vtu_of_shared_pieces(std::size_t pieces, std::size_t points) {
   const std::string counts = "NumberOfPoints=\"" + std::to_string(points) + "\" NumberOfCells=\"1\"",
                     piece =
@@ -198,7 +198,7 @@ TEST(IoMsh, RefusesNodesAfterElements) {
   expect_refused("a.msh", text + "$Nodes\n1\n0 5 5 5\n$EndNodes\n", "the nodes come after elements");
 }
 
-/// Larger numbers than fit into an int, or are the largest one that does.
+/// Numbers too large for an int, and the largest int.
 TEST(IoHostile, HugeNumbersOfRegionsAndFeatures) {
   for (const Index huge : {Index{2147483647}, Index{4294967294}})
     for (const std::string& format : io::read_tet_mesh_formats()) {
@@ -324,7 +324,8 @@ TEST(IoHostile, MixedOrdersAreRefused) {
                  "cells of first and second order are mixed");
 }
 
-/// Any cut and any damage give a mesh whose indices are in range or a ReadError; the sanitizers watch.
+/// Any truncated or damaged file gives a mesh with indices in range, or a ReadError. The sanitizers find
+/// other faults.
 TEST(IoHostile, EveryReaderSurvivesDamage) {
   std::mt19937 random(11);
   for (const std::string& format : io::read_tet_mesh_formats())
@@ -353,7 +354,7 @@ TEST(IoHostile, EveryReaderSurvivesDamage) {
     }
 }
 
-/// Not a mesh of any kind.
+/// Bytes that are no mesh of any kind.
 TEST(IoHostile, GarbageIsRefusedByEveryReader) {
   std::mt19937 random(12);
   std::string noise(5000, '\0');

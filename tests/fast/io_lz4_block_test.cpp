@@ -1,4 +1,4 @@
-// Blocks of LZ4 written by hand; what VTK packs is read in tests/io/vtk_lz4_test.py.
+// Blocks of LZ4 written by hand. tests/io/vtk_lz4_test.py tests blocks that VTK packs.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -20,7 +20,7 @@ std::string unpacked(std::string_view packed, std::size_t size) {
   return io::lz4_unpack(packed, size, bytes) ? bytes : "damaged";
 }
 
-// A match of seven bytes from three before, which repeats what it has just written.
+// A match of seven bytes that begins three bytes before: it repeats what it has just written.
 const std::string overlapping = text_of({0x33, 'a', 'b', 'c', 3, 0, 0x60}) + "012345";
 
 TEST(IoLz4Block, LiteralsAlone) {

@@ -35,7 +35,7 @@ std::string text_of(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-/// A tet whose side on y = 0 turns onto that on x = 0.
+/// Returns a tet whose side on y = 0 is turned onto the one on x = 0.
 TetMesh turned_tet() {
   TetMesh mesh;
   mesh.points = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0.5}, {0, 1, 0.5}};
@@ -101,7 +101,7 @@ TEST(PeriodicFiles, MshOfVersion2HasLinksOfSurfacesAndCurves) {
   EXPECT_EQ(end, "$EndPeriodic");
 }
 
-/// What a file of conditions has: references by pair, and rows of (node, direction, factor).
+/// The contents of a file of conditions: references by pair, and rows of (node, direction, factor).
 struct Conditions {
   std::vector<Index> references;  // numbers from 1
   struct Term {
@@ -131,7 +131,7 @@ Conditions conditions_of(const std::string& path) {
   return found;
 }
 
-/// The displacements are a rotation of everything (turned) or a strain (moved): they satisfy all equations.
+/// Expects that displacements satisfy all equations: a rotation of everything (turned) or a strain (moved).
 void expect_solved(const Conditions& found, const std::map<Index, Vector>& displacements) {
   std::set<std::pair<Index, std::size_t>> dependent;
   for (const auto& equation : found.equations) {

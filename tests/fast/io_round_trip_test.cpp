@@ -1,5 +1,5 @@
-// Every format of tetrahedral meshes on the same list of small meshes: what is written is read back, as
-// far as the format has a place for it.
+// Every format of tetrahedral meshes with the same list of small meshes: what is written is read back, as far
+// as the format can store it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -52,7 +52,7 @@ TetMesh with_one_tag(TetMesh mesh) {
   return mesh;
 }
 
-/// Divided anyhow; some numbers of partitions are of none.
+/// Divides a mesh arbitrarily; some partition numbers are unused.
 TetMesh partitioned(TetMesh mesh) {
   for (std::size_t t = 0; t < mesh.tets.size(); ++t)
     mesh.tet_partition.push_back(static_cast<Index>(t * t % 5 + (t > mesh.tets.size() / 2 ? 7 : 1)));
@@ -74,7 +74,7 @@ std::vector<NamedMesh> small_meshes() {
           {"second order, features unknown", second_order(without_features(sample_mesh(1)))}};
 }
 
-/// What a format has a place for, besides points, cells and the tags of faces.
+/// The data that a format can store besides points, cells and the tags of faces.
 struct Format {
   const char* extension;
   bool all_digits = true, regions = true, tet_tags = true, edges = true, collar = false, features = false,
@@ -92,7 +92,7 @@ const std::vector<Format> always_there{
     {.extension = ".msh2", .regions = false, .partitions = true},
     {.extension = ".ele", .regions = false}};
 
-/// With those that need HDF5.
+/// Returns the formats, including those that need HDF5.
 std::vector<Format> formats_built_in() {
   std::vector<Format> all = always_there;
   for (const Format& format :
@@ -104,7 +104,7 @@ std::vector<Format> formats_built_in() {
 
 const std::vector<Format> formats = formats_built_in();
 
-/// Regions by ascending tag.
+/// Renumbers regions by ascending tag.
 void number_regions_by_tag(TetMesh& mesh) {
   std::vector<Tag> tags = mesh.tet_tag;
   std::sort(tags.begin(), tags.end());
@@ -120,7 +120,7 @@ void number_regions_by_tag(TetMesh& mesh) {
 
 TetMesh as_kept(TetMesh mesh, const Format& format) {
   if (!format.tet_tags) mesh.tet_tag.assign(mesh.tet_region.begin(), mesh.tet_region.end());
-  // In .msh a region is an entity; which one is known only with the features.
+  // In .msh a region is an entity, which is known only together with the features.
   if (!format.regions || (format.extension == std::string(".msh") && mesh.features.empty()))
     number_regions_by_tag(mesh);
   if (!format.collar) {
@@ -155,7 +155,7 @@ std::vector<std::size_t> order_of(const Cells& cells) {
   return order;
 }
 
-/// Cells in the order of their corners, each face with its smallest corner first.
+/// Returns the mesh with cells sorted by their corners; each face begins with its smallest corner.
 TetMesh canonical(TetMesh mesh) {
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     auto& face = mesh.faces[f];

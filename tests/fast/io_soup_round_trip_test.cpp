@@ -29,7 +29,7 @@ PolygonSoup tetrahedron(Tag first_tag) {
   return soup;
 }
 
-/// A box with a square hole in its top, as a complex has it, and a cell behind it.
+/// A box with a square hole in its top, given as a complex, and a cell behind it.
 PolygonSoup plate() {
   PolygonSoup soup;
   for (const double z : {0.0, 1.0})
@@ -76,7 +76,7 @@ TEST(IoSoupRoundTrip, EveryFormatKeepsPointsAndFacets) {
       const bool tags = extension != ".off" && extension != ".stl";
       for (Index f = 0; f < soup.facet_count(); ++f)
         EXPECT_EQ(read.facet_tag(f), tags ? soup.facet_tag(f) : 0);
-      if (extension == ".stl") {  // 32 bits, points by first use
+      if (extension == ".stl") {  // 32-bit coordinates, points numbered by first use
         EXPECT_EQ(read.points.size(), 4);
         EXPECT_EQ(read.points[0].x, double{0.1F});
         continue;
@@ -148,7 +148,7 @@ TEST(MergeSoups, CutsWhatAFormatNeeds) {
 TEST(MergeSoups, WeldsAndDrops) {
   PolygonSoup a = tetrahedron(1), b;
   b.points = {{1, 0, 0}, {0, 1.0 / 3, 0}, {0, 0, 1e10}, {0, 0, 1e10}, {5, 5, 5}};
-  b.add_facet(std::array<Index, 3>{2, 1, 0}, 50);  // a's third facet, turned
+  b.add_facet(std::array<Index, 3>{2, 1, 0}, 50);  // the third facet of a, reversed
   b.add_facet(std::array<Index, 3>{0, 2, 3}, 51);  // two of its corners are welded
   MergeReport report;
   const std::array soups{a, b};
@@ -188,8 +188,8 @@ PolygonSoup box(const Point& low, const Point& high, bool inwards = false) {
   return soup;
 }
 
-/// A solid in a cavity of a thin shell beside another solid: each region and the cavity get a point,
-/// and the complex that they decide is the same.
+/// A solid in a cavity of a thin shell, beside another solid. Each region and the cavity get a point, and
+/// these points lead to the same complex.
 TEST(RegionPoints, DecideLikeTheOrientation) {
   const std::array soups{box({0, 0, 0}, {10, 10, 10}),
                          box({0.001, 0.001, 0.001}, {9.999, 9.999, 9.999}, true), box({4, 4, 4}, {6, 6, 6}),

@@ -1,4 +1,4 @@
-// Surfaces: what is well formed is read to the last bit, everything else is an error with its place.
+// Surfaces: well-formed files are read to the last bit, all others give an error with its place.
 #include <CGAL/IO/OBJ.h>
 #include <CGAL/IO/OFF.h>
 #include <CGAL/IO/PLY.h>
@@ -169,7 +169,7 @@ TEST(IoObj, ReadsPolygonsAndLines) {
 
 TEST(IoObj, RefusesBadFiles) {
   expect_refused("a.obj", "", "line 1: ");
-  // A vertex must not get lost where a line ends with a carriage return alone.
+  // A vertex must not get lost if its line ends with only a carriage return.
   expect_refused("a.obj", "v 0 0 0\rv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n",
                  "line 1: expected a weight or colour");
   expect_refused("a.obj", std::string("\0\1\2\3garbage", 11), "line 1: expected a keyword");
@@ -424,7 +424,7 @@ TEST(IoSoup, AgreesWithCgalOnWellFormedFiles) {
                    [](const std::string& f, auto& p, auto& t) { return CGAL::IO::read_PLY(f, p, t); });
 }
 
-/// Any bytes give a soup or a ReadError; the sanitizers watch.
+/// Any bytes give a soup or a ReadError. The sanitizers find other faults.
 TEST(IoSoup, SurvivesDamage) {
   const std::vector<std::pair<std::string, std::string>> files{
       {"a.off", off},

@@ -1,4 +1,4 @@
-// Tetrahedral meshes: what is written is read back to the last bit, as far as the format goes.
+// Tetrahedral meshes: what is written is read back to the last bit, as far as the format can store it.
 #include <gtest/gtest.h>
 
 #include <sys/resource.h>
@@ -35,7 +35,7 @@ TetMesh round_trip(const TetMesh& mesh, const std::string& name) {
   return io::read_tet_mesh(folder.file(name));
 }
 
-/// The format has no place for features, and tags of regions are their numbers.
+/// Returns the mesh as the format can store it: without features, with region numbers as tags.
 TetMesh as_medit_keeps_it(TetMesh mesh) {
   mesh.features.clear();
   mesh.tet_tag.assign(mesh.tet_region.begin(), mesh.tet_region.end());
@@ -89,7 +89,7 @@ TEST(IoTetMesh, KnowsItsFormats) {
   expect_error<WriteError>([] { io::write_tet_mesh("a.xyz", {}); }, "a.xyz", "unknown kind of file");
 }
 
-// Other people's files
+// Files of other programs
 
 TetMesh read(const std::string& name, const std::string& content) {
   const TemporaryFolder folder;
@@ -103,7 +103,8 @@ void expect_refused(const std::string& name, const std::string& content, const s
   expect_error<ReadError>([&] { io::read_tet_mesh(path); }, path, part);
 }
 
-/// Two tets, the second one inverted; the triangle between them, one on the outside that looks inwards.
+/// Expects two tets, the second one inverted in the file; the triangle between them, and one on the outside
+/// that points inwards.
 void expect_two_tets(const TetMesh& mesh) {
   ASSERT_EQ(mesh.points.size(), 5);
   ASSERT_EQ(mesh.tets.size(), 2);
@@ -173,7 +174,7 @@ const std::string msh_22 =
 
 TEST(IoMsh, ReadsOthers) {
   expect_two_tets(read("a.msh", msh_22));
-  // Nodes come in the order of their numbers 3, 5, 30, 40, 70.
+  // Nodes are given in the order of their numbers 3, 5, 30, 40, 70.
   expect_two_tets(read("a.msh", msh_41));
 }
 
@@ -246,7 +247,7 @@ TEST(IoWrite, NamesTheReasonOfTheSystem) {
   EXPECT_EQ(folder.file_count(), 1);
 }
 
-/// A file that may not grow stands for a full disk.
+/// A limit on the file's size stands for a full disk.
 TEST(IoWrite, LeavesNothingWhenTheDiskIsFull) {
   const TemporaryFolder folder;
   const TetMesh mesh = sample_mesh(4);
@@ -263,7 +264,7 @@ TEST(IoWrite, LeavesNothingWhenTheDiskIsFull) {
   EXPECT_EQ(folder.file_count(), 0);
 }
 
-// So many cells that each thread writes several blocks of them.
+// The mesh has so many cells that each thread writes several blocks of them.
 TEST(IoTetMesh, AnyNumberOfThreadsWritesTheSame) {
   const testing::TemporaryFolder folder;
   const TetMesh mesh = testing::meshed_box(20).mesh;

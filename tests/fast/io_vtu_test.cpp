@@ -1,4 +1,4 @@
-// .vtu: what is written is read back, and every way in which others store arrays is understood.
+// .vtu: what is written is read back, and all ways in which other programs store arrays are understood.
 #include <gtest/gtest.h>
 #include <zlib.h>
 
@@ -56,9 +56,9 @@ TEST(IoVtu, RoundTripOfManyBlocksAndWithoutFeatures) {
   expect_same(io::read_tet_mesh(folder.file("a.vtu")), mesh);
 }
 
-/// How somebody stores arrays: the same grid in every way there is.
+/// A way to store arrays, for writing the same grid in every possible way.
 struct Storage {
-  std::string format = "ascii";  ///< or binary, appended
+  std::string format = "ascii";  ///< or binary, or appended
   bool base64 = true, compressed = false, wide_headers = false, header_apart = false, big_endian = false;
 };
 
@@ -154,7 +154,7 @@ class ForeignFile {
   std::string appended_;
 };
 
-/// Two tets, the second inverted in the file, and the triangles between and on them.
+/// Expects two tets, the second one inverted in the file, and the triangles between and on them.
 void expect_two_tets(const TetMesh& mesh) {
   ASSERT_EQ(mesh.points.size(), 5);
   EXPECT_EQ(mesh.points[4], (Point{1, 1, 0.1}));
@@ -242,14 +242,14 @@ TEST(IoVtu, RefusesBadAppendedValues) {
   for (const std::size_t field : {0, 1, 2, 3})
     expect_refused(std::string(packed).replace(start + 8 * field, 8, huge),
                    "byte " + std::to_string(start) + ": ");
-  // A gigabyte in a block of some bytes.
+  // A block of a few bytes that claims to be a gigabyte.
   const std::string gigabyte("\0\0\0\x40\0\0\0\0", 8);
   expect_refused(std::string(packed).replace(start + 8, 8, gigabyte), "cannot hold 1073741824");
   const std::string base64 = ForeignFile({"binary"}).text();
   expect_refused(replaced(base64, "eAAAAA", "e!AAAA"), "the values are no base64");
 }
 
-/// A run of base64 that is padded one character too early holds one byte too few.
+/// A base64 run with padding one character too early is one byte too short.
 TEST(IoVtu, RefusesHeaderThatIsPaddedEarly) {
   std::string text = ForeignFile({"binary", true, true}).text();
   constexpr std::size_t header_bytes = 44;  // 8 blocks

@@ -1,4 +1,4 @@
-// The lists of what is found from mesh vertices.
+// The lists of objects that are found from mesh vertices.
 #include "location/location_objects.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 TEST(LocationObjects, ListsFollowAdditionsMovesAndRemovals) {
   LocationObjects objects;
   std::mt19937_64 random(9);
-  std::vector<std::pair<Index, Index>> alive;  // object, vertex
+  std::vector<std::pair<Index, Index>> alive;  // pairs of an object and its vertex
   for (int step = 0; step < 3000; ++step) {
     const auto vertex = static_cast<Index>(random() % 20);
     const auto action = random() % 3;

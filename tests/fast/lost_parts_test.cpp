@@ -1,4 +1,4 @@
-// What a coarser repair may not lose.
+// Parts that a coarser repair may not lose.
 #include "pipeline/lost_parts.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ TEST(LostParts, BodiesAreCounted) {
   EXPECT_EQ(lost_parts(two, {}, two, of_tolerance(0.01)), "");
   EXPECT_NE(lost_parts(two, {}, one, of_tolerance(0.01)), "");
   EXPECT_EQ(lost_parts(one, {}, two, of_tolerance(0.01)), "");
-  // Both as one: no body may become part of another.
+  // Both boxes as one: no body may become part of another one.
   EXPECT_NE(lost_parts(two, {}, complex_of({box({0, 0, 0}, {2, 1, 1})}), of_tolerance(0.01)), "");
 }
 
@@ -49,7 +49,7 @@ TEST(LostParts, TagsAndNamesStay) {
   const PolygonSoup block = box();
   Plc one = complex_of({block});
   RepairReport finer = of_tolerance(1e-5), coarser = of_tolerance(1e-3);
-  coarser.lost_tags = {3};  // numbers of CAD faces
+  coarser.lost_tags = {3};  // tags that are only numbers of CAD faces
   EXPECT_EQ(lost_parts(one, finer, one, coarser), "");
   coarser.lost_groups = {3};
   EXPECT_NE(lost_parts(one, finer, one, coarser), "");

@@ -1,4 +1,4 @@
-// Marking asks `measure` only where a cheaper look does not tell.
+// Marking calls `measure` only if a cheaper test is inconclusive.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ TEST(MarkThinTets, MarksWhatIsAboveTheBound) {
   for (int i = 0; i < 20000; ++i) {
     const Point a = point(), b = point(), c = point();
     Point d = point();
-    // Flatter and flatter, inverted ones too.
+    // Tets that get flatter and flatter, some inverted.
     if (i % 2 == 0) {
       const double height = std::pow(10, -(i % 17)) * normal(random);
       d = a + 0.3 * (b - a) + 0.4 * (c - a) + height * cross(b - a, c - a);
@@ -28,7 +28,7 @@ TEST(MarkThinTets, MarksWhatIsAboveTheBound) {
     mesh.tets.push_back({first, first + 1, first + 2, first + 3});
     mesh.tet_collar.push_back(i % 10 == 0 ? 1 : 0);
   }
-  // Bounds that tets have exactly, and a little beside.
+  // Uses bounds that equal the ratios of tets, or are slightly off.
   for (int i = 0; i < 300; ++i) {
     const auto measured = [&](std::size_t t) {
       const auto& v = mesh.tets[t];

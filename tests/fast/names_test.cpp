@@ -1,4 +1,4 @@
-// Numbers and names of what has no tag: from files, from names that users give, and in what is written.
+// Numbers and names of features without a tag: from files, given by users, and in output.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -201,7 +201,7 @@ TEST(Names, OfUnvAreKept) {
     EXPECT_EQ(again.names.of(dimension), mesh.names.of(dimension)) << dimension;
   EXPECT_EQ(again.face_tag, mesh.face_tag);
   mesh.names = {};
-  mesh.group_names = GroupNames::cad;  // as FreeCAD writes what it got from us
+  mesh.group_names = GroupNames::cad;  // as FreeCAD writes a mesh that it got from us
   io::write_tet_mesh(folder.file("b.unv"), mesh);
   io::write_tet_mesh(folder.file("b.msh"), io::read_tet_mesh(folder.file("b.unv")));
   for (const char* word : {"\"Face6\"", "\"Edge12\"", "\"Solid1\""})

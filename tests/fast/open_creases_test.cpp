@@ -13,7 +13,7 @@ TEST(OpenCreases, AreTouchedOnceUntilTheyAreTaken) {
   OpenCreases creases;
   for (const Index curve : {3U, 5U}) creases.open(curve);
   EXPECT_FALSE(creases.any_touched());
-  creases.touch(4);  // not open
+  creases.touch(4);  // this crease is not open
   EXPECT_FALSE(creases.any_touched());
   creases.touch(3);
   creases.note_link(5, {7, 1});
@@ -59,8 +59,8 @@ TEST(OpenCreases, TellWhenASplitChainIsComplete) {
   EXPECT_FALSE(creases.note_resolved(1));
   EXPECT_TRUE(creases.note_resolved(1));
   EXPECT_FALSE(creases.note_resolved(2));
-  EXPECT_FALSE(creases.note_resolved(2));  // it was not split
-  EXPECT_FALSE(creases.note_resolved(3));  // not open
+  EXPECT_FALSE(creases.note_resolved(2));  // the chain was not split
+  EXPECT_FALSE(creases.note_resolved(3));  // this crease is not open
 }
 
 }  // namespace

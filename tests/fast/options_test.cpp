@@ -22,7 +22,7 @@ const Option& row(const std::string& name) {
   throw std::runtime_error("no option " + name);
 }
 
-/// A word, or a number within the range of an option that is not its default.
+/// Returns a word, or a number within the range of an option that is not its default.
 std::string some_text(const Option& option) {
   switch (option.kind()) {
     case Kind::choice: return option.words.back();
@@ -58,7 +58,7 @@ TEST(OptionTable, EveryOptionIsExplained) {
   }
 }
 
-// Each row has a place of its own: reading one changes no other, but for a second row of the same name.
+// Each row has its own member: reading one option changes no other, except a second row of the same name.
 TEST(OptionTable, ReadingChangesOneOption) {
   for (const Option& option : option_table()) {
     if (option.kind() == Kind::flag) continue;

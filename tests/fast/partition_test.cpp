@@ -1,4 +1,5 @@
-// Dividing a mesh among ranks: even, few cut faces, alike every time; against counts of all pairs of tets.
+// Dividing a mesh among ranks: balanced, with few cut faces, and reproducible. Compared with counts over all
+// pairs of tets.
 #include "collarmesh/partition.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +24,7 @@ namespace {
 
 using namespace testing;
 
-/// What a build without Scotch says; empty where it is there.
+/// Returns the error of a build without Scotch; empty if Scotch is there.
 std::string reason_against() {
   try {
     require_partitioner();
@@ -134,7 +135,7 @@ TEST(Partition, MeasuresOfAMeshThatIsNotPartitioned) {
   EXPECT_EQ(measure_partitions(sample_mesh(1)).partitions, 0U);
 }
 
-/// Rows of tets, each beside the next one, that do not touch each other.
+/// Returns rows of tets, each tet beside the next one; rows do not touch each other.
 DualGraph rows(std::initializer_list<GraphIndex> lengths) {
   DualGraph graph;
   graph.starts.push_back(0);
@@ -177,13 +178,14 @@ TEST(LevelPartitions, WhateverTheyWere) {
   }
 }
 
-// What is even enough stays as it is: 0 0 0 1 1 1 2 2 2.
+// A partition that is balanced enough stays as it is: 0 0 0 1 1 1 2 2 2.
 TEST(LevelPartitions, MoveNoMoreThanNeeded) {
   const std::vector<GraphIndex> even{0, 0, 0, 1, 1, 1, 2, 2, 2};
   std::vector<GraphIndex> after = even;
   level_partitions(rows({9}), 3, 3, after);
   EXPECT_EQ(after, even);
-  std::vector<GraphIndex> one_too_many{0, 0, 0, 0, 1, 1, 1, 2, 2};  // one tet goes on, over the one between
+  std::vector<GraphIndex> one_too_many{0, 0, 0, 0, 1, 1, 1, 2, 2};  // one tet moves on, over the partition in
+                                                                    // between
   level_partitions(rows({9}), 3, 3, one_too_many);
   EXPECT_EQ(one_too_many, even);
 }

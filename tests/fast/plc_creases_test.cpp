@@ -50,7 +50,7 @@ TEST(PlcCreases, AngleAtTheThresholdIsNotBelowIt) {
 }
 
 TEST(PlcCreases, OutsideAngleOfAReflexEdgeCounts) {
-  // A notch of 40 degrees in a block: the solid is at 320 degrees there.
+  // A notch of 40 degrees in a block: the solid has 320 degrees there.
   const double half = std::tan(20 * pi / 180);
   PolygonSoup soup;
   std::vector<Index> bottom, top;

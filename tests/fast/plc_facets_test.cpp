@@ -29,7 +29,7 @@ Plc build_open(const PolygonSoup& soup) {
   return plc;
 }
 
-// A square of side 4 with a square of side 2 inside.
+// Returns a square of side 4 with a square of side 2 inside.
 PolygonSoup square_in_square(bool hole) {
   PolygonSoup soup;
   soup.points = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {1, 1, 0}, {3, 1, 0}, {3, 3, 0}, {1, 3, 0}};
@@ -124,11 +124,11 @@ TEST(PlcFacets, CollapsedAndRepeatedTrianglesAreDropped) {
 }
 
 TEST(PlcFacets, CollinearTrianglesAreReplacedByCuts) {
-  // A cube whose edges and diagonals carry extra points, closed by triangles without area.
+  // A cube whose edges and diagonals have extra points, closed by triangles without area.
   PolygonSoup soup;
   soup.points = testing::box({0, 0, 0}, {1, 1, 1}).points;
   soup.points.insert(soup.points.end(),
-                     {{0.5, 0, 1}, {0.25, 0, 1}, {0.75, 0, 1}});  // 8, 9, 10 on the edge 4 5
+                     {{0.5, 0, 1}, {0.25, 0, 1}, {0.75, 0, 1}});  // points 8, 9, 10 on the edge 4 5
   const auto facet = [&](std::array<Index, 3> corners) { soup.add_facet(corners); };
   for (const auto& t : {std::array<Index, 3>{0, 2, 3},
                         {0, 3, 1},

@@ -121,7 +121,7 @@ TEST(PlcFaults, FoldedFacets) {
 }
 
 TEST(PlcFaults, CornerOnAnotherEdge) {
-  // The upper side is cut in two, its neighbours are not.
+  // The upper side is cut into two facets, its neighbours are not.
   PolygonSoup soup = testing::without_facet(testing::box({0, 0, 0}, {1, 1, 1}), 1);
   soup.points.push_back({0.5, 0, 1});
   soup.add_facet(std::array<Index, 3>{4, 8, 6});
@@ -168,7 +168,7 @@ TEST(PlcFaults, FeaturesThatNearlyTouch) {
   for (const std::array<Index, 3>& side : {std::array<Index, 3>{1, 2, 3}, {0, 2, 1}, {0, 3, 2}, {0, 1, 3}})
     on_a_corner.add_facet(side);
   expect_fault({below, on_a_corner}, Kind::intersection, "come within 1e-10 of each other at (0.5, 0.5, 1");
-  // Its lowest edge, along y, passes over the other's edge along x.
+  // Its lowest edge, along y, passes above an edge of the other box along x.
   PolygonSoup on_an_edge;
   on_an_edge.points = {{0.5, 0.8, 1 + gap}, {0.5, 1.4, 1 + gap}, {0.3, 1.1, 1.5}, {0.7, 1.1, 1.5}};
   for (const std::array<Index, 3>& side : {std::array<Index, 3>{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}})

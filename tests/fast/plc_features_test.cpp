@@ -49,8 +49,8 @@ TEST(PlcFeatures, CoplanarTrianglesAndCollinearPointsMerge) {
   }
 }
 
-// Triangles of CAD faces may be needles along an edge, which lie in the planes of both its faces within the
-// tolerance. Where the faces meet at an acute angle a needle is no fold of its own face.
+// Triangles of CAD faces may be needles along an edge, which lie within the tolerance in the planes of both
+// faces there. Even if the faces meet at an acute angle, a needle is no fold of its own face.
 TEST(PlcFeatures, NeedlesAlongEdgesOfGivenFacesMakeNoSegments) {
   constexpr double near = 1e-9;
   PolygonSoup soup;
@@ -88,7 +88,7 @@ TEST(PlcFeatures, PointsOffTheirPlaneWithinTheToleranceMakeNoSegments) {
 }
 
 TEST(PlcFeatures, NeedlesAlongAnEdgeMakeNoSegments) {
-  // A thin strip of triangles along one edge of a box whose inner border is crooked by rounding.
+  // A thin strip of triangles along one edge of a box, with an inner border made crooked by rounding.
   PolygonSoup soup = testing::subdivided_box({0, 0, 0}, {1, 1, 1}, 10);
   for (Point& p : soup.points)
     if (p.z == 1 && p.x == 0.1) p = {1e-8, p.y, 1 + 1e-9 * std::sin(100 * p.y)};
@@ -147,7 +147,7 @@ TEST(PlcFeatures, TagsSplitAFlatSide) {
   std::vector<Tag> tags;
   for (const auto& patch : plc.patches) tags.push_back(patch.tag);
   EXPECT_EQ(std::count(tags.begin(), tags.end(), 3), 4);
-  // The border between the two tags ends in the middle of two sides: vertices there.
+  // The border between the two tags ends in the middle of two sides, where vertices are made.
   EXPECT_EQ(plc.vertices.size(), 7U);
 }
 
@@ -233,7 +233,7 @@ TEST(PlcFeatures, LoopAtOneVertexRepeatsIt) {
   }
 }
 
-// Two flat pyramids on one base: no surface is smooth where it is folded, whoever gives the features.
+// Two flat pyramids on one base: no surface is smooth where it is folded, even if features are given.
 TEST(PlcFeatures, FoldsAreCurvesWhereFeaturesAreGiven) {
   PolygonSoup soup;
   soup.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0.5, 0.1}, {0.5, 0.5, -0.1}};

@@ -1,4 +1,4 @@
-// Parts of the builder that are hard to see from a complex.
+// Parts of the builder whose work is hard to see in a complex.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ using namespace facets;
 
 namespace {
 
-// A grid of n x n squares, each cut in two, over which `height` says how high it is.
+// Makes a grid of n x n squares, each cut in two; `height` returns the height at a point.
 template <class Height>
 Draft terrain(Index n, const Height& height) {
   Draft draft;
@@ -54,7 +54,7 @@ void expect_table_of(const Draft& draft, const EdgeTable& edges) {
 
 TEST(EdgeTable, FollowsTurnedTriangles) {
   Draft draft = terrain(6, [](Index, Index) { return 0.0; });
-  // Several triangles on one edge, and turned ones beside others.
+  // Several triangles on one edge, and reversed ones beside others.
   draft.add_triangle({0, 8, 20}, {});
   draft.add_triangle({8, 0, 30}, {});
   EdgeTable edges(draft.triangles, draft.points.size());
@@ -84,7 +84,7 @@ TEST(EdgeTable, IsThatOfTheOrientedTriangles) {
   expect_table_of(draft, edges);
 }
 
-// The other soup's triangles on the same edges say nothing about the orientation of this one's.
+// The other soup's triangles on the same edges do not affect the orientation of this soup's.
 TEST(Orientation, LooksAtTheSidesOfItsSoupOnly) {
   Draft draft = terrain(4, [](Index, Index) { return 0.0; });
   const std::size_t count = draft.triangles.size();
@@ -98,13 +98,13 @@ TEST(Orientation, LooksAtTheSidesOfItsSoupOnly) {
   Faults faults;
   orient_components(draft, edges, faults);
   EXPECT_TRUE(faults.empty());
-  EXPECT_FALSE(draft.origins[0].oriented);     // one of its component was turned
-  EXPECT_TRUE(draft.origins[count].oriented);  // none
+  EXPECT_FALSE(draft.origins[0].oriented);     // a triangle of its component was turned
+  EXPECT_TRUE(draft.origins[count].oriented);  // none was turned
   EXPECT_EQ(draft.triangles[3], draft.triangles[count + 3]);
 }
 
-// By their definition: triangles from the largest on take their neighbours in their plane or facet, and
-// theirs.
+// Finds seeds by their definition: triangles, the largest first, collect their neighbours in their plane or
+// facet, and the neighbours of these.
 std::vector<Index> seeds_one_by_one(const Draft& draft, const EdgeTable& edges) {
   const auto side = [&](Index t, unsigned i) { return draft.corner(t, (i + 1) % 3) - draft.corner(t, i); };
   const auto area = [&](Index t) {
@@ -177,7 +177,7 @@ TEST(FlatClusters, AreThoseOfTheirDefinition) {
     for (Index t = 0; t < seeds.size(); ++t) clusters += seeds[t] == t ? 1 : 0;
     triangles += seeds.size();
   }
-  // Neither all together nor each alone.
+  // Not all triangles are in one cluster, nor each in its own.
   EXPECT_GT(clusters, triangles / 10);
   EXPECT_LT(clusters, triangles * 9 / 10);
 }

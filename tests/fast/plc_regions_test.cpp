@@ -113,7 +113,7 @@ TEST(PlcRegions, InsertFillsACavityExactly) {
 }
 
 TEST(PlcRegions, CavityThatTouchesTheWallInAnEdge) {
-  // The cavity's edge lies on the box's edge: a non-manifold edge.
+  // The cavity's edge lies on an edge of the box: a non-manifold edge.
   PolygonSoup soup;
   soup.points = {{0, 0, 0},     {2, 0, 0},     {2, 2, 0},   {0, 2, 0},     {0, 0, 2},
                  {2, 0, 2},     {2, 2, 2},     {0, 2, 2},   {0.5, 1, 0.5}, {0.5, 1, 1.5},
@@ -129,7 +129,7 @@ TEST(PlcRegions, CavityThatTouchesTheWallInAnEdge) {
   facet({1, 5, 13, 12});
   facet({5, 4, 13});
   facet({4, 0, 12, 13});
-  // A triangular prism behind it, normals inwards (away from the solid).
+  // A triangular prism behind it, with normals inwards (away from the solid).
   facet({10, 8, 12});
   facet({9, 11, 13});
   facet({8, 9, 13, 12});
@@ -233,7 +233,7 @@ TEST(PlcRegions, NamesComeFromTheirSoups) {
   EXPECT_EQ(plc.patches.back().file, 1U);
 }
 
-// Boxes side by side as complexes, whose facets tell no inside.
+// A box as a complex, whose facets do not tell the inside.
 PolygonSoup named_box(const Point& low, const Point& high, const std::string& name) {
   PolygonSoup soup = box(low, high);
   soup.name = name;
@@ -241,7 +241,7 @@ PolygonSoup named_box(const Point& low, const Point& high, const std::string& na
   return soup;
 }
 
-// The square from (1, 1) to (2, 2) becomes part of the facet at z = 0.
+// Makes the square from (1, 1) to (2, 2) a part of the facet at z = 0.
 PolygonSoup with_square_in_floor(const PolygonSoup& soup) {
   PolygonSoup facets;
   facets.points = soup.points;
@@ -277,7 +277,7 @@ TEST(PlcRegions, ARegionBearsTheNameOfTheFileThatEnclosesIt) {
     std::transform(order.begin(), order.end(), expected.begin(), [&](std::size_t k) { return of_row[k]; });
     EXPECT_EQ(names(build({row[order[0]], row[order[1]], row[order[2]]})), expected);
   } while (std::next_permutation(order.begin(), order.end()));
-  // One inside of the other, with a side in common.
+  // One inside the other, with a side in common.
   for (const bool swapped : {false, true}) {
     std::vector<PolygonSoup> nested{named_box({0, 0, 0}, {4, 4, 4}, "a"),
                                     named_box({1, 1, 0}, {2, 2, 1}, "bb")};
@@ -305,7 +305,7 @@ TEST(PlcRegions, PointsWithoutEffectAreTold) {
   soup.hole_points.clear();
   soup.region_points.push_back({{0.5, 0.5, -2}, 7, 0});
   expect_warning(soup, {0.5, 0.5, -2}, {"a: the region point (0.5, 0.5, -2)", "outside"});
-  // The same once more does not contradict.
+  // A second point with the same data does not contradict the first one.
   soup.region_points[1] = {{0.25, 0.5, 0.5}, 1, 0};
   EXPECT_TRUE(build({soup}).warnings.empty());
 }

@@ -14,10 +14,10 @@ using Triangle = std::array<Index, 3>;
 using Tet = std::array<Index, 4>;
 constexpr std::size_t most_steps = 100'000;
 
-// Six times the volume is the quality.
+// A polyhedron whose fillings are judged by six times the volume of tets.
 struct Polyhedron {
   std::vector<Point> points;
-  std::vector<Triangle> hull;  // each with its positive side inside
+  std::vector<Triangle> hull;  // each has its positive side inside
 
   double volume_of(const Tet& t) const {
     return dot(cross(points[t[1]] - points[t[0]], points[t[2]] - points[t[0]]), points[t[3]] - points[t[0]]) /
@@ -34,8 +34,8 @@ struct Polyhedron {
   }
 };
 
-// A triangular prism whose upper triangle is turned, with the diagonal from each lower corner to the next
-// upper one or to the one before.
+// A triangular prism with a twisted upper triangle. Diagonals go from each lower corner to the next upper
+// one, or to the one before.
 Polyhedron prism(double turn, bool forwards) {
   Polyhedron made;
   for (const double z : {0., 1.})
@@ -59,7 +59,7 @@ Polyhedron prism(double turn, bool forwards) {
 
 TEST(PolyhedronFilling, FillsAPrismWhoseDiagonalsLetIt) {
   Polyhedron straight = prism(0, true);
-  straight.hull[2] = {0, 3, 1};  // this one the other way
+  straight.hull[2] = {0, 3, 1};  // reverses this diagonal
   straight.hull[3] = {1, 3, 4};
   const auto tets = straight.filled();
   ASSERT_EQ(tets.size(), 3U);
@@ -71,12 +71,12 @@ TEST(PolyhedronFilling, FillsAPrismWhoseDiagonalsLetIt) {
   EXPECT_NEAR(sum, straight.volume(), 1e-12);
 }
 
-// With diagonals that go around, as in Schoenhardt's polyhedron, no tets without another vertex fill it.
+// With diagonals that go around, as in Schoenhardt's polyhedron, tets cannot fill it without another vertex.
 TEST(PolyhedronFilling, FindsNothingWhereThereIsNothing) {
   for (const bool forwards : {false, true}) EXPECT_TRUE(prism(0, forwards).filled().empty());
 }
 
-// The octahedron has three fillings, by its diagonals; the shortest one makes the best.
+// The octahedron has three fillings, one for each diagonal; the shortest one gives the best.
 TEST(PolyhedronFilling, TakesTheBest) {
   Polyhedron octahedron{{{-1, 0, 0}, {1, 0, 0}, {0, -2, 0}, {0, 2, 0}, {0, 0, -3}, {0, 0, 3}}, {}};
   for (const Index x : {0U, 1U})

@@ -1,4 +1,4 @@
-// Random offsets of what is inserted.
+// Random offsets of inserted points.
 #include "refine/random_offsets.h"
 
 #include <gtest/gtest.h>

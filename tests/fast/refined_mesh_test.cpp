@@ -1,4 +1,4 @@
-// The mesh of a refinement: searching, and the features of vertices.
+// The mesh of a refinement: searches, and the features of vertices.
 #include "refine/refined_mesh.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ Box unit_box() {
   return box;
 }
 
-/// Two patches that share curve 0, which ends at vertex 0.
+/// Returns two patches that share curve 0, which ends at vertex 0.
 Plc two_patches() {
   Plc plc;
   plc.patches.resize(2);

@@ -1,5 +1,5 @@
-// The parts of the refinement that judge: which cells and triangles are queued, which cells fill gaps, target
-// sizes, which cells lie in collars.
+// The parts of the refinement that judge: queued cells and triangles, cells that fill gaps, target sizes,
+// cells in collars.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -27,7 +27,7 @@ MeshOptions with_size(double size) {
   return options;
 }
 
-/// All that judges cells and triangles.
+/// All parts that judge cells and triangles.
 struct Judges : KnownMesh {
   Judges(const Plc& plc, const MeshOptions& options) : KnownMesh(plc, options) { cells.judge_all(); }
 
@@ -42,7 +42,7 @@ struct Judges : KnownMesh {
     std::uniform_real_distribution<double> unit(-0.2, 1.2);
     for (std::size_t k = 0; k < count; ++k) insert_and_tell({unit(random), unit(random), unit(random)});
   }
-  /// Cells and faces in the queue that are still to be destroyed, by their priority.
+  /// Returns the queued cells and faces that must still be destroyed, by their priority.
   std::array<std::set<Index>, WorkQueue::priority_count> due() {
     std::array<std::set<Index>, WorkQueue::priority_count> found;
     for (WorkQueue::Item item; queue.pop(item);) {
@@ -202,7 +202,7 @@ TEST(RefineTriangleQuality, InBlocksIsAskedWhereNothingIsFacedAndACellIsBeside) 
 
 TEST(RefineTriangleQuality, InBlocksQueuesWhatTheLoopWould) {
   const Plc plc = box();
-  const auto insert = [](Judges& judges) {  // and judge nothing of it yet
+  const auto insert = [](Judges& judges) {  // does not judge the new cells yet
     judges.insert_random(60);
     const FaceId face = judges.surface.marked_faces()[5];
     const Feature patch{2, judges.surface.patch(face)};

@@ -1,4 +1,4 @@
-// Repair ends: when it is cancelled, when it takes too much work, and where nothing can be enclosed.
+// Repair ends: if it is cancelled, if it takes too much work, and if nothing can be enclosed.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -51,14 +51,14 @@ TEST(RepairBounds, GivesUpBeyondItsWork) {
     EXPECT_NE(std::string(error.what()).find("given up"), std::string::npos) << error.what();
     EXPECT_FALSE(error.faults.empty());
   }
-  // With enough work it is repaired, and how much is enough does not change.
+  // With enough work it is repaired; the amount of work that suffices is always the same.
   EXPECT_TRUE(repair({&soup, 1}).report.repaired);
-  // Wrapping needs none of it.
+  // Wrapping does not use that work.
   options.mode = RepairMode::wrap;
   EXPECT_TRUE(build_repaired_plc({&soup, 1}, {}, options).report.wrapped);
 }
 
-// Whether there is anything to remove is known before the work of removing it.
+// Whether there is noise is known before the work of removing it.
 TEST(RepairBounds, NoiseIsKnownBeforeItsRepair) {
   RepairOptions off;
   off.mode = RepairMode::off;
@@ -71,7 +71,7 @@ TEST(RepairBounds, NoiseIsKnownBeforeItsRepair) {
   }
 }
 
-// A valid complex with features that cannot be removed within the work stays, with a warning.
+// If features of a valid complex cannot be removed within the work, they stay, with a warning.
 TEST(RepairBounds, NoiseThatStaysIsTold) {
   const PolygonSoup slotted = slotted_box(1e-7);
   RepairOptions options;
@@ -120,7 +120,7 @@ TEST(RepairBounds, FurtherRepairsAreCoarserAndThenWrap) {
   EXPECT_FALSE(further_repairs(options, repaired)[0].wrap_at_once);
   EXPECT_TRUE(further_repairs(options, repaired)[1].wrap_at_once);
   EXPECT_TRUE(further_repairs(options, wrapped).empty());
-  options.tolerance = 5e-3;  // three times that would be 1.5% of the diagonal
+  options.tolerance = 5e-3;  // three times this would be 1.5% of the diagonal
   EXPECT_EQ(further_repairs(options, repaired).size(), 1U);
   options.mode = RepairMode::off;
   EXPECT_TRUE(further_repairs(options, repaired).empty());

@@ -1,4 +1,4 @@
-// How far a repaired surface and its input are from each other.
+// The distances between a repaired surface and its input.
 #include "repair/distances.h"
 
 #include <gtest/gtest.h>
@@ -37,7 +37,7 @@ Point random_point(const CornerPoints& t, Random& random) {
   return t[0] + a * (t[1] - t[0]) + b * (t[2] - t[0]);
 }
 
-// From above: to the nearest of many points of each triangle.
+// Returns an upper bound: the distance to the nearest of many points of each triangle.
 double distance_to(const Point& p, const std::vector<CornerPoints>& triangles) {
   constexpr int n = 40;
   double least = INFINITY;
@@ -65,7 +65,7 @@ TEST(RepairDistances, ABoxAboveASheet) {
   const RepairDistances above = between(sheet, testing::box({0, 0, 0.25}, {1, 1, 1.5}));
   EXPECT_NEAR(above.of_repaired, 1.5, 1e-12);
   EXPECT_NEAR(above.of_input, 0.25, 1e-12);
-  // Inside of the box it does not count.
+  // Inside the box it does not count.
   const RepairDistances around = between(sheet, testing::box({-1, -1, -0.5}, {2, 2, 0.5}));
   EXPECT_NEAR(around.of_repaired, std::sqrt(2 + 0.25), 1e-12);
   EXPECT_EQ(around.of_input, 0);
@@ -79,12 +79,12 @@ TEST(RepairDistances, FilledHolesDoNotCountButAreThere) {
   const RepairDistances d = measure_distances(side(false), side(false), side(true));
   EXPECT_EQ(d.of_repaired, 0);
   EXPECT_EQ(d.of_input, 0);
-  // As part of what was repaired they do: the centre of the side is 1/2 from the others.
+  // As part of the repaired surface they count: the centre of the side is 1/2 from the other triangles.
   const RepairDistances whole = measure_distances(side(false), triangles_of(cube), {});
   EXPECT_NEAR(whole.of_repaired, 0.5, 0.02);
 }
 
-// Random points and sums of solid angles instead of a lattice and hierarchies.
+// Compares with random points and sums of solid angles instead of a lattice and hierarchies.
 TEST(RepairDistances, AreThoseOfRandomPoints) {
   Random random(31);
   for (unsigned member = 0; member < members(4); ++member) {
@@ -100,7 +100,7 @@ TEST(RepairDistances, AreThoseOfRandomPoints) {
       const Point p = random_point(a[random() % a.size()], random);
       if (direct_winding_number(repaired, p) < 0.5) of_input = std::max(of_input, distance_to(p, b));
     }
-    // 400 points on the surface miss the farthest place by no more than the mean distance of some.
+    // 400 points on the surface miss the farthest place by at most the mean distance between some of them.
     EXPECT_NEAR(d.of_repaired, of_repaired, 0.06);
     EXPECT_NEAR(d.of_input, of_input, 0.06);
     EXPECT_GT(d.of_repaired, of_repaired - 0.02);
@@ -108,7 +108,7 @@ TEST(RepairDistances, AreThoseOfRandomPoints) {
   }
 }
 
-// Of a whole repair: what is thinner than the tolerance vanishes, and that is told.
+// A whole repair: parts thinner than the tolerance vanish, and the report tells that.
 TEST(RepairDistances, OfAFinThatVanishes) {
   const PolygonSoup finned = finned_box(1e-7);
   const RepairedPlc r = build_repaired_plc({&finned, 1});
@@ -123,7 +123,7 @@ TEST(RepairDistances, OfAFinThatVanishes) {
   EXPECT_NEAR(std::fabs(distance_to(r.report.farthest_of_input, triangles_of(testing::box()))), 0.5, 0.02);
 }
 
-// --- kept_volume ---
+// kept_volume
 
 KeptVolume kept_of(const PolygonSoup& input, const PolygonSoup& repaired) {
   return kept_volume(triangles_of(input), triangles_of(repaired));
@@ -153,7 +153,7 @@ TEST(KeptVolume, OfHalfABoxIsNotKnown) {
   EXPECT_EQ(kept_of(half, testing::box({5, 5, 5}, {6, 6, 6})).input, 0);
 }
 
-// --- Regions of valid complexes that a repair takes away ---
+// Regions of valid complexes that a repair removes
 
 PolygonSoup layered_block(double thickness) {
   PolygonSoup soup;
@@ -176,7 +176,7 @@ TEST(LostRegions, AThinLayerIsTold) {
     const PolygonSoup block = layered_block(thickness);
     const RepairedPlc r = build_repaired_plc({&block, 1});
     const bool vanishes = thickness < 1e-5;
-    // Its two sides cancel out, so what is below and above is one.
+    // Its two sides cancel, so the regions below and above become one.
     EXPECT_EQ(r.plc.regions.size(), vanishes ? 2U : 4U);
     EXPECT_EQ(r.report.vanished.count, vanishes ? 1U : 0U);
     EXPECT_EQ(r.report.united.count, vanishes ? 1U : 0U);

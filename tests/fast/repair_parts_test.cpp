@@ -1,4 +1,4 @@
-// Parts of repair, each alone.
+// Parts of repair, each on its own.
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/intersections.h>
 #include <fmt/format.h>
@@ -31,7 +31,7 @@ namespace {
 using namespace facets;
 using namespace testing::faulty;
 
-// A draft of surfaces as the stage takes them; equal points are one, unless `torn`.
+// Makes a draft of surfaces as this stage gets them; equal points are merged unless `torn`.
 Draft draft_of(std::span<const PolygonSoup> soups, bool torn = false) {
   Draft draft;
   for (Index s = 0; s < soups.size(); ++s) {
@@ -77,7 +77,7 @@ struct MeetingPoints : boost::static_visitor<std::vector<Exact::Point_3>> {
   result_type operator()(const result_type& polygon) const { return polygon; }
 };
 
-// The pairs of triangles that meet anywhere but in a common corner, a common edge or as copies.
+// Returns the number of pairs of triangles that meet in more than a common corner or edge and are no copies.
 std::size_t brute_force_intersections(const Draft& draft) {
   std::vector<Exact::Triangle_3> triangles;
   for (Index t = 0; t < draft.triangles.size(); ++t) {
@@ -105,7 +105,7 @@ std::size_t brute_force_intersections(const Draft& draft) {
   return count;
 }
 
-// --- WindingNumber ---
+// WindingNumber
 
 WindingNumber winding_of(const PolygonSoup& soup, int weight = 1) {
   const PolygonSoup flat = triangulated(soup);
@@ -119,8 +119,8 @@ WindingNumber winding_of(const PolygonSoup& soup, int weight = 1) {
 
 TEST(WindingNumber, OfNothingIsZero) { EXPECT_EQ(WindingNumber({}).at({1, 2, 3}), 0); }
 
-// Two terms of the expansion of far triangles leave out what falls with the square of their distance in
-// radii: with 4 radii in place of 3 the sum is still off by up to 0.03. Decisions are at 1/2, so 0.05 is near
+// The error of two terms of the expansion of far triangles falls with the square of their distance in radii:
+// with 4 radii in place of 3 the sum is still off by up to 0.03. Decisions are made at 1/2, so 0.05 is close
 // enough.
 TEST(WindingNumber, IsTheDirectSum) {
   Random random(1);
@@ -163,7 +163,7 @@ TEST(WindingNumber, OnATriangleLeftOutIsTheMeanOfItsSides) {
   }
 }
 
-// --- arrange ---
+// arrange
 
 Draft pair_of(const std::array<Point, 3>& a, const std::array<Point, 3>& b, bool two_soups = false) {
   std::array<PolygonSoup, 2> soups;
@@ -176,7 +176,7 @@ Draft pair_of(const std::array<Point, 3>& a, const std::array<Point, 3>& b, bool
   return draft_of(joined(soups));
 }
 
-// Areas by tag: what cutting must not change.
+// Returns areas by tag, which cutting must not change.
 std::map<Tag, double> areas(const Draft& draft) {
   std::map<Tag, double> result;
   for (Index t = 0; t < draft.triangles.size(); ++t)
@@ -255,7 +255,7 @@ TEST(Arrangement, RandomPairsAndHandfuls) {
   Random random(3);
   for (unsigned member = 0; member < members(150); ++member) {
     SCOPED_TRACE(member);
-    // On a lattice most meetings are special; elsewhere few are.
+    // On a lattice most intersections are degenerate; elsewhere few are.
     const bool lattice = member % 2 == 0;
     std::vector<PolygonSoup> soups;
     for (unsigned i = 0; i < 2 + member % 5; ++i) {
@@ -281,9 +281,9 @@ TEST(Arrangement, RandomPairsAndHandfuls) {
   }
 }
 
-// --- snap_near_features ---
+// snap_near_features
 
-// Is every edge of every soup run through as often one way as the other?
+// Returns whether each soup uses every edge equally often in both directions.
 bool balanced(const Draft& draft) { return count_open_edges(draft) == 0; }
 
 TEST(Snapping, ClosesTJunctionsThatAreOpen) {
@@ -334,7 +334,7 @@ TEST(Snapping, LeavesWhatIsFarApart) {
   }
 }
 
-// The corners that are closer to others or to edges that they do not end.
+// Returns the number of corners that are closer than the limit to others, or to edges that they do not end.
 std::size_t near_corners(const Draft& draft, double limit) {
   std::size_t count = 0;
   std::set<Index> used;
@@ -364,7 +364,7 @@ Draft arranged_spheres(Random& random) {
 // Some places do not settle and stay as they are: 8% here.
 TEST(Snapping, LeavesLittleNear) {
   Random random(7);
-  constexpr unsigned spheres = 20;  // few tell nothing
+  constexpr unsigned spheres = 20;  // a small number would prove nothing
   std::size_t before = 0, after = 0;
   for (unsigned member = 0; member < spheres; ++member) {
     Draft draft = arranged_spheres(random);
@@ -376,7 +376,7 @@ TEST(Snapping, LeavesLittleNear) {
   EXPECT_LE(5 * after, before) << before << " near before";
 }
 
-// Nothing is near before, and hardly ever is something made so.
+// Nothing is near before snapping, and hardly anything afterwards.
 TEST(Snapping, BringsNothingNear) {
   Random random(7);
   unsigned spoiled = 0;
@@ -413,8 +413,8 @@ TEST(Snapping, WorkGrowsWithCornersAndEdges) {
   EXPECT_LE(spent[1], 3 * spent[0]);
 }
 
-// The long sides of needles along one line would all be cut at all the others' corners: there nothing is
-// snapped. Elsewhere two corners become one as ever.
+// The long sides of needles along one line would all be cut at the corners of all others: nothing is snapped
+// there. Elsewhere two corners merge as usual.
 TEST(Snapping, IsTakenBackOnlyWhereItDoesNotSettle) {
   constexpr Index needles = 80;
   constexpr double limit = 1e-3;
@@ -448,12 +448,12 @@ TEST(Snapping, CancelsTwins) {
   EXPECT_EQ(draft.triangles.size(), 3U * ball.facet_count());
   EXPECT_EQ(cancel_twins(draft), 2U * ball.facet_count());
   EXPECT_NEAR(volume_of(draft), signed_volume(ball), 1e-12);
-  // Not those of different soups.
+  // Twins of different soups stay.
   Draft two = draft_of(std::array{ball, testing::inverted(ball)});
   EXPECT_EQ(cancel_twins(two), 0U);
 }
 
-// --- drop_repeated ---
+// drop_repeated
 
 TEST(Repeated, FacetsAreDropped) {
   Random random(8);
@@ -486,7 +486,7 @@ TEST(Repeated, ThoseOfOtherSoupsAndOrientationsStay) {
   EXPECT_EQ(inverted.triangles.size(), 2U * ball.facet_count());
 }
 
-// --- fill_holes ---
+// fill_holes
 
 TEST(Holes, AreFilledWithATagOfTheirOwn) {
   Random random(9);
@@ -526,7 +526,7 @@ TEST(Holes, OfAPlaneSideHaveItsArea) {
   }
 }
 
-// The facets and holes as they are in space.
+// Returns the facets and holes by their coordinates.
 std::map<std::array<std::array<double, 3>, 3>, Tag> facets_by_place(const Draft& draft) {
   std::map<std::array<std::array<double, 3>, 3>, Tag> facets;
   for (Index t = 0; t < draft.triangles.size(); ++t) {
@@ -567,9 +567,9 @@ TEST(Holes, SheetsAreNoHoles) {
   EXPECT_EQ(draft.triangles.size(), 2U);
 }
 
-// --- keep_one_side, drop_flakes ---
+// keep_one_side, drop_flakes
 
-// A box of two-sided faces: each has a turned copy that is cut along the other diagonal.
+// A box of two-sided faces: each has a reversed copy that is cut along the other diagonal.
 PolygonSoup two_sided_box() {
   const PolygonSoup box = soup_of({{0, 0, 0}, {1, 2, 3}});
   PolygonSoup soup;
@@ -600,7 +600,8 @@ TEST(KeepOneSide, OfABoxIsTheBox) {
   EXPECT_GT(repaired.report.second_sides, 0U);
 }
 
-// All faces but one are cut at their sides' middles: the corners of that one alone meet those of the others.
+// All faces but one are cut at the middles of their sides. Only that one's corners meet corners of the
+// others.
 TEST(KeepOneSide, OfFacesThatMeetInNoCommonEdgeIsTheBox) {
   const PolygonSoup box = soup_of({{0, 0, 0}, {1, 2, 3}});
   PolygonSoup soup;
@@ -627,7 +628,7 @@ TEST(KeepOneSide, OfFacesThatMeetInNoCommonEdgeIsTheBox) {
   EXPECT_EQ(repaired.report.flakes.count, 0U);
 }
 
-// A sheet with two sides encloses nothing with one of them either.
+// A sheet with two sides encloses nothing; it would not with one side either.
 TEST(KeepOneSide, SheetsAreLeft) {
   PolygonSoup pillow;
   pillow.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
@@ -658,7 +659,7 @@ TEST(DropFlakes, WhatIsThinAndSmallGoes) {
   EXPECT_EQ(dropped({flake(5e-4, 0.5)}), 0U) << "all that there is";
 }
 
-// --- Changes ---
+// Changes
 
 Draft with_moved_corners(Draft draft) {
   for (const double x : {0.0, 6.0}) {
@@ -672,7 +673,7 @@ Draft with_moved_corners(Draft draft) {
   return draft;
 }
 
-// Two boxes far apart of which a corner each is moved: either place can be taken back alone.
+// Two boxes far apart, each with one corner moved: the change at either place can be undone alone.
 TEST(Changes, ArePlacesThatCanBeTakenBackAlone) {
   const std::vector<PolygonSoup> soups{soup_of({{0, 0, 0}, {1, 1, 1}}), soup_of({{5, 0, 0}, {6, 1, 1}})};
   const Draft before = draft_of(joined(soups));
@@ -695,7 +696,7 @@ TEST(Changes, ArePlacesThatCanBeTakenBackAlone) {
   EXPECT_NEAR(volumes[0] + volumes[1], whole + less, 1e-12);
 }
 
-// The same boxes: the corner goes back where that makes trouble, the other one stays moved.
+// The same boxes: a corner moves back where it makes trouble; the other one stays moved.
 TEST(Changes, ThatMakeTroubleAreTakenBack) {
   const std::vector<PolygonSoup> soups{soup_of({{0, 0, 0}, {1, 1, 1}}), soup_of({{5, 0, 0}, {6, 1, 1}})};
   const Draft before = draft_of(joined(soups));
@@ -714,7 +715,7 @@ TEST(Changes, ThatMakeTroubleAreTakenBack) {
   EXPECT_TRUE(better_places(before, {}, after, {}, 0.5).taken_back.empty());
 }
 
-// --- turn_components ---
+// turn_components
 
 TEST(TurnComponents, WhatIsInsideOutIsTurned) {
   const PolygonSoup ball = testing::icosphere(1, 2), small = testing::icosphere(0.4, 2);
@@ -735,7 +736,7 @@ TEST(TurnComponents, WhatIsInsideOutIsTurned) {
               1e-12);
 }
 
-// --- keep_boundaries ---
+// keep_boundaries
 
 TEST(KeepBoundaries, OfLatticeBoxesIsTheBoundaryOfTheirUnion) {
   Random random(11);
@@ -744,9 +745,9 @@ TEST(KeepBoundaries, OfLatticeBoxesIsTheBoundaryOfTheirUnion) {
     const auto boxes = random_boxes(random, 2 + member % 3, 2 + member % 3);
     std::vector<PolygonSoup> soups;
     for (const Box& box : boxes) soups.push_back(soup_of(box));
-    // In one soup.
+    // All in one soup.
     Draft one = draft_of(joined(soups));
-    // Clusters without any tangle stay: those have to be the whole of it to be compared.
+    // Clusters without any tangle stay as they are, so all of them must be tangled to be compared.
     const bool meet = arrange(one, 0).intersecting_pairs > 0;
     cancel_twins(one);
     const InsideReport report = keep_boundaries(one, 0);
@@ -760,7 +761,7 @@ TEST(KeepBoundaries, OfLatticeBoxesIsTheBoundaryOfTheirUnion) {
     if (!meet) {
       EXPECT_EQ(report.removed_triangles, 0U);
     }
-    // In several.
+    // In several soups.
     Draft several = draft_of(soups);
     const bool touch = arrange(several, 0).intersecting_pairs > 0;
     keep_boundaries(several, 0);

@@ -76,7 +76,7 @@ TEST(Wrap, PointsThatAreNotFiniteAreErrors) {
   EXPECT_THROW(wrap(std::vector{soup}, 0.2, 0.1), PlcError);
 }
 
-// It is the last resort: what can be repaired is not wrapped.
+// It is the last resort: input that can be repaired is not wrapped.
 TEST(Wrap, OnRequestAndWhereRepairFails) {
   RepairOptions options;
   options.mode = RepairMode::wrap;

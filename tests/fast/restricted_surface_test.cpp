@@ -1,5 +1,5 @@
-// What is known of cells and of faces: hierarchy nodes at vertices, regions, restricted triangles. After any
-// insertion it is what a search of everything would find.
+// The stored data of cells and faces: hierarchy nodes at vertices, regions, restricted triangles. After any
+// insertion they equal the results of an exhaustive search.
 #include "refine/restricted_surface.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ bool holds(const Point& min, const Point& max, const Point& p) {
   return p.x > min.x && p.x < max.x && p.y > min.y && p.y < max.y && p.z > min.z && p.z < max.z;
 }
 
-/// Two boxes of different sizes that share a facet in part: regions 1 and 2.
+/// Two boxes of different sizes that share a part of a facet: regions 1 and 2.
 Plc two_boxes() {
   const std::vector<PolygonSoup> soups{testing::box({0, 0, 0}, {1, 1, 1}),
                                        testing::box({1, 0, 0}, {2, 1, 1})};
@@ -38,7 +38,7 @@ Index region_at(const Point& p) {
 class RandomPoints {
  public:
   explicit RandomPoints(std::uint64_t seed) : random_(seed) {}
-  /// Around the boxes, now and then on the faces x = 0, 1 and 2.
+  /// Returns points around the boxes, sometimes on the faces x = 0, 1 and 2.
   Point next(const Box& box) {
     const Vector side = box.max - box.min;
     Point p{box.min.x + side.x * share_(random_), box.min.y + side.y * share_(random_),
@@ -132,7 +132,8 @@ TEST(RestrictedSurface, NotesLastAsLongAsTheirTriangle) {
     known.surface.note_needed(face);
     known.surface.note_known_near(face);
   }
-  // Into the middle of a marked face's gap ball: it goes, others stay as they are.
+  // Inserts into the middle of a marked face's gap ball: that face is no longer marked, other faces stay as
+  // they are.
   const FaceId face = known.surface.marked_faces()[0];
   known.insert(known.surface.triangle(face).x, {2, known.surface.patch(face)});
   std::size_t fresh = 0, kept = 0;
@@ -147,14 +148,14 @@ TEST(RestrictedSurface, NotesLastAsLongAsTheirTriangle) {
       EXPECT_TRUE(notes.given_up && notes.judged && notes.surface_needs_it && notes.known_near);
       ++kept;
     } else {
-      EXPECT_FALSE(notes.judged);  // on the border: another cell's face, to be queued anew
+      EXPECT_FALSE(notes.judged);  // a border face: it belongs to another cell now, and must be queued again
     }
   }
   EXPECT_GT(fresh, 0U);
   EXPECT_GT(kept, 0U);
 }
 
-/// Blocks of a KnownMesh on both sides of x = 1, and points inserted into them by a thread for each.
+/// Blocks of a KnownMesh on both sides of x = 1. A thread for each inserts points into it.
 class KnownBlocks {
  public:
   explicit KnownBlocks(KnownMesh& known) : known_(known) {}
@@ -193,7 +194,7 @@ class KnownBlocks {
     return cells;
   }
 
-  // Near the circumcentres of some cells, now and then on a facet.
+  // Inserts near the circumcentres of some cells, sometimes on a facet.
   Index insert(Triangulation::Block& block, RestrictedSurface::Workspace& surface,
                SurfaceNodes::Workspace& nodes, const std::vector<Index>& cells, std::uint64_t seed) {
     std::mt19937_64 random(seed);
@@ -249,7 +250,7 @@ TEST(RestrictedSurface, IsWhatASearchFindsAfterInsertionsIntoBlocks) {
     });
     EXPECT_EQ(known.surface.marked_faces().size(), marked / 2);
     EXPECT_EQ(records.size(), marked / 2);
-    known.insert(random.next(known.domain.box));  // the loop goes on from there
+    known.insert(random.next(known.domain.box));  // afterwards the loop continues
   }
 }
 

@@ -1,4 +1,4 @@
-// Sizes of functions of many places at once.
+// Sizes from functions of many places at once.
 #include "collarmesh/sampled_sizes.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr Box box{.min = {-1, 0, 2}, .max = {3, 2, 2.5}};
 
-/// Counts its calls.
+/// A function that counts its calls.
 struct Function {
   double (*at)(const Point&);
   std::size_t* calls;

@@ -1,4 +1,4 @@
-// Volumes, areas and lengths of curved elements, by other formulas.
+// Volumes, areas and lengths of curved elements, compared with other formulas.
 #include "collarmesh/shape_measures.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ CurvedTet straight_tet(const Point& a, const Point& b, const Point& c, const Poi
   return nodes;
 }
 
-/// Where the quadratic map takes barycentric coordinates.
+/// Returns the image of barycentric coordinates under the quadratic map.
 Point image(const CurvedTet& nodes, const std::array<double, 4>& l) {
   Vector sum{};
   for (std::size_t i = 0; i < 4; ++i) sum = sum + l[i] * (2 * l[i] - 1) * (nodes[i] - Point{});
@@ -33,7 +33,7 @@ Point image(const CurvedTet& nodes, const std::array<double, 4>& l) {
   return Point{} + sum;
 }
 
-/// The volume under the surface of a curved face, in n by n small triangles.
+/// Returns the volume under the surface of a curved face, by n by n small triangles.
 double cones_under_face(const CurvedTet& nodes, const std::array<unsigned, 3>& corners, unsigned n) {
   double sum = 0;
   const auto at = [&](double i, double j) {
@@ -51,7 +51,7 @@ double cones_under_face(const CurvedTet& nodes, const std::array<unsigned, 3>& c
   return sum;
 }
 
-/// Errors go with the square of the steps.
+/// Extrapolates, because errors are proportional to the square of the steps.
 double volume_by_faces(const CurvedTet& nodes) {
   constexpr std::array<std::array<unsigned, 3>, 4> faces{{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
   double coarse = 0, fine = 0;
@@ -113,13 +113,13 @@ TEST(ShapeMeasures, ShellsAreWhatBoundsMoreOrLessThanARegion) {
 TEST(ShapeMeasures, ACurvedTriangleInAPlaneGainsParabolas) {
   CurvedTriangle nodes{Point{0, 0, 5}, {4, 0, 5}, {0, 3, 5}, {2, 0, 5}, {2, 1.5, 5}, {0, 1.5, 5}};
   EXPECT_NEAR(area(nodes), 6, 1e-12);
-  nodes[3].y = -0.25;  // two thirds of chord times height
+  nodes[3].y = -0.25;  // area: two thirds of chord times height
   EXPECT_NEAR(area(nodes), 6 + 2. / 3 * 4 * 0.25, 1e-12);
 }
 
 TEST(ShapeMeasures, ACurvedEdgeIsAsLongAsItsParabola) {
   EXPECT_NEAR(length(CurvedEdge{Point{0, 0, 0}, {3, 0, 4}, {1.5, 0, 2}}), 5, 1e-14);
-  const double height = 0.1, slope = 4 * height;  // of y = slope x (1 - x)
+  const double height = 0.1, slope = 4 * height;  // the parabola y = slope x (1 - x)
   const double exact = 0.5 * std::sqrt(1 + slope * slope) + std::asinh(slope) / (2 * slope);
   EXPECT_NEAR(length(CurvedEdge{Point{0, 0, 0}, {1, 0, 0}, {0.5, height, 0}}), exact, 1e-5);
 }

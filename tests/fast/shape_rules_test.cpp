@@ -1,4 +1,4 @@
-// What is told of most tets without divisions must hold of them.
+// The quick answers given for most tets without divisions must be correct.
 #include "improve/shape_rule.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 
 using improvement::Corners;
 
-/// From regular to flat and needle-like, at many scales, some inverted.
+/// Returns tets from regular to flat and needle-like, at many scales, some inverted.
 Corners any_tet(std::mt19937& random) {
   std::normal_distribution<double> normal;
   const auto point = [&] { return Point{normal(random), normal(random), normal(random)}; };
@@ -48,7 +48,7 @@ TEST(ShapeRules, AnglesThatAreSurelyBetweenAreBetween) {
   }
   EXPECT_GT(sure, 5000U);
   EXPECT_GE(between, sure);
-  EXPECT_LE(between - sure, 2U);  // those that are too close to call
+  EXPECT_LE(between - sure, 2U);  // number of tets that are too close to call
 }
 
 TEST(ShapeRules, WhatSurelyExceedsAQualityExceedsIt) {

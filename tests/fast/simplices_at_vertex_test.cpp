@@ -14,7 +14,7 @@
 namespace collarmesh {
 namespace {
 
-/// What uses a triangle of points: a tet by one of its corners, or a listed face (corner 4).
+/// A use of a triangle of points: by a tet, opposite one of its corners, or by a listed face (corner 4).
 struct BruteUse {
   Index cell;
   unsigned corner;
@@ -43,7 +43,7 @@ Triangles all_triangles(const TetMesh& mesh) {
   return triangles;
 }
 
-/// Cubes of six tets each, points numbered at random, no face listed.
+/// Makes cubes of six tets each, with points numbered at random and no listed face.
 TetMesh grid(unsigned n, std::uint32_t seed) {
   const TetMesh box = testing::meshed_box(n).mesh;
   std::vector<Index> number(box.points.size());
@@ -56,8 +56,8 @@ TetMesh grid(unsigned n, std::uint32_t seed) {
   return mesh;
 }
 
-/// Corners of two tets exchanged, a tet turned inside out, one given many times, one of another region, a
-/// listed face, or a tet missing.
+/// Spoils a mesh: exchanges corners of two tets, inverts a tet, repeats one many times, changes its region,
+/// lists a face, or removes a tet.
 void spoil(TetMesh& mesh, std::mt19937& random) {
   const auto any = [&] { return random() % mesh.tets.size(); };
   switch (random() % 6) {
@@ -86,14 +86,14 @@ void spoil(TetMesh& mesh, std::mt19937& random) {
   }
 }
 
-// Corners that are there twice are found before (`check_arrays`).
+// Returns whether all corners are distinct; `check_arrays` finds repeated corners before.
 bool has_distinct_corners(const TetMesh& mesh) {
   return std::all_of(mesh.tets.begin(), mesh.tets.end(), [](const std::array<Index, 4>& tet) {
     return std::set<Index>(tet.begin(), tet.end()).size() == 4;
   });
 }
 
-/// By vertex, whether each triangle that it is the smallest corner of is as `FittingTetsAtVertex::fit` says.
+/// Returns by vertex whether each triangle whose smallest corner it is satisfies `FittingTetsAtVertex::fit`.
 std::vector<bool> vertices_where_tets_fit(const TetMesh& mesh, const Triangles& triangles) {
   std::vector<bool> fit(mesh.points.size(), true);
   for (const auto& [corners, uses] : triangles) {
@@ -128,12 +128,12 @@ void expect_simplices(const TetMesh& mesh) {
     });
     FittingTetsAtVertex tets_at;
     EdgesAtVertex edges_at;
-    for (unsigned time = 0; time < 2; ++time) {  // it is used again and again
+    for (unsigned time = 0; time < 2; ++time) {  // the object is reused
       tets_at.find(mesh, vertex, cells);
       edges_at.find(mesh, vertex, cells);
       EXPECT_EQ(std::set<Index>(tets_at.ends().begin(), tets_at.ends().end()),
                 std::set<Index>(edges_at.ends().begin(), edges_at.ends().end()));
-      // Where it says so it is so; where it is so it may not say so, next to other regions.
+      // If it says that tets fit, they do. If they fit, it may still not say so, beside other regions.
       EXPECT_TRUE(fit[vertex] || !tets_at.fit());
       const bool one_region = std::all_of(cells.begin(), cells.end(), [&](Index cell) {
         return cell < mesh.tets.size() && mesh.tet_region[cell] == mesh.tet_region[cells[0]];
@@ -165,7 +165,7 @@ TEST(SimplicesAtVertex, OfSpoiltGrids) {
   EXPECT_GT(spoilt, 60U);
 }
 
-// More than are counted by number, and more than a hash table has slots at first.
+// More tets than are counted by number, and more than a hash table has slots initially.
 TEST(SimplicesAtVertex, OfAVertexOfManyTets) {
   for (const Index rim : {20U, 31U, 33U, 300U}) {
     TetMesh mesh;
@@ -178,7 +178,7 @@ TEST(SimplicesAtVertex, OfAVertexOfManyTets) {
   }
 }
 
-// A triangle has many uses then; to find them must not take their squared number of steps.
+// A triangle then has many uses; finding them must not take a quadratic number of steps.
 TEST(SimplicesAtVertex, OfATetGivenManyTimes) {
   TetMesh mesh;
   mesh.points.resize(4);
@@ -193,12 +193,13 @@ TEST(SimplicesAtVertex, OfATetGivenManyTimes) {
     triangles.for_each([&](std::span<const TriangleUse> uses) { uses_of_all += uses.size(); });
     FittingTetsAtVertex tets;
     tets.find(mesh, static_cast<Index>(vertex), cells);
-    EXPECT_TRUE(!tets.fit() || vertex > 1);  // the two largest are the smallest of no triangle
+    EXPECT_TRUE(!tets.fit() || vertex > 1);  // the two largest vertices are the smallest corner of no
+                                             // triangle
   });
   EXPECT_EQ(uses_of_all, 4 * mesh.tets.size());
 }
 
-// Nobody has checked the meshes of `info`: corners may be there twice, and regions missing.
+// The command `info` measures unchecked meshes: corners may be repeated, and regions missing.
 TEST(MedianEdge, OfAMeshThatNobodyHasChecked) {
   TetMesh mesh;
   mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {0, 0, 3}, {9, 9, 9}, {9, 9, 9}};

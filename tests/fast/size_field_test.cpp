@@ -43,9 +43,9 @@ TEST(SizeFieldJson, CylindersAndTurnedBoxes) {
       cylinder());
   EXPECT_DOUBLE_EQ(cylinder_field({1, 2, 0}), 0.1);                  // on the axis
   EXPECT_DOUBLE_EQ(cylinder_field({2, 3, 1}), 0.1);                  // inside
-  EXPECT_DOUBLE_EQ(cylinder_field({1, 2, 5}), 0.1 + 0.5 * 3);        // beside
-  EXPECT_DOUBLE_EQ(cylinder_field({1, -2, 1}), 0.1 + 0.5 * 2);       // below
-  EXPECT_DOUBLE_EQ(cylinder_field({1, 6, 0}), 0.1 + 0.5 * 2);        // above
+  EXPECT_DOUBLE_EQ(cylinder_field({1, 2, 5}), 0.1 + 0.5 * 3);        // beside it
+  EXPECT_DOUBLE_EQ(cylinder_field({1, -2, 1}), 0.1 + 0.5 * 2);       // below it
+  EXPECT_DOUBLE_EQ(cylinder_field({1, 6, 0}), 0.1 + 0.5 * 2);        // above it
   EXPECT_NEAR(cylinder_field({1 + 5, 8, 0}), 0.1 + 0.5 * 5, 1e-12);  // past the rim: 3, 4, 5
 
   const SizeField straight = size_field_from_json(
@@ -159,7 +159,7 @@ TEST(SizeFieldOnAMesh, IsLinearInsideAndConstantBeyond) {
 std::string msh_text(const TetMesh& mesh, const std::string& version, const std::string& views) {
   std::string text =
       fmt::format("$MeshFormat\n{} 0 8\n$EndMeshFormat\n$Nodes\n{}\n", version, mesh.points.size());
-  // Numbers with gaps, backwards.
+  // Uses numbers with gaps, in descending order.
   const auto number = [&](std::size_t i) { return 3 * (mesh.points.size() - i); };
   for (std::size_t i = 0; i < mesh.points.size(); ++i) {
     const Point& p = mesh.points[i];

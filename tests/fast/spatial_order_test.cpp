@@ -33,7 +33,7 @@ std::vector<Point> random_points(std::size_t n, double spread) {
   return points;
 }
 
-// Every split leaves octree cells on both sides: no place of the first part lies beyond one of the second.
+// Every split has octree cells on both sides: no place of the first part lies beyond one of the second part.
 std::size_t depth(std::span<const SpatialKey> keys) {
   if (keys.size() < 2) return 0;
   const std::size_t at = spatial_split(keys);
@@ -82,7 +82,7 @@ TEST(SpatialOrder, OrdersPointsOfAnyExtent) {
   }
 }
 
-// A corner of the unit cube at every level of the octree, and many points in its first cell.
+// Returns a corner of the unit cube at every level of the octree, and many points in its first cell.
 std::vector<Point> deep_points() {
   std::vector<Point> points;
   for (int level = 0; level < 21; ++level)
@@ -174,7 +174,7 @@ TEST(BoxTree, FindsThePairsThatBruteForceFinds) {
   EXPECT_EQ(pairs_of(BoxTree(boxes)), expected);
 }
 
-// Groups of near items, as features are, and of far ones.
+// Makes groups of near items, as features are, and groups of far items.
 TEST(BoxTree, LeavesOutPairsWithinAGroup) {
   const auto boxes = random_boxes(600);
   for (const bool near : {true, false}) {
@@ -189,7 +189,7 @@ TEST(BoxTree, LeavesOutPairsWithinAGroup) {
   }
 }
 
-// Boxes much smaller than a cell of the curve through all: parts of the order stay apart from each other.
+// Boxes much smaller than a cell of the curve through all of them: parts of the order remain separate.
 TEST(SpatialOrder, TellsApartWhatIsFarSmallerThanTheWhole) {
   auto boxes = random_boxes(4000);
   for (Box& box : boxes) {
@@ -207,7 +207,7 @@ TEST(SpatialOrder, TellsApartWhatIsFarSmallerThanTheWhole) {
   std::vector<Point> centres;
   for (const Box& box : boxes) centres.push_back(box.centre());
   const auto keys = spatial_order(centres);
-  // Of the 64 parts of the hierarchy few meet.
+  // Few of the 64 parts of the hierarchy meet.
   std::vector<Box> parts;
   for (std::size_t i = 0; i + 1 < keys.size(); i += keys.size() / 64)
     parts.push_back(bounds(std::span(keys).subspan(i, std::min(keys.size() / 64, keys.size() - i))));

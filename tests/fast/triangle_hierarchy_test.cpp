@@ -30,7 +30,7 @@ Soup random_triangles(std::size_t n, double extent) {
   return soup;
 }
 
-// The surface of [0, n]^3 in unit squares, each cut in two: full of ties for axis-parallel segments.
+// Returns the surface of [0, n]^3 in unit squares, each cut in two: full of ties for axis-parallel segments.
 Soup box_surface(int n) {
   Soup soup;
   const auto corner = [&](int axis, int side, int i, int j) {
@@ -94,7 +94,7 @@ TEST(TriangleHierarchy, NodesInABoxCoverItsTriangles) {
   }
 }
 
-// The box of an oblique triangle holds much that the triangle is far from. Touching counts as meeting.
+// The box of an oblique triangle contains many places far from the triangle. Touching counts as meeting.
 TEST(TriangleHierarchy, LargeTrianglesAreFoundWhereTheirPlanesAre) {
   const std::vector<Point> points{{0, 0, 0}, {1, 1, 0}, {0, 0, 1}};
   TriangleHierarchy hierarchy(points, {{0, 1, 2}});
@@ -111,7 +111,7 @@ TEST(TriangleHierarchy, LargeTrianglesAreFoundWhereTheirPlanesAre) {
   }
 }
 
-// The same of the box of an oblique segment, which is a triangle with equal corners.
+// Checks likewise the box of an oblique segment, which is a triangle with equal corners.
 TEST(TriangleHierarchy, LongSegmentsAreFoundWhereTheyAre) {
   const std::vector<Point> points{{0, 0, 0}, {1, 1, 1}};
   TriangleHierarchy hierarchy(points, {{0, 1, 1}});
@@ -175,8 +175,8 @@ TEST(TriangleHierarchy, AClosedSurfaceIsCrossedConsistentlyWhateverTheTies) {
   }
 }
 
-// Neighbourhoods from far larger than the triangles to far smaller, with segments as long as the
-// neighbourhood and far shorter; on the boxes' surface every test is a tie.
+// Uses neighbourhoods from far larger than the triangles to far smaller, with segments as long as the
+// neighbourhood and far shorter. On the boxes' surface every test is a tie.
 void expect_the_crossings_of_each_segment(const Soup& soup, bool on_a_grid) {
   const TriangleHierarchy hierarchy(soup.points, soup.triangles);
   Box bounds;
@@ -247,7 +247,7 @@ TEST(TriangleHierarchy, DistanceEqualsBruteForce) {
   }
 }
 
-// Labels by octant: the triangles of an octant are left out by the nodes that hold no others.
+// Labels by octant: the nodes that contain only triangles of one octant leave these out.
 TEST(TriangleHierarchy, NodesWithACommonLabelAreLeftOut) {
   const Soup soup = random_triangles(400, 0.05);
   const TriangleHierarchy hierarchy(soup.points, soup.triangles);
@@ -269,15 +269,15 @@ TEST(TriangleHierarchy, NodesWithACommonLabelAreLeftOut) {
     std::sort(found.begin(), found.end());
     EXPECT_EQ(found, expected);
   }
-  // All of one label: nothing is visited.
+  // All triangles have one label: nothing is visited.
   const std::vector<Index> same = hierarchy.common_labels(std::vector<Index>(label_of.size(), 3));
   hierarchy.visit_near(
       {&root, 1}, {0.5, 0.5, 0.5}, INFINITY, [&](Index node) { return same[node] == 3; },
       [&](Index) { ADD_FAILURE(); });
 }
 
-// Two tilted sheets along each other, the first one coarse: what is nearest on it is found without looking at
-// all of the second one on the way.
+// Two tilted sheets along each other, the first one coarse: finding the nearest point on it does not visit
+// the whole second one.
 TEST(TriangleHierarchy, TheNearestOfOneLabelLooksAtFewOfAnother) {
   Soup soup;
   std::vector<Index> label_of;
@@ -335,7 +335,7 @@ TEST(TriangleHierarchy, DistanceToATriangleIsThatOfSampledPoints) {
   }
 }
 
-// On all sides of triangles, of needles and of triangles whose corners are in line or the same.
+// Tests places on all sides of triangles, of needles, and of triangles whose corners are collinear or equal.
 TEST(TriangleHierarchy, WithinADistanceIsNearerThanIt) {
   std::mt19937_64 random(8);
   std::uniform_real_distribution<double> unit(-1, 1);

@@ -1,4 +1,5 @@
-// Points that are not in the mesh yet: where they are found from, when they are due, what warps to them.
+// Points that are not in the mesh yet: the vertices they are found from, when they are due, and which
+// candidates warp to them.
 #include "refine/unresolved_points.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +29,7 @@ class UnresolvedPointsTest : public ::testing::Test {
     points_.cells_made(zone_, vertex);
     return vertex;
   }
-  /// What a candidate that destroys a ball of this radius would warp to.
+  /// Returns the point that a candidate that destroys a ball of this radius would warp to.
   Index target(const Point& centre, double radius, std::uint8_t dimension = 3) {
     find_zone(centre);
     return points_.warp_target(zone_, {centre, radius * radius, centre, {dimension, 0}, none});
@@ -62,7 +63,7 @@ TEST_F(UnresolvedPointsTest, OneIsDueWhenItsBallHasNotShrunk) {
   EXPECT_TRUE(points_.due(point, item.entry.stamp));
   EXPECT_FALSE(queue_.pop(item));
   insert({0.5, 0.5, 0.8});
-  EXPECT_FALSE(points_.due(point, item.entry.stamp));  // others come first now
+  EXPECT_FALSE(points_.due(point, item.entry.stamp));  // other points come first now
   ASSERT_TRUE(queue_.pop(item));
   EXPECT_TRUE(points_.due(point, item.entry.stamp));
   points_.resolve(point, 9);
@@ -77,7 +78,7 @@ TEST_F(UnresolvedPointsTest, ACandidateWarpsToTheLowestDimensionWithinTheta) {
   EXPECT_EQ(target(centre, 0.2), none);
   const Index on_patch = points_.add({0.5, 0.5, 0.71}, {2, 0});
   EXPECT_EQ(target(centre, 0.2), on_patch);
-  EXPECT_EQ(target(centre, 0.2, 2), none);  // not to its own dimension
+  EXPECT_EQ(target(centre, 0.2, 2), none);  // none of its own dimension
   const Index on_curve = points_.add({0.5, 0.5, 0.74}, {1, 0});
   EXPECT_EQ(target(centre, 0.2), on_curve);
   EXPECT_EQ(target(centre, 0.2, 2), on_curve);
@@ -111,7 +112,8 @@ TEST_F(UnresolvedPointsTest, OneThatIsWithdrawnIsFoundNoMore) {
   EXPECT_EQ(target({0.5, 0.5, 0.56}, 0.2), none);
 }
 
-// Near one vertex of a coarse mesh it is not, between several it is: by a search of all of them.
+// Near one vertex of a coarse mesh a point is not medial, between several it is. Compared with a search over
+// all vertices.
 TEST_F(UnresolvedPointsTest, MedialOnesHaveASecondVertexHardlyFarther) {
   std::mt19937_64 random(4);
   std::uniform_real_distribution<double> unit(0.01, 0.99);

@@ -1,4 +1,4 @@
-// The Jacobian's coefficients beside the shape functions, and nodes that make room for curved edges.
+// The Jacobian's coefficients compared with the shape functions, and nodes that make room for curved edges.
 #include "second_order/untangling.h"
 
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ CurvedTet random_tet(std::mt19937& random, double curvature) {
   return nodes;
 }
 
-/// By the derivatives of the shape functions at barycentric coordinates.
+/// Returns the determinant by the derivatives of the shape functions at barycentric coordinates.
 double determinant(const CurvedTet& nodes, const std::array<double, 4>& l) {
   std::array<Vector, 4> d;
   for (std::size_t i = 0; i < 4; ++i) d[i] = (4 * l[i] - 1) * nodes[i];
@@ -45,7 +45,7 @@ double determinant(const CurvedTet& nodes, const std::array<double, 4>& l) {
   return dot(cross(d[1] - d[0], d[2] - d[0]), d[3] - d[0]);
 }
 
-/// The cubic with these Bernstein coefficients, in the order of i <= j <= k.
+/// Returns the value of the cubic with these Bernstein coefficients, in the order of i <= j <= k.
 double cubic(const JacobianCoefficients::Values& values, const std::array<double, 4>& l) {
   double sum = 0;
   std::size_t c = 0;
@@ -113,7 +113,7 @@ TEST(JacobianCoefficients, TheirGradientIsThatOfDifferences) {
 
 bool valid(const TetMesh& mesh, Index tet) { return jacobian_exceeds(curved_tet(mesh, tet), 0.1); }
 
-// An edge in a box bulges, at right angles to itself, by a fifth of its length: tets at it follow until all
+// An edge in a box bulges sideways by a fifth of its length; the nodes of tets at it follow until all tets
 // are valid.
 TEST(Untangling, NodesFollowAnEdgeThatBulges) {
   Meshed meshed = mesh_of(box(), with_size(0.4));

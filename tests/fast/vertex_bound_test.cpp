@@ -1,4 +1,4 @@
-// How many vertices a refinement may take before other repairs are tried.
+// The number of vertices that a refinement may take before other repairs are tried.
 #include "pipeline/vertex_bound.h"
 
 #include <gtest/gtest.h>

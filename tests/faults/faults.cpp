@@ -23,7 +23,7 @@
 
 namespace {
 
-constexpr int right_end = 5;  // a budget is hit
+constexpr int right_end = 5;  // the exit code when a budget is hit
 
 struct Plan {
   const char* kind = std::getenv("FAULT_KIND");
@@ -41,7 +41,7 @@ Plan& plan() {
 std::atomic<long> calls{0};
 std::atomic<long> wrong{0};
 std::atomic<int> folders{0};
-std::atomic<long> before_writing{0};  // calls until the program makes its second temporary folder
+std::atomic<long> before_writing{0};  // number of calls before the program makes its second temporary folder
 
 void write_number(int file, const char* what, long number) {
   char text[64];
@@ -49,7 +49,7 @@ void write_number(int file, const char* what, long number) {
   if (write(file, text, static_cast<std::size_t>(length)) < 0) return;
 }
 
-/// At this call, in a child: it has to end by itself, well.
+/// Fails at this call in a forked child, which must then end properly by itself.
 bool fails_in_a_child(long call) {
   const pid_t child = fork();
   if (child == 0) return true;
@@ -78,7 +78,7 @@ bool fails(const char* kind) {
   return failing;
 }
 
-/// The program may work in a child: that one is what faults are for.
+/// If the program works in a child, faults happen in that child.
 void follow_child() {
   if (inside) return;
   plan().process = getpid();
@@ -108,10 +108,10 @@ int no_space() {
   return -1;
 }
 
-// What operator new does where there is no memory.
+// Allocates as operator new does when memory is short.
 void* allocate(std::size_t bytes, std::size_t alignment) {
   while (true) {
-    // Libraries allocate while they are loaded, before the program can do anything.
+    // Libraries allocate while they are loaded, before the program can react.
     if (std::get_new_handler() == nullptr || !fails("new")) {
       void* const block =
           alignment == 0 ? std::malloc(bytes == 0 ? 1 : bytes)

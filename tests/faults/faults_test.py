@@ -21,7 +21,7 @@ BEFORE = "what was there before"
 
 
 class FaultsTest(unittest.TestCase):
-    """Runs, by name, and the files that each writes."""
+    """The runs by name, and the files that each writes."""
     runs = {"vtu": (BRACKET, ["out.vtu"]), "med": (BRACKET, ["out.med"]),
             "ele": (BRACKET, ["out.ele", "out.node", "out.face", "out.edge"]), "unv": (CAD, ["out.unv"])}
 
@@ -38,13 +38,13 @@ class FaultsTest(unittest.TestCase):
             shutil.rmtree(left) if left.is_dir() else left.unlink()
         for file in files:
             (self.folder / file).write_text(BEFORE)
-        patient = ["--time-limit", "100000"] if "forks" in faults else []  # reading CAD files has a limit of its own
+        patient = ["--time-limit", "100000"] if "forks" in faults else []  # reading CAD files has its own limit
         run = subprocess.run([PROGRAM, part, "-o", files[0], "-q", "--threads", "1", *patient], cwd=self.folder, env=environment,
                              capture_output=True, text=True, timeout=7200 if ALL else 600)
         return run.returncode, run.stderr
 
     def counts(self, name, kind):
-        """Calls of the process that writes, by word of faults.cpp."""
+        """Returns the numbers of calls of the process that writes, by the names in faults.cpp."""
         code, messages = self.run_with(name, kind=kind, at=0)
         if "cannot be loaded" in messages or code == 2:
             self.skipTest("built without this format")
@@ -58,7 +58,7 @@ class FaultsTest(unittest.TestCase):
         return self.counts(name, kind)["calls"]
 
     def assert_whole(self, name, code, context):
-        """The files are all new after success and all old else; nothing is left beside them."""
+        """After success all files are new, otherwise all are old; nothing else is left."""
         files = self.runs[name][1]
         old = [(self.folder / file).exists() and (self.folder / file).read_bytes() == BEFORE.encode() for file in files]
         self.assertEqual(old, [code != 0] * len(files), context)
@@ -67,7 +67,8 @@ class FaultsTest(unittest.TestCase):
         self.assertEqual(left, set(), context)
 
     def assert_kept(self, name, messages):
-        """Files could not be put back either: each is in its place or in the folder that is told."""
+        """If files could not be put back either, each is in its place or in the folder that the message
+        names."""
         folder = self.folder / messages.strip().rsplit(" ", 1)[-1]
         for file in self.runs[name][1]:
             places = [self.folder / file, folder / f"kept-{file}"]
@@ -101,7 +102,7 @@ class Files(FaultsTest):
 
 class Memory(FaultsTest):
     def test_each_allocation_before_writing(self):
-        """In children that are forked at each (faults.cpp), which is a millisecond for each."""
+        """In children that are forked at each allocation (faults.cpp), which takes a millisecond for each."""
         for name in ("vtu", "unv") if not ALL else self.runs:
             total = self.calls(name, "new")
             with self.subTest(name=name):
@@ -113,7 +114,7 @@ class Memory(FaultsTest):
                 self.assert_whole(name, 0, messages[-2000:])
 
     def test_allocations(self):
-        """In runs of their own, those of writing above all."""
+        """In separate runs, mostly for the allocations of writing."""
         for name in self.runs:
             counts = self.counts(name, "new")
             total, before = counts["calls"], counts["before_writing"]

@@ -1,4 +1,5 @@
-"""FreeCAD reads the add-on's package.xml, and the add-on meshes. Run by addon_test.py with the path of that file."""
+"""Checks that FreeCAD reads the add-on's package.xml, and that the add-on meshes. Run by addon_test.py with
+the path of that file."""
 
 import os
 import sys

@@ -17,11 +17,11 @@ class Analysis:
     """A static analysis of one part: add constraints, `mesh`, then `solve`."""
 
     def __init__(self, shape, youngs_moduli=(210000,), poisson_ratio=0.3):
-        """One Young's modulus (MPa) for each solid, or one for all of them."""
+        """`youngs_moduli`: a modulus (MPa) for each solid, or one for all of them."""
         self.document = FreeCAD.newDocument("analysis")
         self.part = self.document.addObject("Part::Feature", "Part")
         self.part.Shape = shape
-        self.held = {}  # axes by constraint
+        self.held = {}  # held axes by constraint
         self.analysis = ObjectsFem.makeAnalysis(self.document, "Analysis")
         self.solver = self.add(ObjectsFem.makeSolverCalculixCcxTools(self.document, "Solver"))
         self.solver.AnalysisType = "static"
@@ -40,24 +40,24 @@ class Analysis:
         FreeCAD.closeDocument(self.document.Name)
 
     def faces(self, *places):
-        """The faces that hold these points, as FreeCAD's references have them."""
+        """Returns the faces that contain these points, as FreeCAD's references to them."""
         return [(self.part, [self.nearest("Face", place) for place in places])]
 
     def nearest(self, kind, place):
-        """The face, edge or vertex that holds a point."""
+        """Returns the face, edge or vertex that contains a point."""
         vertex = Part.Vertex(*place)
         distances = [each.distToShape(vertex)[0] for each in getattr(
             self.part.Shape, "Vertexes" if kind == "Vertex" else kind + "s")]
         return f"{kind}{distances.index(min(distances)) + 1}"
 
     def clamp(self, kind, place):
-        """Neither displacement nor rotation of an edge or a vertex."""
+        """Holds an edge or a vertex: neither displacement nor rotation."""
         held = self.add(ObjectsFem.makeConstraintFixed(self.document, "Fixed"))
         held.References = [(self.part, [self.nearest(kind, place)])]
         self.held[held.Name.upper()] = "xyz"
 
     def pull_at(self, kind, place, force, direction):
-        """A force (N) on an edge or a vertex, along any direction."""
+        """Puts a force (N) on an edge or a vertex, along any direction."""
         guide = self.document.addObject("Part::Feature", "Guide")
         guide.Shape = Part.makeLine(FreeCAD.Vector(0, 0, 0), FreeCAD.Vector(*direction))
         load = self.add(ObjectsFem.makeConstraintForce(self.document, "Force"))
@@ -66,7 +66,7 @@ class Analysis:
         load.Direction = (guide, ["Edge1"])
 
     def hold(self, axes, *places):
-        """No displacement along these axes ("x", "xyz") of the faces at these places."""
+        """Holds the faces at these places along these axes ("x", "xyz")."""
         if axes == "xyz":
             held = self.add(ObjectsFem.makeConstraintFixed(self.document, "Fixed"))
         else:
@@ -78,7 +78,7 @@ class Analysis:
         self.held[held.Name.upper()] = axes
 
     def pull(self, place, force, direction):
-        """A force (N) on the face at a place, along an axis that some straight edge of the part has."""
+        """Puts a force (N) on the face at a place, along an axis that some straight edge of the part has."""
         load = self.add(ObjectsFem.makeConstraintForce(self.document, "Force"))
         load.References = self.faces(place)
         load.Force = force
@@ -87,7 +87,8 @@ class Analysis:
         load.Reversed = load.DirectionVector.dot(FreeCAD.Vector(*direction)) < 0
 
     def edge_along(self, direction, owner=None):
-        """As FreeCAD's references have it; `owner`: of the edge, that of the faces where none is given."""
+        """Returns FreeCAD's reference to an edge along a direction. `owner`: the object that has it; by
+        default that of the faces."""
         owner = owner or self.faces((0, 0, 0))[0][0]
         number = next(
             i
@@ -99,13 +100,14 @@ class Analysis:
         return owner, [f"Edge{number}"]
 
     def press(self, place, pressure):
-        """A pressure (MPa) on the face at a place."""
+        """Puts a pressure (MPa) on the face at a place."""
         load = self.add(ObjectsFem.makeConstraintPressure(self.document, "Pressure"))
         load.References = self.faces(place)
         load.Pressure = pressure
 
     def mesh(self, order, size, fine_size=0, place=None, dimension=0):
-        """By collarmesh, finer on the face at a place; curved faces nearer than by default, for the stresses there."""
+        """Meshes with collarmesh, finer on the face at a place; curved faces are followed more closely than
+        by default, for the stresses there."""
         finer = {int(name[4:]): fine_size for _, names in self.faces(place) for name in names} if place else {}
         self.mesh_object = collarmesh_workbench.mesh(
             self.part, analysis=self.analysis, size=size, order=order, distance=size / 20, face_sizes=finer,
@@ -113,7 +115,7 @@ class Analysis:
         )
 
     def mesh_by_gmsh(self, order, size, fine_size=0, place=None):
-        """The same by Gmsh."""
+        """Makes a similar mesh with Gmsh."""
         self.mesh_object = self.add(ObjectsFem.makeMeshGmsh(self.document, "Gmsh"))
         self.mesh_object.Part = self.part
         self.mesh_object.CharacteristicLengthMax = size
@@ -132,9 +134,9 @@ class Analysis:
         self.document.removeObject(self.mesh_object.Name)
 
     def solve(self, peak_radius=0):
-        """Run CalculiX: the largest displacement (mm), the peak of the von Mises stress (MPa; its largest mean over a
-        ball of this radius, mm), the sum of the reactions (N, by axis) over all that is held, and how many nodes and
-        elements the solver got."""
+        """Runs CalculiX. Returns the largest displacement (mm), the peak of the von Mises stress (MPa; its
+        largest mean over a ball of this radius, mm), the sum of the reactions (N, by axis) over everything
+        held, and the numbers of nodes and elements that the solver got."""
         self.document.recompute()
         with tempfile.TemporaryDirectory() as folder:
             tools = ccxtools.FemToolsCcx(self.analysis, self.solver, test_mode=False)
@@ -160,8 +162,8 @@ class Analysis:
         }
 
     def reactions_in(self, path):
-        """The sum of the reactions that CalculiX wrote; by each set only along the axes that it holds, as sets
-        share nodes."""
+        """Returns the sum of the reactions that CalculiX wrote. Each set counts only along the axes that it
+        holds, because sets share nodes."""
         with open(path, encoding="utf-8") as file:
             text = file.read()
         number = r"\s+([-+.\dEe]+)"
@@ -173,9 +175,9 @@ class Analysis:
 
 
 def peak(result, radius):
-    """The largest mean of the von Mises stress over the nodes within a radius of a node: a single node's value on
-    linear elements jumps from node to node, so that the largest one does not converge. Asked of the nodes with the
-    largest values, which are enough for that."""
+    """Returns the largest mean of the von Mises stress over the nodes within a radius of a node. (On linear
+    elements the value jumps from node to node, so the largest one does not converge.) Looks only around the
+    nodes with the largest values, which suffices."""
     centres = 200
     nodes = result.Mesh.FemMesh.Nodes
     points = numpy.array([tuple(nodes[number]) for number in result.NodeNumbers])

@@ -1,5 +1,5 @@
-"""Solids that are kept apart: nodes, groups and constraints of each are its own, up to contact in CalculiX. Run by
-run.py."""
+"""Solids that are kept apart: each has its own nodes, groups and constraints, up to contact in CalculiX. Run
+by run.py."""
 
 import collections
 import os
@@ -20,7 +20,7 @@ from contacts_shapes import BESIDE, area, boss, boxes, groups, hub  # noqa: E402
 
 
 def row():
-    """Three boxes; the one in the middle touches both others."""
+    """Returns three boxes; the middle one touches the other two."""
     return Part.makeCompound([Part.makeBox(10, 10, 10, FreeCAD.Vector(10 * i, 0, 0)) for i in range(3)])
 
 
@@ -29,7 +29,7 @@ def nodes_of(fem_mesh, elements):
 
 
 def nodes_twice(fem_mesh):
-    """How many places have several nodes."""
+    """Returns the number of places with several nodes."""
     places = collections.Counter(tuple(round(x, 9) for x in point) for point in fem_mesh.Nodes.values())
     return sum(count > 1 for count in places.values())
 
@@ -45,7 +45,7 @@ class Apart(unittest.TestCase):
         return collarmesh_workbench.mesh(shape, self.document, size=size, **options)
 
     def expect_own_groups(self, shape, fem_mesh):
-        """Each face and edge has the elements of its solid, all of them and no others."""
+        """Checks that each face and edge has exactly the elements of its solid."""
         found = groups(fem_mesh)
         self.assertEqual([name for name in found if "_" in name], [])
         for i, solid in enumerate(shape.Solids, 1):
@@ -145,7 +145,7 @@ class Apart(unittest.TestCase):
 
 
 class Solved(unittest.TestCase):
-    """Two blocks of 10 mm one beside the other, the first one held at its far end."""
+    """Two blocks of 10 mm side by side; the far end of the first one is held."""
 
     def setUp(self):
         self.analysis = analysis.Analysis(boxes())
@@ -164,13 +164,13 @@ class Solved(unittest.TestCase):
     def test_what_is_apart_feels_nothing_of_the_other(self):
         self.mesh()
         self.analysis.hold("xyz", (0, 5, 5), (20, 5, 5))
-        self.analysis.pull((10, 5, 5), 1000, (1, 0, 0))  # on Face2
+        self.analysis.pull((10, 5, 5), 1000, (1, 0, 0))  # pulls on Face2
         self.assertAlmostEqual(self.analysis.solve()["reactions"][0], -1000, delta=1e-3)
         self.assertGreater(self.farthest("Solid1"), 1e-4)
         self.assertEqual(self.farthest("Solid2"), 0)
 
     def farthest(self, solid):
-        """Of the displacements of its nodes, mm."""
+        """Returns the largest displacement of the solid's nodes, mm."""
         result = next(each for each in self.analysis.analysis.Group if each.isDerivedFrom("Fem::FemResultObject"))
         fem_mesh = self.analysis.mesh_object.FemMesh
         nodes = nodes_of(fem_mesh, groups(fem_mesh)[solid])

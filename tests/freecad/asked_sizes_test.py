@@ -1,4 +1,5 @@
-"""The sizes that are shown as colours: by formulas, and beside the edges of a mesh. Run by run.py."""
+"""The requested sizes that are shown as colours: compared with formulas and with the edges of a mesh. Run by
+run.py."""
 
 import os
 import sys
@@ -25,7 +26,7 @@ class AskedSizes(unittest.TestCase):
         FreeCAD.closeDocument(self.document.Name)
 
     def asked(self):
-        """The surface and the sizes on it."""
+        """Returns the surface and the sizes on it."""
         surface = asked_sizes.surface_of(self.part)
         return surface, asked_sizes.on(surface, self.part, mesh_properties.settings_of(self.obj))
 
@@ -38,7 +39,7 @@ class AskedSizes(unittest.TestCase):
         self.assertLess(numpy.linalg.norm(b - a, axis=1).max(), self.part.Shape.BoundBox.DiagonalLength / 50)
 
     def test_bodies(self):
-        """Each is as far from a place as OpenCASCADE says that its shape is."""
+        """The distance from each body is the one that OpenCASCADE finds."""
         for kind in ("Sphere", "Box", "Cylinder"):
             size = size_objects.make(self.obj, kind, 0.5)
             size.Placement = FreeCAD.Placement(FreeCAD.Vector(18, 3, 6), FreeCAD.Rotation(FreeCAD.Vector(1, 2, 3), 30))

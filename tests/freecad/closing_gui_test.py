@@ -1,4 +1,5 @@
-"""Panels, objects and documents go while the program is at work for them: FreeCAD stays. Run by run.py --gui."""
+"""Panels, objects and documents are closed while the program works for them: FreeCAD survives. Run by run.py
+--gui."""
 
 import os
 import pathlib
@@ -16,7 +17,7 @@ import window as w  # noqa: E402
 
 
 def slow_program(folder):
-    """One that never answers."""
+    """Makes a program that never answers."""
     path = pathlib.Path(folder, "program")
     path.write_text("#!/bin/sh\nexec sleep 100\n", encoding="ascii")
     path.chmod(path.stat().st_mode | stat.S_IXUSR)

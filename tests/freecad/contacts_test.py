@@ -1,4 +1,5 @@
-"""Solids that touch: every number of a common face works for sizes, groups, constraints and messages. Run by run.py."""
+"""Solids that touch: all numbers of a common face can be used for sizes, groups, constraints and messages.
+Run by run.py."""
 
 import os
 import sys
@@ -55,7 +56,7 @@ class Contacts(unittest.TestCase):
 
     def test_what_does_not_touch(self):
         apart = Part.makeBox(10, 10, 10, FreeCAD.Vector(10.01, 0, 0))
-        side_by_side = Part.makeBox(10, 10, 10, FreeCAD.Vector(10, 10, 0))  # along an edge
+        side_by_side = Part.makeBox(10, 10, 10, FreeCAD.Vector(10, 10, 0))  # they touch along an edge
         for other in (apart, side_by_side):
             self.assertEqual(contacts.of(Part.makeCompound([Part.makeBox(10, 10, 10), other])).glued_faces(), [])
         self.assertEqual(contacts.of(Part.makeBox(1, 1, 1)).glued_faces(), [])

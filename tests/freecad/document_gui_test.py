@@ -1,5 +1,5 @@
-"""Mesh objects in FreeCAD's tree: the mark of those out of date, context menus, take over, export, statistics, undo.
-Run by run.py --gui."""
+"""Mesh objects in FreeCAD's tree: the mark of outdated ones, context menus, taking over, export, statistics,
+undo. Run by run.py --gui."""
 
 import os
 import sys
@@ -20,7 +20,7 @@ from freecad.collarmesh_workbench.commands import GROUP_COMMAND, MESH_COMMAND, R
 
 
 def tree_item(label):
-    """Of the object with a label, in FreeCAD's tree."""
+    """Returns the item of the object with a label in FreeCAD's tree."""
     found = [item for tree in w.window.findChildren(QtGui.QTreeWidget) if tree.isVisible()
              for item in tree.findItems(label, QtCore.Qt.MatchExactly | QtCore.Qt.MatchRecursive, 0)]
     w.require(len(found) == 1, f"{len(found)} times {label} in the tree")
@@ -28,13 +28,13 @@ def tree_item(label):
 
 
 def icon_of(label):
-    """The pixels of its icon in the tree."""
+    """Returns the pixels of its icon in the tree."""
     image = tree_item(label).icon(0).pixmap(32, 32).toImage()
     return [image.pixel(x, y) for x in range(image.width()) for y in range(image.height())]
 
 
 async def show_model():
-    """The tab with the tree."""
+    """Shows the tab with the tree."""
     tree = next(iter(w.window.findChildren(QtGui.QTreeWidget)))
     for tabs in w.window.findChildren(QtGui.QTabWidget):
         for i in range(tabs.count()):
@@ -46,7 +46,7 @@ async def show_model():
 
 
 async def menu_of(label, choose=None, picture=""):
-    """Open the context menu of an object in the tree; the texts in it. `choose`: the entry to click."""
+    """Opens the context menu of an object in the tree; returns its texts. `choose`: the entry to click."""
     await show_model()
     item = tree_item(label)
     await w.click_item(item)
@@ -70,7 +70,7 @@ async def menu_of(label, choose=None, picture=""):
     QtCore.QTimer.singleShot(100, look)
     tree = item.treeWidget()
     place = tree.visualItemRect(item).center()
-    QtGui.QCursor.setPos(tree.viewport().mapToGlobal(place))  # where FreeCAD opens it
+    QtGui.QCursor.setPos(tree.viewport().mapToGlobal(place))  # the place where FreeCAD opens the menu
     event = QtGui.QContextMenuEvent(QtGui.QContextMenuEvent.Mouse, place, tree.viewport().mapToGlobal(place))
     QtGui.QApplication.sendEvent(tree.viewport(), event)
     await w.wait_until(lambda: texts, "the menu")
@@ -191,7 +191,7 @@ async def gmsh_and_back(document, part, obj):
 
 
 async def netgen_by_its_button(document, part):
-    """Its object has no context menu in Python in this FreeCAD."""
+    """In this FreeCAD its object has no context menu in Python."""
     old = ObjectsFem.makeMeshNetgen(document, "FromNetgen")
     old.Shape = part
     document.recompute()
@@ -224,7 +224,7 @@ async def buttons_are_grey_where_they_do_nothing(document, part, obj):
                 "Collarmesh_TakeOver"}
     gmsh = ObjectsFem.makeMeshGmsh(document, "OfGmsh")
     for_ours = {REFINEMENT_COMMAND, GROUP_COMMAND, "Collarmesh_SizeSphere", "Collarmesh_SizeDistance"}
-    sizes = {"Collarmesh_SizeSphere", "Collarmesh_SizeDistance"}  # of the only mesh, of its part, of the selected one
+    sizes = {"Collarmesh_SizeSphere", "Collarmesh_SizeDistance"}  # for the only mesh, its part, and the selected mesh
     for chosen, clickable in (([], sizes), ([part], {MESH_COMMAND, *sizes}), ([part, document.Box], sizes),
                               ([obj], for_ours), ([document.Box], {MESH_COMMAND}), ([gmsh], {"Collarmesh_TakeOver"})):
         FreeCADGui.Selection.clearSelection()
@@ -239,7 +239,7 @@ async def buttons_are_grey_where_they_do_nothing(document, part, obj):
 
 
 async def a_second_click_opens_the_mesh_that_is_there(document, part, obj):
-    """In an analysis that of the analysis."""
+    """In an analysis, for the mesh of the analysis."""
     count = len(document.Objects)
     for _ in range(2):
         FreeCADGui.Selection.clearSelection()
@@ -263,7 +263,7 @@ async def a_second_click_opens_the_mesh_that_is_there(document, part, obj):
 
 
 async def cancel_removes_an_empty_new_mesh(document, part):
-    """Also after a run that failed; "OK" keeps it, with what was entered."""
+    """A new object that failed once stays empty; "OK" keeps it, with the values that were entered."""
     shape, names = part.Shape, {each.Name for each in document.Objects}
 
     async def click_the_button():
@@ -304,7 +304,7 @@ async def cancel_removes_an_empty_new_mesh(document, part):
 
 
 async def undo_of_the_creation_while_meshing(document, part):
-    """Takes the object away under the run."""
+    """Deletes the object during its run."""
     before = len(document.Objects)
     FreeCADGui.Selection.clearSelection()
     FreeCADGui.Selection.addSelection(part)

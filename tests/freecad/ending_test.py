@@ -51,7 +51,7 @@ QtCore.QTimer.singleShot(1500, lambda: window.follow(begin(), print))
 
 
 def is_running(process_id):
-    """Children of a process that was killed have nobody who asks how they ended."""
+    """Returns whether a process runs. Nobody collects the exit status of children of a killed process."""
     try:
         state = pathlib.Path(f"/proc/{process_id}/stat").read_text().rsplit(")", 1)[1].split()[0]
     except OSError:

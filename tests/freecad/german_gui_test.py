@@ -15,7 +15,7 @@ from freecad.collarmesh_workbench.program import MesherError  # noqa: E402
 
 
 def texts_of(widget):
-    """All that it shows."""
+    """Returns all texts that a widget shows."""
     found = [
         each.text() for kind in (QtGui.QLabel, QtGui.QAbstractButton) for each in widget.findChildren(kind)
     ]
@@ -26,13 +26,13 @@ def texts_of(widget):
 
 
 def actions():
-    """{command: (text, tool tip)} of ours in the toolbars."""
+    """Returns our commands in the toolbars: {command: (text, tool tip)}."""
     return {action.objectName(): (action.text(), action.toolTip()) for bar in w.window.findChildren(QtGui.QToolBar)
             for action in bar.actions() if action.objectName().startswith("Collarmesh")}
 
 
 async def german_numbers(obj):
-    """With a comma, alone and in sums, in all fields; and so they are shown."""
+    """Numbers are typed and shown with a decimal comma, alone and in sums, in all fields."""
     table = w.child("presets")
     sizes = [table.topLevelItem(i).text(1) for i in range(table.topLevelItemCount())]
     w.require(any("," in size for size in sizes) and not any("." in size for size in sizes), f"{sizes}")

@@ -24,13 +24,13 @@ GROOVE, BOTTOM = (LENGTH / 2, WIDTH / 2, HEIGHT - RADIUS), (LENGTH / 2, WIDTH / 
 
 
 def grooved():
-    """A block with a half round groove along its top."""
+    """A block with a semicircular groove along its top."""
     return Part.makeBox(LENGTH, WIDTH, HEIGHT).cut(
         Part.makeCylinder(RADIUS, LENGTH, FreeCAD.Vector(0, WIDTH / 2, HEIGHT), FreeCAD.Vector(1, 0, 0)))
 
 
 class OfTriangles(analysis.Analysis):
-    """Places name groups here, by the nearest node of their elements."""
+    """Groups are named by places here: the nearest node of their elements."""
 
     def __init__(self, shape):
         super().__init__(Part.Shape())
@@ -60,14 +60,15 @@ class OfTriangles(analysis.Analysis):
 
 
 class Solved(unittest.TestCase):
-    """Beside the same analysis of the solid whose triangles they are."""
+    """Compares with the same analysis of the solid from which the triangles were made."""
 
     def tearDown(self):
         for name in list(FreeCAD.listDocuments()):
             FreeCAD.closeDocument(name)
 
     def solved(self, kind, held, load):
-        """The loaded face does not touch the one that is held: what acts there is no part of CalculiX's reactions."""
+        """Solves an analysis. The loaded face does not touch the held one: otherwise a part of the load would
+        be missing in CalculiX's reactions."""
         each = kind(grooved())
         each.mesh(2, 4)
         each.hold("xyz", held)
@@ -115,7 +116,7 @@ class Groups(unittest.TestCase):
         return {node for each in fem_mesh.getGroupElements(number) for node in fem_mesh.getElementNodes(each)}
 
     def volume(self):
-        """Of the tetrahedra with straight edges."""
+        """Returns the volume of the tetrahedra, with straight edges."""
         fem_mesh, total = self.obj.FemMesh, 0
         for element in fem_mesh.Volumes:
             a, b, c, d = (fem_mesh.getNodeById(node) for node in fem_mesh.getElementNodes(element))
@@ -130,7 +131,7 @@ class Groups(unittest.TestCase):
         return set(meshtools.get_femnodes_by_femobj_with_references(self.obj.FemMesh, {"Object": constraint}))
 
     def test_faces(self):
-        """Each group has its first face; together they cover the surface, seen from outside."""
+        """Each group has its first face. Together the faces cover the surface, seen from outside."""
         faces = constraint_faces.make(self.obj)
         self.assertEqual(set(faces.Groups), self.groups())
         self.assertEqual(len(faces.Groups), len(faces.Shape.Faces))
@@ -152,7 +153,7 @@ class Groups(unittest.TestCase):
             self.assertEqual(self.nodes_of(constraint), self.nodes_of_group(name))
 
     def test_other_references(self):
-        """A plain list of links that has the name of constraints' references stays as it is."""
+        """A plain list of links with the name of constraints' references stays as it is."""
         faces = constraint_faces.make(self.obj)
         other = self.document.addObject("App::FeaturePython", "Other")
         other.addProperty("App::PropertyLinkList", "References")
@@ -165,7 +166,7 @@ class Groups(unittest.TestCase):
         self.assertEqual(self.nodes_of(constraint), self.nodes_of_group(faces.Groups[1]))
 
     def test_force_on_a_group_and_a_face_of_a_part(self):
-        """Each gets its share by area, and the group on all of its faces."""
+        """Each gets its share of the force by area; the group, on all of its faces."""
         faces, fem_mesh = constraint_faces.make(self.obj), self.obj.FemMesh
         curved = max(faces.Groups, key=faces.Groups.count)
         box = self.document.addObject("Part::Box", "Box")
@@ -192,7 +193,7 @@ class Groups(unittest.TestCase):
         self.assertEqual(self.nodes_of(constraint), on_edge | self.nodes_of_group(faces.Groups[1]))
 
     def test_meshed_anew(self):
-        """The constraint stays on its group, also when that gets another number."""
+        """The constraint stays on its group, even if the group gets another number."""
         constraint = self.fixed(*collarmesh_workbench.references_to_groups(self.obj, "patch_3"))
         for size in (3, 8):
             self.obj.CharacteristicLengthMax = size

@@ -19,7 +19,7 @@ from window import (child, click, click_command, open_panel, plate, require, run
 
 
 def bars_with(command):
-    """The kinds of bars that show a command right after FreeCAD's button that it belongs to."""
+    """Returns the kinds of bars that show a command right after FreeCAD's button to which it belongs."""
     found = set()
     for bar in window.findChildren(QtGui.QToolBar) + window.findChildren(QtGui.QMenu):
         names = [action.objectName() for action in bar.actions()]
@@ -102,7 +102,7 @@ async def bad_shapes_are_told(obj, part):
 
 
 async def refinements_and_groups(document, obj, part):
-    """Their buttons, and what they do to the mesh."""
+    """Tests their buttons, and the effect on the mesh."""
     part.Shape = plate()
     obj.CharacteristicLengthMax = 4
     for command in (REFINEMENT_COMMAND, GROUP_COMMAND):

@@ -1,4 +1,4 @@
-"""The add-on without the GUI: meshes that FEM's own look-up agrees with, refinement, errors. Run by run.py."""
+"""The add-on without the GUI: FEM's own look-up agrees with the meshes; refinement; errors. Run by run.py."""
 
 import os
 import sys
@@ -41,7 +41,7 @@ def nodes_of(fem_mesh, elements):
 
 
 def volume_in(fem_mesh, name):
-    """Of the tetrahedra in a group."""
+    """Returns the volume of the tetrahedra in a group."""
     volume = 0
     for element in group(fem_mesh, name):
         a, b, c, d = (fem_mesh.getNodeById(n) for n in fem_mesh.getElementNodes(element)[:4])
@@ -186,7 +186,7 @@ class Headless(unittest.TestCase):
         self.assertEqual([set(group(obj.FemMesh, f"Material{i}_Volumes")) for i in (1, 2)], solids)
         materials[0].References = [(part, "Solid2")]
         self.assertEqual([set(group(obj.FemMesh, f"Material{i}_Volumes")) for i in (1, 2)], solids[::-1])
-        self.document.removeObject("Material1")  # the other one is everywhere then, which needs no group
+        self.document.removeObject("Material1")  # the other material is everywhere then, which needs no group
         for i in (1, 2):
             self.assertEqual(group(obj.FemMesh, f"Material{i}_Volumes"), ())
 
@@ -229,7 +229,7 @@ class Headless(unittest.TestCase):
             "KeepApart": True, "SplitFaces": [], "PeriodicFaces": [], "InteriorNode": False,
         }
         self.assertEqual(set(values), {name for _, name, *_ in mesh_properties.PROPERTIES})
-        of_their_own = ("FillHoles", "SplitFaces", "PeriodicFaces", "InteriorNode")  # other tests have them
+        of_their_own = ("FillHoles", "SplitFaces", "PeriodicFaces", "InteriorNode")  # tested elsewhere
         for name, value in values.items():
             setattr(obj, name, value)
             self.assertNotEqual(obj.getDocumentationOfProperty(name), "")
@@ -279,7 +279,7 @@ class Headless(unittest.TestCase):
             self.assertFalse(report["repair"]["repaired"])
 
     def test_repairs_are_warnings(self):
-        """A message of the program, as the panel and the report view show it."""
+        """Messages of the program become warnings, as the panel and the report view show them."""
         lines = ["repaired: a hole filled at (1, 2, 3)", "warning: a point lies outside", "stage: done"]
         self.assertEqual([program.as_warning(line) for line in lines],
                          ["warning: the shape was repaired: a hole filled at (1, 2, 3)", lines[1], None])

@@ -1,5 +1,5 @@
-"""What can be meshed: bodies, compounds, links to other documents, containers, triangle meshes; and whether a mesh is
-out of date with that. Run by run.py."""
+"""Inputs: bodies, compounds, links to other documents, containers, triangle meshes; and whether a mesh is
+outdated after changes of them. Run by run.py."""
 
 import os
 import sys
@@ -55,7 +55,7 @@ class WithDocument(unittest.TestCase):
         return obj
 
     def require_box(self, obj, size, at):
-        """The mesh of a box, where it should be, with its six faces."""
+        """Checks that there is a mesh of a box, at the right place, with its six faces."""
         fem_mesh = obj.FemMesh
         self.assertAlmostEqual(volume(fem_mesh), size[0] * size[1] * size[2], places=4)
         box = fem_mesh.BoundBox
@@ -85,7 +85,7 @@ class Shapes(WithDocument):
         self.assertIn("Solid2", groups(fem_mesh))
         container = self.add("App::Part", "Container")
         container.addObject(compound)
-        for box in boxes:  # they came along; only what is visible counts
+        for box in boxes:  # only visible objects count, which were copied along
             box.Visibility = False
         self.document.recompute()
         self.assertAlmostEqual(volume(collarmesh_workbench.mesh(container, size=2).FemMesh), 250, places=4)
@@ -132,13 +132,13 @@ class Shapes(WithDocument):
             collarmesh_workbench.mesh(empty)
         open_box = Mesh.createBox(4, 4, 4)
         open_box.removeFacets([0, 1, 2])
-        with self.assertRaisesRegex(MesherError, r"\("):  # with a place
+        with self.assertRaisesRegex(MesherError, r"\("):  # the message has a place
             collarmesh_workbench.mesh(self.add("Mesh::Feature", "Open", Mesh=open_box), repair="none")
         self.assertEqual([each.Name for each in self.document.Objects], ["Empty", "Open"])
 
 
 class WithoutVolume(WithDocument):
-    """What has no solids, and is to be filled with tetrahedra (shells_test.py has the others)."""
+    """Shapes without solids that are to be filled with tetrahedra (shells_test.py has others)."""
 
     def refused(self, shape, words, **options):
         with self.assertRaisesRegex(MesherError, words):
@@ -248,7 +248,7 @@ class OutOfDate(WithDocument):
         self.document.recompute()
 
     def is_out_of_date(self):
-        """After a recompute, which never makes a mesh."""
+        """Returns whether it is out of date after a recompute, which never makes a mesh."""
         before = self.obj.FemMesh.NodeCount, self.obj.FemMesh.VolumeCount
         self.document.recompute()
         self.assertEqual((self.obj.FemMesh.NodeCount, self.obj.FemMesh.VolumeCount), before)

@@ -1,4 +1,4 @@
-"""The example macros do what they say. Run by run.py."""
+"""The example macros work as they say. Run by run.py."""
 
 import os
 import pathlib

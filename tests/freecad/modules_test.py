@@ -11,7 +11,7 @@ SOURCES = pathlib.Path(__file__).resolve().parents[2] / "freecad_workbench" / "f
 
 
 def imports(tree):
-    """The add-on's modules that a part of a source imports."""
+    """Returns the add-on's modules that a part of a source imports."""
     for node in ast.walk(tree):
         if isinstance(node, ast.ImportFrom) and node.level == 1:
             yield from [node.module] if node.module else [each.name for each in node.names]
@@ -20,12 +20,12 @@ def imports(tree):
 class Modules(unittest.TestCase):
     def setUp(self):
         sources = {path.stem: ast.parse(path.read_text(encoding="utf-8")) for path in SOURCES.glob("*.py")}
-        self.package = sources.pop("__init__")  # which FreeCAD loads before there is anything to import
+        self.package = sources.pop("__init__")  # FreeCAD loads it before anything can be imported
         self.sources = sources
         self.imported = {name: set(imports(tree)) for name, tree in sources.items()}
 
     def test_no_circle(self):
-        """Taking away what imports nothing that is left takes everything away."""
+        """If modules that import no remaining module are removed again and again, none is left."""
         left = dict(self.imported)
         while free := [name for name in left if not left[name] & left.keys()]:
             for name in free:
@@ -39,7 +39,7 @@ class Modules(unittest.TestCase):
         self.assertEqual([(name, list(imports(node))) for name, node in functions if list(imports(node))], [])
 
     def test_only_modules_that_freecad_loads_observe(self):
-        """An import has no other effect than to define names."""
+        """Importing a module only defines names."""
         for name, tree in self.sources.items():
             calls = [ast.unparse(node) for node in tree.body if isinstance(
                 node, ast.Expr) and isinstance(node.value, ast.Call)]

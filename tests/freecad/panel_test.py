@@ -1,5 +1,4 @@
-"""The panel of a mesh: what a person sees and clicks, one function for each. Run by run.py --gui.
-
+"""The panel of a mesh, as a user sees and clicks it, one function for each behaviour. Run by run.py --gui.
 The argument may be a folder for screenshots."""
 
 import dataclasses
@@ -27,11 +26,11 @@ from window import (child, click, click_at, click_command, click_item, close_pan
                     plate, require, rows, run_mesher, run_test, said, screenshot, turn, wait_until)
 
 PROGRAM = os.environ["COLLARMESH_PROGRAM"]
-LONG = "0.25 mm"  # a size for which the plate takes much longer than any test
+LONG = "0.25 mm"  # a size with which meshing the plate takes much longer than any test
 
 
 def new_part(shape, label="Plate"):
-    """A document with a part and its empty mesh object, of which nothing is known."""
+    """Makes a document with a part and its empty mesh object, for which no prediction is known."""
     prediction._answers.clear()
     document = FreeCAD.newDocument(label)
     part = document.addObject("Part::Feature", label)
@@ -50,7 +49,7 @@ async def close(document):
 
 
 def table():
-    """The rows of the presets, as texts."""
+    """Returns the rows of the presets, as texts."""
     presets = child("presets")
     return [[presets.topLevelItem(i).text(column) for column in range(4)] for i in range(presets.topLevelItemCount())]
 
@@ -60,7 +59,7 @@ def panel_of(obj):
 
 
 def number_in(text):
-    """0 where there is none yet."""
+    """Returns the number in a text, 0 if there is none yet."""
     return int("".join(filter(str.isdigit, text)) or 0)
 
 
@@ -73,7 +72,7 @@ def collarmesh_folders():
 
 
 def is_running(process_id):
-    """Also false for one that has ended and that nobody has asked about yet."""
+    """Returns whether a process runs; False for one that has ended but whose exit status was not collected."""
     try:
         state = pathlib.Path(f"/proc/{process_id}/stat").read_text().rsplit(")", 1)[1].split()[0]
     except OSError:
@@ -82,7 +81,7 @@ def is_running(process_id):
 
 
 def stand_in(folder, text):
-    """A program that starts with these lines of Python and then becomes the mesher."""
+    """Makes a program that runs these lines of Python and then becomes the mesher."""
     path = pathlib.Path(folder, "program")
     become = f"os.execv({PROGRAM!r}, [{PROGRAM!r}] + sys.argv[1:])"
     path.write_text(f"#!/usr/bin/python3\nimport os, sys\n{text}\n{become}\n")
@@ -91,7 +90,8 @@ def stand_in(folder, text):
 
 
 async def elements_are_told_before_meshing():
-    """The program's numbers stand beside the presets, follow other settings, and are about those that come."""
+    """The predicted numbers are shown beside the presets, follow other settings, and are near those of the
+    mesh."""
     document, part, obj = new_part(plate())
     await open_panel(obj)
     await wait_until(lambda: number_in(table()[4][2]), "the numbers of elements")
@@ -118,7 +118,7 @@ async def elements_are_told_before_meshing():
 
 
 async def predictions_take_one_process():
-    """For all sizes; none where they are known, and none for a mesh that is only looked at."""
+    """Predicts for all sizes; for none if they are known, or if a mesh is only looked at."""
     document, part, obj = new_part(plate())
     started = []
     prediction._answers.clear()
@@ -148,7 +148,7 @@ async def predictions_take_one_process():
 
 
 async def the_chosen_size_is_predicted_first():
-    """Its row is there while the program works on the others."""
+    """The chosen size's row is filled while the program still works on the other sizes."""
     document, _, obj = new_part(plate())
     prediction._answers.clear()
     with tempfile.TemporaryDirectory() as folder:
@@ -173,7 +173,7 @@ if '--predict' in sys.argv:
 
 
 async def what_is_not_predicted_is_not_told():
-    """The program knows the numbers of coarsened meshes alone."""
+    """The program predicts only meshes that are coarsened."""
     document, _, obj = new_part(plate())
     await open_panel(obj)
     await wait_until(lambda: number_in(table()[4][2]), "the numbers of elements")
@@ -187,7 +187,7 @@ async def what_is_not_predicted_is_not_told():
 
 
 async def sizes_by_place_count():
-    """What was predicted without a sphere is not told with it."""
+    """Predictions made without a sphere are not shown when there is one."""
     document, _, obj = new_part(plate())
     await open_panel(obj)
     await wait_until(lambda: number_in(table()[2][2]), "the number of elements")
@@ -202,7 +202,7 @@ async def sizes_by_place_count():
 
 
 async def predictions_wait_for_the_mesher():
-    """While it runs nothing else is asked of the processor, and the time left is that of the size it runs with."""
+    """During a run no predictions are made, and the time left is that of the size it runs with."""
     document, _, obj = new_part(plate())
     await open_panel(obj)
     await wait_until(lambda: number_in(table()[4][2]), "the numbers of elements")
@@ -225,7 +225,7 @@ async def predictions_wait_for_the_mesher():
 
 
 async def the_folder_forgets_processes_that_ended():
-    """Their numbers may be those of other programs later, which the folder's end must not kill."""
+    """Process numbers may be reused by other programs, which removing the folder must not kill."""
     told = {}
     program_is = work_folder.WorkFolder.program_is
 
@@ -238,7 +238,7 @@ async def the_folder_forgets_processes_that_ended():
         os.environ["COLLARMESH_PROGRAM"] = stand_in(folder, "import time; time.sleep(30)")
         await open_panel(obj)
         await wait_until(lambda: told, "a prediction")
-        child("CharacteristicLengthMax").setText("7 mm")  # ends it
+        child("CharacteristicLengthMax").setText("7 mm")  # this ends it
         ((process_id, after),) = told.values()
         require(process_id and after is None and not is_running(process_id), f"{told}")
         told.clear()
@@ -265,7 +265,7 @@ async def an_older_program_tells_no_numbers():
 
 
 async def advanced_settings_reach_the_program():
-    """What is clicked and typed, with units, is what is asked for."""
+    """The program gets what was clicked and typed, with units."""
     document, _, obj = new_part(plate())
     await open_panel(obj)
     require(not child("MeshSizeFromCurvature").isVisible(), "folded at first")
@@ -296,7 +296,7 @@ async def advanced_settings_reach_the_program():
 
 
 async def second_order_is_the_default():
-    """What first order is for is said where it is chosen."""
+    """A note beside the choice says what first order is for."""
     document, _, obj = new_part(plate())
     await open_panel(obj)
     order, note = child("ElementOrder"), child("order_note")
@@ -326,7 +326,7 @@ async def sizes_are_checked_before_a_run():
         size.setText(text)
         await click(child("run"))
         require(meshing_process.run_of(obj) is None, f"{text} does not run")
-        if child("question").isVisible():  # it would be asked about, too
+        if child("question").isVisible():  # it would be another question
             await click(child("run"))
         require(f"Size of the elements: " in said() and words in said(), f"{text}: {said()}")
     size.setText("4 mm")
@@ -351,7 +351,7 @@ async def sizes_are_checked_before_a_run():
 
 
 async def very_many_elements_are_asked_about():
-    """By the prediction, or before that by the volume."""
+    """The estimate comes from the prediction or, before that is known, from the volume."""
     document, _, obj = new_part(plate())
     await open_panel(obj)
     size, question = child("CharacteristicLengthMax"), child("question")
@@ -383,7 +383,7 @@ async def very_many_elements_are_asked_about():
 
 
 async def tiny_sizes_are_shown():
-    """FreeCAD writes two decimals."""
+    """FreeCAD shows two decimals."""
     document, _, obj = new_part(Part.makeBox(0.01, 0.01, 0.01))
     obj.CharacteristicLengthMax = 0.00123456789
     await open_panel(obj)
@@ -395,7 +395,7 @@ async def tiny_sizes_are_shown():
 
 
 async def the_result_is_told():
-    """Counts are those of the mesh, the chart holds all elements, a guarantee that is missed is red."""
+    """The counts are those of the mesh, the chart has all elements, and a missed guarantee is red."""
     document, part, obj = new_part(plate())
     await open_panel(obj)
     await run_mesher("2 mm")
@@ -431,7 +431,8 @@ async def the_result_is_told():
 
 
 async def a_mesh_that_is_out_of_date_says_so():
-    """While the panel is open and when it opens; what held is grey then; a new run, or the shape from before, ends it."""
+    """While the panel is open and when it opens. Results are grey then; a new run, or restoring the shape,
+    ends that."""
     document, part, obj = new_part(plate())
     document.UndoMode = 1
     await open_panel(obj)
@@ -473,7 +474,7 @@ async def a_mesh_that_is_out_of_date_says_so():
 
 
 async def the_part_hides_when_its_mesh_appears():
-    """And shows again when the mesh goes."""
+    """The part is shown again when the mesh is gone."""
     document, part, obj = new_part(plate())
     document.UndoMode = 1
     obj.ViewObject.Visibility = False
@@ -499,7 +500,7 @@ async def the_part_hides_when_its_mesh_appears():
 
 
 async def the_worst_elements_show():
-    """A click on the chart's mark, on a row and on the heading."""
+    """Clicks on the chart's mark, on a row and on the heading."""
     document, part, obj = new_part(plate())
     await open_panel(obj)
     await run_mesher("2 mm")
@@ -532,13 +533,13 @@ async def the_worst_elements_show():
     await open_panel(obj)
     child("places").pick_first(places.WORST)
     require(marks_of(obj) is not None, "what the last run found is still there")
-    FreeCADGui.ActiveDocument.resetEdit()  # as when another object is edited
+    FreeCADGui.ActiveDocument.resetEdit()  # as happens when another object is edited
     await wait_until(lambda: marks_of(obj) is None and find("run") is None, "the end of panel and marks")
     await close(document)
 
 
 def rows_show_all_of_their_texts(tree):
-    """Each is as high as its text, as wide as Qt draws it."""
+    """Checks that each row is as high as its text, as wide as Qt draws it."""
     margin = tree.style().pixelMetric(QtGui.QStyle.PM_FocusFrameHMargin, None, tree) + 1
     for item in (item for items in rows(tree).values() for item in items):
         option = QtCore.QRect(0, 0, tree.visualItemRect(item).width() - 2 * margin, 10000)
@@ -548,7 +549,7 @@ def rows_show_all_of_their_texts(tree):
 
 
 async def problems_select_their_places():
-    """A click on a message selects the edges and faces that it names, and looks at them."""
+    """A click on a message selects the edges and faces that it names, and shows them."""
     document, part, obj = new_part(Part.Shell(Part.makeBox(10, 10, 10).Faces[:3]), "Sheet")
     obj.FillHoles = True
     await open_panel(obj)
@@ -592,7 +593,7 @@ async def notes_and_repairs_are_told_once():
 
 
 async def nodes_off_their_faces_are_listed():
-    """As the program reports them: with their faces, which a click selects."""
+    """Shows them as the program reports them: with their faces, which a click selects."""
     document, part, obj = new_part(Part.makeTorus(10, 3), "Ring")
     obj.CharacteristicLengthMax, obj.ElementOrder = 2.7, "2nd"
     await open_panel(obj)
@@ -628,7 +629,7 @@ async def cancel_tells_and_time_left_shows():
 
 
 async def a_closed_panel_lets_the_run_go_on():
-    """Two documents, two runs at once; a panel that is opened again shows its run."""
+    """Two documents with two runs at once; a panel that is opened again shows its run."""
     first, _, one = new_part(plate(), "First")
     second, _, other = new_part(plate(), "Second")
     await open_panel(one)
@@ -670,7 +671,7 @@ async def a_part_changed_while_meshing_is_told():
 
 
 async def a_link_changed_while_meshing_is_told():
-    """Nothing of the link itself changes; the numbers in the table follow, too."""
+    """Nothing in the link itself changes. The numbers in the table follow, too."""
     document, part, obj = new_part(plate())
     link = document.addObject("App::Link", "Link")
     link.LinkedObject = part
@@ -690,7 +691,8 @@ async def a_link_changed_while_meshing_is_told():
 
 
 async def another_panel_keeps_its_cancel():
-    """A run that ends while a size is edited puts its mesh in place after that; "Cancel" takes the size back."""
+    """A run that ends while a size is being edited puts its mesh in place afterwards; "Cancel" undoes the
+    size."""
     for button in (QtGui.QDialogButtonBox.Cancel, QtGui.QDialogButtonBox.Ok):
         document, _, obj = new_part(plate())
         document.UndoMode = 1
@@ -719,7 +721,7 @@ async def another_panel_keeps_its_cancel():
 
 
 def dismiss_message():
-    """What it says."""
+    """Closes a message; returns its text."""
     boxes = [box for box in FreeCADGui.getMainWindow().findChildren(QtGui.QMessageBox) if box.isVisible()]
     require(len(boxes) == 1, f"{len(boxes)} messages")
     boxes[0].close()
@@ -727,7 +729,8 @@ def dismiss_message():
 
 
 async def another_panel_stays():
-    """FreeCAD shows one panel at a time: while one is open that it does not close itself, ours tells so."""
+    """FreeCAD shows one panel at a time. While one is open that it does not close itself, our command says
+    so."""
 
     class Other:
         def __init__(self):
@@ -795,7 +798,7 @@ async def numbers_have_the_unit_that_is_shown():
 
 
 async def what_fails_after_the_mesh_takes_nothing_back():
-    """The panel tells of the mesh that is there, even without its page."""
+    """The panel shows data on the existing mesh, even without its page."""
     document, _, obj = new_part(plate())
     await open_panel(obj)
     with mock.patch.object(program.Job, "move_page", side_effect=ValueError("of the page")):
@@ -806,7 +809,7 @@ async def what_fails_after_the_mesh_takes_nothing_back():
 
 
 async def documents_and_objects_go_while_meshing():
-    """The program is killed, its folder is removed, FreeCAD goes on; with the panel open and closed."""
+    """The program is killed and its folder removed, and FreeCAD continues; with the panel open and closed."""
     for panel_open in (True, False):
         for what in ("document", "object"):
             document, _, obj = new_part(plate())
@@ -833,7 +836,7 @@ async def documents_and_objects_go_while_meshing():
 
 
 async def the_report_opens():
-    """The button opens a page that is still there, and that names the part instead of temporary files."""
+    """The button opens a page that still exists and names the part instead of temporary files."""
     opened = []
 
     class Opener(QtCore.QObject):
@@ -844,7 +847,7 @@ async def the_report_opens():
     opener = Opener()
     QtGui.QDesktopServices.setUrlHandler("file", opener, "open")
     document, part, obj = new_part(plate(), "Bracket")
-    part.Label = '3/4" <b>\\ </script>'  # as people call parts, and worse
+    part.Label = '3/4" <b>\\ </script>'  # a possible label, and worse
     await open_panel(obj)
     require(not child("report").isVisible(), "there is no report yet")
     await run_mesher("3 mm")

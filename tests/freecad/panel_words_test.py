@@ -1,4 +1,4 @@
-"""What the panel makes of reports, messages and progress, without the window. Run by run.py."""
+"""The panel's texts for reports, messages and progress, without the window. Run by run.py."""
 
 import enum
 import math
@@ -36,7 +36,7 @@ class Words(unittest.TestCase):
         self.assertEqual(size_presets.count_text(12345), "12\u202f000")
 
     def test_time_left_of_what_was_predicted(self):
-        """A run that is as fast as predicted, one that is faster, slower, and much slower."""
+        """Runs that are as fast as predicted, faster, slower, and much slower."""
         for pace in (1, 0.3, 1.3, 6):
             left = time_left.TimeLeft(predicted=20, afterwards=4)
             told = [left.seconds(20 * pace * time_left.share_of_time(i / 100), i / 100) for i in range(101)]
@@ -63,7 +63,7 @@ class Words(unittest.TestCase):
         self.assertAlmostEqual(first, 10 / 0.3 - 10)
         self.assertAlmostEqual(left.seconds(15, 0.59), first - 5)  # no news
         self.assertEqual(left.seconds(100, 0.59), math.inf)
-        self.assertEqual(left.seconds(200, 0.6), math.inf)  # what was told would grow
+        self.assertEqual(left.seconds(200, 0.6), math.inf)  # the shown time would grow
         self.assertLess(left.seconds(210, 0.97), 15)
 
     def test_shares_of_time(self):
@@ -81,7 +81,7 @@ class Words(unittest.TestCase):
         self.assertFalse(os.path.exists(folder.name))
 
     def test_buttons_of_all_versions(self):
-        """FreeCAD 0.20 to 0.21 have numbers, 1.x has enumerations."""
+        """FreeCAD 0.20 and 0.21 use numbers, 1.x uses enumerations."""
 
         class Button(enum.Flag):
             CLOSE = 0x00200000

@@ -1,4 +1,4 @@
-"""What the panel says of parts of several solids, of open ones and of surfaces. Run by run.py --gui."""
+"""The panel for parts of several solids, open parts and surfaces. Run by run.py --gui."""
 
 import collections
 import os
@@ -14,7 +14,7 @@ from freecad.collarmesh_workbench import mesh_object  # noqa: E402
 
 
 def hub():
-    """In the bore of a plate."""
+    """A hub in the bore of a plate."""
     plate = Part.makeBox(40, 40, 10).cut(Part.makeCylinder(8, 10, FreeCAD.Vector(20, 20, 0)))
     return Part.makeCompound([plate, Part.makeCylinder(8, 20, FreeCAD.Vector(20, 20, -5))])
 
@@ -69,13 +69,13 @@ async def solids_are_kept_apart(document, part, obj):
 
 
 def nodes_twice(fem_mesh):
-    """How many places have several nodes."""
+    """Returns the number of places with several nodes."""
     places = collections.Counter(tuple(round(x, 9) for x in point) for point in fem_mesh.Nodes.values())
     return sum(count > 1 for count in places.values())
 
 
 def volumes():
-    """The rows of the table."""
+    """Returns the rows of the table."""
     table = w.child("regions")
     return [[table.topLevelItem(i).text(c) for c in range(4)] for i in range(table.topLevelItemCount())]
 
@@ -100,7 +100,7 @@ async def volumes_of_solids(document, part, obj):
 
 
 def volume_of(fem_mesh, group):
-    """Of straight elements; curved ones are near to them."""
+    """Returns the volume of straight elements; that of curved ones is nearly the same."""
     number = next(n for n in fem_mesh.Groups if fem_mesh.getGroupName(n) == group)
     total = 0
     for element in fem_mesh.getGroupElements(number):

@@ -20,20 +20,20 @@ from analysis import Analysis  # noqa: E402
 DISPLACEMENT_TOLERANCE = 0.02
 STRESS_TOLERANCE = 0.02
 PEAK_RADIUS = 0.3  # mm, a tenth of the smallest hole's radius
-REACTION_TOLERANCE = 0.005  # triangles stand for curved faces
-OUR_SIZE = 0.85  # times Gmsh's size: with a size on one face ours makes two thirds of its nodes otherwise
+REACTION_TOLERANCE = 0.005  # because triangles replace curved faces
+OUR_SIZE = 0.85  # relative to Gmsh's size: with a size on one face, our mesher makes two thirds of its nodes at the same size
 ORDERS = [int(order) for order in os.environ.get("COLLARMESH_TEST_ORDERS", "1,2").split(",")]
 
 
 @dataclasses.dataclass
 class Case:
-    """An analysis without mesh; what its reactions must be (N, by axis; None: free of choice)."""
+    """An analysis without a mesh, and its expected reactions (N, by axis; None: unspecified)."""
 
     analysis: Analysis
     reactions: tuple
-    size: float  # for elements of first order, twice as large for second
-    fine_size: float  # on the face with the largest stress, small enough for either order to have converged there
-    critical: tuple  # a place on that
+    size: float  # size for elements of first order; twice as large for second order
+    fine_size: float  # size on the face with the largest stress, small enough for both orders to have converged there
+    critical: tuple  # a place on that face
 
 
 def plate_with_hole():
@@ -51,12 +51,13 @@ def plate_with_hole():
 
 
 def filleted_bracket():
-    """An L with a fillet in its corner: held where the curved fillet's leg ends, bent, with pressure on the fillet."""
+    """An L-shaped bracket with a fillet in its corner, bent: held where the curved fillet's leg ends, with
+    pressure on the fillet."""
     radius, thickness, pressure, force = 5, 3, 4, 150
     corners = [Vector(*p) for p in ((0, 0, 0), (30, 0, 0), (30, 8, 0), (8, 8, 0), (8, 30, 0), (0, 30, 0), (0, 0, 0))]
     bracket = Part.Face(Part.makePolygon(corners)).extrude(Vector(0, 0, thickness))
     inner = [e for e in bracket.Edges if all(abs(v.X - 8) + abs(v.Y - 8) < 1e-9 for v in e.Vertexes)]
-    analysis = Analysis(bracket.makeFillet(radius, inner), poisson_ratio=0)  # a held face has no singular edges then
+    analysis = Analysis(bracket.makeFillet(radius, inner), poisson_ratio=0)  # so that a held face has no singular edges
     analysis.hold("xyz", (30, 4, thickness / 2))
     analysis.pull((4, 30, thickness / 2), force, (1, 0, 0))
     centre, off = 8 + radius, radius * math.sqrt(0.5)
@@ -82,7 +83,7 @@ def acute_wedge():
 
 
 def two_solids():
-    """A plate and a stiffer disc in it, in plane strain: pulled."""
+    """A plate with a stiffer disc in it, in plane strain: pulled."""
     thickness, force = 2, 3000
     hole = Part.makeCylinder(5, thickness)
     box = Part.makeBox(20, 15, thickness)
@@ -111,7 +112,7 @@ class Pipeline(unittest.TestCase):
             analysis.close()
 
     def solve_both(self, case, order, load):
-        """With our mesh and with Gmsh's."""
+        """Solves with our mesh and with Gmsh's."""
         analysis = case.analysis
         size, fine_size = case.size * order, case.fine_size
         analysis.mesh(order, OUR_SIZE * size, OUR_SIZE * fine_size, case.critical)
@@ -127,13 +128,13 @@ class Pipeline(unittest.TestCase):
         return ours, gmsh
 
     def look_up(self, analysis):
-        """FEM's look-up finds just what the groups of the faces hold."""
+        """FEM's look-up finds exactly the elements of the groups of the faces."""
         fem_mesh = analysis.mesh_object.FemMesh
         shape = analysis.part.Shape
         groups = {fem_mesh.getGroupName(number): fem_mesh.getGroupElements(number) for number in fem_mesh.Groups}
         for number, face in enumerate(shape.Faces, 1):
             elements = groups.get(f"Face{number}")
-            if elements is None:  # it coincides with one of another solid, whose number it has
+            if elements is None:  # it coincides with a face of another solid, whose number the mesh has
                 self.assertGreater(len(shape.Solids), 1)
                 continue
             nodes = {node for element in elements for node in fem_mesh.getElementNodes(element)}
@@ -157,7 +158,7 @@ class Pipeline(unittest.TestCase):
         self.compare(two_solids)
 
     def test_first_order_is_too_stiff(self):
-        """As the panel says: a console of the default size that is bent."""
+        """Checks the panel's claim: a cantilever of the default size, bent."""
         length, width, height, force = 60, 10, 4, 100
         expected = force * length**3 / (3 * 210000 * width * height**3 / 12)  # mm
         analysis = Analysis(Part.makeBox(length, width, height))

@@ -1,5 +1,5 @@
-"""The sizes that are asked for as colours on the part: a button shows them, and all that ends them brings back the part.
-Run by run.py --gui."""
+"""The requested sizes as colours on the part: a button shows them, and everything that removes them restores
+the part. Run by run.py --gui."""
 
 import os
 import sys
@@ -14,7 +14,7 @@ from freecad.collarmesh_workbench import mesh_object, size_objects, size_preview
 
 
 def node():
-    """Of the colours; None where there are none."""
+    """Returns the node of the colours; None if there is none."""
     search = coin.SoSearchAction()
     search.setName(size_preview.NAME)
     search.apply(FreeCADGui.ActiveDocument.ActiveView.getSceneGraph())
@@ -22,7 +22,7 @@ def node():
 
 
 def darkness_near(place):
-    """The sum of red, green and blue at the corner nearest to a place."""
+    """Returns the sum of red, green and blue at the corner nearest to a place."""
     children = [node().getChild(i) for i in range(node().getNumChildren())]
     points = next(each for each in children if each.isOfType(coin.SoCoordinate3.getClassTypeId())).point.getValues()
     rgb = next(each for each in children if each.isOfType(coin.SoMaterial.getClassTypeId())).diffuseColor.getValues()

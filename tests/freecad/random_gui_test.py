@@ -1,8 +1,7 @@
-"""Random sequences of clicks, closes, undos and changes of the document: FreeCAD stays, and nothing raises. Run by
-run.py --gui.
-
-The environment variables COLLARMESH_SEQUENCES (how many) and COLLARMESH_SEED (of the first one; the next ones count on)
-repeat what was printed. `.ci/run --long` runs 200."""
+"""Random sequences of clicks, closes, undos and changes of the document: FreeCAD stays, and nothing raises.
+Run by run.py --gui.
+The environment variables COLLARMESH_SEQUENCES (their number) and COLLARMESH_SEED (seed of the first one; each
+further one adds 1) repeat a printed sequence. `.ci/run --long` runs 200."""
 
 import os
 import random
@@ -28,7 +27,8 @@ SIZES = ("4 mm", "2.5 mm", "7 mm", "0.4 mm", "0", "-1 mm", "", "3 mm + 1 mm", "n
 
 
 class Sequence:
-    """Steps are methods of a name without underscore; each does nothing where it makes no sense."""
+    """A sequence of steps. Methods whose names have no underscore are steps; each does nothing if it makes no
+    sense."""
 
     def __init__(self, seed):
         self.random = random.Random(seed)
@@ -50,7 +50,7 @@ class Sequence:
         await w.wait_until(lambda: w.find("panel") is None and w.find("size_panel") is None, "the panels' end", 5)
 
     def _any(self, condition):
-        """An object of the active document that the condition holds for."""
+        """Returns an object of the active document that meets the condition."""
         document = FreeCAD.ActiveDocument
         found = [each for each in document.Objects if condition(each)] if document else []
         return self.random.choice(found) if found else None
@@ -64,7 +64,7 @@ class Sequence:
             part.Mesh = self.random.choice((Mesh.createBox(10, 8, 6), Mesh.createSphere(5, 20)))
 
     async def faces_for_constraints(self):
-        """By the panel, or the menu; a constraint on some of them; or they go."""
+        """Makes them by the panel or the menu, puts a constraint on some of them, or removes them."""
         await self._click("constraint_faces")
         obj = self._any(lambda each: mesh_properties.is_ours(each) and constraint_faces.can_be_made(each))
         if obj is None:
@@ -83,7 +83,7 @@ class Sequence:
         return self._any(mesh_properties.is_ours)
 
     async def _click(self, *names):
-        """One of our buttons, if it is there and not grey."""
+        """Clicks one of our buttons, if it is there and enabled."""
         buttons = [w.find(name) for name in names]
         buttons = [each for each in buttons if each is not None and each.isVisible() and each.isEnabled()]
         if buttons:
@@ -104,7 +104,7 @@ class Sequence:
             await self.another_part()
 
     async def another_part(self):
-        """Solids that touch, or an open surface."""
+        """Makes solids that touch, or an open surface."""
         if FreeCAD.ActiveDocument:
             box = Part.makeBox(10, 10, 10)
             part = FreeCAD.ActiveDocument.addObject("Part::Feature", "Another")
@@ -131,7 +131,7 @@ class Sequence:
         FreeCADGui.Selection.clearSelection()
         if target is not None:
             FreeCADGui.Selection.addSelection(target)
-        await w.pause(300)  # until buttons are grey, or not
+        await w.pause(300)  # until buttons have become grey or not
         for button in w.buttons_of(command)[:1]:
             await w.click(button)
 

@@ -1,5 +1,5 @@
-"""What the program and buttons do while a document is recomputed, when FreeCAD's progress bar lets timers run: it waits. Run
-by run.py --gui."""
+"""The program and buttons wait while a document is being recomputed, when FreeCAD's progress bar lets timers
+run. Run by run.py --gui."""
 
 import os
 import sys
@@ -16,7 +16,7 @@ AFTER = 500  # milliseconds
 
 
 class SlowObject:
-    """Its recompute lets timers run until a condition holds, and some time after that."""
+    """An object whose recompute lets timers run until a condition holds, and some time after that."""
 
     def __init__(self, obj, condition):
         obj.Proxy = self
@@ -40,7 +40,7 @@ def slow_object(document, condition):
 
 
 async def a_run_ends(document, obj):
-    """Its mesh is put in place afterwards."""
+    """The mesh is put in place afterwards."""
     await w.open_panel(obj)
     w.child("CharacteristicLengthMax").setText("6 mm")
     await w.click(w.child("run"))
@@ -56,7 +56,7 @@ async def a_run_ends(document, obj):
 
 
 async def a_button_was_clicked(document, obj):
-    """Its object comes afterwards."""
+    """The object is made afterwards."""
     FreeCADGui.Selection.clearSelection()
     FreeCADGui.Selection.addSelection(obj)
     await w.wait_until(lambda: w.buttons_of("Collarmesh_SizeSphere"), "the button")

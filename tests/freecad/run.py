@@ -20,7 +20,7 @@ SECONDS = float(os.environ.get("COLLARMESH_TEST_SECONDS", 900))
 
 
 def command(script, gui):
-    """What runs a script in FreeCAD, None where that is not installed."""
+    """Returns the command that runs a script in FreeCAD, None if that is not installed."""
     names = ("freecad", "FreeCAD") if gui else ("freecadcmd", "FreeCADCmd")
     freecad = next(filter(None, map(shutil.which, names)), None)
     if freecad is None or (gui and shutil.which("xvfb-run") is None):
@@ -30,13 +30,13 @@ def command(script, gui):
 
 
 def environment(home, program, addon=SOURCES):
-    """A FreeCAD with this folder as home, and the add-on in it."""
+    """Returns the environment of a FreeCAD with this folder as home and the add-on in it."""
     mods = pathlib.Path(home) / "Mod"
     mods.mkdir()
     (mods / "collarmesh").symlink_to(addon)
     return dict(os.environ, FREECAD_USER_HOME=home, FREECAD_USER_DATA=home, COLLARMESH_PROGRAM=program,
                 COLLARMESH_TEST_RESULT=str(pathlib.Path(home) / "result"),
-                QTWEBENGINE_DISABLE_SANDBOX="1")  # else the start page ends FreeCAD when run by root; fmt: skip
+                QTWEBENGINE_DISABLE_SANDBOX="1")  # without this the start page ends FreeCAD when run by root; fmt: skip
 
 
 def main():
@@ -52,13 +52,13 @@ def main():
         variables = environment(home, program, addon)
         variables["COLLARMESH_TEST_ARGUMENT"] = sys.argv[-1] if "--" in sys.argv else ""
         code = subprocess.run(words, stdin=subprocess.DEVNULL, env=variables, timeout=SECONDS).returncode
-        if code == 0 and "--gui" in sys.argv:  # FreeCAD ends with 0 whatever happened in it
+        if code == 0 and "--gui" in sys.argv:  # FreeCAD exits with 0 whatever happened
             code = verdict(pathlib.Path(variables["COLLARMESH_TEST_RESULT"]))
         return code
 
 
 def verdict(result):
-    """What a script in the window leaves behind, as an exit code."""
+    """Returns the exit code for the result that a script in the window leaves behind."""
     text = result.read_text(encoding="utf-8") if result.exists() else "FreeCAD ended without a verdict"
     print(text)
     return 0 if text == "passed" else 1

@@ -1,4 +1,4 @@
-"""Run test cases inside FreeCAD and end it with their verdict."""
+"""Runs test cases inside FreeCAD and ends it with their result."""
 
 import os
 import sys
@@ -7,8 +7,8 @@ import unittest
 
 
 def run(*cases):
-    """FreeCAD imports a script, runs it again after an exception, and ends with 0 whatever happens: so this never
-    returns. The environment variable COLLARMESH_TEST_ONLY may name the only test method to run."""
+    """Runs the tests and never returns: FreeCAD imports a script, runs it again after an exception, and exits
+    with 0 in any case. The environment variable COLLARMESH_TEST_ONLY may name the only test method to run."""
     try:
         loader = unittest.defaultTestLoader
         loader.testMethodPrefix = os.environ.get("COLLARMESH_TEST_ONLY", "test")

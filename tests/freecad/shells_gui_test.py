@@ -33,7 +33,7 @@ class Study:
         FreeCADGui.ActiveDocument.ActiveView.viewIsometric()
 
     async def mesh_by_panel(self, size, expected, word, picture):
-        """What the panel tells before and after the run."""
+        """Checks the panel's texts before and after the run."""
         await w.open_panel(self.mesh)
         note = w.child("dimension_note")
         w.require(note.isVisible() and word in note.text(), note.text())

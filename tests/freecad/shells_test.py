@@ -26,7 +26,7 @@ def groups(fem_mesh):
 
 
 def angle_sheet():
-    """An L of sheet metal, bent from two flanges: its middle surface."""
+    """An L of sheet metal, as the middle surface of two flanges."""
     upright, foot = Part.makePlane(40, 60), Part.makePlane(40, 30)
     upright.rotate(Vector(0, 0, 0), Vector(1, 0, 0), 90)
     return Part.makeShell([upright, foot])
@@ -38,8 +38,8 @@ def gutter():
 
 
 def profile(offset):
-    """Two legs with a bend between them, at a distance from their inner side: foot, bend, upright."""
-    inner, radius = 4, 4 + offset  # of the bend
+    """Returns two legs with a bend between them, at a distance from their inner side: foot, bend, upright."""
+    inner, radius = 4, 4 + offset  # radii of the bend
     centre, slant = Vector(0, 0, 0), radius * math.sqrt(0.5)
     bend = Part.Arc(centre + Vector(0, 0, -radius), centre + Vector(0, -
                     slant, -slant), centre + Vector(0, -radius, 0)).toShape()
@@ -48,7 +48,7 @@ def profile(offset):
 
 
 def bracket(thickness):
-    """Of sheet metal, 40 mm wide, bent, with a hole in each leg: its middle surface, and the solid."""
+    """A bracket of sheet metal, 40 mm wide, bent, with a hole in each leg: its middle surface, and the solid."""
     width = Vector(40, 0, 0)
     middle = Part.makeShell([edge.extrude(width) for edge in profile(thickness / 2)])
     inner, outer = profile(0), profile(thickness)
@@ -169,7 +169,7 @@ class Thin(unittest.TestCase):
         analysis.close()
 
     def compare(self, shape, held, pulled, size, direction, axis, force=20):
-        """With Gmsh's mesh of the same analysis."""
+        """Compares with the same analysis on Gmsh's mesh."""
         analysis = Analysis(shape)
         analysis.add(ObjectsFem.makeElementGeometry2D(analysis.document, 2))
         analysis.clamp("Edge", held)
@@ -204,7 +204,7 @@ class Thin(unittest.TestCase):
         self.assertAlmostEqual(displacements[0] / displacements[1], 1, delta=0.05)
 
     def test_a_wire_is_beams(self):
-        """Two straight parts in line, a force across at the end."""
+        """Two straight parts in line, with a transverse force at the end."""
         length, side, force = 200, 10, 100
         points = [Vector(0, 0, 0), Vector(length / 4, 0, 0), Vector(length, 0, 0)]
         analysis = Analysis(Part.makePolygon(points), poisson_ratio=0)

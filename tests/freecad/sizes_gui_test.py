@@ -21,15 +21,15 @@ def view():
 
 
 def on_screen(place):
-    """A place in mm as a point of the 3D view."""
+    """Converts a place in mm to a point of the 3D view."""
     x, y = view().getPointOnScreen(place)
     width, height = view().getSize()
-    scale = view().graphicsView().width() / width  # of Qt's pixels
+    scale = view().graphicsView().width() / width  # in Qt's pixels
     return QtCore.QPoint(round(x * scale), round((height - 1 - y) * scale))
 
 
 async def wait_for_camera():
-    """It moves for a while after a change of the view."""
+    """Waits until the view rests: it moves for a while after a change."""
     seen = []
     while len(seen) < 4 or seen[-1] != seen[-4]:
         seen.append((on_screen(FreeCAD.Vector()), on_screen(FreeCAD.Vector(1, 2, 3)), view().getSize()))
@@ -37,7 +37,8 @@ async def wait_for_camera():
 
 
 async def drag(obj, name, by, steps=8):
-    """A handle's head with the left button; `name`: of a length, or of the axis along which it moves the object."""
+    """Drags a handle's head with the left button. `name`: of a length, or of the axis along which it moves
+    the object."""
     await wait_for_camera()
     handle = next(each for each in obj.ViewObject.Proxy.panel.handles.handles if each.name == name)
     turn = FreeCAD.Rotation(*handle.transform.rotation.getValue().getValue())
@@ -60,7 +61,7 @@ async def drag(obj, name, by, steps=8):
 
 
 def action(command):
-    """Is a command in a toolbar?"""
+    """Returns whether a command is in a toolbar."""
     return any(
         each.objectName() == command
         for bar in w.window.findChildren(QtGui.QToolBar)
@@ -69,7 +70,7 @@ def action(command):
 
 
 async def enter(name, text):
-    """Type into a field of the panel."""
+    """Types into a field of the panel."""
     w.child("size_" + name).setText(text)
     await w.pause(50)
 
@@ -79,7 +80,7 @@ def shown(name):
 
 
 async def press(button):
-    """A button below the panel."""
+    """Clicks a button below the panel."""
     def boxes():
         found = w.window.findChildren(QtGui.QDialogButtonBox)
         return [each for each in found if each.isVisible() and each.button(button)]
@@ -144,7 +145,7 @@ async def the_centre_moves(sphere):
 
 
 async def cancel_and_undo(document, obj):
-    """Creation and first edit are one step, later edits are others."""
+    """Creation and first edit are one undo step; later edits are further steps."""
     name = obj.MeshSizeList[0].Name
     await press(QtGui.QDialogButtonBox.Cancel)
     w.require(document.getObject(name) is None and obj.MeshSizeList == [], "cancel takes the new sphere back")
@@ -177,7 +178,7 @@ async def cancel_and_undo(document, obj):
 
 
 async def a_box_and_a_cylinder(document, part):
-    """The mesh object need not be selected: there is only one, or the part is."""
+    """The mesh object need not be selected if it is the only one, or if its part is selected."""
     FreeCADGui.Selection.clearSelection()
     await w.click_command("Collarmesh_SizeBox")
     await w.wait_until(lambda: w.find("size_panel") is not None, "the panel of the box")
@@ -219,7 +220,7 @@ async def a_box_and_a_cylinder(document, part):
 
 
 async def a_sphere_at_a_hole(document, part):
-    """It is on the axis, though boxes around curved faces are larger than these."""
+    """The middle of a hole is on its axis, although boxes around curved faces are larger than the faces."""
     hole = next(i for i, face in enumerate(part.Shape.Faces, 1) if type(face.Surface).__name__ == "Cylinder")
     before = {each.Name for each in document.Objects}
     FreeCADGui.Selection.clearSelection()
@@ -233,7 +234,7 @@ async def a_sphere_at_a_hole(document, part):
 
 
 async def transform_by_freecad(box):
-    """FreeCAD's own dragger, as "Transform" in the context menu opens it."""
+    """FreeCAD's own dragger, as opened by "Transform" in the context menu."""
     document = FreeCADGui.ActiveDocument
     document.setEdit(box.Name, 1)
     await w.pause(300)

@@ -15,11 +15,11 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import run_in_freecad  # noqa: E402
 
 SIZE, COARSE = 0.8, 5
-TOLERANCE = 0.15  # of a median edge length, relative to the size that was asked for
+TOLERANCE = 0.15  # tolerance of the median edge length, relative to the requested size
 
 
 def edges_of(fem_mesh):
-    """Ends of all edges, shape (n, 2, 3), mm."""
+    """Returns the ends of all edges, shape (n, 2, 3), mm."""
     nodes = {number: tuple(place) for number, place in fem_mesh.Nodes.items()}
     pairs = set()
     for element in fem_mesh.Volumes:
@@ -44,7 +44,7 @@ class Sizes(unittest.TestCase):
         FreeCAD.closeDocument(self.document.Name)
 
     def require_size(self, inside, far):
-        """The mesh has the size where `inside(points)` says so, and is coarse where `far` does."""
+        """Checks that the mesh has the size where `inside(points)` is true, and is coarse where `far` is."""
         mesh_object.remesh(self.obj)
         edges = edges_of(self.obj.FemMesh)
         both = inside(edges[:, 0]) & inside(edges[:, 1])
@@ -91,7 +91,7 @@ class Sizes(unittest.TestCase):
         )
 
     def test_distance_from_faces_and_edges(self):
-        """The numbers of FreeCAD's faces and edges are the program's."""
+        """The program's numbers of faces and edges are FreeCAD's."""
         for number, face in enumerate(self.part.Shape.Faces, 1):
             if face.CenterOfMass.x < 1e-6:
                 left = f"Face{number}"
@@ -160,7 +160,7 @@ class Sizes(unittest.TestCase):
         self.part.Shape = Part.Compound([Part.makeBox(10, 10, 10), Part.makeBox(2, 2, 2, FreeCAD.Vector(4, 4, 4))])
         size_objects.make(self.obj, "Sphere", SIZE)
         size = size_objects.make(self.obj, "Distance", SIZE)
-        size.References = [(self.part, ("Face8",))]  # of the inner box
+        size.References = [(self.part, ("Face8",))]  # a face of the inner box
         mesh_object.remesh(self.obj)
         said = "sizes.json: size field: sources[1].patches: no patches have the tag 8"
         self.assertIn("SizeDistance: the mesh has nothing of Face8",

@@ -1,4 +1,4 @@
-"""A mesh object of Gmsh or Netgen becomes ours and ours Gmsh's; export and statistics. Run by run.py."""
+"""Mesh objects of Gmsh and Netgen become ours and ours become Gmsh's; export and statistics. Run by run.py."""
 
 import os
 import sys
@@ -45,7 +45,7 @@ class WithPart(unittest.TestCase):
         FreeCAD.closeDocument(self.document.Name)
 
     def gmsh(self):
-        """With a refinement and a group, in the analysis."""
+        """Makes a Gmsh object with a refinement and a group, in the analysis."""
         obj = ObjectsFem.makeMeshGmsh(self.document, "FromGmsh")
         obj.Part = self.part
         obj.CharacteristicLengthMax, obj.CharacteristicLengthMin = 4, 0.5
@@ -134,7 +134,7 @@ class TakeOver(WithPart):
         self.assertEqual(again.FemMesh.VolumeCount, made_by_gmsh)
 
     def test_from_netgen(self):
-        """Debian's FreeCAD knows its object, but cannot run it."""
+        """Debian's FreeCAD has Netgen's object, but cannot run it."""
         old = ObjectsFem.makeMeshNetgen(self.document, "FromNetgen")
         old.Shape = self.part
         old.MaxSize, old.SecondOrder, old.Fineness = 3, True, "Fine"
@@ -143,7 +143,7 @@ class TakeOver(WithPart):
         self.assertEqual((new.CharacteristicLengthMax.Value, new.ElementOrder), (3, "2nd"))
         self.assertEqual(compatibility.meshed_object(new), self.part)
         self.assertAlmostEqual(new.Gradation, 0.2)
-        self.assertEqual(new.MeshSizeFromCurvature, 19)  # 3 to a radius
+        self.assertEqual(new.MeshSizeFromCurvature, 19)  # 3 elements per radius
         self.assertEqual(self.analysis.Group, [new])
         mesh_object.remesh(new)
 
@@ -152,12 +152,12 @@ class TakeOver(WithPart):
         old.Shape = self.part
         old.Fineness, old.GrowthRate, old.NbSegsPerRadius = "UserDefined", 0.4, 1
         new, _ = take_over.take_over(old)
-        self.assertEqual(new.CharacteristicLengthMax.Value, 0)  # Netgen's 1000 mm are no size
+        self.assertEqual(new.CharacteristicLengthMax.Value, 0)  # Netgen's default of 1000 mm means no size
         self.assertAlmostEqual(new.Gradation, 0.4)
         self.assertEqual(new.MeshSizeFromCurvature, 6)
 
     def test_netgen_of_freecad_1(self):
-        """A stand-in with the properties that it has there."""
+        """Uses a stand-in with the properties of the object there."""
         old = self.document.addObject("Fem::FemMeshObjectPython", "FromNetgen")
         for kind, name, value in (
             ("App::PropertyLink", "Shape", self.part), ("App::PropertyLength",
@@ -190,7 +190,7 @@ class TakeOver(WithPart):
 
 class TwoMeshes(WithPart):
     def test_in_one_analysis(self):
-        """Each has its own sizes, state and undo."""
+        """Each object has its own sizes, state and undo."""
         material = ObjectsFem.makeMaterialSolid(self.document, "Steel")
         self.analysis.addObject(material)
         first, second = (
@@ -218,7 +218,7 @@ class TwoMeshes(WithPart):
 
 class Undo(WithPart):
     def test_many_meshings(self):
-        """More than are kept: the last ones can be undone, those before stay as they are."""
+        """Makes more meshes than are kept: the last ones can be undone, earlier ones stay as they are."""
         obj = mesh_object.make(self.document, self.part)
         counts = []
         with mock.patch.object(mesh_undo, "KEPT", 3):
@@ -239,7 +239,7 @@ class Undo(WithPart):
         self.assertEqual(obj.FemMesh.VolumeCount, counts[-1])
 
     def test_a_cleared_mesh_stays_cleared(self):
-        """By "Clear FEM mesh" of FreeCAD's menu, where undo of something else follows."""
+        """Clears the mesh by "Clear FEM mesh" in FreeCAD's menu, and then undoes something else."""
         obj = mesh_object.make(self.document, self.part)
         obj.CharacteristicLengthMax = 8
         mesh_object.remesh(obj)
@@ -292,7 +292,7 @@ class Files(WithPart):
                     self.assertTrue(word in text, f"{extension}: {word}")
                 self.assertGreater(len(text), 1000)
             with open(os.path.join(folder, "plate.stl"), "rb") as file:
-                triangles = (len(file.read()) - 84) / 50  # binary: a head, then 50 bytes for each
+                triangles = (len(file.read()) - 84) / 50  # binary: a header, then 50 bytes per triangle
             self.assertEqual(triangles, self.obj.FemMesh.FaceCount)
 
     def test_what_cannot_be_exported_is_told(self):

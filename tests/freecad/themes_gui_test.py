@@ -1,5 +1,5 @@
-"""The panel with FreeCAD's themes, dark and light ones: nothing is cut, and colours of words can be read. Run by run.py --gui
-with LC_ALL set to de_DE, whose words are longer."""
+"""The panel with FreeCAD's dark and light themes: nothing is cut off, and coloured words are readable. Run by
+run.py --gui with LC_ALL set to de_DE, whose words are longer."""
 
 import os
 import pathlib
@@ -15,16 +15,16 @@ import window as w  # noqa: E402
 from freecad.collarmesh_workbench import colours, mesh_object  # noqa: E402
 
 THEMES = ("Behave-dark", "Dark-blue", "Darker-orange", "ProDark", "Light-green")
-READABLE = 4.5  # the contrast that accessibility guidelines ask of text
+READABLE = 4.5  # the contrast that accessibility guidelines require of text
 
 
 def folder():
-    """Of FreeCAD's style sheets."""
+    """Returns the folder of FreeCAD's style sheets."""
     return pathlib.Path(FreeCAD.getResourceDir()) / "Gui" / "Stylesheets"
 
 
 def luminance(colour):
-    """As accessibility guidelines define it."""
+    """Returns the luminance as accessibility guidelines define it."""
     parts = [each / 12.92 if each <= 0.03928 else ((each + 0.055) / 1.055) ** 2.4 for each in colour.getRgbF()[:3]]
     return 0.2126 * parts[0] + 0.7152 * parts[1] + 0.0722 * parts[2]
 
@@ -35,7 +35,7 @@ def contrast(one, other):
 
 
 def background(widget):
-    """The colour of most of its pixels."""
+    """Returns the colour of most of a widget's pixels."""
     image = widget.grab().toImage()
     seen = [image.pixel(x, y) for x in range(0, image.width(), 3) for y in range(0, image.height(), 3)]
     return QtGui.QColor(max(set(seen), key=seen.count))

@@ -1,5 +1,5 @@
-"""Every text of the add-on has a German translation, and the compiled files have what the sources of the translations
-say. Run by run.py."""
+"""Every text of the add-on has a German translation, and the compiled files agree with their sources. Run by
+run.py."""
 
 import pathlib
 import string
@@ -18,7 +18,7 @@ FILES = sorted(TRANSLATIONS.glob("collarmesh_*.ts"))
 
 
 def fields(text):
-    """The names in braces."""
+    """Returns the names in braces."""
     return sorted(name for _, name, _, _ in string.Formatter().parse(text) if name is not None)
 
 

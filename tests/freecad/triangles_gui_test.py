@@ -20,7 +20,7 @@ FORCE = 200
 
 
 async def mesh_and_faces(part, obj):
-    """By the panel's button; returns the object with the faces."""
+    """Makes the faces by the panel's button; returns the object with the faces."""
     await w.open_panel(obj)
     w.require(not w.child("constraint_faces").isVisible(), "faces of a mesh that is not there")
     await w.run_mesher("5 mm")
@@ -40,7 +40,7 @@ async def mesh_and_faces(part, obj):
 
 
 async def click_without_mesh(obj):
-    """Faces of a mesh that goes while the panel is open."""
+    """Asks for faces of a mesh that disappears while the panel is open."""
     await w.open_panel(obj)
     obj.FemMesh = Fem.FemMesh()
     await w.click(w.child("constraint_faces"))
@@ -49,13 +49,13 @@ async def click_without_mesh(obj):
 
 
 async def constrain(command, faces, face, picture):
-    """On a face, by FEM's own button and panel; returns the constraint."""
+    """Puts a constraint on a face by FEM's own button and panel; returns the constraint."""
     before = set(faces.Document.Objects)
     FreeCADGui.Selection.clearSelection()
     FreeCADGui.runCommand(command)
     await w.wait_until(lambda: any(each.isVisible() for each in adding()), "FEM's panel")
     await w.click(next(each for each in adding() if each.isVisible()))
-    FreeCADGui.Selection.addSelection(faces, face)  # FEM's panel takes what is selected then
+    FreeCADGui.Selection.addSelection(faces, face)  # FEM's panel takes what is selected when it opens
     await w.pause(100)
     await w.screenshot(picture)
     boxes = [box for box in w.window.findChildren(QtGui.QDialogButtonBox) if box.isVisible()]

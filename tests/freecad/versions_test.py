@@ -1,4 +1,4 @@
-"""What differs in FreeCAD 0.21 and 1.x, with stand-ins for what those have. Run by run.py."""
+"""Differences of FreeCAD 0.21 and 1.x, with stand-ins for their features. Run by run.py."""
 
 import os
 import sys
@@ -25,7 +25,8 @@ class Versions(unittest.TestCase):
         FreeCAD.closeDocument(self.document.Name)
 
     def base_of_freecad_1(self, document, name):
-        """Its mesh objects link the part by `Shape`, and regions are called refinements."""
+        """Returns a stand-in for FreeCAD 1's base: its mesh objects link the part by `Shape`, and regions are
+        called refinements."""
         obj = document.addObject("Fem::FemMeshObjectPython", name)
         obj.addProperty("App::PropertyLink", "Shape", "FEM Mesh")
         return obj
@@ -44,7 +45,7 @@ class Versions(unittest.TestCase):
         self.assertTrue(up_to_date.is_out_of_date(obj))
 
     def test_refinements(self):
-        """The function of FreeCAD 1.x, where it is the only one."""
+        """FreeCAD 1.x has only its own function for this."""
 
         def make(document, base, element_length=0.0, name="MeshRefinement"):
             made.append(document.addObject("App::FeaturePython", name))
@@ -65,7 +66,8 @@ class Versions(unittest.TestCase):
         self.assertEqual(mesh_properties.settings_of(obj).face_sizes, {1: 0.7})
 
     def test_buttons(self):
-        """FreeCAD 1.x asks for the places when it builds its bars, and inserts one after the other."""
+        """FreeCAD 1.x asks for the places when it builds its bars, and inserts the commands one after the
+        other."""
 
         class Gui:
             manipulators = []
@@ -83,7 +85,7 @@ class Versions(unittest.TestCase):
         for changes in (manipulator.modifyMenuBar(), manipulator.modifyToolBars()):
             for change in changes:
                 kind = next(name for name in bars if name in change)
-                at = bars[kind].index(change[kind])  # in a toolbar before that, in a menu as "after" says
+                at = bars[kind].index(change[kind])  # in a toolbar before its place, in a menu as "after" says
                 bars[kind].insert(at + ("after" in change), change["insert"])
         self.assertEqual(bars["menuItem"], ["Theirs", "First", "Second", "Others", "Third"])
 
@@ -113,7 +115,7 @@ class Versions(unittest.TestCase):
         self.assertEqual(gmsh.CharacteristicLengthMax.Value, 3)
 
     def refinement(self, kind, **properties):
-        """One of FreeCAD 1.1."""
+        """Returns a refinement of FreeCAD 1.1."""
         obj = self.document.addObject("App::FeaturePython", kind)
         obj.Proxy = types.SimpleNamespace(Type=f"Fem::{kind}")
         types_of = {"ShapeType": "App::PropertyString", "References": "App::PropertyLinkSubList"}
@@ -172,13 +174,13 @@ class Versions(unittest.TestCase):
         self.assertNotIn(f"{group.Name}_Faces", [obj.FemMesh.getGroupName(n) for n in obj.FemMesh.Groups])
 
     def test_proxies_save_nothing(self):
-        """0.20 asks by the first pair, later versions by the second."""
+        """FreeCAD 0.20 calls the first pair of methods, later versions the second."""
         proxy = mesh_object.make(self.document, self.part).Proxy
         self.assertEqual((proxy.__getstate__(), proxy.dumps()), (None, None))
         self.assertEqual((proxy.__setstate__(None), proxy.loads(None)), (None, None))
 
     def test_context_menus_of_other_meshers(self):
-        """Netgen's view provider is in Python from FreeCAD 1.0 on; one that has a menu keeps it."""
+        """Netgen's view provider is in Python from FreeCAD 1.0 on; one that has its own menu keeps it."""
         seen = []
 
         class VPMeshNetgen:
@@ -206,7 +208,7 @@ class Versions(unittest.TestCase):
             compatibility.extend_context_menus(None)
 
     def test_forces(self):
-        """A number in N, later a quantity."""
+        """A force is a number in N, in later versions a quantity."""
         self.assertEqual(compatibility.force_of(types.SimpleNamespace(Force=5.0)), 5)
         force = compatibility.force_of(types.SimpleNamespace(Force=FreeCAD.Units.Quantity("5 kN")))
         self.assertEqual(force.Value, 5000)

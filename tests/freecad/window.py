@@ -1,7 +1,7 @@
-"""What tests do in FreeCAD's window: find widgets, click them, wait, look. For scripts run by run.py --gui.
-
-A test is a coroutine. Whatever waits or clicks is awaited, and gives control back to Qt's main loop meanwhile, as it is
-between the clicks of a person: only there Qt deletes what was closed."""
+"""Actions of tests in FreeCAD's window: finding and clicking widgets, waiting, taking pictures. For scripts
+run by run.py --gui.
+A test is a coroutine. Everything that waits or clicks is awaited, so that control returns to Qt's main loop
+meanwhile, as between the clicks of a user: only there does Qt delete what was closed."""
 
 import os
 import pathlib
@@ -15,12 +15,12 @@ import Part
 from PySide import QtCore, QtGui
 
 PICTURES = os.environ.get("COLLARMESH_TEST_ARGUMENT", "")  # a folder for screenshots
-EVERY = 20  # milliseconds between two looks at what a test waits for
+EVERY = 20  # milliseconds between two checks of a condition
 window = FreeCADGui.getMainWindow()
-WIDE = (0, 0, 2600, 1000)  # enough for all buttons of FEM
+WIDE = (0, 0, 2600, 1000)  # wide enough for all buttons of FEM
 PICTURE = (1400, 980)  # pixels
 window.setGeometry(*WIDE)
-if PICTURES:  # on white
+if PICTURES:  # pictures have a white background
     view_settings = FreeCAD.ParamGet("User parameter:BaseApp/Preferences/View")
     for name in ("Gradient", "RadialGradient"):
         view_settings.SetBool(name, False)
@@ -29,7 +29,7 @@ if PICTURES:  # on white
 
 
 class turn:
-    """`await turn()` goes on from the main loop, after some milliseconds."""
+    """Awaiting a `turn()` continues from the main loop after some milliseconds."""
 
     def __init__(self, milliseconds=0):
         self.milliseconds = milliseconds
@@ -39,10 +39,10 @@ class turn:
 
 
 def follow(coroutine, ended):
-    """Run a coroutine from the main loop; `ended` gets what it raised, or None."""
+    """Runs a coroutine from the main loop. `ended` gets the exception that it raised, or None."""
 
     def step():
-        if any(document.Recomputing for document in FreeCAD.listDocuments().values()):  # timers run, clicks do not
+        if any(document.Recomputing for document in FreeCAD.listDocuments().values()):  # timers run then, but no clicks
             QtCore.QTimer.singleShot(EVERY, step)
             return
         try:
@@ -63,7 +63,7 @@ def require(condition, what):
 
 
 def find(name):
-    """A widget of ours, None where there is none."""
+    """Returns a widget of ours, None if there is none."""
     return window.findChild(QtGui.QWidget, "collarmesh_" + name)
 
 
@@ -73,7 +73,7 @@ def child(name):
 
 
 async def wait_until(condition, what, seconds=60):
-    """Lets FreeCAD go on until the condition holds."""
+    """Lets FreeCAD run until the condition holds."""
     clock = QtCore.QElapsedTimer()
     clock.start()
     while not condition():
@@ -86,14 +86,14 @@ async def pause(milliseconds):
 
 
 async def click(button):
-    """As a person can: when it shows and is not grey."""
+    """Clicks a button as a user can: only if it is visible and enabled."""
     await wait_until(lambda: button.isVisible() and button.isEnabled(), f"the button {button.objectName()}", 10)
     button.click()
     await turn()
 
 
 async def click_at(widget, place):
-    """The left button of the mouse at a QPoint of the widget."""
+    """Clicks the left mouse button at a QPoint of the widget."""
     for kind, buttons in ((QtCore.QEvent.MouseButtonPress, QtCore.Qt.LeftButton),
                           (QtCore.QEvent.MouseButtonRelease, QtCore.Qt.NoButton)):
         event = QtGui.QMouseEvent(kind, QtCore.QPointF(place), QtCore.Qt.LeftButton, buttons, QtCore.Qt.NoModifier)
@@ -102,7 +102,7 @@ async def click_at(widget, place):
 
 
 async def click_item(item):
-    """A row of a tree."""
+    """Clicks a row of a tree."""
     tree = item.treeWidget()
     tree.scrollToItem(item)
     await turn()
@@ -110,31 +110,31 @@ async def click_item(item):
 
 
 async def click_command(command):
-    """The command's button in the toolbar, which comes a moment after its workbench."""
+    """Clicks the command's button in the toolbar, which appears a moment after its workbench."""
     await wait_until(lambda: buttons_of(command), f"the button of {command}")
     await click(buttons_of(command)[0])
 
 
 def buttons_of(command, grey=False):
-    """Those that a person can click; with `grey` those that are seen."""
+    """Returns the command's enabled buttons; with `grey`, all visible ones."""
     return [button for bar in window.findChildren(QtGui.QToolBar) for button in bar.findChildren(QtGui.QToolButton)
             if button.isVisible() and (grey or button.isEnabled()) and button.defaultAction() is not None
             and button.defaultAction().objectName() == command]
 
 
 def rows(tree):
-    """All rows of a tree with one level of headings: {heading: [item]}."""
+    """Returns all rows of a tree with one level of headings: {heading: [item]}."""
     tops = [tree.topLevelItem(i) for i in range(tree.topLevelItemCount())]
     return {top.text(0): [top.child(i) for i in range(top.childCount())] for top in tops}
 
 
 def column_of(tree, column):
-    """The texts of the rows at the top."""
+    """Returns the texts of the rows at the top level."""
     return [tree.topLevelItem(i).text(column) for i in range(tree.topLevelItemCount())]
 
 
 def said():
-    """All that the panel tells of the last run."""
+    """Returns everything that the panel says about the last run."""
     names = ("out_of_date", "message", "counts", "guarantees_fold", "guarantees")
     shown = [child(name).text() for name in names if child(name).isVisible()]
     for heading, items in rows(child("places")).items():
@@ -143,7 +143,7 @@ def said():
 
 
 async def run_mesher(size):
-    """Enter a size, click "Mesh" and wait for the end; returns what the panel tells."""
+    """Enters a size, clicks "Mesh" and waits for the end; returns the panel's text."""
     child("CharacteristicLengthMax").setText(size)
     await click(child("run"))
     await wait_until(lambda: child("run").isEnabled(), "the end of the run")
@@ -156,7 +156,7 @@ async def open_panel(obj):
 
 
 async def close_panel(button=QtGui.QDialogButtonBox.Ok):
-    """By a button below or above it."""
+    """Closes the panel by a button below or above it."""
     boxes = [box for box in window.findChildren(QtGui.QDialogButtonBox) if box.isVisible()]
     require(len(boxes) == 1, f"{len(boxes)} panels")
     await click(boxes[0].button(button))
@@ -164,7 +164,7 @@ async def close_panel(button=QtGui.QDialogButtonBox.Ok):
 
 
 async def screenshot(name, fit=True, size=PICTURE):
-    """A picture of the window, made small for it: `size` in pixels; `fit`: with all of the document in view."""
+    """Saves a picture of the window, made small for it. `size` in pixels; `fit`: shows all of the document."""
     if not PICTURES:
         return
     if find("presets") is not None and child("run").isEnabled():
@@ -175,7 +175,7 @@ async def screenshot(name, fit=True, size=PICTURE):
 
 
 async def make_small(fit=True, size=PICTURE):
-    """The window, as pictures show it."""
+    """Returns the window in the size of pictures."""
     for dock in window.findChildren(QtGui.QDockWidget):
         if "Report" in dock.objectName():
             dock.hide()
@@ -189,7 +189,7 @@ async def make_small(fit=True, size=PICTURE):
 
 
 def save_screen(name, size=PICTURE):
-    """All that shows where the small window is."""
+    """Saves everything visible in the area of the small window."""
     QtGui.QApplication.primaryScreen().grabWindow(0).copy(0, 0, *size).save(os.path.join(PICTURES, name))
 
 
@@ -198,12 +198,12 @@ def plate():
 
 
 def run_test(test):
-    """A moment after FreeCAD has started. Then FreeCAD ends as by its button; run.py reads the verdict, and sees when
-    FreeCAD dies before or after that."""
+    """Runs the test a moment after FreeCAD has started. Then ends FreeCAD as its button does. run.py reads
+    the result, and notices if FreeCAD dies before or after that."""
     errors = []
-    sys.excepthook = lambda *error: errors.append("".join(traceback.format_exception(*error)))  # in Qt's slots, too
+    sys.excepthook = lambda *error: errors.append("".join(traceback.format_exception(*error)))  # in slots, too
     warnings.simplefilter("always", RuntimeWarning)
-    warnings.showwarning = lambda message, *_: errors.append(str(message))  # a coroutine that nobody awaits
+    warnings.showwarning = lambda message, *_: errors.append(str(message))  # reports coroutines that nobody awaits
 
     def ended(error):
         told = "".join(traceback.format_exception(type(error), error,

@@ -1,6 +1,7 @@
-"""Random complexes with what is known of them: their regions' volumes by another way, and how a run may end.
-
-Coordinates are on coarse grids, so that degeneracies are frequent: facets that touch, overlap, lie in one plane.
+"""Random complexes with their known properties: the volumes of regions, computed in another way, and the ways
+in which a run may end.
+Coordinates are on coarse grids, so that degeneracies are frequent: facets that touch, overlap, or lie in one
+plane.
 """
 
 import itertools
@@ -16,7 +17,7 @@ def box(low, high):
 
 
 def prism(corners, low, high):
-    """Over a polygon in the plane."""
+    """Returns the prism over a polygon in the plane."""
     n = len(corners)
     points = [(x, y, low) for x, y in corners] + [(x, y, high) for x, y in corners]
     return points, [tuple(reversed(range(n))), tuple(range(n, 2 * n)),
@@ -41,14 +42,14 @@ def volume_of(points, faces):
 
 
 def area_of(points, faces):
-    """An upper bound."""
+    """Returns an upper bound on the area."""
     return sum(math.dist(points[f[0]], points[f[i]]) * math.dist(points[f[i]], points[f[i + 1]])
                for f in faces for i in range(1, len(f) - 1)) / 2
 
 
 class Complex:
-    """Points, facets and, where they are known, the sorted volumes of the regions. `rounding` bounds what rounding the points
-    changes of one."""
+    """Points, facets and, if known, the sorted volumes of the regions. `rounding` bounds the change of a
+    volume by rounding of the points."""
 
     def __init__(self, points, faces, volumes, name, rounding=0.0):
         self.points, self.faces, self.volumes, self.name = list(points), list(faces), volumes, name
@@ -74,7 +75,7 @@ def joined(bodies):
 
 
 def separate_bodies(random_):
-    """Boxes, prisms and tets in cells of a grid that are apart from each other."""
+    """Boxes, prisms and tets in cells of a grid, apart from each other."""
     cells = random_.sample(list(itertools.product(range(3), repeat=3)), random_.randint(1, 4))
     bodies = []
     for cell in cells:
@@ -93,7 +94,8 @@ def separate_bodies(random_):
 
 
 def grid_of_boxes(random_):
-    """Neighbouring cells of a grid: each facet once, cells with a common facet are regions with an interface."""
+    """Neighbouring cells of a grid. Each facet occurs once; cells with a common facet are regions with an
+    interface."""
     steps = [[0.0, *itertools.accumulate(random_.choice([0.25, 1.0, 2.0]) for _ in range(n))]
              for n in (random_.randint(1, 3), random_.randint(1, 3), random_.randint(1, 2))]
     cells = [c for c in itertools.product(*(range(len(s) - 1) for s in steps))]
@@ -119,12 +121,13 @@ def grid_of_boxes(random_):
 
 
 def touches_in_an_edge(chosen):
-    """What cells that are not chosen enclose, or share a corner only with, is not told by volumes of cells."""
+    """Returns whether chosen cells enclose other cells, or share only an edge or corner: then volumes of
+    cells do not tell the volumes of regions."""
     return any(c not in chosen for c in itertools.product(*(range(min(v), max(v) + 1) for v in zip(*chosen))))
 
 
 def nested(random_):
-    """A box in a box: a cavity when it is turned, else a region."""
+    """A box in a box: a cavity if it is reversed, else a region."""
     size = random_.randint(3, 8)
     low = [random_.randint(1, size - 2) for _ in range(3)]
     high = [random_.randint(l + 1, size - 1) for l in low]
@@ -138,7 +141,8 @@ def nested(random_):
 
 
 def soup(random_):
-    """Bodies that overlap or touch, some facets missing or doubled: no volume is known, but it has to end well."""
+    """Bodies that overlap or touch, with some facets missing or doubled. No volume is known, but the run must
+    end properly."""
     bodies = []
     for _ in range(random_.randint(2, 4)):
         offset = [random_.choice([0, 0.5, 1, 2, 3]) for _ in range(3)]
@@ -207,7 +211,8 @@ def rounded(made, _):
 
 
 def some_turned(made, random_):
-    """Neighbours say how facets are meant; of what is nested, turning says more."""
+    """Returns whether reversed facets keep their meaning: neighbours tell the right orientation, but nested
+    bodies depend on it."""
     if made.name not in ("separate", "grid"):
         return made
     faces = list(made.faces)

@@ -1,5 +1,5 @@
-// Any bytes give a mesh whose indices are in range, or a ReadError, in memory proportional to their number.
-// A tetrahedral mesh that was read can be written and read again. FUZZED_FORMAT is the format; tests/fuzz/run
+// Any bytes give a mesh with indices in range, or a ReadError, in memory proportional to their number. A
+// tetrahedral mesh that was read can be written and read again. FUZZED_FORMAT is the format; tests/fuzz/run
 // limits the time.
 #include <unistd.h>
 
@@ -38,8 +38,8 @@ void require(bool holds, std::string_view what) {
   std::abort();
 }
 
-/// What a reader may allocate for a file: two characters and a line end can be a value of 8 bytes that is
-/// held in some lists at a time.
+/// Returns the memory that a reader may allocate for a file: two characters and a line end may become a value
+/// of 8 bytes that is in several lists at once.
 std::size_t allowed_memory(std::size_t file_bytes) {
   constexpr std::size_t fixed = std::size_t{1} << 20, per_byte = 256;
   return fixed + per_byte * file_bytes;
@@ -87,7 +87,7 @@ void check(const TetMesh& mesh) {
             "mid nodes of all cells");
 }
 
-/// How many different faces are sides of tets.
+/// Returns the number of different faces that are sides of tets.
 std::size_t sides_among_faces(const TetMesh& mesh) {
   const auto sorted = [](std::array<Index, 3> corners) {
     std::sort(corners.begin(), corners.end());
@@ -101,7 +101,7 @@ std::size_t sides_among_faces(const TetMesh& mesh) {
   return sides.size();
 }
 
-/// Errors are faults here. `.inp` has places for the sides of tets, not for other faces and edges.
+/// Any error is a fault here. `.inp` can store the sides of tets, but no other faces and edges.
 void check_round_trip(const TetMesh& mesh, const std::string& path) {
   collarmesh::io::write_tet_mesh(path, mesh, format);
   const TetMesh again = collarmesh::io::read_tet_mesh(path, format);
@@ -115,7 +115,7 @@ void check_round_trip(const TetMesh& mesh, const std::string& path) {
   require(again.edges.size() == (sides_only ? 0 : mesh.edges.size()), "the edges after writing and reading");
 }
 
-/// Nothing if it throws the error that is documented.
+/// Returns the result of `read`; nothing if it throws the documented error.
 template <class Read>
 auto read_within(std::size_t file_bytes, Read read) -> std::optional<decltype(read())> {
   const collarmesh::testing::MemoryLimit limit(allowed_memory(file_bytes));
@@ -146,7 +146,7 @@ void read_and_check(const std::string& path, std::size_t size) {
 /// TetGen's mesh is several files; in an input they come one after the other with lines of "@" between them.
 constexpr std::array<std::string_view, 4> tetgen_extensions{".ele", ".node", ".face", ".edge"};
 
-/// What the reader is given: files that are removed at the end.
+/// The files that the reader gets; they are removed at the end.
 class InputFiles {
  public:
   InputFiles()

@@ -11,8 +11,8 @@
 
 namespace collarmesh::testing {
 
-/// Aborts, in the allocation that is too much, when more than `bytes` are allocated at a time while it
-/// lives. One at a time. Needs a sanitizer's allocator.
+/// Aborts if more than `bytes` are allocated at a time during its lifetime, in the allocation that exceeds
+/// them. Only one object may exist at a time. Needs a sanitizer's allocator.
 class MemoryLimit {
  public:
   explicit MemoryLimit(std::size_t bytes) {
@@ -35,7 +35,7 @@ class MemoryLimit {
     constexpr std::string_view message = "More memory than the size of the input allows.\n";
     if (write(STDERR_FILENO, message.data(), message.size()) >= 0) std::abort();
   }
-  /// What was allocated before makes `live_` smaller: nothing that matters here.
+  /// Freeing earlier allocations makes `live_` smaller, which does not matter here.
   static void on_free(const volatile void* memory) {
     live_ -= static_cast<std::int64_t>(__sanitizer_get_allocated_size(const_cast<const void*>(memory)));
   }

@@ -57,7 +57,7 @@ class Trial:
     def fault(self, codes):
         if self.code < 0 or self.code > 8 or self.code == 1:
             return f"exit {self.code}"
-        if self.seconds > max(1.1 * TIME_LIMIT, TIME_LIMIT + 1) + 1:  # the machine may be busy
+        if self.seconds > max(1.1 * TIME_LIMIT, TIME_LIMIT + 1) + 1:  # because the machine may be busy
             return f"took {self.seconds:.1f} s with a limit of {TIME_LIMIT} s"
         return None if self.code in codes else f"exit {self.code}, expected one of {sorted(codes)}"
 
@@ -86,7 +86,7 @@ def try_complex(folder, seed):
     path = folder / "in.off"
     path.write_text(made.off())
     size = random_.choice([[], [], ["--size", "1"], ["--coarsen", "off"], ["--order", "2"], ["--improve", "0"]])
-    exact = ["--feature-angle", "0"]  # else flat edges are smooth ones, and volumes those within the distance
+    exact = ["--feature-angle", "0"]  # otherwise flat edges are smooth, and volumes are right only within the distance
     run = mesh(folder, path, *size, *exact)
     valid = made.volumes is not None
     fault = run.fault({0, 5} if valid else REFUSALS | {0})
@@ -101,7 +101,7 @@ def try_complex(folder, seed):
 
 def mutate(data, random_):
     data = bytearray(data)
-    numbers_only = random_.random() < 0.5  # most else is refused by the readers
+    numbers_only = random_.random() < 0.5  # because readers refuse most other changes
     for _ in range(random_.choice([1, 1, 2, 5, 20])):
         at = random_.randrange(len(data))
         kind = 4 if numbers_only else random_.randrange(5)
@@ -161,7 +161,7 @@ def seeds_of_cad():
 
 
 def seeds_of_files(folder):
-    """One of each format, of the samples."""
+    """Returns a sample file of each format."""
     models = SOURCES / "resources" / "models"
     for name in ("box.off", "two_boxes.poly", "bracket.off"):
         for suffix in (".vtu", ".vtk", ".msh", ".mesh", ".inp", ".unv", ".ele", ".off", ".obj", ".stl", ".ply", ".poly", ".smesh"):

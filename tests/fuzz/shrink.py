@@ -28,7 +28,8 @@ def write_off(path, points, facets):
 
 
 def shrunk(facets, is_same):
-    """Leave out ever smaller parts (Zeller and Hildebrandt: Simplifying and isolating failure-inducing input, 2002)."""
+    """Leaves out ever smaller parts (Zeller and Hildebrandt: Simplifying and isolating failure-inducing
+    input, 2002)."""
     size = max(len(facets) // 2, 1)
     while True:
         before = len(facets)

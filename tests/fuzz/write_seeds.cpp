@@ -23,7 +23,7 @@ using collarmesh::PolygonSoup;
 using collarmesh::TetMesh;
 namespace io = collarmesh::io;
 
-/// The boundary; with the interface and what else complexes have if `all`.
+/// Returns the boundary; with `all`, also the interface and everything else that complexes have.
 PolygonSoup surface_of(const TetMesh& mesh, bool all) {
   PolygonSoup soup;
   soup.points = mesh.points;
@@ -42,7 +42,7 @@ std::string content_of(const std::filesystem::path& path) {
   return std::move(content).str();
 }
 
-/// In one file, as fuzz_reader.cpp takes it apart.
+/// Joins the files of a TetGen mesh into one, in the form that fuzz_reader.cpp splits.
 void join_tetgen_files(std::filesystem::path path) {
   std::string joined = content_of(path);
   for (const char* extension : {".node", ".face", ".edge"}) {

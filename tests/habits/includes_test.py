@@ -13,7 +13,7 @@ PARTS = ("mesher/cli", "mesher/files", "mesher/process", "mesher/report", "meshe
 
 
 def allowed(root):
-    """The rows of the table: a folder, and the folders whose headers it may include."""
+    """Returns the rows of the table: each folder, and the folders whose headers it may include."""
     page = (root / "mesher" / "doc" / "architecture.md").read_text()
     section = re.search(r"^## Who includes whom\n(.*?)(?=^## |\Z)", page, re.M | re.S)
     if not section:
@@ -23,14 +23,14 @@ def allowed(root):
 
 
 def folder_of(path):
-    """The folder that a source belongs to, as the table names it; None for those that it leaves out."""
+    """Returns the folder of a source, as the table names it; None for folders that the table leaves out."""
     if path.parts[:2] == ("mesher", "src"):
         return path.parts[2]
     return next((part for part in PARTS if path.as_posix().startswith(part + "/")), None)
 
 
 def target_of(root, source, name):
-    """The folder of an included header; None for headers of other projects."""
+    """Returns the folder of an included header; None for headers of other projects."""
     if name.startswith("collarmesh/"):
         return "mesher/include"
     for folder in (root / source.parent, root / "mesher" / "src", root / "mesher", root / "mesher" / "cli",
@@ -41,7 +41,7 @@ def target_of(root, source, name):
 
 
 def arrows(root):
-    """Every include between two folders: (from, to, source)."""
+    """Returns every include between two folders: (from, to, source)."""
     for top in ("mesher", "openmesh_io", "freecad_workbench"):
         for path in sorted((root / top).rglob("*")):
             source = path.relative_to(root)

@@ -38,14 +38,14 @@ def mesh(model, path, *arguments):
 
 
 def section(text, keyword):
-    """The data lines of an Abaqus keyword, as lists of numbers."""
+    """Returns the data lines of an Abaqus keyword, as lists of numbers."""
     lines = text.split(f"\n*{keyword}", 1)[1].split("\n*", 1)[0].splitlines()[1:]
     return [[float(word) for word in line.split(",") if word.strip()] for line in lines if line.strip()]
 
 
 def with_calculix(folder):
-    """A body warmed up everywhere and held so that it may expand: the displacement is linear, which curved
-    isoparametric elements hold exactly; CalculiX refuses elements whose Jacobian is not positive."""
+    """Warms a body evenly and holds it so that it may expand. The displacement is linear, which curved
+    isoparametric elements represent exactly; CalculiX rejects elements whose Jacobian is not positive."""
     ccx = shutil.which("ccx")
     if ccx is None:
         skip("calculix-ccx")
@@ -58,7 +58,7 @@ def with_calculix(folder):
         numbers, places = np.array(list(nodes)), np.array(list(nodes.values()))
         origin = numbers[np.lexsort(places.T)[0]]
         away = places - nodes[origin]
-        # Three nodes that span a plane hold the body; the exact displacement is given there.
+        # Three nodes that span a plane hold the body, at the exact displacement.
         second = np.argmax(np.linalg.norm(away, axis=1))
         third = np.argmax(np.linalg.norm(np.cross(away, away[second]), axis=1))
         held = [origin, numbers[second], numbers[third]]
@@ -83,7 +83,7 @@ def with_calculix(folder):
 
 
 def with_gmsh(folder):
-    """Gmsh's own bounds of the Jacobian."""
+    """Checks by Gmsh's own bounds of the Jacobian."""
     gmsh = shutil.which("gmsh")
     if gmsh is None:
         skip("gmsh")
@@ -100,7 +100,7 @@ def with_gmsh(folder):
 
 
 def volume_within(path):
-    """Of the closed surface in an .off file of triangles."""
+    """Returns the volume of the closed surface in an .off file of triangles."""
     rows = [line.split() for line in path.read_text().splitlines()[1:] if line.strip() and not line.startswith("#")]
     points = np.array(rows[1:1 + int(rows[0][0])], float)
     triangles = np.array([row[1:4] for row in rows[1 + int(rows[0][0]):]], int)
@@ -109,18 +109,18 @@ def volume_within(path):
 
 
 def with_meshio(folder):
-    """The volume of the curved tets that meshio reads is nearer to that of the input than that of straight ones;
-    with nodes in another order it would be far off."""
+    """The volume of the curved tets that meshio reads is nearer to the input's than that of straight tets; if
+    nodes were in another order, it would be far off."""
     try:
         import meshio
     except ImportError:
         skip("meshio")
     found = meshio.read(mesh("sphere.off", folder / "sphere.vtu", "--size", "0.4", "--coarsen", "off"))
     tets = found.points[found.cells_dict["tetra10"]]
-    ends = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))   # of VTK_QUADRATIC_TETRA
+    ends = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))   # nodes of VTK_QUADRATIC_TETRA
     volume = 0
     for weight, *place in ((-0.8, 0.25, 0.25, 0.25, 0.25), *((0.45, *np.roll([0.5, 1 / 6, 1 / 6, 1 / 6], k)) for k in range(4))):
-        slopes = np.zeros((10, 4))   # of the shape functions, in barycentric coordinates
+        slopes = np.zeros((10, 4))   # slopes of the shape functions, in barycentric coordinates
         for i in range(4):
             slopes[i, i] = 4 * place[i] - 1
         for e, (i, j) in enumerate(ends):

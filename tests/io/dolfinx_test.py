@@ -10,8 +10,8 @@ import subprocess
 import sys
 import tempfile
 
-# Laplace's equation on a box with u = 1 + 2 x + 3 y on tagged sides: a solution that elements have exactly. Errors,
-# volumes and areas are summed over the processes.
+# Laplace's equation on a box, with u = 1 + 2 x + 3 y given on tagged sides: elements represent this solution
+# exactly. Errors, volumes and areas are summed over the processes.
 SOLVER = """
 import sys
 import numpy
@@ -60,7 +60,7 @@ def main():
         print("python3-dolfinx is not installed")
         return 77
     mpirun = shutil.which("mpirun")
-    # The tags stay the first attribute, which is what dolfinx reads.
+    # The tags are still the first attribute, which dolfinx reads.
     divided = ["--partitions", "3"] if (program.parents[1] / "lib/collarmesh/collarmesh_scotch.so").exists() else []
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)

@@ -40,7 +40,7 @@ def main():
         (folder / "system").mkdir()
         for name, text in FILES.items():
             (folder / "system" / name).write_text(HEADER.format(name) + text)
-        # A box of 3 x 2 x 1: the ends in x by points on them, the others by their numbers.
+        # A box of 3 x 2 x 1: the ends in x are named by points on them, the other sides by their numbers.
         info = json.loads(run(folder, program, "info", "--json", models / "box.off"))
         rest = [p["tag"] for p in info["complex"]["patch_list"] if 0 < p["where"][0] < 3]
         names = {"patches": {"inlet": {"at": [0, 1, 0.5]}, "outlet": {"at": [3, 1, 0.5]}, "walls": rest},

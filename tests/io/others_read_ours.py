@@ -36,7 +36,7 @@ def expect(condition, what):
 
 
 def by_type(mesh, name=None):
-    """Cells, or values of a cell array, of all blocks of a type."""
+    """Returns the cells, or values of a cell array, in all blocks of a type."""
     result = {}
     for i, block in enumerate(mesh.cells):
         result.setdefault(block.type, []).append(block.data if name is None else mesh.cell_data[name][i])
@@ -58,13 +58,14 @@ def check_counts(label, mesh, counts):
 
 
 def canonical(points, cells, values):
-    """Cells by coordinates with their values: whatever the order of nodes and cells. Gmsh writes 16 digits."""
+    """Returns cells by coordinates with their values, independent of the order of nodes and cells. (Gmsh
+    writes 16 digits.)"""
     rounded = np.round(points, 12)
     return sorted((tuple(sorted(map(tuple, rounded[cell]))), int(value)) for cell, value in zip(cells, values))
 
 
 def check_vtk_with_meshio(path, counts):
-    """All kinds of cells."""
+    """Checks cells of all kinds."""
     mesh = meshio.read(path)
     check_counts("vtk by meshio", mesh, counts)
     names = {"region", "region_back", "region_front", "tag", "feature", "collar",
@@ -85,7 +86,7 @@ def check_arrays(label, mesh, names):
 
 
 def check_vtu_with_meshio(path, counts):
-    """Tetrahedra alone."""
+    """Checks tetrahedra only."""
     mesh = meshio.read(path)
     expect([(block.type, len(block.data)) for block in mesh.cells] == [("tetra", counts[1])], "vtu by meshio: cells")
     check_arrays("vtu by meshio", mesh, {"region", "tag", "collar", "radius_edge", "min_dihedral", "max_dihedral"})
@@ -108,7 +109,7 @@ def check_vtu_with_vtk(path, ours):
 
 
 def tags_of_msh(mesh):
-    """Tags by the names of physical groups, which are exact."""
+    """Returns tags from the names of physical groups, which are exact."""
     names = {}
     for name, (number, dimension) in mesh.field_data.items():
         names[int(dimension), int(number)] = int(name.rsplit("_", 1)[1])

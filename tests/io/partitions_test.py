@@ -35,7 +35,7 @@ def run(folder, *command, **more):
 
 
 class Divided:
-    """Two boxes in partitions; what is in the .vtu by VTK is taken for the truth."""
+    """Two boxes in partitions. The contents of the .vtu file, read by VTK, are the reference."""
 
     def __init__(self, folder, program, models, order=1):
         self.folder, self.program = folder, program
@@ -58,7 +58,7 @@ class Divided:
         return reader.GetOutput()
 
     def tets(self):
-        """Corners (m, 4) and partitions (m,)."""
+        """Returns corners (m, 4) and partitions (m,)."""
         from vtk.util.numpy_support import vtk_to_numpy
 
         grid = self.grid()
@@ -67,7 +67,7 @@ class Divided:
         return corners, vtk_to_numpy(grid.GetCellData().GetArray("partition"))
 
     def ghosts(self):
-        """Of each partition the tets of others with a corner in it, as sets."""
+        """Returns for each partition the tets of other partitions with a corner in it, as sets."""
         corners, partition = self.tets()
         around = [set() for _ in range(corners.max() + 1)]
         for tet, p in zip(corners.tolist(), partition.tolist()):
@@ -85,7 +85,7 @@ def section(text, name):
 
 
 def with_gmsh(folder, program, models):
-    """Gmsh opens the file, and what it saves has the same partitions and ghosts."""
+    """Gmsh opens the file, and the file that it saves has the same partitions and ghosts."""
     if shutil.which("gmsh") is None:
         skip("gmsh")
     for order in (1, 2):
@@ -117,13 +117,13 @@ def with_gmsh(folder, program, models):
                 expected = [len(each) for each in mesh.ghosts()]
                 counted = [len(each) for each in ghosts]
                 assert counted == expected, (name, counted, expected)
-            # Again as 4.1, read back by us: the same tets in the same partitions.
+            # Gmsh saves it as 4.1, and we read it: the same tets in the same partitions.
             run(folder, "gmsh", path, "-0", "-save_all", "-format", "msh41", "-o", "new.msh")
             info = json.loads(run(folder, program, "info", "new.msh", "--json"))["mesh"]
             for key in ("points", "tets", "faces", "partitions"):
                 assert info[key] == mesh.info[key], (name, key, info[key], mesh.info[key])
             print(f"{name} of order {order}: partitions of {sizes} tets")
-    # And what Gmsh has divided itself, with its own boundaries between partitions.
+    # Also read a mesh that Gmsh has divided itself, with its own boundaries between partitions.
     whole = folder / "whole.msh"
     run(folder, program, models / "two_boxes.poly", "-o", whole, "--size", "0.4")
     before = json.loads(run(folder, program, "info", whole, "--json"))["mesh"]
@@ -141,7 +141,7 @@ def with_gmsh(folder, program, models):
 
 
 def with_vtk(folder, program, models):
-    """vtkXMLPUnstructuredGridReader finds all cells once, numbers, and ghosts marked."""
+    """vtkXMLPUnstructuredGridReader finds all cells once, their numbers, and marked ghosts."""
     try:
         import vtk
     except ImportError:
@@ -192,7 +192,7 @@ def with_vtk(folder, program, models):
                 seen[cell_ids[own]] += 1
             assert (seen == 1).all()
             assert not options or (owned == 1).all()
-            if options:  # where a partition meets another one its surface is that of ghosts
+            if options:  # where a partition meets another one, its surface is that of the ghosts
                 surface = vtk.vtkDataSetSurfaceFilter()
                 surface.SetInputData(grid)
                 surface.SetNonlinearSubdivisionLevel(0)
@@ -225,7 +225,7 @@ def with_meshio(folder, program, models):
             found = meshio.read(mesh.convert(f"by_meshio.{extension}")).cell_data_dict["partition"][kind]
             assert np.array_equal(np.ravel(found).astype(int), partition), (extension, order)
             print(f".{extension} of order {order}: {np.bincount(partition)}")
-        # Partitioned files of Gmsh's format 4.1 meshio 5 does not read, of Gmsh neither.
+        # meshio 5 cannot read partitioned files in format 4.1, neither ours nor Gmsh's.
         path = mesh.convert("by_meshio.msh", "--format", "msh2")
         assert len(meshio.read(path).cells_dict[kind]) == len(partition), order
         print(f".msh2 of order {order}: read")
@@ -244,7 +244,7 @@ FOAM_FILES = {
 
 
 def with_openfoam(folder, program, models):
-    """decomposePar gives each processor the cells that we say."""
+    """decomposePar assigns the cells to processors as our file says."""
     if shutil.which("gmshToFoam") is None or shutil.which("decomposePar") is None:
         skip("openfoam")
     (folder / "system").mkdir()
@@ -269,7 +269,7 @@ def with_openfoam(folder, program, models):
     partitions = info["partitions"]
     assert sum(cells) == info["tets"], cells
     assert (min(cells), max(cells)) == (partitions["smallest"], partitions["largest"]), (cells, partitions)
-    assert shared == 2 * partitions["cut_faces"], (shared, partitions)  # a cut face is in two processors
+    assert shared == 2 * partitions["cut_faces"], (shared, partitions)  # a cut face belongs to two processors
     print("processors with", cells, "cells,", shared // 2, "faces between them")
 
 

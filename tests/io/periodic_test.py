@@ -27,7 +27,8 @@ def expect(condition, what):
 
 
 def cube(n, order):
-    """n^3 cubes of six tetrahedra each; sides 1 to 6 (x, y, z, low and high), two materials in layers along z."""
+    """Makes n^3 cubes of six tetrahedra each; sides 1 to 6 (x, y, z, low and high), two materials in layers
+    along z."""
     grid = np.array(list(itertools.product(range(n + 1), repeat=3)))
     number = {tuple(g): i for i, g in enumerate(grid)}
     tets, tags = [], []
@@ -87,7 +88,7 @@ def gmsh(folder):
         return 77
     gmsh.initialize()
     gmsh.option.setNumber("General.Terminal", 0)
-    # Gmsh 4.8 leaves out the section of .msh2, also in its own files.
+    # Gmsh 4.8 does not write this section in .msh2, even in its own files.
     for order, parts in itertools.product((1, 2), (0, 3)):
         case = f"order {order}, {parts} partitions"
         mesh = cube(3, order)
@@ -110,8 +111,8 @@ def gmsh(folder):
 
 
 def calculix(folder):
-    """A stretched cell of two materials in layers, free to contract: along the layers stiffnesses are averaged, across
-    them compliances, which is exact as both have no lateral contraction."""
+    """Stretches a cell of two materials in layers, free to contract. Along the layers stiffnesses are
+    averaged, across them compliances; this is exact because neither material contracts laterally."""
     if shutil.which("ccx") is None:
         return 77
     stiff, soft = 1000.0, 100.0

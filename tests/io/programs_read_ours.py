@@ -38,7 +38,8 @@ class Sample:
                              text=True, check=True)
         self.points, self.tets, self.faces, self.edges = map(int, run.stdout.split())
 
-    # The box of SampleMesh: n cells of 1/3 and 0.1, 2 n cells of 0.3 upwards; the interface is half way.
+    # The box of SampleMesh: n cells of 1/3, n of 0.1, and 2 n of 0.3 upwards; the interface is at half the
+    # height.
     volume = N / 3 * N * 0.1 * 2 * N * 0.3
 
 
@@ -77,7 +78,7 @@ def check_meshio_mesh(label, mesh, sample, kinds=3):
     if tets is None:
         return cells
     found = volumes(mesh.points, tets)
-    if label.startswith(".med"):  # its tets are turned the other way
+    if label.startswith(".med"):  # its tets have the opposite orientation
         found = -found
     expect((found > 0).all(), f"{label}: all tets positive")
     expect(abs(found.sum() - sample.volume) < 1e-10, f"{label}: volume {found.sum()}, expected {sample.volume}")
@@ -89,7 +90,7 @@ def check_meshio_mesh(label, mesh, sample, kinds=3):
 
 
 def check_xdmf_parts(sample, meshio):
-    """Faces and edges are in files of their own beside the tetrahedra."""
+    """Checks faces and edges, which are in separate files beside the tetrahedra."""
     stem = sample.files[".xdmf"][: -len(".xdmf")]
     _, triangle, line = MESHIO_TYPES[sample.order]
     for part, kind, count in (("faces", triangle, sample.faces), ("edges", line, sample.edges)):
@@ -134,7 +135,7 @@ def with_meshio(folder):
 
 
 def cut_through(grid, vtk):
-    """A plane and a threshold give sections of the volume, without the outlines of faces and edges in them."""
+    """A plane and a threshold give sections of the volume, without outlines of faces and edges in them."""
     cutter = vtk.vtkCutter()
     plane = vtk.vtkPlane()
     plane.SetOrigin(grid.GetCenter())
@@ -231,14 +232,14 @@ def with_tetgen(folder):
         expect(attributes == {20, -4}, f"{extension} by TetGen: regions {attributes} {said[-200:]}")
         for made in glob.glob(os.path.join(folder, "*.1.*")):
             os.remove(made)
-    # Read the mesh again and refine it: TetGen checks its consistency on the way.
+    # TetGen reads the mesh again and refines it, and checks its consistency meanwhile.
     run_tetgen("-rqCC", sample.files[".ele"])
     header, tets = rows(sample.files[".ele"].replace(".ele", ".1.ele"))
     expect(len(tets) >= sample.tets, f".ele by TetGen: {len(tets)} tets from {sample.tets}")
 
 
 def with_calculix(folder):
-    """A bar pulled by its own temperature: free expansion gives u = alpha dT x exactly, on any mesh."""
+    """A bar is stretched by its temperature: free expansion gives u = alpha dT x exactly, on any mesh."""
     ccx = shutil.which("ccx")
     if ccx is None:
         skip("calculix-ccx")

@@ -20,7 +20,7 @@ import tempfile
 
 
 def patch_text(point, columns, rows):
-    """An .off file of a patch: point(s, t), s and t from 0 to 1."""
+    """Returns an .off file of a patch: point(s, t), s and t from 0 to 1."""
     points = [point(i / columns, j / rows) for j in range(rows + 1) for i in range(columns + 1)]
     quads = [[j * (columns + 1) + i, j * (columns + 1) + i + 1, (j + 1) * (columns + 1) + i + 1,
               (j + 1) * (columns + 1) + i] for j in range(rows) for i in range(columns)]
@@ -30,7 +30,7 @@ def patch_text(point, columns, rows):
 
 
 def patches_text(patches):
-    """A .mesh file of grids of quads, each with a tag of its own: (point(s, t), columns, rows)."""
+    """Returns a .mesh file of grids of quads, each with a tag of its own: (point(s, t), columns, rows)."""
     points, triangles = [], []
     for tag, (point, columns, rows) in enumerate(patches, 1):
         first = len(points)
@@ -51,7 +51,7 @@ def nodes_of(text):
 
 
 def mesh_file(program, folder, surface, size, *options, extension=".off"):
-    """The text of the mesh, which lies in the folder."""
+    """Meshes a surface; returns the text of the mesh file, which is in the folder."""
     (folder / f"in{extension}").write_text(surface)
     run = subprocess.run([program, f"in{extension}", "-o", "mesh.inp", "--size", str(size), "--distance", str(size / 50),
                           *options], cwd=folder, capture_output=True, text=True, check=False)
@@ -60,7 +60,7 @@ def mesh_file(program, folder, surface, size, *options, extension=".off"):
 
 
 def calculix(folder, deck):
-    """The lines of numbers that CalculiX prints: {node or element: values} of the last of the same length."""
+    """Runs CalculiX; returns the last block of numbers that it prints, {node or element: values}."""
     (folder / "job.inp").write_text("*INCLUDE, INPUT=mesh.inp\n" + deck)
     run = subprocess.run(["ccx", "job"], cwd=folder, capture_output=True, text=True, check=False)
     lines = [f for f in map(str.split, (folder / "job.dat").read_text().splitlines()) if f and f[0].isdigit()]
@@ -115,12 +115,12 @@ def plate(program, folder, size):
     nodes, moved = solve(program, folder, patch_text(lambda s, t: (side * s, side * t, 0.0), 1, 1), size, deck)
     middle = min(nodes, key=lambda n: math.dist(nodes[n], (side / 2, side / 2, 0)))
     stiffness = young * thickness**3 / 12 / (1 - poisson**2)
-    near = math.dist(nodes[middle], (side / 2, side / 2, 0)) / side  # it sinks by a cosine there
+    near = math.dist(nodes[middle], (side / 2, side / 2, 0)) / side  # there the deflection is a cosine
     return abs(moved[middle][2]) / (0.00406 * 0.01 * side**4 / stiffness * math.cos(math.pi * near))
 
 
 def cylinder(program, folder, size):
-    """Eight patches, which have corners where the forces are."""
+    """Eight patches, which have corners at the forces."""
     radius, half, thickness = 300, 300, 3
     corners = []
 
@@ -145,7 +145,7 @@ def cylinder(program, folder, size):
 
 
 def shares_along(nodes, chosen, along):
-    """The shares of a line load that the nodes of edges of second order get, which lie along a line."""
+    """Returns the shares of a line load for nodes along a line, with edges of second order."""
     order = sorted(chosen, key=lambda n: along(nodes[n]))
     shares = dict.fromkeys(order, 0.0)
     for first, middle, last in zip(order[:-2:2], order[1:-1:2], order[2::2]):
@@ -185,7 +185,7 @@ def channel(program, folder, size):
 
 
 def stresses(folder):
-    """{node: (sxx, syy, ...)} of the result file's last step."""
+    """Returns the stresses of the result file's last step, {node: (sxx, syy, ...)}."""
     found, inside = {}, False
     for line in (folder / "job.frd").read_text().splitlines():
         if line.startswith(" -4"):
@@ -196,7 +196,8 @@ def stresses(folder):
 
 
 def hole(program, folder, size):
-    """The stress beside the hole over that far away; 3.03 in a long plate with the width of twenty radii (Howland)."""
+    """Returns the ratio of the stress beside the hole to that far away: 3.03 in a long plate with the width
+    of twenty radii (Howland)."""
     width, length = 10, 30
 
     def point(s, t):
@@ -219,7 +220,7 @@ def hole(program, folder, size):
 
 
 def patch(program, folder, size):
-    """The largest difference of a stress from that of the field, relative to the largest one, plus 1."""
+    """Returns 1 plus the largest difference of a stress from the field's, relative to the largest one."""
     young, poisson = 1000, 0.3
     gradient = ((1e-3, 2e-4), (5e-4, -4e-4))
     worst = 0

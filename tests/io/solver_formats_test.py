@@ -20,10 +20,11 @@ import tempfile
 import numpy as np
 
 PROGRAM, MODELS, KIND = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve(), sys.argv[3]
-EDGES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))  # of the mid nodes of a tetrahedron in .vtk
+EDGES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))  # edges of the mid-edge nodes of a tetrahedron in .vtk
 NAMES = {"patches": {"Wall left": {"at": [0, 0.5, 0.5]}, "outlet": {"at": [3, 0.5, 0.5]}},
          "regions": {"steel": 1, "air": 2}}
-# A rib on a plate whose top, of the tag 6, touches the rib in its middle alone; the tags of both regions are left open.
+# A rib on a plate. The plate's top, with the tag 6, touches the rib only in its middle; the regions have no
+# tags.
 RIB = """16 3 0 0
 1 0 0 0\n2 3 0 0\n3 3 1 0\n4 0 1 0
 5 0 0 1\n6 1 0 1\n7 2 0 1\n8 3 0 1\n9 3 1 1\n10 2 1 1\n11 1 1 1\n12 0 1 1
@@ -67,7 +68,7 @@ def volumes(points, tets):
 
 
 class Sample:
-    """Two boxes or a rib on a plate with names, or a sphere, and what is to be found in their mesh."""
+    """Two boxes, or a rib on a plate with names, or a sphere, with the expected contents of their mesh."""
 
     def __init__(self, folder, model, order, size):
         import meshio
@@ -100,7 +101,7 @@ class Sample:
         return "Wall left" if named and (x == 0).all() else "outlet" if named and (x == 3).all() else f"patch_{tag}"
 
     def nodes_of_patch(self, x):
-        """Those of the faces in the plane of this x."""
+        """Returns the nodes of the faces in the plane at this x."""
         flat = np.abs(self.points[self.faces][:, :3, 0] - x).max(axis=1) < 1e-12
         return set(np.unique(self.faces[flat]))
 
@@ -133,7 +134,7 @@ def nastran(folder):
             expect(len(found) == 1 and str(*found) in names, f"property {found} of the tag {tag}")
         if len(np.unique(sample.region)) == 2:
             expect({"steel", "air", "Wall left", "outlet"} <= set(names.values()), f"names {names}")
-    # Few digits, no point in shortest form, and exponents: each fits its field.
+    # Tests few digits, no decimal point in shortest form, and exponents: each must fit its field.
     run(folder, PROGRAM, MODELS / "box.off", "-o", "b.bdf", "--scale", "1.2345678901234e-87")
     expect(max(len(line) for line in (folder / "b.bdf").read_text().splitlines()) <= 80, "lines of 80 characters")
     expect(abs(meshio.read(folder / "b.bdf").points.max() / 3.7037036703702e-87 - 1) < 1e-8, "very small numbers")
@@ -155,7 +156,7 @@ def su2(folder):
         expect(np.array_equal(cells["tetra"], sample.tets), "tetrahedra")
         text = (folder / "a.su2").read_text()
         names = re.findall(r"MARKER_TAG= (\S+)", text)
-        # A closed surface: each edge twice.
+        # In a closed surface each edge occurs twice.
         sides = np.sort(np.concatenate([cells["triangle"][:, [i, (i + 1) % 3]] for i in range(3)]), axis=1)
         expect((np.unique(sides, axis=0, return_counts=True)[1] % 2 == 0).all(), "the boundary is closed")
         if len(np.unique(sample.region)) == 2:
@@ -167,7 +168,7 @@ def su2(folder):
 
 
 def read_ansys(path):
-    """NBLOCK, EBLOCK and CMBLOCK in the columns that their format lines say."""
+    """Reads NBLOCK, EBLOCK and CMBLOCK in the columns that their format lines describe."""
     lines = path.read_text().splitlines()
     nodes, elements, components, kind = {}, {}, {}, None
     i = 0
@@ -267,7 +268,7 @@ def mfem(folder):
         expect((cells["elements"][:, 0] == sample.region).all(), "attributes are regions")
         expect(np.array_equal(nodes[tets], sample.points[sample.tets[:, :4]]), "corners of tetrahedra")
         expect(np.array_equal(nodes[cells["boundary"][:, 2:]], sample.points[sample.faces[:, :3]]), "corners of faces")
-        # MFEM numbers edges as it comes to them, by elements.
+        # MFEM numbers edges in the order in which elements use them.
         edge_of = {}
         for tet in tets:
             for i, j in ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)):
@@ -291,7 +292,7 @@ def foam_numbers(path):
 
 
 def check_polymesh(folder, sample):
-    """The order of faces, closed cells and their volume, from the files alone."""
+    """Checks the order of faces, that cells are closed, and their volume, from the files alone."""
     text = (folder / "points").read_text().split("}", 1)[1]
     points = np.array([row.split() for row in re.findall(r"^\((.*)\)$", text, re.M)], dtype=float)
     faces = np.array([row.split() for row in re.findall(
@@ -341,7 +342,7 @@ def openfoam(folder):
 
 
 def leaves(data):
-    """Names and grids of VTK's blocks."""
+    """Returns the names and grids of VTK's blocks."""
     if not data.IsA("vtkMultiBlockDataSet"):
         return []
     found = []
@@ -355,7 +356,7 @@ def leaves(data):
 
 
 def cells_of(grid):
-    """Points, and rows of nodes by VTK's type."""
+    """Returns points, and rows of nodes by VTK's cell type."""
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
     kinds, cells = vtk_to_numpy(grid.GetCellTypesArray()), vtk_to_numpy(grid.GetCells().GetConnectivityArray())
@@ -366,14 +367,14 @@ def cells_of(grid):
 
 
 def expect_regions(grids, sample):
-    """A grid of tetrahedra for each region, by its name."""
+    """Checks that there is a grid of tetrahedra for each region, with its name."""
     named = {1: "steel", 2: "air"} if len(np.unique(sample.region)) == 2 else {1: "region_1"}
     expect(set(grids) == set(named.values()), f"blocks {set(grids)}")
     for region, name in named.items():
         points, cells = cells_of(grids[name])
         expect(set(cells) == {(10, 24)[sample.order - 1]}, f"kinds of cells {set(cells)}")
         theirs, ours = points[next(iter(cells.values()))], sample.points[sample.tets[sample.region == region]]
-        expect(np.allclose(theirs, ours, rtol=0, atol=1e-6), f"nodes of the tetrahedra of {name}")  # VTK has 32 bits
+        expect(np.allclose(theirs, ours, rtol=0, atol=1e-6), f"nodes of the tetrahedra of {name}")  # VTK stores 32 bits
 
 
 def exodus(folder):
@@ -413,7 +414,7 @@ def exodus(folder):
 
 
 def expect_coordinates(path, sample):
-    """All digits, by a reader of NetCDF."""
+    """Checks all digits with a reader of NetCDF."""
     try:
         from scipy.io import netcdf_file
     except ImportError:
@@ -457,7 +458,7 @@ def cgns(folder):
 
 
 def expect_sections(path, sample):
-    """Elements of each region, face and curve, by name."""
+    """Checks the elements of each region, face and curve, by name."""
     import h5py
 
     with h5py.File(path) as file:

@@ -33,7 +33,7 @@ def corners(low, high):
 
 
 def write_poly(path, points, facets):
-    """facets: (corners, tag)."""
+    """Writes a .poly file. facets: (corners, tag)."""
     lines = [f"{len(points)} 3 0 0", *(f"{k} {p[0]} {p[1]} {p[2]}" for k, p in enumerate(points)), f"{len(facets)} 1"]
     lines += [f"1 0 {tag}\n{len(facet)} " + " ".join(map(str, facet)) for facet, tag in facets]
     path.write_text("\n".join([*lines, "0", "0"]) + "\n")
@@ -58,7 +58,7 @@ def node_set(text, name):
 
 
 def solve(folder, name, before, material, steps):
-    """Displacements and forces of all nodes at the end."""
+    """Returns displacements and forces of all nodes at the end."""
     job = folder / f"{name}_job"
     job.with_suffix(".inp").write_text(
         f"{before}*INCLUDE, INPUT={name}.inp\n{material}*SOLID SECTION, ELSET=EALL, MATERIAL=BODY\n{steps}")
@@ -78,8 +78,9 @@ def elastic(poisson):
 
 
 def crack(folder):
-    """A crack of half the length 1 through a plate of half the width 4 under a unit of tension. Without lateral
-    contraction plane stress is plane strain. Its opening is by H. Tada (The Stress Analysis of Cracks Handbook)."""
+    """A crack of half length 1 through a plate of half width 4 under unit tension. Without lateral
+    contraction plane stress equals plane strain. The expected opening is by H. Tada (The Stress Analysis of
+    Cracks Handbook)."""
     half, width, height = 1.0, 4.0, 8.0
     points = corners((-width, -height, 0), (width, height, 0.5))
     points += [(-half, 0, 0), (half, 0, 0), (half, 0, 0.5), (-half, 0, 0.5)]
@@ -117,7 +118,8 @@ def blocks(folder, name, *arguments):
 
 
 def contact(folder):
-    """The upper block is pressed down and pushed aside: it slides, with a force of friction times that on it."""
+    """The upper block is pressed down and pushed sideways. It slides; the friction force is the coefficient
+    times the normal force."""
     friction, down = 0.2, 0.001
     for order in ("1", "2"):
         name = f"blocks{order}"
@@ -138,7 +140,7 @@ def contact(folder):
 
 
 def tie(folder):
-    """Bent blocks move as one."""
+    """Tied blocks bend as one."""
     load = ("*BOUNDARY\nPATCH_1_NODES, 1, 3\n*STEP\n*STATIC\n*BOUNDARY\nPATCH_12_NODES, 1, 1, 0.1\n"
             "*NODE PRINT, NSET=NALL\nU\n*END STEP\n")
     for order in ("1", "2"):

@@ -15,7 +15,7 @@ try:
 except ImportError:
     vtk = None
 
-BLOCK = 1024  # bytes: arrays of several blocks
+BLOCK = 1024  # bytes, so that arrays have several blocks
 
 
 def pack(source, target, mode, base64, wide):

@@ -1,4 +1,4 @@
-// OpenMesh's .om: what OpenMesh saves is read in full, what is damaged is an error and never a crash.
+// OpenMesh's .om: files saved by OpenMesh are read in full; damaged ones give an error and never a crash.
 #include <gtest/gtest.h>
 
 #include <OpenMesh/Core/IO/MeshIO.hh>
@@ -63,7 +63,7 @@ std::string saved_tetrahedron() {
   return folder.read("a.om");
 }
 
-/// OpenMesh may start a face at another corner.
+/// Rotates corners to a common start, because OpenMesh may begin a face at another corner.
 std::vector<Index> rotated(std::vector<Index> corners) {
   std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
   return corners;
@@ -138,7 +138,7 @@ TEST(ReadOm, RefusesBadFiles) {
   expect_error<ReadError>([] { read_om("missing.om"); }, "missing.om", "No such file");
 }
 
-/// Before version 2 the halfedges are made from the corners of the faces: a vertex has none to name yet.
+/// Before version 2 the halfedges are made from the corners of faces, so a vertex cannot refer to one yet.
 TEST(ReadOm, RefusesHalfedgesOfVerticesInOldFiles) {
   const auto chunk = [](unsigned bits) {
     return std::string{static_cast<char>(bits & 255), static_cast<char>(bits >> 8)};
@@ -164,7 +164,7 @@ TEST(ReadOm, RefusesEveryTruncation) {
     expect_refused(good.substr(0, size), "byte ");
 }
 
-/// The sanitizers watch.
+/// The sanitizers find faults.
 TEST(ReadOm, SurvivesDamage) {
   const std::string good = saved_tetrahedron();
   const TemporaryFolder folder;

@@ -1,4 +1,4 @@
-// OpenMesh meshes to complexes and back: tags, regions, what OpenMesh cannot represent, and errors.
+// OpenMesh meshes to complexes and back: tags, regions, surfaces that OpenMesh cannot represent, and errors.
 #include <gtest/gtest.h>
 
 #include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>
@@ -46,7 +46,7 @@ std::vector<typename Mesh::VertexHandle> add_corners(Mesh& mesh, const Point& lo
   return v;
 }
 
-/// A box of quads, which a TriMesh cuts into triangles.
+/// Makes a box of quads, which a TriMesh cuts into triangles.
 template <class Mesh>
 Mesh make_box(const Point& low = {0, 0, 0}, const Point& high = {1, 1, 1}) {
   Mesh mesh;
@@ -184,7 +184,7 @@ TEST(Surfaces, OpenBordersAreAClearError) {
   EXPECT_THROW(om::to_plc(bad), PlcError);
 }
 
-/// OpenMesh holds several fans around a vertex only while each of them is open.
+/// OpenMesh can represent several fans around a vertex only while each of them is open.
 TEST(Surfaces, NonManifoldVerticesAreTaken) {
   DoublePoly mesh;
   std::vector<DoublePoly::VertexHandle> v;
@@ -200,8 +200,8 @@ TEST(Surfaces, NonManifoldVerticesAreTaken) {
   EXPECT_EQ(result.notes.size(), 2);
 }
 
-/// Two boxes that share the edge from (1, 1, 0) to (1, 1, 1). OpenMesh refuses the fourth face at it, so
-/// its readers give that face vertices of its own and mark it.
+/// Two boxes that share the edge from (1, 1, 0) to (1, 1, 1). OpenMesh refuses the fourth face at that edge,
+/// so its readers give the face separate vertices and mark it.
 TEST(Surfaces, ComplexEdgesAreWeldedAgainAndReported) {
   DoublePoly mesh = make_box<DoublePoly>();
   auto v = add_corners(mesh, {1, 1, 0}, {2, 2, 1});
@@ -213,7 +213,7 @@ TEST(Surfaces, ComplexEdgesAreWeldedAgainAndReported) {
     auto face = mesh.add_face(corners);
     if (face.is_valid()) continue;
     for (auto& corner : corners) {
-      const auto place = mesh.point(corner);  // adding moves points
+      const auto place = mesh.point(corner);  // adding a vertex may move points in memory
       corner = mesh.add_vertex(place);
     }
     face = mesh.add_face(corners);
@@ -326,14 +326,14 @@ TEST(BoundarySurface, RoundTripKeepsTags) {
   EXPECT_EQ(after.patches.size(), before.patches.size());
   EXPECT_EQ(after.curves.size(), before.curves.size());
   EXPECT_EQ(patch_tags(after), patch_tags(before));
-  mesh.features.clear();  // features have other numbers in the other complex
+  mesh.features.clear();  // features have different numbers in the other complex
   std::fill(mesh.face_patch.begin(), mesh.face_patch.end(), none);
   std::fill(mesh.edge_curve.begin(), mesh.edge_curve.end(), none);
   const CheckReport report = check(mesh, after);
   EXPECT_TRUE(report.passed()) << report.findings.front().message;
 }
 
-/// The boundary of two boxes with one edge in common: OpenMesh gets copies of its vertices.
+/// The boundary of two boxes with one common edge: in OpenMesh its vertices are copied.
 TEST(BoundarySurface, CutsWhereOpenMeshCannotFollow) {
   om::Surfaces surfaces;
   surfaces.add(make_box<DoublePoly>());

@@ -20,7 +20,7 @@ def require_success(process, what):
 
 
 def check_program(root, models, modules):
-    """In a root where the program as it was built finds no library."""
+    """Runs the program in a root where the program as it was built would find no library."""
     for model in ("box.off", "flange.step"):
         shutil.copy(models / model, root)
     program = "/collarmesh/bin/collarmesh"
@@ -39,7 +39,7 @@ def check_program(root, models, modules):
 
 
 def check_addon(base):
-    """What the Add-on Manager reads."""
+    """Checks the files that the Add-on Manager reads."""
     described = xml.etree.ElementTree.parse(base / "package.xml").getroot()
     files = [element.get("file") for element in described.iter() if element.get("file")]
     files += [element.text for element in described.iter() if element.tag.endswith("}icon")]

@@ -1,4 +1,5 @@
-"""A root with nothing in it but this system's C library and its loader: a program runs in it only with all else at hand."""
+"""A root folder with only this system's C library and its loader: a program runs in it only if it brings
+everything else."""
 
 import os
 import pathlib
@@ -11,7 +12,8 @@ C_LIBRARY = ("libc.so.6", "libm.so.6", "libdl.so.2", "libpthread.so.0", "librt.s
 
 
 def enter():
-    """What runs a command with a root of its own, None where the system does not let us. {} is the root."""
+    """Returns the command that runs another one with its own root, {}; None if the system does not permit
+    that."""
     script = 'mount -t proc proc "$0/proc" && exec chroot "$0" "$@"'
     rights = [] if os.geteuid() == 0 else ["--map-root-user"]
     command = ["unshare", *rights, "--mount", "--pid", "--fork"]
@@ -21,7 +23,7 @@ def enter():
 
 
 def make(root):
-    """Fill a folder."""
+    """Fills a folder."""
     root = pathlib.Path(root)
     for folder in ("proc", "tmp", "lib64"):
         (root / folder).mkdir(parents=True)
@@ -34,6 +36,6 @@ def make(root):
 
 
 def run(root, *command):
-    """Run a program in it; returns the process that has ended."""
+    """Runs a program in it; returns the completed process."""
     return subprocess.run([*enter(), root, *map(str, command)], capture_output=True, text=True,
                           env={"PATH": "/usr/sbin:/usr/bin:/sbin:/bin", "LD_LIBRARY_PATH": "/tmp"})

@@ -46,7 +46,7 @@ def main():
         (wheel,) = folder.glob("*.whl")
         if not re.fullmatch(r"collarmesh-[\d.]+-cp\d+-cp\d+-manylinux_2_\d+_x86_64\.whl", wheel.name):
             raise SystemExit(f"the wheel is called {wheel.name}")
-        # numpy is the system's: nothing is downloaded.
+        # Uses the system's numpy, so that nothing is downloaded.
         subprocess.run([sys.executable, "-m", "venv", "--system-site-packages", folder / "venv"], check=True)
         python = folder / "venv/bin/python"
         subprocess.run([python, "-m", "pip", "install", "-q", "--no-index", wheel], check=True, env=environment)

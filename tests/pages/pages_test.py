@@ -30,8 +30,8 @@ KNOWN = RUN | {"cpp", "cmake", "text"}
 MOST_LINES = 10
 PARTS = {"OpenCASCADE": "lib/collarmesh/collarmesh_cad.so", "HDF5": "lib/collarmesh/collarmesh_hdf5.so",
          "Scotch": "lib/collarmesh/collarmesh_scotch.so", "MPI": "bin/collarmesh-mpi"}
-SMALLEST_PICTURE = 10_000  # bytes: an empty one is smaller
-# What a recipe says at its end.
+SMALLEST_PICTURE = 10_000  # bytes; an empty picture is smaller
+# The expected last output of each recipe.
 RECIPES = {
     "pip": ["Successfully installed collarmesh", r"largest temperature 0\.(49|50)"],
     "calculix": [r"displacements \(vx,vy,vz\) for set LOADED_NODES", r"\n +\d+ +-?\d\.\d+E-0\d "],
@@ -40,7 +40,7 @@ RECIPES = {
 
 
 def installed(name, build):
-    """A program, a module of Python, or what the program of the build was built with."""
+    """Returns whether a program or Python module is installed, or the program was built with something."""
     if name in PARTS:
         return (build / PARTS[name]).exists()
     return shutil.which(name) is not None or importlib.util.find_spec(name) is not None
@@ -85,7 +85,7 @@ def blocks(page):
 
 
 class Reader:
-    """Somebody who types what is on a page, in a folder with the models."""
+    """A reader who types the commands of a page, in a folder with the models."""
 
     def __init__(self, folder, sources, build):
         self.folder = pathlib.Path(folder)
@@ -94,11 +94,11 @@ class Reader:
             shutil.copy(model, folder)
         self.python = sys.executable
         self.environment = {**os.environ, "PATH": f"{build}/bin:{os.environ['PATH']}", "PYTHONPATH": f"{build}/python",
-                            "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",  # in containers
+                            "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",  # needed in containers
                             "OMPI_MCA_rmaps_base_oversubscribe": "1"}
 
     def make_clone(self):
-        """A copy of the sources; numpy and pip are the system's, so that nothing is downloaded."""
+        """Makes a copy of the sources. Uses the system's numpy and pip, so that nothing is downloaded."""
         clone, venv = self.folder / "clone", self.folder / "venv"
         shutil.copytree(self.sources, clone, ignore=shutil.ignore_patterns("build", ".git", "*.egg-info"))
         subprocess.run([sys.executable, "-m", "venv", "--system-site-packages", venv], check=True)
@@ -143,7 +143,7 @@ def run_blocks(page, sources, build):
 
 
 def run_recipe(name, sources, build):
-    """What stands on the page of solvers, in at most ten lines, from the program or the package to a solution."""
+    """Runs a recipe of the page of solvers: at most ten lines, from the program or the package to a solution."""
     page = sources / "mesher/doc/solvers.md"
     recipe = [block for block in blocks(page) if block.recipe == name]
     if {block.recipe for block in blocks(page)} - {""} != set(RECIPES):
@@ -156,7 +156,7 @@ def run_recipe(name, sources, build):
         return 77
     with tempfile.TemporaryDirectory(prefix="collarmesh-recipe-") as folder:
         reader = Reader(folder, sources, build)
-        if name == "calculix":  # as the page says: it comes from a model
+        if name == "calculix":  # the page says that it comes from a model
             reader.run(page.name, Block("bash", "collarmesh convert bracket.off -o bracket.stl && rm bracket.off"))
         said = "".join(reader.run(page.name, block) for block in recipe)
     for expected in RECIPES[name]:
@@ -172,7 +172,7 @@ find_package(OpenMesh CONFIG)
 
 
 def run_cpp(sources, build):
-    """The programs of the pages, built against what `cmake --install` installs."""
+    """Builds the programs of the pages against what `cmake --install` installs."""
     with tempfile.TemporaryDirectory(prefix="collarmesh-page-") as folder:
         folder = pathlib.Path(folder)
         subprocess.run(["cmake", "--install", build, "--prefix", folder / "prefix"],
@@ -206,7 +206,7 @@ def run_cpp(sources, build):
 
 
 def missing_files(sources):
-    """Files of the sources that pages name and that are not there."""
+    """Returns files of the sources that pages name but that do not exist."""
     there = set()
     for folder in ("cmake", "freecad_workbench", "mesher", "openmesh_io", "resources", "tests"):
         there.update(str(path.relative_to(sources)) for path in (sources / folder).rglob("*") if path.is_file())
@@ -246,7 +246,7 @@ def build_site(sources):
 
 
 def options_told(sources, build):
-    """Each option is on the page, and the table is that of the program."""
+    """Checks that each option is on the page, and that the table is the program's."""
     sys.path.insert(0, str(sources / "resources"))
     import options_page
 
@@ -262,7 +262,7 @@ def options_told(sources, build):
 
 
 def run_readme(sources, build):
-    """The commands of the README; `./collarmesh` is the program that is built."""
+    """Runs the commands of the README; `./collarmesh` stands for the program that was built."""
     (block,) = blocks(sources / "README.md")
     with tempfile.TemporaryDirectory(prefix="collarmesh-page-") as folder:
         reader = Reader(folder, sources, build)
@@ -274,7 +274,7 @@ def run_readme(sources, build):
 
 
 def draw_gallery(sources, build):
-    """One script makes the pictures of the page and that of reports, all of them and no others."""
+    """Checks that one script draws all pictures of the gallery and of reports, and no others."""
     if missing := Block("", "", needs=["vtk", "PIL", "xvfb-run", "ccx", "chromium", "OpenCASCADE"]).missing(build):
         print(f"not installed: {missing}")
         return 77

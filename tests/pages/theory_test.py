@@ -15,7 +15,8 @@ def distances(points, place):
 
 
 def gap_balls(points, combinations):
-    """In the plane z = 0: where the dual edges of these triples cross it, with their radii, if the ball is empty."""
+    """Returns where the dual edges of these triples cross the plane z = 0, with the radii of the balls that
+    are empty."""
     u, v, w = (points[combinations[:, i]] for i in range(3))
     matrix = numpy.stack([(v - u)[:, :2], (w - u)[:, :2]], axis=1)
     right = numpy.stack([(v * v - u * u).sum(1), (w * w - u * u).sum(1)], axis=1) / 2
@@ -89,7 +90,7 @@ class OneMesh(unittest.TestCase):
                 if len(square.points) < 18:
                     square.add(c)
         self.assertGreater(admitted, 50)
-        self.assertGreater(owners, 0.5 * refused)  # so the test would notice
+        self.assertGreater(owners, 0.5 * refused)  # enough that the test would notice a fault
 
     def test_beside_the_patch_only_pieces_need_to_be_asked(self):
         random = numpy.random.default_rng(2)
@@ -110,7 +111,7 @@ class OneMesh(unittest.TestCase):
 
 
 class BoundTwo(unittest.TestCase):
-    offsets = 0.05, 0.1, 0.1  # of cells, triangles, subsegments
+    offsets = 0.05, 0.1, 0.1  # offsets of cells, triangles, subsegments
     theta = 0.3
 
     def test_the_deepest_ball_holds_the_projection_and_is_not_small(self):
@@ -134,7 +135,7 @@ class BoundTwo(unittest.TestCase):
         self.assertGreater(tight, 0)
 
     def test_the_ball_of_a_subsegment_is_not_small_either(self):
-        """Of radius 1 around the middle of one from -1 to 1."""
+        """The ball of a subsegment from -1 to 1, with radius 1 around its middle."""
         random, largest = numpy.random.default_rng(6), 0
         ends = numpy.array([(-1.0, 0, 0), (1.0, 0, 0)])
         for c in random.uniform(-1.5, 1.5, (20000, 3)):
@@ -162,13 +163,13 @@ class BoundTwo(unittest.TestCase):
                 bound = (self.theta - offset) / (1 + offset) * distances(others, q).min()
                 smallest = min(smallest, numpy.linalg.norm(p - q) / bound)
         self.assertGreaterEqual(smallest, 1)
-        self.assertLess(smallest, 1.6)  # the bound is not idle
+        self.assertLess(smallest, 1.6)  # the bound is nearly reached
 
 
 class DirectInsertion(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        """A grid whose points were moved, with its Delaunay balls, by testing all of them."""
+        """Makes a grid whose points were moved, with its Delaunay balls, by testing all of them."""
         cls.random = numpy.random.default_rng(5)
         grid = numpy.array(list(itertools.product(range(4), repeat=3)), dtype=float)
         cls.points = grid + cls.random.uniform(-0.3, 0.3, grid.shape)
@@ -188,7 +189,7 @@ class DirectInsertion(unittest.TestCase):
         cls.inner = [i for i, p in enumerate(grid) if (p > 0).all() and (p < 3).all()]
 
     def cell(self, q):
-        """R_q and r_q."""
+        """Returns R_q and r_q."""
         apart = distances(self.points, self.points[q])
         return self.radii[(self.cells == q).any(1)].max(), numpy.partition(apart, 1)[1] / 2
 
@@ -230,10 +231,11 @@ class DirectInsertion(unittest.TestCase):
             holding += apart[0] < inner
             smallest = min(smallest, apart[1] / inner)
         self.assertGreater(holding, 100)
-        self.assertLess(smallest, 1.3)  # with much more it would fail
+        self.assertLess(smallest, 1.3)  # with a much larger value it would fail
 
     def test_balls_with_one_earlier_centre_pack_twice_as_many(self):
-        """Centres in a ball of a quarter of the radius: at most two, if no ball of an event holds two earlier ones."""
+        """Centres in a ball of a quarter of the radius: at most two, if no ball of an event contains two
+        earlier centres."""
         most = 0
         for _ in range(30):
             events = numpy.zeros((0, 3))

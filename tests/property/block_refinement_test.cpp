@@ -17,7 +17,7 @@ struct Case {
   std::string name;
   std::vector<PolygonSoup> soups;
   double size;
-  double least_share;  // of the vertices, in blocks
+  double least_share;  // least share of the vertices that is inserted in blocks
 };
 
 void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
@@ -55,7 +55,8 @@ INSTANTIATE_TEST_SUITE_P(Shapes, BlockRefinement,
                                            Case{"wedge", testing::acute::wedge(50).soups, 0.02, 0.2}),
                          [](const auto& info) { return info.param.name; });
 
-// Blocks do as the loop does: the mesh is as fine, its tets are as good, and as much is on the surface.
+// Blocks do what the loop does: the mesh is as fine, its tets are as good, and its surface has as many
+// vertices.
 TEST(BlockRefinementSize, IsThatOfTheLoop) {
   const Case cases[]{{"box", {testing::box()}, 0.032, 0},
                      {"sphere", {testing::icosphere(1, 12)}, 0.06, 0},
@@ -65,7 +66,8 @@ TEST(BlockRefinementSize, IsThatOfTheLoop) {
     const Plc plc = build_plc(soups);
     const Meshed blocks = mesh_of(plc, with_size(size));
     MeshOptions options = with_size(1);
-    options.size_field = [wanted = size](const Point&) { return wanted; };  // the loop alone asks the caller
+    options.size_field = [wanted = size](const Point&) { return wanted; };  // only the loop calls a caller's
+                                                                            // function
     const Meshed loop = mesh_of(plc, options);
     EXPECT_EQ(faults(blocks), "");
     EXPECT_EQ(loop.result.statistics.vertices_in_blocks, 0U);

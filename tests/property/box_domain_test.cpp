@@ -1,4 +1,4 @@
-// A box around inputs that enclose nothing: points, segments, single facets; and around those that do.
+// A box around inputs that enclose nothing (points, segments, single facets), and around others.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ double volume(const Box& box) {
   return sides.x * sides.y * sides.z;
 }
 
-// One region of tets between the box and what is in it, as many as the regions before it and one.
+// Expects a region of tets between the box and its contents, in addition to the regions without the box.
 void expect_box_of(const SoupPipelineResult& made, const Box& inner, Index regions) {
   EXPECT_TRUE(made.guarantees_hold()) << made.missed();
   ASSERT_EQ(made.plc.regions.size(), regions + 1);

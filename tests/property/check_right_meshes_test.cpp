@@ -1,4 +1,4 @@
-// Meshes that keep every guarantee pass, with and without feature indices, and are measured right.
+// Meshes that keep every guarantee pass, with and without feature indices, and their measures are right.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -43,8 +43,8 @@ TEST(CheckRightMeshes, SmoothCurvesAndPlanarPatches) {
   expect_pass(meshed_cylinder(12, 4), {.bounds = {.distance = 0.05}});
 }
 
-// The two triangles of the upper side are one planar patch up to the tolerance; they are tilted against each
-// other, so that their areas exceed that of the patch's outline seen from above by 8e-9 of it.
+// The two triangles of the upper side form one planar patch up to the tolerance. They are tilted against each
+// other, so their areas exceed that of the patch's outline seen from above by a relative 8e-9.
 TEST(CheckRightMeshes, PlanarPatchOfTiltedTriangles) {
   constexpr double width = 0.005, lift = 0.9e-6;
   PolygonSoup bar;
@@ -64,7 +64,8 @@ TEST(CheckRightMeshes, PlanarPatchOfTiltedTriangles) {
   EXPECT_EQ(faults(meshed), "");
 }
 
-// Of the smooth patches: of their faces' corners, centres and two points on each side.
+// Returns the largest distance of the faces' corners, centres and two points on each side from the smooth
+// patches.
 double largest_distance(const MeshedComplex& m, bool centres_only) {
   double largest = 0;
   for (std::size_t f = 0; f < m.mesh.faces.size(); ++f) {
@@ -92,7 +93,7 @@ double largest_distance(const MeshedComplex& m, bool centres_only) {
 
 TEST(CheckRightMeshes, SurfaceDistanceIsThatOfAllSamples) {
   for (MeshedComplex m : {meshed_ball(4, 4), meshed_cylinder(12, 4)}) {
-    // A corner, then a whole side is off: by more than anything else, the centres by less.
+    // First a corner, then a whole side is off: by more than anything else, while centres are off by less.
     for (const std::size_t moved : {1U, 2U}) {
       const auto smooth = std::find_if(m.mesh.face_patch.begin(), m.mesh.face_patch.end(),
                                        [&](Index patch) { return !m.plc.patches[patch].planar; });
@@ -144,7 +145,7 @@ TEST(CheckRightMeshes, MeasuresOfTheBox) {
   EXPECT_EQ(report.max_surface_distance, 0);
 }
 
-/// The numbers of the tets with the most extreme angles, found by sorting all.
+/// Returns the numbers of the tets with the most extreme angles, found by sorting all tets.
 template <class AngleOf>
 std::vector<Index> most_extreme(const TetMesh& mesh, const AngleOf& angle_of) {
   std::vector<std::pair<double, Index>> all;
@@ -191,7 +192,7 @@ TEST(CheckRightMeshes, MeasuresAreThoseOfAllTets) {
 TEST(CheckRightMeshes, MeasuresOfTheBall) {
   const MeshedComplex m = meshed_ball(3, 8);
   const CheckReport report = check(m.mesh, m.plc, {.bounds = {.distance = 0.1}});
-  // The farthest places are the centres of the large faces, near a point of the fine sphere.
+  // The farthest places are the centres of the large faces; each is near a point of the fine sphere.
   double sagitta = 0;
   for (const auto& f : m.mesh.faces)
     sagitta =

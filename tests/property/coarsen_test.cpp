@@ -1,4 +1,4 @@
-// Coarsening: about as few tets as the sizes ask for, and every guarantee but the radius-edge bound stays.
+// Coarsening: about as few tets as the sizes ask for, with every guarantee except the radius-edge bound.
 #include "collarmesh/coarsen.h"
 
 #include <gtest/gtest.h>
@@ -27,9 +27,9 @@ struct Shape {
   std::vector<PolygonSoup> soups;
   double size;
   double feature_angle;
-  double smallest;     ///< that dihedral angles may have, degrees
-  std::size_t most;    ///< tets that may be left: those measured and 8%
-  unsigned seeds = 1;  ///< whose mean that is about
+  double smallest;     ///< lower bound on dihedral angles, degrees
+  std::size_t most;    ///< upper bound on the tets that are left: the measured number plus 8%
+  unsigned seeds = 1;  ///< number of seeds over which tets are averaged
 };
 
 PolygonSoup plate() { return box({0, 0, 0}, {100, 100, 1}); }
@@ -38,7 +38,8 @@ std::vector<Shape> thin_shapes() {
   return {{"plate", {plate()}, 10, 0, 8, 1220},
           {"plate with a hole", {scaled(plate_with_hole(1, 32), 1)}, 1.5, 30, 8, 130},
           {"sphere in a sphere", {icosphere(1, 12), icosphere(0.95, 12)}, 0.3, 30, 8, 5900},
-          {"wedge of 1 degree", acute::wedge(1).soups, 0.28, 0, 0.5, 1850, 6},  // by seed 1664 to 1809
+          {"wedge of 1 degree", acute::wedge(1).soups, 0.28, 0, 0.5, 1850, 6},  // 1664 to 1809, depending on
+                                                                                // the seed
           {"wedge of 2 degrees", acute::wedge(2).soups, 0.3, 0, 1, 370},
           {"wedge of 5 degrees", acute::wedge(5).soups, 0.3, 0, 2.5, 90},
           {"wedge of 20 degrees", acute::wedge(20).soups, 0.2, 0, 8, 245},
@@ -83,14 +84,15 @@ TEST(Coarsen, KeepsEveryGuaranteeOfThinShapes) {
   }
 }
 
-// One seed says little about a few hundred tets, and one contraction takes more than a hundredth of sixty.
-// (Of the wedge of 1 degree, over 15 seeds, 0.1% with balls placed up front and with those of the pass, 1.2%
-// of one seed. When the rounds ended without asking all again: 0.5 and 0.8% over 48 seeds, up to 6% of one.)
+// One seed says little about a few hundred tets, and one contraction removes more than a hundredth of sixty.
+// (Of the wedge of 1 degree, over 15 seeds: 0.1% with balls placed up front and in the pass, at most 1.2% for
+// one seed. When the rounds ended without trying all vertices again: 0.5 and 0.8% over 48 seeds, up to 6% for
+// one.)
 TEST(Coarsen, RemovesHardlyAnythingAgain) {
   constexpr unsigned seeds = 4, of_one_contraction = 6;
   for (const Shape& shape : thin_shapes()) {
     SCOPED_TRACE(shape.name);
-    std::ptrdiff_t all = 0, removed = 0;  // an operation on edges may leave a tet more
+    std::ptrdiff_t all = 0, removed = 0;  // an operation on edges may increase the number of tets by one
     for (unsigned seed = 0; seed < seeds; ++seed) {
       MeshOptions options = with_near_surface(shape.soups, shape.size);
       options.seed = seed;
@@ -133,11 +135,11 @@ TEST(Coarsen, IsDeterministic) {
   expect_same(first.meshed.result.mesh, second.meshed.result.mesh);
 }
 
-// Proposals that several threads make and one thread alone come to the same.
+// The result is the same if several threads make proposals or one thread does everything.
 TEST(Coarsen, ThreadsChangeNothing) {
   if (usable_threads() < 2) GTEST_SKIP() << "there is one thread only";
   std::vector<Shape> shapes = thin_shapes();
-  shapes.push_back({"disk", {cylinder(0.5, 0.02, 96, 1)}, 0.15, 30, 8, 0});  // curves with edges to spare
+  shapes.push_back({"disk", {cylinder(0.5, 0.02, 96, 1)}, 0.15, 30, 8, 0});  // curves that can lose edges
   for (const Shape& shape : shapes) {
     SCOPED_TRACE(shape.name);
     MeshOptions options = with_size(shape.size);
@@ -151,7 +153,7 @@ TEST(Coarsen, ThreadsChangeNothing) {
   }
 }
 
-// The median edge of what is coarse is about the size; nothing but features is far shorter.
+// The median edge of a coarse mesh is about the size; only features make edges far shorter.
 TEST(Coarsen, EdgesAreAsLongAsAskedFor) {
   const auto [meshed, report] = coarsened({"plate", {plate()}, 10, 0, 8, 1270});
   const TetMesh& mesh = meshed.result.mesh;
@@ -170,7 +172,7 @@ TEST(Coarsen, EdgesAreAsLongAsAskedFor) {
   EXPECT_LT(lengths[lengths.size() / 2], 12);
 }
 
-// Smaller sizes of one side hold there, larger ones elsewhere.
+// A smaller size for one side holds there; elsewhere the larger size holds.
 TEST(Coarsen, SizesByTagHold) {
   MeshOptions options = with_size(0.5);
   options.patch_size[1] = 0.08;
@@ -193,7 +195,7 @@ TEST(Coarsen, SizesByTagHold) {
   EXPECT_GT(elsewhere / static_cast<double>(faces_elsewhere), 0.3);
 }
 
-// A mark is no reason: the angles of a marked tet are, and nobody is excused when no tet may be thin.
+// A mark alone excuses nothing: the angles of marked tets count, and no tet is excused if none may be thin.
 TEST(CoarsenCheck, JudgesThinTetsByTheirAngles) {
   Meshed meshed = coarsened({"plate", {plate()}, 10, 0, 8, 1270}).meshed;
   TetMesh& mesh = meshed.result.mesh;
@@ -207,7 +209,7 @@ TEST(CoarsenCheck, JudgesThinTetsByTheirAngles) {
   };
   EXPECT_EQ(kinds({}), std::set<std::string>());
   EXPECT_EQ(kinds({.bounds = {.thin_angle = 0}}), std::set<std::string>{"radius_edge"});
-  // Between the two sides of the plate angles are as large as these leave it: a vertex that is moved towards
+  // Between the two sides of the plate angles are as large as these sides permit; moving a vertex towards
   // another one makes them smaller.
   EXPECT_EQ(kinds({.bounds = {.thin_angle = 20}}), std::set<std::string>());
   const Index corner = mesh.tets[static_cast<Index>(std::find(mesh.tet_thin.begin(), mesh.tet_thin.end(), 1) -

@@ -1,6 +1,6 @@
-// Collars of coarsened meshes: the cells that touch a crease, with no dihedral angle above the bound; and the
-// radius-edge ratio away from narrow places, if it is asked for. Shapes are measured by formulas of this
-// file.
+// Collars of coarsened meshes: the cells that touch a crease, with no dihedral angle above the bound; and, if
+// asked for, the bound on the radius-edge ratio away from narrow places. Shapes are measured by formulas of
+// this file.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -38,7 +38,8 @@ double largest_dihedral(const TetMesh& mesh, const std::array<Index, 4>& tet) {
   return largest;
 }
 
-// The circumcentre c, from the first corner, has the same product with each edge there as half of its square.
+// The circumcentre c, relative to the first corner, has a product with each edge there that is half of the
+// edge's square.
 double radius_edge(const TetMesh& mesh, const std::array<Index, 4>& tet) {
   const Point& a = mesh.points[tet[0]];
   const Vector u = mesh.points[tet[1]] - a, v = mesh.points[tet[2]] - a, w = mesh.points[tet[3]] - a;
@@ -76,7 +77,7 @@ SoupPipelineResult made(const std::vector<PolygonSoup>& soups, const Bounds& bou
   return run_pipeline(soups, options);
 }
 
-// All cells at creases are marked, and no others. Returns their number.
+// Expects that exactly the cells at creases are marked. Returns their number.
 std::size_t expect_collars(const SoupPipelineResult& of, double angle) {
   const TetMesh& mesh = of.result.mesh;
   const std::vector<bool> on_crease = points_on_creases(of.plc, mesh);
@@ -137,7 +138,7 @@ TEST(CoarsenedCollars, AreJudged) {
   EXPECT_EQ(kinds(wrong, {}), std::set<std::string>{"collar_cells"});
 }
 
-// Without that bound single tets of a box have a ratio above 2.
+// Without that bound some tets of a box have a ratio above 2.
 TEST(CoarsenedCollars, KeepTheRatioThatIsAskedForAwayFromNarrowPlaces) {
   for (const double ratio : {1.5, 2.0, 3.0}) {
     SCOPED_TRACE(ratio);
@@ -151,7 +152,7 @@ TEST(CoarsenedCollars, KeepTheRatioThatIsAskedForAwayFromNarrowPlaces) {
   }
 }
 
-// Between the two sides of a plate tets stay thin, so that they are few.
+// Between the two sides of a plate tets stay thin, so that there are few of them.
 TEST(CoarsenedCollars, MayBeThinInNarrowPlaces) {
   Bounds bounds;
   bounds.thin_in_narrow_places_only = true;
@@ -162,7 +163,7 @@ TEST(CoarsenedCollars, MayBeThinInNarrowPlaces) {
   EXPECT_LT(of.result.mesh.tets.size(), 1.2 * static_cast<double>(anywhere.result.mesh.tets.size()));
 }
 
-// A mesh whose tets may be thin anywhere is told from one whose tets may not.
+// A mesh whose tets may be thin anywhere is distinguished from one whose tets may not.
 TEST(CoarsenedCollars, ThinTetsInOtherPlacesAreFound) {
   const SoupPipelineResult of = made(acute::pyramid(7, 10).soups, {}, 0.3);
   ASSERT_GT(of.check.thin_tets, 0U);

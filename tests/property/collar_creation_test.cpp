@@ -1,5 +1,5 @@
-// Collars that are created in the pass (paper, section 3.2), and up front: the same guarantees. What the
-// paper proves of the mesh in the moment of creation.
+// Collars created in the pass (paper, section 3.2) and up front: the same guarantees. Also checks what the
+// paper proves about the mesh at the moment of creation.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -79,14 +79,16 @@ bool contains_crease(const Plc& plc, const Feature& feature, const CollarBall& b
   return feature.dimension == 3 || contains(plc, feature, {ball.dimension, ball.feature});
 }
 
-// With theta and the largest radius-edge ratio that the run allows (paper, proof of Lemma 8).
+// Returns epsilon_0 for theta and the largest radius-edge ratio that the run allows (paper, proof of Lemma
+// 8).
 double epsilon_0(const MeshOptions& options) {
   const double epsilon_1 = 1 / (4 * std::max(options.exterior_radius_edge, options.bounds.radius_edge));
   return options.theta * epsilon_1 / (options.theta + 1);
 }
 
-// The gap size of every ball is the one by brute force; no vertex of another feature is in a gap ball when it
-// is created, nor is the mesh much finer than the gap at the ball's centre (paper, Lemma 2).
+// The gap size of every ball equals the one found by brute force. When a gap ball is created, no vertex of
+// another feature is in it, and the mesh is not much finer than the gap at the ball's centre (paper, Lemma
+// 2).
 void expect_created_in_time(const acute::Shape& shape) {
   SCOPED_TRACE(shape.name);
   PlcOptions complex;
@@ -115,7 +117,8 @@ void expect_created_in_time(const acute::Shape& shape) {
       if (!contains_crease(plc, refinement.feature_of(v), ball)) {
         EXPECT_GE(d, gap * (1 - 1e-9));
       }
-      // A vertex at the centre is there up to rounding. Radii along round rims are far smaller than the gap.
+      // A vertex at the centre is there only up to rounding. Radii along round rims are far smaller than the
+      // gap.
       if (d > 1e-12 * ball.radius) {
         EXPECT_GT(d, epsilon_0(options) * (at_vertex ? gap : 3 * ball.radius));
       }

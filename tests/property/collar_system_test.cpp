@@ -94,7 +94,7 @@ struct Placed {
   CollarSystem system;
 };
 
-// Both are infinite where every feature contains the point.
+// Expects equal gaps; both are infinite if every feature contains the point.
 void expect_equal(double gap, double expected, const char* kind, Index feature) {
   if (std::isinf(expected)) {
     EXPECT_TRUE(std::isinf(gap)) << kind << " " << feature;
@@ -119,8 +119,8 @@ void expect_gap_sizes(const acute::Shape& shape) {
       expect_equal(gap.on_curve(c, p), expected, "curve", c);
     }
 }
-// On every file of a corpus that is a complex: at every crease vertex, and in the middle of every segment of
-// crease curves.
+// Checks every file of a corpus that is a complex: at every crease vertex, and in the middle of every segment
+// of crease curves.
 TEST(GapSize, EqualsBruteForceOnTheCorpus) {
   const char* corpus = std::getenv("COLLARMESH_CORPUS");
   if (corpus == nullptr || *corpus == '\0') GTEST_SKIP() << "COLLARMESH_CORPUS names no folder";
@@ -192,10 +192,10 @@ void expect_small_radii(const Placed& placed) {
   }
 }
 
-// May two balls meet: do they lie on one crease curve?
+// Returns whether two balls may meet because they lie on one crease curve.
 bool on_one_crease(const Plc& plc, const CollarBall& a, const CollarBall& b) {
   if (a.dimension == 1 && b.dimension == 1) return a.feature == b.feature;
-  if (a.dimension == b.dimension) return false;  // vertices
+  if (a.dimension == b.dimension) return false;  // two vertices
   const CollarBall &at_vertex = a.dimension == 0 ? a : b, &on_curve = a.dimension == 0 ? b : a;
   return plc.vertex_on_curve(at_vertex.feature, on_curve.feature);
 }
@@ -210,8 +210,8 @@ void expect_disjoint_creases(const Placed& placed) {
       }
 }
 
-// Definition 7: what lies on the surface of the union and in two balls lies on a circle of two of them: a
-// third ball holds no part of the circle.
+// Definition 7: a point on the surface of the union that is in two balls lies on their circle; no third ball
+// contains a part of that circle.
 void expect_no_third_ball_at_circles(const Placed& placed) {
   const auto& balls = placed.system.balls();
   for (const CollarLink& link : placed.system.links()) {
@@ -277,8 +277,8 @@ TEST(CollarSystem, KeepsItsDefinitionOnCurvedCreases) {
   for (const acute::Shape& shape : curved_shapes()) expect_collar_system(shape);
 }
 
-// On a rim of one curvature the balls are alike: their radii differ by the random shrinkage and by what
-// the corners of the polyline add.
+// On a rim of constant curvature the balls are alike: their radii differ only by the random shrinkage and by
+// the effect of the polyline's corners.
 TEST(CollarSystem, RadiiOnRoundRimsAreEven) {
   for (const acute::Shape& shape :
        {acute::round_cone(40), acute::lens(40), acute::lens(20), acute::cut_torus(0.6)}) {
@@ -291,7 +291,7 @@ TEST(CollarSystem, RadiiOnRoundRimsAreEven) {
   }
 }
 
-// Queries of the hierarchy against all balls.
+// Compares queries of the hierarchy with a search over all balls.
 void expect_brute_force_queries(const CollarSystem& system, unsigned places) {
   const auto& balls = system.balls();
   for (unsigned i = 0; i < places; ++i) {
@@ -321,7 +321,7 @@ TEST(CollarSystem, QueriesEqualBruteForce) {
     expect_brute_force_queries(Placed(shape).system, 2000);
 }
 
-// Each crease gets its balls at another time, and what has come is found at once.
+// Each crease gets its balls at another time, and new balls are found at once.
 TEST(CollarSystem, QueriesEqualBruteForceWhileBallsCome) {
   for (const acute::Shape& shape : {acute::fan(8), acute::star_prism(9, 0.4), acute::lens(40)}) {
     SCOPED_TRACE(shape.name);
@@ -345,7 +345,7 @@ TEST(CollarSystem, QueriesEqualBruteForceWhileBallsCome) {
   }
 }
 
-// Mesh vertices on a crease that have room for a ball are centres, and the system keeps its definition.
+// Mesh vertices on a crease that have room for a ball become centres, and the system keeps its definition.
 TEST(CollarSystem, CentresBallsOnVerticesOfTheirCurve) {
   for (const acute::Shape& shape : {acute::lens(40), acute::cut_torus(0.5), acute::round_cone(30)}) {
     SCOPED_TRACE(shape.name);

@@ -1,6 +1,6 @@
 // Complexes with creases through `generate`: every family at set parameters and with random members. The
-// certificate judges with radius-edge 2 and dihedral angles of at most 150 degrees in collars; nothing but
-// rounding may be lost of the volume of planar ones.
+// certificate judges with a radius-edge bound of 2 and dihedral angles of at most 150 degrees in collars;
+// planar shapes may lose volume only by rounding.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -43,8 +43,8 @@ double shortest_edge(const TetMesh& mesh) {
   return shortest;
 }
 
-// Of planar shapes the volume is exact; smooth surfaces move by the distance tolerance at most. Repairs of
-// the collar surface must not end at the floor of the refinement, 1e-10 of the diagonal.
+// The volume of planar shapes must be exact; smooth surfaces move by at most the distance tolerance. Repairs
+// of the collar surface must not end at the floor of the refinement, 1e-10 of the diagonal.
 void expect_right(const acute::Shape& shape) {
   SCOPED_TRACE(shape.name);
   const Meshed meshed =
@@ -81,7 +81,7 @@ TEST(Collar, CellsBearTheTagOfTheirCrease) {
   for (Index v = 0; v < plc.vertices.size(); ++v) plc.vertices[v].tag = 1000 + v;
   for (Index c = 0; c < plc.curves.size(); ++c) plc.curves[c].tag = 1 + c;
   const TetMesh mesh = testing::mesh_of(plc, testing::with_size(size)).result.mesh;
-  std::vector<Tag> tag_at(mesh.points.size(), 0);  // of the crease that a ball's centre is on
+  std::vector<Tag> tag_at(mesh.points.size(), 0);  // by point: tag of the crease of the ball centred there
   for (const TetMesh::CollarBall& ball : mesh.collar_balls) {
     const auto [dimension, feature] = mesh.features[ball.point];
     tag_at[ball.point] = dimension == 0 ? plc.vertices[feature].tag : plc.curves[feature].tag;
@@ -95,7 +95,7 @@ TEST(Collar, CellsBearTheTagOfTheirCrease) {
     } else if (mesh.tet_collar[t] == 1) {
       EXPECT_EQ(tags, std::set<Tag>{mesh.tet_crease[t]});
     } else {
-      EXPECT_LT(mesh.tet_crease[t], 1000);  // an edge, not a corner
+      EXPECT_LT(mesh.tet_crease[t], 1000);  // an edge's tag, not a corner's
       EXPECT_EQ(tags.count(mesh.tet_crease[t]), 1U);
     }
   }
@@ -111,7 +111,7 @@ TEST(Collar, Fans) {
   for (const unsigned k : {4U, 5U, 9U, 14U}) expect_right(acute::fan(k, k));
 }
 
-// The exact centre of a cell between two sheets often lies on a third one: it must not go in.
+// The exact centre of a cell between two sheets often lies on a third sheet: it must not be inserted there.
 TEST(Collar, CentresOnSheets) {
   for (const std::uint64_t seed : {0U, 1U, 2U}) {
     MeshOptions options = testing::with_size(size);
@@ -188,8 +188,8 @@ Meshed tiny_pairs(double pair, std::uint32_t seed) {
   return testing::mesh_of(build_plc({&soup, 1}, complex), testing::with_size(0.5));
 }
 
-// The floor of the refinement is as low relative to tiny edges as it is to the diagonal elsewhere, and
-// vertices grow with the logarithm of the spread.
+// The floor of the refinement is as low relative to tiny edges as it is elsewhere relative to the diagonal.
+// The number of vertices grows with the logarithm of the spread.
 TEST(Collar, TinyPairsAtAnySpread) {
   std::size_t before = 0;
   for (const double pair : {1e-5, 1e-7, 1e-8, 1e-9})
@@ -204,8 +204,8 @@ TEST(Collar, TinyPairsAtAnySpread) {
     }
 }
 
-// Where doubles are too few for features to be told apart, the mesh misses guarantees, but no tet or triangle
-// has a corner twice.
+// If doubles are too coarse to separate features, the mesh misses guarantees, but no tet or triangle has a
+// corner twice.
 TEST(Collar, NoCornerIsRepeatedWhereRefinementGivesUp) {
   const auto repeats = [](auto corners) {
     std::sort(corners.begin(), corners.end());
@@ -255,8 +255,8 @@ TEST(Collar, RimsAndSheetsThatComeBack) {
     for (const double apex_angle : {45.0, 30.0, 15.0}) expect_right(acute::drop_cone(angle, apex_angle));
 }
 
-// A dent in a side of a box, one of whose faces continues that side round a bend that is no feature: this
-// smooth patch passes through corner 8 in two sheets, and the balls there are smaller than the distance
+// A dent in a side of a box. One of its faces continues that side around a bend that is no feature, so this
+// smooth patch passes through corner 8 in two sheets. The balls there are smaller than the distance
 // tolerance.
 TEST(Collar, SheetsOfOnePatchAtACorner) {
   PolygonSoup soup;
@@ -295,7 +295,7 @@ bool has_finding(const TetMesh& mesh, const Plc& plc, const std::string& guarant
                      [&](const Finding& finding) { return finding.guarantee == guarantee; });
 }
 
-// The lemmas on the balls of the collars are part of the certificate.
+// The lemmas on the balls of collars are part of the certificate.
 TEST(Collar, WrongBallsAreFound) {
   const acute::Shape wedge = acute::wedge(30);
   const Meshed meshed = testing::mesh_of(wedge.soups, testing::with_size(size), 0);
@@ -321,7 +321,7 @@ TEST(Collar, WrongBallsAreFound) {
   EXPECT_TRUE(has_finding(mesh, meshed.plc, "collar_centre"));
 }
 
-// A file may have no place for the marks of the cells, or for any label: the complex has the creases.
+// A file may lack the marks of cells, or all labels; the complex knows the creases.
 TEST(Collar, FilesAreJudgedByTheCreasesOfTheComplex) {
   const acute::Shape wedge = acute::wedge(20);
   const Meshed meshed = testing::mesh_of(wedge.soups, testing::with_size(size), 0);
@@ -347,12 +347,12 @@ TEST(Collar, FilesAreJudgedByTheCreasesOfTheComplex) {
   EXPECT_EQ(report.findings.front().guarantee, "collar_cells");
 }
 
-// Cancelling and budgets of time end the placement of balls too.
+// Cancelling and time budgets also end the placement of balls.
 TEST(Collar, PlacementCanBeStopped) {
   PlcOptions smooth;
   smooth.feature_angle = 30;
   const Plc plc = build_plc(acute::lens(20).soups, smooth);
-  // Up front every ball asks whether to stop; in the pass the loop does, every 512 steps.
+  // Up front every ball asks whether to stop; in the pass the loop asks every 512 steps.
   using Most = std::pair<CollarCreation, std::size_t>;
   for (const auto& [creation, most_asked] :
        {Most{CollarCreation::up_front, 10}, Most{CollarCreation::in_pass, 1024}}) {
@@ -381,7 +381,7 @@ TEST(Collar, PlacementCanBeStopped) {
   }
 }
 
-// At other sizes, seeds and bounds.
+// Checks other sizes, seeds and bounds.
 TEST(Collar, SizesAndSeeds) {
   const std::vector<acute::Shape> shapes{acute::wedge(20), acute::pyramid(4, 40), acute::star_prism(5, 0.4)};
   for (const acute::Shape& shape : shapes)
@@ -402,7 +402,7 @@ TEST(Collar, TighterAngle) {
   }
 }
 
-// The same in any units and far from the origin.
+// Checks the same in other units and far from the origin.
 TEST(Collar, MovedAndScaled) {
   const std::vector<acute::Shape> shapes{acute::wedge(20), acute::pyramid(5, 30), acute::sectors(8)};
   for (const acute::Shape& shape : shapes) {

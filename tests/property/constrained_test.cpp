@@ -1,5 +1,5 @@
-// Tetrahedra with the facets and segments of a complex, by brute force over their sides, and meshes begun
-// with them.
+// Tetrahedra with the facets and segments of a complex, compared by brute force over their sides, and meshes
+// that begin with them.
 #include "constrained/constrained_tetrahedra.h"
 
 #include <gtest/gtest.h>
@@ -31,8 +31,8 @@ void expect_near(double made, double given, const std::string& what) {
   EXPECT_NEAR(made, given, 1e-9 * std::fabs(given)) << what;
 }
 
-/// Every side of a tet is that of another one, or a face of the mesh; faces have one tet or two, as they
-/// should.
+/// Expects that every side of a tet is a side of another tet or a face of the mesh, and that faces have one
+/// or two tets, as they should.
 void expect_conforming(const TetMesh& mesh) {
   std::map<std::array<Index, 3>, unsigned> sides;
   const auto sorted = [](std::array<Index, 3> v) {

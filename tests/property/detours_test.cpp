@@ -1,4 +1,4 @@
-// Detours of improvement: the whole mesh is better afterwards, from its worst tet up, or as it was.
+// Detours of improvement: afterwards the whole mesh is better, compared from its worst tet up, or unchanged.
 #include "improve/detours.h"
 
 #include <gtest/gtest.h>
@@ -46,7 +46,7 @@ ImproveOptions options(double angle) {
   return made;
 }
 
-/// What detours work with.
+/// The objects that detours work with.
 struct Bench {
   explicit Bench(Meshed& meshed, double wanted = wanted_angle)
       : workpiece(meshed.result.mesh, meshed.plc,
@@ -66,7 +66,7 @@ struct Bench {
     return found;
   }
 
-  /// Sorted; of poor tets alone.
+  /// Returns the qualities of poor tets, sorted.
   std::vector<double> poor_qualities() const {
     std::vector<double> found;
     for (const Index t : poor()) found.push_back(remedies.quality(t));
@@ -74,7 +74,7 @@ struct Bench {
     return found;
   }
 
-  /// Of all tets, whatever their order.
+  /// Returns all tets, in no order.
   std::multiset<std::array<Index, 4>> tets() const {
     std::multiset<std::array<Index, 4>> found;
     for (Index t = 0; t < workpiece.complex.size(); ++t)
@@ -90,7 +90,7 @@ struct Bench {
 
 bool never() { return false; }
 
-// Fewer poor ones are better, too. The same tet may differ by rounding.
+// Returns whether qualities are better; fewer poor ones are better, too. The same tet may differ by rounding.
 bool is_better(std::vector<double> now, std::vector<double> before) {
   const std::size_t size = std::max(now.size(), before.size());
   now.resize(size, INFINITY);
@@ -100,7 +100,7 @@ bool is_better(std::vector<double> now, std::vector<double> before) {
   return false;
 }
 
-// A detour for the tet; what comes of it is compared with what was there.
+// Takes a detour for the tet, and compares the mesh with that before.
 bool take_and_compare(Meshed& meshed, Bench& bench, Index tet) {
   const auto before = bench.poor_qualities();
   const auto tets = bench.tets();
@@ -131,7 +131,7 @@ TEST(Detours, MakeTheMeshBetter) {
   EXPECT_GT(taken, 0U);
 }
 
-// Few tets in narrow places, where most of what is tried comes to nothing: planar, smooth, with curves.
+// Few tets are in narrow places, where most trials fail: planar, smooth, with curves.
 TEST(Detours, LeaveTheMeshAsItWas) {
   using namespace testing;
   std::size_t refused = 0;
@@ -164,7 +164,7 @@ TEST(Detours, StopWhenTheyAreTold) {
   }
 }
 
-// No tets are as good as that: all trials are spent, and those of the tet that was asked last.
+// No tet can be that good: all trials are used up, including those of the last tet.
 TEST(Detours, AHopelessBoundEnds) {
   constexpr std::size_t most_of_one_tet = 24 * 30;
   for (Meshed& meshed : meshes()) {

@@ -1,4 +1,4 @@
-// Refined meshes as the next stages get them: in which order they lie in memory, and who is whose neighbour.
+// Refined meshes as later stages get them: their order in memory, and the tets' neighbours.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ std::vector<Shape> shapes() {
           {"sectors", acute::sectors(9).soups, 0.3}};
 }
 
-/// By sorted corners, the tets that have each triangle as a side.
+/// Returns for each triangle, by sorted corners, the tets that have it as a side.
 std::map<std::array<Index, 3>, std::vector<Index>> sides(const TetMesh& mesh) {
   std::map<std::array<Index, 3>, std::vector<Index>> sides;
   for (Index t = 0; t < mesh.tets.size(); ++t)
@@ -87,7 +87,7 @@ TEST(Extraction, KnowsNeighboursAndTheComplexFindsTheRest) {
       }
     const auto stitched = std::count_if(mesh.tet_collar.begin(), mesh.tet_collar.end(),
                                         [](std::uint8_t collar) { return collar != 0; });
-    EXPECT_LE(open, 8 * static_cast<std::size_t>(stitched));  // both sides of all that they have
+    EXPECT_LE(open, 8 * static_cast<std::size_t>(stitched));  // at most both sides of all their sides
     EXPECT_GT(shared, open);
   }
 }
@@ -126,7 +126,7 @@ TEST(Extraction, LaysInMemoryWhatIsNearTogether) {
     const auto [least, greatest] = std::minmax_element(tet.begin(), tet.end());
     spread += *greatest - *least;
   }
-  // Of a random order it is 0.6 of all points.
+  // For a random order it would be 0.6 of all points.
   EXPECT_LT(spread / static_cast<double>(mesh.tets.size()), 0.15 * static_cast<double>(mesh.points.size()));
 }
 

@@ -1,5 +1,5 @@
-// Sheets that face each other across a narrow gap: what a gap costs grows with the length of its rim, not
-// with its area by its width squared.
+// Sheets that face each other across a narrow gap: the cost of a gap grows with the length of its rim, not
+// with its area divided by its width squared.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -13,7 +13,7 @@ namespace {
 
 using namespace collarmesh::testing;
 
-// A block of volume 12 less its slot, which is 2 deep, 3 long and open at three sides.
+// A block of volume 12 minus its slot, which is 2 deep, 3 long and open on three sides.
 PolygonSoup slotted_block(double width) {
   const double w = width / 2;
   const std::array<Point, 8> outline{
@@ -47,7 +47,7 @@ TEST(FacingSheets, CostsOfASlotGrowAsItsRim) {
     return vertices_in(meshed_at_size(slotted_block(width), 0.5, 0));
   };
   const auto wide = static_cast<double>(vertices(0.02)), narrow = static_cast<double>(vertices(0.005));
-  EXPECT_LT(narrow, 6 * wide);  // by its area it would be 16 times
+  EXPECT_LT(narrow, 6 * wide);  // proportional to the area it would be 16 times
 }
 
 TEST(FacingSheets, CurvedOnesDoNotMakeEachOtherFiner) {

@@ -1,4 +1,4 @@
-// Sheets and fins outside of every region: no mesh has them, and nothing is refined for them.
+// Sheets and fins outside all regions: no mesh has them, and nothing is refined for them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -44,7 +44,7 @@ void expect_left_out(const PolygonSoup& soup) {
   EXPECT_LT(meshed.result.statistics.vertices_inserted, 3000U);
 }
 
-// Their corners are acute, and collars were made for them whose surface nobody resolved.
+// Their corners are acute. Collars were made for them once, whose surface was never resolved.
 TEST(FeaturesOutside, LooseTrianglesAreLeftOut) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> place(0, 1);
@@ -68,7 +68,8 @@ TEST(FeaturesOutside, FinsAreLeftOut) {
   expect_left_out(in_a_point);
 }
 
-// The surface distance goes by the triangles of the whole complex, of which those outside come first here.
+// The surface distance is given by triangles of the whole complex, in which triangles outside come first
+// here.
 TEST(FeaturesOutside, DistancesAreThoseOfTheTrianglesInside) {
   PolygonSoup sheet;
   for (const double x : {-0.5, 0.0, 0.5}) add_triangle(sheet, {x, 2, 2}, {x + 0.3, 2, 2}, {x, 2.3, 2});
@@ -82,7 +83,7 @@ TEST(FeaturesOutside, DistancesAreThoseOfTheTrianglesInside) {
   EXPECT_EQ(faults(mesh_of(plc, options)), "");
 }
 
-// The balls of a crease need not keep a distance from them.
+// The balls of a crease need no distance from them.
 TEST(FeaturesOutside, CollarsAreNoSmallerForThem) {
   const PolygonSoup alone = wedge(20, 1);
   PolygonSoup soup = alone;
@@ -123,12 +124,12 @@ PolygonSoup box_with_line(const Point& a, const Point& b) {
   return soup;
 }
 
-// No mesh has them, nor do they belong to a sheet that the complex warns of.
+// No mesh has these lines, and they belong to no sheet that the complex warns of.
 TEST(FeaturesOutside, LinesAreTold) {
   const Meshed outside = mesh_of(box_with_line({2, 0.5, 0.5}, {3, 0.5, 0.5}), with_size(0.5));
   EXPECT_EQ(faults(outside), "");
   EXPECT_TRUE(tells_of(outside.report, "Curves"));
-  EXPECT_FALSE(tells_of(outside.report, "Vertices"));  // they are the line's ends
+  EXPECT_FALSE(tells_of(outside.report, "Vertices"));  // vertices that are ends of the line
   ASSERT_EQ(outside.report.warnings.size(), 1U);
   EXPECT_NE(outside.report.warnings[0].find("(tag 5) at (2, 0.5, 0.5)"), std::string::npos)
       << outside.report.warnings[0];
@@ -161,7 +162,7 @@ TEST(FeaturesOutside, PointsAreTold) {
       << meshed.report.warnings[0];
 }
 
-// The numbers of features are those of the whole complex, whose patches outside come first here.
+// Numbers of features refer to the whole complex, in which patches outside come first here.
 TEST(FeaturesOutside, NumbersOfFeaturesAreThoseOfTheComplex) {
   PolygonSoup soup;
   add_triangle(soup, {1.5, 0.2, 0.3}, {1.6, 0.2, 0.31}, {1.5, 0.3, 0.29});

@@ -1,5 +1,4 @@
-// Finite elements as the judge: a Poisson problem with a known solution converges on our meshes as theory
-// says.
+// Finite elements as judges: on our meshes a Poisson problem with a known solution converges as theory says.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -33,7 +32,7 @@ TetMesh improved_mesh(const std::vector<PolygonSoup>& soups, double size, double
   return improved(soups, size, feature_angle, distance, seed).result.mesh;
 }
 
-// A polynomial of the elements' degree is found but for rounding, whatever the mesh.
+// A polynomial of the elements' degree is found exactly except for rounding, on any mesh.
 TEST(FiniteElements, FindPolynomialsExactly) {
   const testing::Solution linear{[](const Point& p) { return 1 + 2 * p.x - p.y + 3 * p.z; },
                                  [](const Point&) {
@@ -52,8 +51,8 @@ TEST(FiniteElements, FindPolynomialsExactly) {
   EXPECT_LT(testing::solve_poisson(mesh, quadratic).h1, 1e-9);
 }
 
-// The flat tets of collars do not spoil the matrix: with them it is a few times that of a box with as many
-// tets.
+// The flat tets of collars do not spoil the matrix: its condition number is a few times that of a box with as
+// many tets.
 TEST(FiniteElements, StayWellConditionedInCollars) {
   const TetMesh mesh = improved_mesh(testing::acute::fan(8).soups, 0.2, 0);
   ASSERT_GT(std::count_if(mesh.tet_collar.begin(), mesh.tet_collar.end(), [](auto c) { return c != 0; }),
@@ -68,16 +67,16 @@ struct Domain {
   std::string name;
   std::vector<PolygonSoup> soups;
   double feature_angle;
-  double coarse, fine;  // sizes
-  double distance;      // such that the surface is as coarse as the inside
+  double coarse, fine;  // coarse and fine size
+  double distance;      // distance with which the surface is as coarse as the inside
 };
 
 class Convergence : public ::testing::TestWithParam<int> {};
 
-// Error ~ size^order: order k + 1 in L2 and k in H1 for elements of order k. Two meshes scatter about that,
-// so it is the mean over some seeds. (The fan of sheets' order in H1 with linear elements, over 16 seeds:
-// 0.94 on average whether collars' balls are placed up front or in the pass, 0.91 to 0.99 and 0.88 to 0.98
-// with single seeds.)
+// The error is proportional to size^order, with order k + 1 in L2 and k in H1 for elements of order k.
+// Results of two meshes scatter, so the test takes the mean over some seeds. (For the fan of sheets, the
+// order in H1 of linear elements over 16 seeds is 0.94 on average with collars' balls placed up front or in
+// the pass; single seeds give 0.91 to 0.99 and 0.88 to 0.98.)
 TEST_P(Convergence, IsThatOfTheory) {
   constexpr unsigned seeds = 4;
   const int order = GetParam();
@@ -106,7 +105,7 @@ TEST_P(Convergence, IsThatOfTheory) {
   }
 }
 
-// Zero on the unit sphere, whose shape the elements have to follow.
+// A solution that is zero on the unit sphere, whose shape the elements must follow.
 testing::Solution zero_on_the_sphere() {
   return {[](const Point& p) { return (1 - dot(p, p)) * std::exp(p.x); },
           [](const Point& p) {

@@ -1,5 +1,5 @@
-// The gap size found by exploring the mesh (paper, Procedure 4) against brute force, all along the
-// refinement: the answer must not depend on how fine the mesh is.
+// The gap size found by exploring the mesh (paper, Procedure 4), compared with brute force throughout the
+// refinement: the answer must not depend on the mesh's fineness.
 #include "refine/gap_explorer.h"
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ std::vector<Place> places_of(const Plc& plc) {
   return places;
 }
 
-// After every quality phase early on, then after ever fewer.
+// Returns whether to look after this quality phase: after every phase early on, later ever less often.
 bool looks_at(std::size_t phase) { return phase <= 8 || (phase & (phase - 1)) == 0; }
 
 void expect_brute_force_gaps(const acute::Shape& shape) {
@@ -86,7 +86,7 @@ TEST(GapExplorer, EqualsBruteForceOnPlanarShapes) {
     expect_brute_force_gaps(shape);
 }
 
-// What no patch has is found from the cells, too.
+// Features on no patch are found from the cells, too.
 TEST(GapExplorer, EqualsBruteForceBesideLoneSegments) {
   using namespace acute;
   for (const Shape& shape :

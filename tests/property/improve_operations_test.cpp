@@ -49,10 +49,10 @@ std::vector<Shape> shapes() {
 
 constexpr double radius_edge = 2;
 constexpr double distance = 2e-3;       // about a thousandth of the diagonals
-constexpr std::size_t attempts = 2000;  // on each mesh
+constexpr std::size_t attempts = 2000;  // attempts on each mesh
 constexpr std::size_t single_steps = 4;
 
-/// A complex and its operations on a mesh of its own.
+/// A complex, and operations on a mesh of its own.
 struct Workbench {
   Workbench(const Meshed& meshed, const TetMesh& of)
       : mesh(of), workpiece(mesh, meshed.plc, SurfaceTolerance(distance)), operations(workpiece, rule) {}
@@ -77,7 +77,7 @@ struct Operation {
   std::string name;
   Ask ask;
   Change::Kind kind;
-  std::vector<unsigned> dimensions;  ///< of the features that it has to be seen on
+  std::vector<unsigned> dimensions;  ///< dimensions of the features on which the operation must occur
   bool anyhow = false;               ///< the worst tet need not become better, only better than `least`
 };
 
@@ -141,14 +141,14 @@ unsigned dimension_of(const Workbench& on, const Change& change) {
   }
 }
 
-/// Do it, and see that the worst tet of the cavity has become better, to what was promised.
+/// Applies a change, and checks that the worst tet of the cavity is as good as promised.
 void apply(Workbench& on, const Change& change, bool anyhow = false) {
   std::vector<Index> before = change.replacement.old;
   if (change.kind == Change::Kind::move) on.complex.star(change.vertex, before);
   const double worst = on.worst(before);
   const auto& changed = on.workpiece.apply(change);
   EXPECT_GT(on.worst(changed), anyhow ? least : worst);
-  if (changed.empty()) return;  // a sliver has gone to the other side
+  if (changed.empty()) return;  // a sliver was given to the other side
   EXPECT_NEAR(on.worst(changed), change.quality, 1e-12);
 }
 
@@ -159,8 +159,8 @@ std::string faults_of(const Meshed& meshed, TetMesh mesh) {
   return testing::faults(changed);
 }
 
-/// A place where the operation is possible, on features of this dimension if one is given;
-/// `Change::Kind::none` when none was found.
+/// Finds a place where the operation is possible, on features of this dimension if one is given.
+/// `Change::Kind::none` if there is none.
 Change find(Workbench& on, const Operation& operation, std::mt19937& random,
             std::optional<unsigned> dimension = {}) {
   for (std::size_t attempt = 0; attempt < attempts; ++attempt) {
@@ -193,7 +193,7 @@ class ImproveOperations : public ::testing::Test {
   }
 };
 
-/// All shapes are as good as any.
+/// A rule with which all shapes are equally good.
 class AnyShape final : public improvement::ShapeRule {
  public:
   double quality(const improvement::Corners&, const std::array<Index, 4>&) const override { return 1; }
@@ -202,7 +202,7 @@ class AnyShape final : public improvement::ShapeRule {
   }
 };
 
-/// What cells that contain a vertex add to it: vertices and pairs, sorted.
+/// The link: vertices and pairs, sorted, that cells at a vertex contribute.
 using Link = std::set<std::vector<Index>>;
 
 template <class Cells>
@@ -222,7 +222,7 @@ Link link_of(const Cells& cells, std::vector<Index> of) {
   return link;
 }
 
-/// Is all that both ends have in their links in that of the edge?
+/// Returns whether everything in the links of both ends is in the link of the edge.
 template <class Cells>
 bool link_condition(const Cells& cells, Index a, Index b) {
   const Link of_a = link_of(cells, {a}), of_b = link_of(cells, {b}), of_edge = link_of(cells, {a, b});
@@ -234,7 +234,7 @@ bool link_condition(const Cells& cells, Index a, Index b) {
   });
 }
 
-// Whatever their shapes: in the tets and in the mesh's faces.
+// Regardless of shapes, in the tets and in the mesh's faces.
 TEST_F(ImproveOperations, ContractionsOnFeaturesKeepTheLinkCondition) {
   const AnyShape rule;
   std::size_t proposed = 0, forbidden = 0;
@@ -272,7 +272,7 @@ TEST_F(ImproveOperations, ContractionsOnFeaturesKeepTheLinkCondition) {
   EXPECT_GT(forbidden, 100U);
 }
 
-/// A body of these tets whose whole surface is one plane patch to operations that ask for no shapes.
+/// Makes a body of these tets. For operations without demands on shapes its whole surface is one plane patch.
 TetMesh body(const std::vector<std::array<Index, 4>>& tets, std::vector<Point> points) {
   TetMesh mesh;
   mesh.points = std::move(points);
@@ -306,7 +306,7 @@ TetMesh body(const std::vector<std::array<Index, 4>>& tets, std::vector<Point> p
   return mesh;
 }
 
-// Bodies in which the vertex 0 may go onto 1, or only one part of the link condition forbids it.
+// Bodies in which vertex 0 may be moved onto 1, or only one part of the link condition forbids it.
 TEST(ContractionsOnFeatures, EachPartOfTheLinkConditionForbidsSome) {
   // Vertex 0 is far away, so that no edge becomes too long.
   const std::vector<Point> points{{9, 8, 7},       {1, 0, 0},      {0, 1, 0.1},    {0, 0.2, 1},
@@ -341,7 +341,7 @@ TEST(ContractionsOnFeatures, EachPartOfTheLinkConditionForbidsSome) {
   }
 }
 
-// After each single one the mesh passes.
+// The mesh passes after each single operation.
 TEST_F(ImproveOperations, EachKeepsTheCertificate) {
   for (const Operation& operation : all_operations())
     for (const unsigned dimension : operation.dimensions) {
@@ -363,7 +363,7 @@ TEST_F(ImproveOperations, EachKeepsTheCertificate) {
     }
 }
 
-// So does it after many of all kinds, each on what the ones before it left.
+// It also passes after many operations of all kinds, each applied to the result of earlier ones.
 TEST_F(ImproveOperations, ManyKeepTheCertificate) {
   const std::vector<Operation> operations = all_operations();
   for (const auto& [name, meshed] : meshes()) {

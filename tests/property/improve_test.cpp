@@ -1,4 +1,4 @@
-// Improvement of a mesh's elements: every guarantee stays, no sliver does.
+// Improvement of a mesh's elements: every guarantee is kept, no sliver is left.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -88,9 +88,10 @@ ImproveOptions without_thin_tets(unsigned level) {
 
 class Improve : public ::testing::TestWithParam<unsigned> {};
 
-// A fifth of one poor tet is none: so many poor ones are judged together, of several seeds where one makes
-// fewer. (Of the pyramid, over 64 seeds, 4.5% of 537 stay at level 1 with balls placed up front, 6.6% of 519
-// with those of the pass; of one seed's 1 to 15, up to a third with the former and all with the latter.)
+// A fifth of one poor tet cannot be counted, so this many poor ones are judged together, over several seeds
+// if one has fewer. (Of the pyramid, over 64 seeds, 4.5% of 537 remain at level 1 with balls placed up front,
+// and 6.6% of 519 with balls placed in the pass. Of the 1 to 15 of a single seed, up to a third remain in the
+// first case, and all in the second.)
 constexpr std::size_t enough_poor = 25;
 
 TEST_P(Improve, KeepsEveryGuaranteeAndLeavesFewPoorTets) {
@@ -129,7 +130,7 @@ TEST(ImproveBox, LeavesNothingBelowTheBound) {
   EXPECT_EQ(count_below(meshed.result.mesh, 20), 0U);
 }
 
-// What is on a smooth patch or curve changes there, and stays near it both ways.
+// Faces and edges on smooth patches and curves change there, and both stay near each other.
 TEST(ImproveSmooth, LeavesNothingBelowTheBound) {
   using namespace testing;
   for (const PolygonSoup& soup : {icosphere(1, 8), cylinder(0.5, 1, 40, 4), torus(1, 0.4, 60, 30)}) {
@@ -142,7 +143,7 @@ TEST(ImproveSmooth, LeavesNothingBelowTheBound) {
   }
 }
 
-// With hardly any tolerance hardly anything on the surface may change; nothing may leave it.
+// With hardly any tolerance, hardly anything on the surface may change, and nothing may leave it.
 TEST(ImproveSmooth, KeepsATightTolerance) {
   MeshOptions options = with_size(0.3);
   options.bounds.distance = 2e-3;
@@ -167,7 +168,7 @@ std::string faults_improved_to(double min_dihedral, const std::vector<PolygonSou
   return testing::faults(meshed);
 }
 
-// A vertex where bodies touch has tets that do not hang together there: what is around it stays.
+// The tets at a vertex where bodies touch are not all connected by faces: everything around it stays.
 TEST(ImprovePinched, EveryGuaranteeStaysWhereBodiesTouch) {
   using namespace testing;
   for (const double size : {0.3, 0.6, 1.1}) {
@@ -176,7 +177,7 @@ TEST(ImprovePinched, EveryGuaranteeStaysWhereBodiesTouch) {
   }
 }
 
-// Contraction would collapse it: its triangles have neighbours in common that are joined, too.
+// Contraction would destroy it: neighbours of its triangles are joined, too.
 TEST(ImproveInclusion, ATinyOneStays) {
   using namespace testing;
   for (const double bound : {35.0, 40.0})
@@ -191,7 +192,7 @@ TEST(ImproveBox, SameMeshSameResult) {
   testing::expect_same(first.result.mesh, second.result.mesh);
 }
 
-// Planar and smooth, with curves.
+// Planar and smooth shapes, with curves.
 TEST(ImproveThreads, ChangeNothing) {
   using namespace testing;
   for (const PolygonSoup& soup : {box(), cylinder(0.5, 1, 40, 4)}) {
@@ -244,7 +245,7 @@ TEST(ImproveShape, SmallestSine) {
               1e-12);
   EXPECT_EQ(shape_quality({Point{1, 1, 1}, Point{1, -1, -1}, Point{-1, 1, -1}, Point{-1, -1, 1}}), -1);
   EXPECT_EQ(shape_quality({Point{0, 0, 0}, Point{1, 0, 0}, Point{0, 1, 0}, Point{1, 1, 0}}), 0);
-  // The corner of a cube: three right angles, three of arccos(1 / sqrt 3).
+  // The corner of a cube: three right angles, three angles of arccos(1 / sqrt 3).
   EXPECT_NEAR(shape_quality({Point{0, 0, 0}, Point{1, 0, 0}, Point{0, 1, 0}, Point{0, 0, 1}}),
               std::sqrt(2.0 / 3), 1e-12);
 }

@@ -1,4 +1,4 @@
-// Curves on their own, and some patches of a complex: judged by formulas of this file.
+// Curves on their own, and some patches of a complex, judged by formulas of this file.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ PipelineOptions lines(double size, unsigned order = 1) {
   return options;
 }
 
-/// Two straight lines and a half circle of radius 1 between them, of many segments.
+/// Two straight lines and between them a half circle of radius 1, of many segments.
 PolygonSoup hook() {
   PolygonSoup soup;
   const auto add = [&](const Point& p) {

@@ -1,5 +1,5 @@
-// Between features that are much nearer to each other than elements are large: what they cost does not grow
-// as they come nearer, no volume is lost, and every guarantee holds.
+// Narrow places between features much nearer to each other than elements are large: their cost does not grow
+// as they get narrower, no volume is lost, and every guarantee holds.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -22,7 +22,7 @@ SoupPipelineResult run(const std::vector<PolygonSoup>& soups, unsigned order, bo
   return run_pipeline(soups, options);
 }
 
-// Three boxes on each other, the one between of this thickness.
+// Three boxes on top of each other, the middle one with this thickness.
 std::vector<PolygonSoup> layers(double thickness) {
   return {box({0, 0, 0}, {2, 2, 1}), box({0, 0, 1}, {2, 2, 1 + thickness}),
           box({0, 0, 1 + thickness}, {2, 2, 2})};
@@ -43,7 +43,7 @@ std::vector<PolygonSoup> fin(double width) {
 struct Family {
   std::string name;
   std::vector<PolygonSoup> (*member)(double);
-  double (*volume)(double);  // of the region that is tested: the last one but for layers
+  double (*volume)(double);  // volume of the region that is tested: the last one, except for layers
   std::size_t region;
 };
 
@@ -53,7 +53,7 @@ std::vector<Family> families() {
           {"fin", fin, [](double t) { return 4 + 2 * t; }, 1}};
 }
 
-// (Around the rim of a fin's sides, which are large, subsegments still become as short as it is wide.)
+// (Around the rim of a fin's large sides, subsegments still become as short as the fin is wide.)
 TEST(NarrowPlaces, TakeNoMoreVerticesAsTheyGetNarrower) {
   for (const Family& family : {families()[0], families()[1]}) {
     SCOPED_TRACE(family.name);
@@ -72,11 +72,11 @@ TEST(NarrowPlaces, TakeNoMoreVerticesAsTheyGetNarrower) {
   }
 }
 
-// Where bounded ratios cost little, angles are as large as elsewhere.
+// Where bounded ratios are cheap, angles are as large as elsewhere.
 TEST(NarrowPlaces, AreRefinedWhereThatIsCheap) {
   for (const double width : {5e-2, 2e-3}) {
     SCOPED_TRACE(width);
-    // The pad is as thin, but takes a small part of the block.
+    // The pad is as thin, but covers only a small part of the block.
     const std::vector<PolygonSoup> pad{box({0, 0, 0}, {2, 2, 1}),
                                        box({1, 1, 1}, {1 + 4 * width, 1 + 4 * width, 1 + width})};
     const SoupPipelineResult small = run(pad, 1), large = run(layers(width), 1);
@@ -89,7 +89,7 @@ TEST(NarrowPlaces, AreRefinedWhereThatIsCheap) {
   }
 }
 
-// Where there is room for the mesh with narrow cells alone, it is made.
+// If the budget suffices only for the mesh with narrow cells, that mesh is made.
 TEST(NarrowPlaces, LeaveTheBudgetToTheRest) {
   const Plc plc = build_plc(layers(2e-2));
   MeshOptions options = with_size(0.4, 0);
@@ -105,7 +105,7 @@ TEST(NarrowPlaces, LeaveTheBudgetToTheRest) {
   EXPECT_EQ(made.statistics.vertices_inserted, left);
 }
 
-// What is not narrow is made as if nothing could be.
+// Places that are not narrow are meshed as if there could be no narrow ones.
 TEST(NarrowPlaces, ElsewhereChangeNothing) {
   const std::vector<PolygonSoup> block{box({0, 0, 0}, {2, 2, 1})};
   const Plc plc = build_plc(block);
@@ -135,7 +135,7 @@ TEST_P(NarrowPlacesOfOrder, KeepEveryGuarantee) {
 
 INSTANTIATE_TEST_SUITE_P(Orders, NarrowPlacesOfOrder, ::testing::Values(1, 2));
 
-// Without coarsening the ratio is bounded everywhere, and a narrow place costs what it is narrow.
+// Without coarsening the ratio is bounded everywhere, and the cost of a narrow place depends on its width.
 TEST(NarrowPlaces, KeepTheRatioWithoutCoarsening) {
   for (const Family& family : families()) {
     SCOPED_TRACE(family.name);

@@ -1,5 +1,5 @@
-// The profile that has every hypothesis of the paper's proofs: it ends, its certificate holds, and during the
-// run the mesh is what the proofs say it is.
+// The profile with every hypothesis of the paper's proofs: it ends, its certificate holds, and during the run
+// the mesh has the properties that the proofs claim.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -109,7 +109,7 @@ bool holds(const Triangulation& mesh, const Point& p) {
          p.z < box.max.z;
 }
 
-// One ratio, outside the regions and in collars, too, whenever no skinny cell is left.
+// One ratio holds whenever no skinny cell is left, also outside the regions and in collars.
 TEST(PaperProfile, IsWellSpacedEverywhere) {
   for (const Shape& shape : {acute::wedge(20), acute::fan(8), acute::pyramid(4, 30)}) {
     SCOPED_TRACE(shape.name);
@@ -136,8 +136,8 @@ TEST(PaperProfile, IsWellSpacedEverywhere) {
   }
 }
 
-// The distance to the nearest vertex over that to the second nearest one, when a vertex came in (paper,
-// section 3.1). What splits a curve is medial in the curve's own mesh only.
+// The distance to the nearest vertex divided by that to the second nearest one, when a vertex was inserted
+// (paper, section 3.1). Points that split a curve are medial only in the curve's own mesh.
 TEST(PaperProfile, InsertsWhatIsMedial) {
   for (const Shape& shape : {acute::wedge(20), acute::wedge(4), polylines::random_walk(60)}) {
     SCOPED_TRACE(shape.name);
@@ -172,7 +172,7 @@ TEST(PaperProfile, HasNoPairsBlocksAndSizes) {
   EXPECT_LT(made.result.mesh.points.size(), 40U);
 }
 
-// The pipeline makes it of its own accord, and judges by what it promises.
+// The pipeline uses it by itself, and judges by its bounds.
 TEST(PaperProfile, IsThePipelines) {
   PipelineOptions options;
   options.mesh.profile = Profile::paper;

@@ -1,4 +1,4 @@
-// Periodic faces against brute force: nodes, edges and triangles of one side, moved, are those of the other.
+// Periodic faces, by brute force: nodes, edges and triangles of one side, moved, are those of the other side.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ PipelineResult mesh_of_soups(const std::vector<PolygonSoup>& soups, const std::v
   return run_pipeline(soups, options);
 }
 
-/// Nodes and triangles in a plane x, y or z = place, as points without that coordinate.
+/// The nodes and triangles in a plane x, y or z = place, as points without that coordinate.
 struct Side {
   std::vector<std::array<double, 2>> nodes;
   std::vector<std::array<std::array<double, 2>, 3>> triangles;
@@ -60,7 +60,8 @@ Side side_of(const TetMesh& mesh, std::size_t axis, double place) {
   return side;
 }
 
-/// Both ends of the unit cube along an axis. Their coordinates are the same numbers, as the shift is exact.
+/// Expects equal sides at both ends of the unit cube along an axis. Coordinates are equal numbers, because
+/// the shift is exact.
 void expect_alike(const TetMesh& mesh, std::size_t axis) {
   const Side low = side_of(mesh, axis, 0), high = side_of(mesh, axis, 1);
   EXPECT_GT(low.triangles.size(), 10U);
@@ -87,7 +88,7 @@ TEST(PeriodicFaces, HaveMidEdgeNodesThatAreImages) {
   expect_alike(made.result.mesh, 2);
 }
 
-// Regions that the faces cut, along edges and at corners too.
+// The faces cut regions, along edges and at corners, too.
 TEST(PeriodicFaces, AreCutByRegions) {
   const PipelineResult made = mesh_of_soups({cell_of_boxes({0, 0.15, 0.7, 1})}, {"x", "y", "z"}, 0.15);
   ASSERT_TRUE(made.guarantees_hold()) << made.missed();
@@ -95,7 +96,7 @@ TEST(PeriodicFaces, AreCutByRegions) {
   for (std::size_t axis = 0; axis < 3; ++axis) expect_alike(made.result.mesh, axis);
 }
 
-/// The unit cube with two patches at either end of x, one beside the other: 1 and 3 at the low end.
+/// The unit cube with two patches side by side at either end of x: 1 and 3 at the low end.
 PolygonSoup cube_with_divided_ends() {
   PolygonSoup soup;
   soup.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0},   {1, 1, 0},   {0, 0, 1},   {1, 0, 1},
@@ -108,7 +109,7 @@ PolygonSoup cube_with_divided_ends() {
   return soup;
 }
 
-// The curve between both patches of an end is an image by one pair, and has one by the other.
+// The curve between both patches of an end is an image by one pair, and has an image by the other.
 TEST(PeriodicFaces, MayHavePairsInOppositeDirections) {
   for (const char* second : {"3=4", "4=3"})
     for (const double size : {0.7, 0.3, 0.15}) {
@@ -118,7 +119,7 @@ TEST(PeriodicFaces, MayHavePairsInOppositeDirections) {
     }
 }
 
-/// A quarter of a ring or of a disk about the z axis; patch 1 lies in y = 0 and patch 2 in x = 0.
+/// A quarter of a ring or of a disk about the z axis. Patch 1 lies in y = 0 and patch 2 in x = 0.
 PolygonSoup sector(double inner) {
   constexpr unsigned steps = 6;
   std::vector<std::array<double, 2>> outline;
@@ -149,7 +150,7 @@ PolygonSoup sector(double inner) {
   return soup;
 }
 
-// With nodes on the axis, which are their own images, and without.
+// With and without nodes on the axis, which are their own images.
 TEST(PeriodicFaces, OfASectorAreTurned) {
   for (const double inner : {0.0, 0.5})
     for (const unsigned order : {1U, 2U}) {
@@ -157,7 +158,7 @@ TEST(PeriodicFaces, OfASectorAreTurned) {
       ASSERT_TRUE(made.guarantees_hold()) << made.missed();
       const TetMesh& mesh = made.result.mesh;
       const Side first = side_of(mesh, 1, 0), second = side_of(mesh, 0, 0);
-      // In y = 0 the coordinates are z and x, in x = 0 y and z; a node at (x, 0, z) is turned to (0, x, z).
+      // Coordinates in y = 0 are z and x, in x = 0 y and z; a node at (x, 0, z) is turned to (0, x, z).
       std::set<std::array<double, 2>> turned;
       for (const auto& [z, x] : first.nodes) turned.insert({x, z});
       EXPECT_GT(turned.size(), 10U);

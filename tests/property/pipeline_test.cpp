@@ -1,4 +1,4 @@
-// One call from facets to a certified mesh, and how it is stopped.
+// One call from facets to a certified mesh, and ways to stop it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -69,8 +69,8 @@ TEST(Pipeline, RepairsAndTellsIt) {
   EXPECT_THROW(run(open, strict), PlcError);
 }
 
-/// Boxes that claim to have been repaired. But for the right one the tag of a patch changes when the mesh has
-/// it already, so that the certificate finds fault with that.
+/// A source of boxes that claim to have been repaired. In all but the right one, a patch changes its tag
+/// after meshing, so that the certificate finds a fault.
 class Boxes : public ComplexSource {
  public:
   RepairedPlc build(const RepairOptions& repair, const Execution&) override {
@@ -97,7 +97,7 @@ class Boxes : public ComplexSource {
     return run_pipeline(*this, options, spoiling);
   }
 
-  std::size_t right = 0;  // the number of the build that is right, from 1; 0: none
+  std::size_t right = 0;  // number of the build that is right, from 1; 0: none
   bool throws_after_first = false, refuses_after_first = false;
   std::function<PolygonSoup()> shape = [] { return box(); };
   std::vector<RepairOptions> built;
@@ -122,7 +122,7 @@ TEST(Pipeline, RepairsFurtherWhereAGuaranteeIsMissed) {
   EXPECT_TRUE(tells(made, "repaired with a tolerance of 3e-05"));
 }
 
-// Nothing that repair changes makes angles in collars smaller.
+// Angles in collars do not get smaller by any change that repair makes.
 TEST(Pipeline, DoesNotRepairForTheSakeOfCollars) {
   Boxes wedges;
   wedges.shape = [] { return testing::acute::wedge(37).soups[0]; };
@@ -137,7 +137,7 @@ TEST(Pipeline, DoesNotRepairForTheSakeOfCollars) {
   EXPECT_EQ(wedges.built.size(), 1U);
 }
 
-// There is no mesh then, and no certificate of one.
+// In this case there is no mesh, and no certificate.
 TEST(Pipeline, RefusesWhatNoCollarFitsInto) {
   PipelineOptions options = with_size(0.5);
   options.complex.weld = 0;
@@ -145,7 +145,8 @@ TEST(Pipeline, RefusesWhatNoCollarFitsInto) {
   const testing::acute::Shape shape = testing::acute::pairs_in_a_box(4, 1e-12);
   options.start = Start::refinement;
   EXPECT_THROW(run(shape.soups[0], options), PlcError);
-  // Constrained tetrahedra need no collars. Those around the facets are far from the bounds, which is said.
+  // Constrained tetrahedra need no collars. Those around the facets are far from the bounds, which the result
+  // says.
   options.start = Start::automatic;
   const SoupPipelineResult made = run(shape.soups[0], options);
   EXPECT_FALSE(made.guarantees_hold());
@@ -220,7 +221,7 @@ TEST(Pipeline, ATightBudgetIsNoReasonToWrap) {
   EXPECT_EQ(boxes.built.size(), 1U);
 }
 
-// A box with a slit that opens at this angle: a slab with the angle, turned by it, lies on the box.
+// A box with a slit that opens at this angle: a slab with this angle lies on the box, turned by it.
 PolygonSoup slit_box(double degrees) {
   const double a = degrees * std::numbers::pi / 180;
   PolygonSoup soup = box();
@@ -265,7 +266,7 @@ PolygonSoup box_with_a_slit() {
   return soup;
 }
 
-// Ends with the place of the explosion, what is near it, and what to do.
+// Expects a message with the place of the explosion, the features near it, and a remedy.
 void expect_bounded(const PipelineResult& made) {
   EXPECT_EQ(made.result.status, MeshStatus::budget_hit);
   EXPECT_TRUE(made.result.mesh.tets.empty());
@@ -282,7 +283,7 @@ TEST(Pipeline, EndsWhereTheRefinementExplodesAndNoOtherRepairMayBeTried) {
   expect_bounded(run(box_with_a_slit(), options));
 }
 
-// The facets of a complex as they are need no more tets where sheets are near to each other.
+// Constrained tetrahedra take no more tets where sheets are near each other.
 TEST(Pipeline, BeginsWithConstrainedTetrahedraWhereTheRefinementExplodes) {
   PipelineOptions options = with_size(10);
   options.repair.mode = RepairMode::off;

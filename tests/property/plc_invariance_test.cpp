@@ -73,7 +73,7 @@ TEST(PlcInvariance, SameInputSameComplex) {
     EXPECT_EQ(first.triangles[t].points, second.triangles[t].points);
 }
 
-// Grids of boxes with common walls, some missing: every box that is there is one region.
+// Grids of boxes with common walls, some boxes missing: every box that exists is one region.
 TEST(PlcInvariance, RandomGridsOfBoxesHaveOneRegionEach) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     std::mt19937_64 random(seed);
@@ -93,7 +93,7 @@ TEST(PlcInvariance, RandomGridsOfBoxesHaveOneRegionEach) {
   }
 }
 
-// A star-shaped polygon with star-shaped holes, cut by the facet code; the area is known.
+// A star-shaped polygon with star-shaped holes, cut into triangles as a facet; the area is known.
 TEST(PlcInvariance, RandomPolygonsWithHolesKeepTheirArea) {
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     std::mt19937_64 random(seed);

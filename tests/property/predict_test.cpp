@@ -1,4 +1,4 @@
-// Predictions of the number of tets beside meshes that are really made.
+// Predicted numbers of tets compared with real meshes.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -61,7 +61,7 @@ TEST(Predict, SphereWithoutCurves) {
 
 TEST(Predict, HoleInAPlate) { expect_near(testing::plate_with_hole(0.5, 48), with_size(0.5)); }
 
-// Edges grow to some times the width of a wall only, unless it is narrower than a tenth of the size.
+// Edges grow only to a multiple of the wall's width, unless it is narrower than a tenth of the size.
 TEST(Predict, ThinPlate) {
   const PolygonSoup plate = box({0, 0, 0}, {10, 10, 0.2});
   for (const double size : {1.0, 4.0}) {
@@ -115,20 +115,21 @@ TEST(Predict, SizesInTheOrderAskedFor) {
   EXPECT_DOUBLE_EQ(predict(plc, {}, std::array{0.0})[0].size, std::sqrt(3) / 20);
 }
 
-// However small the size, the work is bounded; n times as fine a mesh has n^3 times the tets.
+// However small the size, the work is bounded; a mesh that is n times as fine has n^3 times the tets.
 TEST(Predict, VerySmallSizes) {
   const Plc plc = plc_of(box());
   const double fine = predicted(plc, with_size(1e-3)), finer = predicted(plc, with_size(1e-4));
   EXPECT_NEAR(std::log10(finer / fine), 3, 0.1);
 }
 
-// So is that on the curves of finely faceted shapes, in all of their segments together.
+// The work on the curves of finely faceted shapes is bounded, too, over all of their segments.
 TEST(Predict, VerySmallSizesOnManySegments) {
   const Plc plc = plc_of(testing::cylinder(1, 1, 1500));
   const double fine = predicted(plc, with_size(1e-6)), finer = predicted(plc, with_size(1e-7));
   EXPECT_NEAR(std::log10(finer / fine), 3, 0.1);
   const double edge = Sizing::edge_per_size * 1e-6;
-  EXPECT_NEAR(fine * std::pow(edge, 3) / (std::numbers::pi * 6 / 0.61), 1, 0.1);  // as dense as inside
+  EXPECT_NEAR(fine * std::pow(edge, 3) / (std::numbers::pi * 6 / 0.61), 1, 0.1);  // vertices are as dense as
+                                                                                  // inside
 }
 
 TEST(Predict, Refuses) {
@@ -181,7 +182,7 @@ TEST(SolidAngles, OfAnL) {
   double curves = 0, vertices = 0;
   for (const double share : angles.of_curve) curves += share;
   for (const double share : angles.of_vertex) vertices += share;
-  // Of 18 edges one is concave, of 12 corners two.
+  // Of 18 edges one is concave, of 12 corners two are.
   EXPECT_NEAR(curves, 17 * 0.25 + 0.75, 1e-12);
   EXPECT_NEAR(vertices, 10 * 0.125 + 2 * 0.375, 1e-12);
 }

@@ -1,4 +1,5 @@
-// Boundary vertices onto exact geometry, without a CAD library: no guarantee is lost whatever it is.
+// Boundary vertices moved onto exact geometry, without a CAD library: no guarantee is lost, whatever the
+// geometry.
 #include "collarmesh/project_boundary.h"
 
 #include <gtest/gtest.h>
@@ -36,10 +37,8 @@ TEST(ProjectBoundary, PutsASpheresVerticesOnTheSphere) {
   Meshed meshed = mesh_of(icosphere(1, 12), with_size(0.3));
   ASSERT_EQ(faults(meshed), "");
   TetMesh& mesh = meshed.result.mesh;
-  improve(
-      mesh, meshed.plc,
-      {.bounds =
-           without_thin()});  // no sliver has its four corners on the sphere, which would be its circumsphere
+  improve(mesh, meshed.plc, {.bounds = without_thin()});  // so that no sliver has its four corners on the
+                                                          // sphere, which would be its circumsphere
   const TetMesh before = mesh;
   const ProjectReport report =
       project_boundary(mesh, meshed.plc, on_unit_sphere, {.bounds = without_thin(0.1)});
@@ -60,8 +59,8 @@ TEST(ProjectBoundary, PutsASpheresVerticesOnTheSphere) {
   EXPECT_GT(report.largest_move, 0);
 }
 
-/// Patches and straight curves with waves on them, as high as is asked for: what has its nearest point on the
-/// flat one at q belongs above q.
+/// Patches and straight curves with waves of this height. Geometry whose nearest point on the flat shape is q
+/// belongs above q.
 ExactGeometry with_waves(const Plc& plc, double height) {
   return [&plc, height](unsigned dimension, Index feature, const Point& p) -> std::optional<Point> {
     const auto wave = [height](const Point& q) {
@@ -81,14 +80,14 @@ ExactGeometry with_waves(const Plc& plc, double height) {
   };
 }
 
-/// Nothing of it is meant to be planar or straight.
+/// Returns a complex none of whose features counts as planar or straight.
 Plc without_flat_features(Plc plc) {
   for (Plc::Patch& patch : plc.patches) patch.planar = false;
   for (Plc::Curve& curve : plc.curves) curve.straight = false;
   return plc;
 }
 
-// Low waves can be reached by all, high ones cannot, and every vertex that does not reach them is told.
+// All vertices can reach low waves. They cannot reach high ones, and every vertex that stays off is reported.
 TEST(ProjectBoundary, MakesRoomAndLeavesVerticesThatFindNone) {
   for (const auto* name : {"cube", "wedge"})
     for (const double height : {0.02, 1.0}) {
@@ -138,8 +137,9 @@ TEST(ProjectBoundary, LeavesWhatIsOutOfReach) {
   EXPECT_NEAR(report.largest_distance, 0.05, 1e-12);
 }
 
-// Exact geometry that is flat up to the tolerance of its shape only, as CAD faces and edges may be: what the
-// complex calls planar or straight stays so, and vertices that are off the exact geometry then are told.
+// Exact geometry that is flat only up to the tolerance of its shape, as CAD faces and edges may be. Features
+// that are planar or straight in the complex stay so, and vertices that are then off the exact geometry are
+// reported.
 TEST(ProjectBoundary, KeepsFlatFeaturesFlat) {
   for (const double height : {1e-9, 1e-7, 1e-5}) {
     Meshed meshed = mesh_of(subdivided_box({0, 0, 0}, {1, 1, 1}, 1), with_size(0.2));
@@ -193,7 +193,7 @@ TEST(ProjectBoundary, KeepsCapsFlatAtCurvedRims) {
   EXPECT_GT(on_rims, 20U);
 }
 
-// Faces sag below vertices, and these may lie below the complex by nearly as much as is allowed.
+// Faces sag below their vertices, which may lie below the complex by nearly the allowed distance.
 TEST(ProjectBoundary, KeepsFacesWithinTheToleranceOfTheComplex) {
   const double tolerance = 0.025, radius = 1 - 0.7 * tolerance;
   MeshOptions options = with_size(0.3);
@@ -212,7 +212,7 @@ TEST(ProjectBoundary, KeepsFacesWithinTheToleranceOfTheComplex) {
   EXPECT_LT(report.exceptions.size(), report.vertices);
 }
 
-// The balls of a collar are placed by distances in the complex; projection has nothing to say about them.
+// The balls of a collar are placed by distances in the complex; projection must not change them.
 TEST(ProjectBoundary, LeavesTheBallsOfCollarsAsTheyAre) {
   Meshed meshed = mesh_of(wedge(20, 1), with_size(0.3));
   ASSERT_EQ(faults(meshed), "");

@@ -1,4 +1,4 @@
-// A periodic mesh that is cut open elsewhere: nothing is lost on the way there and back.
+// A periodic mesh that is cut open elsewhere: nothing is lost by cutting and restoring it.
 #include "periodic/recut.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ using namespace testing;
 using Moved = Recut::Moved;
 constexpr std::array all{Moved::beside_first, Moved::beside_second, Moved::first_half};
 
-/// A cell of 27 boxes that its faces cut, with its pairs.
+/// A cell of 27 boxes that its faces cut, with its periodic pairs.
 struct Cell {
   Cell() {
     PipelineOptions options;
@@ -55,7 +55,7 @@ Place place_of(const TetMesh& mesh, Index v) {
   return {p.x, p.y, p.z};
 }
 
-/// The simplices with what they carry, by places: the numbers of vertices may differ.
+/// Returns the simplices with their data, by places, because numbers of vertices may differ.
 template <std::size_t n>
 std::multiset<std::pair<std::array<Place, n>, Index>> by_places(
     const TetMesh& mesh, const std::vector<std::array<Index, n>>& simplices, const std::vector<Index>& of) {
@@ -69,7 +69,7 @@ std::multiset<std::pair<std::array<Place, n>, Index>> by_places(
   return places;
 }
 
-/// Turned faces differ, and those whose regions are on the other side.
+/// Returns faces such that those with another orientation, or with regions on the other side, differ.
 auto oriented_faces(const TetMesh& mesh) {
   std::multiset<std::tuple<std::array<Place, 3>, std::array<Index, 2>, Index>> faces;
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
@@ -102,8 +102,8 @@ TEST(Recut, AndBackIsTheSameMesh) {
   }
 }
 
-// All tets are moved as they are, and the triangles of the second group have tets on both sides, but where
-// the cut of another pair meets them.
+// All tets are moved rigidly, and the triangles of the second group have tets on both sides, except where the
+// cut of another pair meets them.
 TEST(Recut, HasThePairsFacesInside) {
   const Cell cell;
   for (const Moved moved : all) {
@@ -137,7 +137,7 @@ TEST(Recut, HasThePairsFacesInside) {
   }
 }
 
-// The cuts of pairs meet the faces of others; no vertex there is on a cut each time.
+// The cuts of one pair meet the faces of others, but no vertex there is on a cut for every choice.
 TEST(Recut, LeavesEachVertexOfThePairsFreeOnce) {
   const Cell cell;
   std::map<Place, unsigned> fixed;
@@ -147,7 +147,7 @@ TEST(Recut, LeavesEachVertexOfThePairsFreeOnce) {
     std::set<Place> places;
     for (const Index v : recut.fixed()) {
       Place place = place_of(recut.mesh(), v);
-      for (double& x : place) x = std::round(1e9 * (x - std::floor(x + 1e-9)));  // in the cell
+      for (double& x : place) x = std::round(1e9 * (x - std::floor(x + 1e-9)));  // position within the cell
       if (std::ranges::any_of(place, [](double x) { return x == 0; })) places.insert(place);
     }
     for (const Place& place : places) ++fixed[place];

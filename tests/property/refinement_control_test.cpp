@@ -1,4 +1,4 @@
-// Budgets, cancelling, progress and refused options of `generate`.
+// Budgets, cancelling, progress and invalid options of `generate`.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -28,7 +28,7 @@ void expect_no_mesh(const MeshResult& result, MeshStatus status) {
   EXPECT_TRUE(result.mesh.tets.empty());
 }
 
-// Each budget is far below what the mesh takes.
+// Each budget is far below what the mesh needs.
 TEST(RefinementBudget, Vertices) {
   MeshOptions options = with_size(0.02);
   options.max_vertices = 2000;
@@ -57,7 +57,7 @@ TEST(RefinementBudget, Time) {
   EXPECT_NE(result.message.find("raise time-limit"), std::string::npos) << result.message;
 }
 
-// Also when the whole mesh takes few steps.
+// Progress is reported even if the whole mesh takes few steps.
 TEST(RefinementBudget, OfASmallMesh) {
   MeshOptions options = with_size(0.4);
   options.max_vertices = 20;

@@ -23,7 +23,7 @@ double median(std::vector<double> values) {
   return values.at(values.size() / 2);
 }
 
-// Of the faces that `counts` accepts.
+// Measures the faces that `counts` accepts.
 template <class Counts>
 double median_face_edge(const TetMesh& mesh, const Counts& counts) {
   std::vector<double> lengths;
@@ -62,7 +62,7 @@ TEST(Curvature, OfSpheresCylindersAndTori) {
       for (const double size : rim) EXPECT_NEAR(size, 0.5 * circle / 8, 0.02 * circle / 16);
   }
 
-  const Plc torus = complex_of(testing::torus(2, 0.5, 96, 24));  // the smaller circle counts
+  const Plc torus = complex_of(testing::torus(2, 0.5, 96, 24));  // the smaller circle determines the size
   for (const double size : curvature_sizes(torus, 12).triangle)
     EXPECT_NEAR(size, 0.5 * circle / 12, 0.15 * 0.5 * circle / 12);
 }
@@ -71,7 +71,7 @@ TEST(Curvature, PutsElementsOnACircle) {
   for (const double elements : {16.0, 32.0}) {
     MeshOptions options = with_size(1);
     options.elements_per_circle = elements;
-    options.bounds.distance = 0.1;  // which alone would leave it coarser
+    options.bounds.distance = 0.1;  // the distance alone would allow larger edges
     const Meshed meshed = mesh_of(testing::icosphere(1, 16), options);
     EXPECT_EQ(faults(meshed), "");
     const double wanted = 2 * std::numbers::pi / elements;
@@ -92,7 +92,7 @@ TEST(Curvature, LeavesFlatPartsCoarseAndHeedsTheMinimum) {
   std::size_t around = 0;
   for (std::size_t e = 0; e < fine.result.mesh.edges.size(); ++e)
     around += !fine.plc.curves[fine.result.mesh.edge_curve[e]].straight;
-  EXPECT_GE(around, 2 * 40U);  // two rims; edges up to 1.3 times the size
+  EXPECT_GE(around, 2 * 40U);  // two rims; edges may be 1.3 times the size
   options.size_min = 0.4;
   EXPECT_LT(mesh_of(soup, options).result.mesh.edges.size(), 2 * fine.result.mesh.edges.size() / 3);
 }
@@ -123,7 +123,7 @@ TEST(Gaps, AreThoseOfTheThinPartAlone) {
 }
 
 TEST(Gaps, InAWedgeDoNotClose) {
-  const std::vector<Point> profile{{0, 0, 0}, {2, 0, 0}, {2, 1.5, 0}};  // 37 degrees
+  const std::vector<Point> profile{{0, 0, 0}, {2, 0, 0}, {2, 1.5, 0}};  // an angle of 37 degrees
   MeshOptions options = with_size(0.5);
   const std::size_t without = mesh_of(testing::extrusion(profile, 1), options, 0).result.mesh.tets.size();
   options.elements_across_gap = 1;

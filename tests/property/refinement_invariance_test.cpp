@@ -1,4 +1,4 @@
-// Same input, same mesh; moved, scaled, turned or shuffled input, as good a mesh.
+// The same input gives the same mesh; moved, scaled, turned or shuffled input gives an equally good mesh.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -54,8 +54,8 @@ TEST(RefinementInvariance, OtherSeedOtherMesh) {
   }
 }
 
-// The shape through a map that scales lengths, at the scaled size: right, with the scaled volumes. Rounding
-// moves the surface by an ulp of its coordinates and the volume accordingly.
+// Expects a right mesh with scaled volumes of the shape under a map that scales lengths, at the scaled size.
+// Rounding moves the surface by an ulp of its coordinates and changes the volume accordingly.
 void expect_as_good(const Shape& shape, const PolygonSoup& mapped, double scale) {
   const Meshed meshed = mesh_of(mapped, with_size(shape.size * scale), shape.feature_angle);
   EXPECT_EQ(faults(meshed), "");

@@ -1,4 +1,4 @@
-// What `generate` makes of the sizes and ratios asked for: each bound recomputed from the mesh.
+// Sizes and ratios that are asked for: each bound recomputed from meshes of `generate`.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -22,8 +22,8 @@ using testing::mesh_of;
 using testing::Meshed;
 using testing::with_size;
 
-// Cells, triangles and edges are split above these multiples of the size, which is what the target edge
-// length is a multiple of (doc/architecture/refinement.md).
+// The target edge length is this multiple of the size; cells, triangles and edges are split above multiples
+// of it (doc/architecture/refinement.md).
 constexpr double edge_per_size = 1.08;
 constexpr double cell_radius_per_size = 0.79 * edge_per_size;
 constexpr double triangle_radius_per_size = 0.7 * edge_per_size;
@@ -59,7 +59,7 @@ TEST(RefinementSizing, MedianEdgeIsNearTheTarget) {
     EXPECT_NEAR(meshed.report.median_edge, size, 0.2 * size);
   };
   for (const double size : {0.15, 0.05}) expect_near_target(testing::box(), size);
-  // At sizes whose triangles are close enough to the sphere anyway.
+  // With sizes at which triangles are near enough to the sphere without further refinement.
   for (const double size : {0.12, 0.08}) expect_near_target(testing::icosphere(1, 16), size);
 }
 
@@ -132,8 +132,8 @@ TEST(RefinementSizing, CurvesHaveTheirOwn) {
   EXPECT_GE(fine, 18U);
 }
 
-// Curves that are meshed before the cells around them are of quality make hubs: conflict zones, time and
-// memory grow with the square of what comes out.
+// If curves are meshed before the cells around them have good quality, they become hubs: conflict zones, time
+// and memory grow with the square of the result.
 TEST(RefinementSizing, FineCurvesTakeHardlyMoreMemoryPerCellThanFineRegions) {
   const Plc plc = build_plc(std::array{testing::box()}, {});
   const auto bytes_per_cell = [&](double size, double along_curves) {
@@ -155,7 +155,7 @@ TEST(RefinementSizing, FieldBoundsCellsAtTheirCentres) {
   EXPECT_EQ(faults(meshed), "");
   const TetMesh& mesh = meshed.result.mesh;
   const auto radii = testing::circumradii(mesh);
-  // The field is taken at the circumcentre, which lies within the radius of the centroid.
+  // The field is evaluated at the circumcentre, which lies within the radius of the centroid.
   for (std::size_t t = 0; t < mesh.tets.size(); ++t)
     EXPECT_LE(radii[t],
               cell_radius_per_size * (field(centroid(mesh, mesh.tets[t])) + 0.3 * radii[t]) * rounding);
@@ -165,7 +165,7 @@ TEST(RefinementSizing, FieldBoundsCellsAtTheirCentres) {
   EXPECT_LT(mesh_of(testing::box(), fine, 0).result.mesh.tets.size(), mesh.tets.size());
 }
 
-// In every stage that asks for sizes.
+// Holds in every stage that asks for sizes.
 TEST(RefinementSizing, FieldsMustBePositive) {
   const PolygonSoup soups[] = {testing::box()};
   const Plc plc = build_plc(soups);
@@ -202,7 +202,7 @@ TEST(RefinementSizing, FieldSeesTheInputsCoordinates) {
   EXPECT_LT(distance(seen.centre(), shift + Vector{0.5, 0.5, 0.5}), 1.5);
 }
 
-// The shortest way along mesh edges from the vertices of faces with this tag.
+// Returns the length of the shortest path along mesh edges from the vertices of faces with this tag.
 std::vector<double> way_from_tag(const TetMesh& mesh, Tag tag) {
   std::vector<std::vector<Index>> adjacent(mesh.points.size());
   for (const auto& t : mesh.tets)
@@ -256,7 +256,7 @@ TEST(RefinementSizing, GradationLimitsGrowthAwayFromAFineSide) {
   }
 }
 
-// Largest ratio of a circumradius to the shortest edge at one vertex.
+// Returns the largest ratio of a circumradius to the shortest edge at one vertex.
 double largest_vertex_ratio(const TetMesh& mesh) {
   std::vector<double> shortest(mesh.points.size(), INFINITY), largest(mesh.points.size(), 0);
   const auto radii = testing::circumradii(mesh);

@@ -1,5 +1,5 @@
-// Shapes without creases through `generate`, every mesh judged by the certificate and by what is known of the
-// shape.
+// Shapes without creases through `generate`; every mesh is judged by the certificate and by known properties
+// of the shape.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ void expect_volumes(const Meshed& meshed, const std::vector<double>& expected) {
     EXPECT_NEAR(found[r], expected[r - 1], 1e-12 * expected[r - 1]) << "region " << r;
 }
 
-// A planar shape at a coarse and at a fine size: nothing but rounding may be lost.
+// Meshes a planar shape at a coarse and at a fine size: volume may be lost only by rounding.
 void expect_exact(std::span<const PolygonSoup> soups, double coarse, double fine,
                   const std::vector<double>& volumes) {
   for (const double size : {coarse, fine}) {
@@ -41,7 +41,7 @@ void expect_exact(const PolygonSoup& soup, double coarse, double fine, const std
   expect_exact({&soup, 1}, coarse, fine, volumes);
 }
 
-// A curved shape: the volume is within the tolerance times the area.
+// Meshes a curved shape: the volume is right within the tolerance times the area.
 void expect_close(const PolygonSoup& soup, double coarse, double fine, double volume, double area) {
   for (const double size : {coarse, fine}) {
     SCOPED_TRACE(size);
@@ -139,7 +139,7 @@ TEST(RefinementShapes, LooseSegmentsAndPoints) {
   }
 }
 
-// Small features, at sizes ten times theirs.
+// Small features, with sizes ten times larger.
 
 // A sphere of radius 1 with a smooth bump on its pole: the radius grows by h exp(-(angle/w)^2).
 PolygonSoup bumped_sphere(double height, double width) {
@@ -166,7 +166,7 @@ TEST(RefinementSmallFeatures, ThinSpikeOnASphere) {
     EXPECT_LE(missing, default_distance(size, diagonal));
     tips += missing <= 1e-3 * diagonal ? 1 : 0;
   }
-  EXPECT_GE(tips, 5);  // most often nothing at all
+  EXPECT_GE(tips, 5);  // mostly none at all
 }
 
 TEST(RefinementSmallFeatures, FilletedSpikeOnASphere) {
@@ -200,7 +200,8 @@ TEST(RefinementSmallFeatures, TinySphere) {
   EXPECT_GT(meshed.report.region_volumes[2], 0);
 }
 
-// Points on two skew lines have a Delaunay triangulation of quadratic size; refined, it must stay linear.
+// Points on two skew lines have a Delaunay triangulation of quadratic size; the refined mesh must have linear
+// size.
 TEST(RefinementSkewLines, VerticesGrowLinearly) {
   std::vector<double> vertices;
   for (const unsigned n : {250U, 500U, 1000U}) {

@@ -1,4 +1,4 @@
-// Meshes are adapted to sizes, finer and coarser: lengths are reached, everything else stays.
+// Meshes adapted to sizes, finer or coarser: the lengths are reached, everything else is kept.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -40,7 +40,7 @@ std::string faults(const RemeshResult& made) {
   return made.guarantees_hold() ? std::string() : "not certified: " + made.missed();
 }
 
-/// Each edge over its target, sorted.
+/// Returns the ratio of each edge to its target, sorted.
 std::vector<double> relative_lengths(const TetMesh& mesh, const SizeField& size) {
   std::set<std::pair<Index, Index>> edges;
   for (const auto& tet : mesh.tets)
@@ -166,7 +166,7 @@ INSTANTIATE_TEST_SUITE_P(Shapes, RemeshedShape, ::testing::ValuesIn(shapes()), [
   return name;
 });
 
-// Its labels are those of the input that the first mesh was made of.
+// Its labels are those of the input from which the first mesh was made.
 TEST(Remesh, IsAMeshOfTheFirstInput) {
   for (const PolygonSoup& soup : {two_boxes(), plate_with_hole(1, 32), box_with_dangling_facet()}) {
     const SoupPipelineResult first = run_pipeline(std::vector{soup}, of_size(0.4));
@@ -186,14 +186,14 @@ TEST(Remesh, FollowsAField) {
   const RemeshResult made = remesh(mesh, of_field(field));
   ASSERT_EQ(faults(made), "");
   expect_lengths(made.result.mesh, field);
-  // From there to where the field is fine at the other end.
+  // From there to a field that is fine at the other end.
   const SizeField other = [](const Point& p) { return 0.04 + 0.3 * distance(p, {1, 1, 1}); };
   const RemeshResult again = remesh(made.result.mesh, of_field(other));
   ASSERT_EQ(faults(again), "");
   expect_lengths(again.result.mesh, other);
 }
 
-// The vertices of the first mesh do not see the fine place.
+// The fine place is between the vertices of the first mesh.
 TEST(Remesh, SeesAFieldBetweenVertices) {
   const SizeField field = [](const Point& p) {
     return std::min(0.5, 0.03 + 0.4 * distance(p, {0.37, 0.41, 0.43}));
@@ -234,7 +234,7 @@ TEST(Remesh, TakesSecondOrderAndMakesIt) {
   EXPECT_GT(made.second_order.curved, 0U);
 }
 
-/// A mesh whose inner vertices are moved about, so that many tets are nearly flat; none is inverted.
+/// A mesh whose inner vertices were moved, so that many tets are nearly flat but none is inverted.
 TetMesh shaken(Index n) {
   TetMesh mesh = meshed_box(n).mesh;
   std::uint32_t state = 1;
@@ -326,7 +326,7 @@ TEST(Remesh, EndsAtABudget) {
   EXPECT_NE(made.result.message.find("2000"), std::string::npos);
 }
 
-// All edges of a mesh are divided on trial, and all of it is undone.
+// All edges of a mesh are divided in a trial, and everything is undone.
 TEST(DividedEdges, AreUndone) {
   using namespace improvement;
   for (const TetMesh& mesh : {meshed_two_boxes(3).mesh, meshed({icosphere(1, 6)}, 0.5)}) {

@@ -1,4 +1,4 @@
-// Overlapping boxes, whose unions and places are known exactly.
+// Overlapping boxes, whose unions are known exactly.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ double total_area(std::span<const PolygonSoup> soups) {
   return sum;
 }
 
-// Volumes may be off by what the area sweeps within the tolerance.
+// Returns the allowed error of volumes: the area times the tolerance.
 double slack(const RepairedPlc& repaired, std::span<const PolygonSoup> soups) {
   return repaired.report.tolerance * total_area(soups) + 1e-9;
 }
@@ -66,7 +66,8 @@ std::vector<Tag> labels_of(std::span<const PolygonSoup> soups) {
   return labels;
 }
 
-// Inside another box, away from the sides of all: that is no fault, and a region of its own.
+// Returns whether a box is inside another one, away from all sides: that is no fault, and makes a region of
+// its own.
 bool is_nested(std::span<const Box> boxes, const Box& box) {
   bool inside_any = false;
   for (const Box& other : boxes) {
@@ -82,7 +83,7 @@ bool is_nested(std::span<const Box> boxes, const Box& box) {
   return inside_any;
 }
 
-// Boxes with corners on a small lattice: they share faces and edges, overlap in faces, touch, hold each
+// Boxes with corners on a small lattice: they share faces and edges, overlap in faces, touch, or contain each
 // other.
 TEST(RepairBoxes, OnALatticeInOneSoupAreTheirUnion) {
   Random random(1);
@@ -92,7 +93,7 @@ TEST(RepairBoxes, OnALatticeInOneSoupAreTheirUnion) {
     const auto soups = soups_of(boxes);
     PolygonSoup soup = joined(soups);
     soup.region_tag = 12;
-    // What is no fault to the builder keeps the meaning it has there.
+    // Input that is no fault for the builder keeps its meaning.
     const RepairedPlc r = repaired(soup);
     if (!r.report.repaired) continue;
     if (std::any_of(boxes.begin(), boxes.end(), [&](const Box& b) { return is_nested(boxes, b); })) continue;
@@ -120,7 +121,7 @@ TEST(RepairBoxes, OnALatticeInSeveralSoupsTheFirstHasThePlace) {
   }
 }
 
-// Two boxes that are each turned about one axis through both, so that two facets of each are coplanar.
+// Two boxes, each turned about one axis through both, so that two facets of each are coplanar.
 TEST(RepairBoxes, CoplanarOverlapsOfTurnedFacets) {
   Random random(3);
   for (unsigned member = 0; member < members(40); ++member) {
@@ -201,7 +202,7 @@ TEST(RepairBoxes, TurnedInSeveralSoupsTheFirstHasThePlace) {
   }
 }
 
-// Named meetings, as one soup and as two.
+// Named kinds of intersections, as one soup and as two.
 TEST(RepairBoxes, SpecialMeetings) {
   struct Case {
     const char* name;

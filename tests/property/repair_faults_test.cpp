@@ -1,4 +1,4 @@
-// One kind of fault each, at random; volumes are known or sampled.
+// Inputs with one kind of fault each, at random; volumes are known or sampled.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ void expect_sound(const RepairedPlc& r, const PolygonSoup& soup, double reach = 
 
 double slack(const RepairedPlc& r, const PolygonSoup& soup) { return r.report.tolerance * area(soup) + 1e-9; }
 
-// Sampling alone tells the volume.
+// Expects the volume found by sampling alone.
 void expect_sampled_volume(const RepairedPlc& r, const PolygonSoup& soup, Random& random,
                            unsigned cells = 12) {
   const Sampled sampled = sampled_volume(soup, random, cells);
@@ -79,7 +79,7 @@ TEST(RepairFaults, QuadranglesThatAreNotPlanar) {
     const RepairedPlc r = repaired(soup);
     EXPECT_TRUE(r.report.repaired);
     EXPECT_EQ(r.report.split_polygons, k);
-    // The diagonals of all quadrangles one way or the other.
+    // The diagonals of all quadrangles are cut one way, or all the other way.
     const double one = signed_volume(twisted_prism(k, degrees, false)),
                  other = signed_volume(twisted_prism(k, -degrees, false));
     EXPECT_GE(total_volume(r.plc), std::min(one, other) - slack(r, soup));
@@ -90,7 +90,7 @@ TEST(RepairFaults, QuadranglesThatAreNotPlanar) {
   }
 }
 
-// A solid with a cavity, however its two surfaces are turned; the solid in a solid stays two regions.
+// A solid with a cavity, however its two surfaces are oriented; a solid in a solid stays two regions.
 TEST(RepairFaults, NestedShellsTurnedWrong) {
   for (const double inner : {0.3, 0.7})
     for (const bool outer_inverted : {false, true})
@@ -101,14 +101,14 @@ TEST(RepairFaults, NestedShellsTurnedWrong) {
                              signed_volume(testing::icosphere(inner, 2)),
                      small = signed_volume(testing::icosphere(inner, 2));
         const RepairResult r = repair({&soup, 1});
-        // What lies in a component that is turned is turned with it.
+        // Parts inside a reversed component are reversed with it.
         const bool cavity = outer_inverted != inner_inverted;
         EXPECT_EQ(r.report.turned.count, outer_inverted ? 2U : 0U);
         const Plc plc = build_plc(r.soups);
-        // Inside means something only to what is tangled: clean surfaces stay.
+        // Winding numbers decide only about tangled parts; clean surfaces stay.
         EXPECT_NEAR(total_volume(plc), cavity ? large - small : large, 1e-9);
         EXPECT_EQ(plc.regions.size(), cavity ? 2U : 3U);
-        // To the builder none of this is a fault.
+        // For the builder none of this is a fault.
         EXPECT_FALSE(repaired(soup).report.repaired);
       }
 }
@@ -133,7 +133,8 @@ TEST(RepairFaults, HolesInASphereAreFilled) {
           found[i] = true;
         }
       EXPECT_GT(hole.tag, 1);
-      // No more than the facets that were there; no less than the disk that the curve around it could hold.
+      // At most the area of the facets that were there; at least that of the disk that the curve around the
+      // hole could bound.
       EXPECT_GT(hole.length, 0);
       const double radius = hole.length / (2 * std::numbers::pi);
       EXPECT_LT(hole.area, 1.01 * std::numbers::pi * radius * radius);
@@ -192,13 +193,13 @@ TEST(RepairFaults, TJunctionsAreClosed) {
   }
 }
 
-// Slots and fins: what is thinner than the tolerance vanishes, the rest stays as it was.
+// Slots and fins: those thinner than the tolerance vanish, everything else stays.
 TEST(RepairFaults, ThinFeaturesVanishBelowTheTolerance) {
   Random random(9);
   struct Family {
     const char* name;
     PolygonSoup (*make)(double);
-    double sign, share;  // of the width or its square
+    double sign, share;  // share: of the width or its square
     bool squared;
   };
   for (const Family& family : {Family{"slot", slotted_box, -0.5, 1, false},
@@ -227,7 +228,7 @@ TEST(RepairFaults, ThinFeaturesVanishBelowTheTolerance) {
           EXPECT_NEAR(actual, 1 + feature, 2 * tolerance * tolerance + 1e-9);
         } else if (width < 0.5 * tolerance) {
           EXPECT_NEAR(actual, 1, tolerance * area(soup));
-          // Closer points are one from the start.
+          // Closer points are merged from the start.
           if (width > 4e-9) {
             EXPECT_GT(r.report.collapsed.count, 0U);
           }
@@ -257,7 +258,7 @@ TEST(RepairFaults, TerrainFoldedThroughItself) {
   }
 }
 
-// Far from the origin in 32 bits: points move by 6e-5 of the diagonal.
+// Far from the origin, with 32-bit coordinates, points move by 6e-5 of the diagonal.
 TEST(RepairFaults, CoordinatesOf32BitsFarAway) {
   Random random(11);
   for (unsigned member = 0; member < members(24); ++member) {

@@ -1,5 +1,5 @@
-// Facets that meet within rounding of each other: in planes that are common but for rounding, along borders
-// that end in other facets, many in one point.
+// Facets that meet within rounding: in planes that are equal except for rounding, along borders that end in
+// other facets, or many in one point.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
@@ -43,8 +43,8 @@ TEST(RepairHard, WallsFlushWithTheSides) {
   }
 }
 
-// The arrangement of this wall ends in rounds that do not snap; what they leave, needles of 1e-15, made the
-// wall and the box one open sheet.
+// The arrangement of this wall ends in rounds without snapping; needles of 1e-15 that these left once turned
+// the wall and the box into one open sheet.
 TEST(RepairHard, AWallWhoseArrangementLeavesNeedles) {
   PolygonSoup soup;
   soup.points = {{0.21956898526101559, -0.58338864980250238, -0.78195085778651152},
@@ -101,8 +101,8 @@ TEST(RepairHard, RegularPrismsTwistedByHalfATurn) {
     }
 }
 
-// At one of their many crossings snapping does not settle, or cutting leaves corners that all but touch. What
-// two neighbours share is less than the lens of their spheres.
+// At one of their many crossings snapping does not settle, or cutting leaves corners that almost touch. Two
+// neighbours share less than the lens of their spheres.
 TEST(RepairHard, ManySpheresOfALattice) {
   Random random(22);
   for (unsigned member = 0; member < members(1); ++member) {

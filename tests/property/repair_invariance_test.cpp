@@ -1,4 +1,4 @@
-// Valid input stays as it is; what repair makes does not depend on place, scale, rotation and order.
+// Valid input stays as it is. The result of repair does not depend on place, scale, rotation and order.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -55,7 +55,7 @@ TEST(RepairInvariance, ValidInputStays) {
     }
 }
 
-// What is valid but below the tolerance is noise.
+// Valid features below the tolerance are noise.
 TEST(RepairInvariance, NoiseInValidInputIsRepaired) {
   for (const PolygonSoup& soup : {slotted_box(1e-7), finned_box(1e-7)}) {
     const RepairedPlc r = build_repaired_plc({&soup, 1});
@@ -120,14 +120,14 @@ std::vector<Family> families() {
       {"terrain", [](Random& r) { return Soups{folded_terrain(r, 8, 0.4)}; }}};
 }
 
-// Of the regions, in order of size.
+// The volumes of the regions, by size.
 struct Volumes {
   std::vector<double> volumes;
-  double bound = 0;  // on the change of one of them by repair and by what fills holes
+  double bound = 0;  // bound on the change of a volume by repair and by filled holes
 };
 
 // Facets that move by a distance change a volume by at most that times their area. Two ways to fill a hole
-// differ by no more than its border is rough.
+// differ by at most the roughness of its border.
 Volumes volumes_of(std::span<const PolygonSoup> soups, double roughness_of_holes = 0) {
   const RepairedPlc r = repaired(soups);
   Volumes result;
@@ -200,7 +200,7 @@ TEST(RepairInvariance, Rotated) {
       1);
 }
 
-// Sides of several boxes in one plane part by rounding when they are turned.
+// When boxes are turned, rounding separates their sides in one plane.
 TEST(RepairInvariance, RotatedBoxesOfALattice) {
   Random random(24);
   for (unsigned member = 0; member < members(15); ++member) {
@@ -231,7 +231,7 @@ TEST(RepairInvariance, SameInputSameResult) {
   }
 }
 
-// What is repaired needs no repair.
+// The result of a repair needs no repair.
 TEST(RepairInvariance, RepairedSoupsAreValid) {
   Random random(29);
   for (const Family& family : families()) {

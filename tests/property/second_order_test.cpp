@@ -1,5 +1,5 @@
-// Meshes of second order: certified, nodes on the smooth features, volumes of the curved shapes, inverted
-// tets straightened.
+// Meshes of second order: certified, with nodes on the smooth features and the volumes of the curved shapes;
+// inverted tets are straightened.
 #include "collarmesh/second_order.h"
 
 #include <gtest/gtest.h>
@@ -58,8 +58,8 @@ std::size_t count_edges(const TetMesh& mesh) {
   return edges.size();
 }
 
-/// Exact: the integral of the cubic Jacobian by the rule of degree 3 with the centre and the four points on
-/// the medians (Keast 1986).
+/// Returns the exact volume: the integral of the cubic Jacobian by the rule of degree 3 with the centre and
+/// the four points on the medians (Keast 1986).
 double curved_volume(const TetMesh& mesh) {
   constexpr std::array<std::array<std::size_t, 2>, 6> ends{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
   double volume = 0;
@@ -151,7 +151,8 @@ TEST(SecondOrder, ACallerGivesTheExactSurface) {
     for (const Index node : nodes) EXPECT_NEAR(norm(mesh.points[node]), 1, 1e-14);
 }
 
-// A projection that goes too far inwards: every tet stays valid and each node that stayed behind is named.
+// A projection that goes too far inwards: every tet stays valid, and each node that could not follow is
+// reported.
 TEST(SecondOrder, WhatWouldInvertIsStraightenedAndReported) {
   const Meshed meshed = improved(icosphere(1, 12), 0.4, 0.05);
   TetMesh mesh = meshed.result.mesh;
@@ -176,7 +177,7 @@ TEST(SecondOrder, WhatWouldInvertIsStraightenedAndReported) {
       }
 }
 
-/// Coarse and curved: thin tets, with edges that turn by up to an eighth of a circle.
+/// A coarse curved mesh: thin tets, with edges that turn by up to an eighth of a circle.
 Meshed coarsened(const PolygonSoup& soup, double size) {
   MeshOptions options = with_size(size);
   options.bounds.distance = 0.1 * size;
@@ -186,7 +187,8 @@ Meshed coarsened(const PolygonSoup& soup, double size) {
   return meshed;
 }
 
-// Fewer edges stay straight than without, nothing of the surface changes, and threads change nothing.
+// Fewer edges stay straight than without replacements, the surface does not change, and threads change
+// nothing.
 TEST(SecondOrder, TetsThatCurvedEdgesFlattenAreReplaced) {
   struct Shape {
     PolygonSoup soup;
@@ -237,8 +239,8 @@ std::multiset<std::array<Index, 4>> sorted_tets(const TetMesh& mesh) {
   return tets;
 }
 
-// Exact geometry that is too far away asks for more than replacing tets can do, so rounds end in which none
-// could be.
+// If the exact geometry is too far away, replacing tets cannot help, so rounds end in which no tet was
+// replaced.
 TEST(SecondOrder, TetsAreMarkedThinEvenWhereNoneCouldBeReplaced) {
   unsigned none_replaced = 0;
   for (const double factor : {0.95, 0.9, 0.8, 0.6}) {
@@ -247,7 +249,7 @@ TEST(SecondOrder, TetsAreMarkedThinEvenWhereNoneCouldBeReplaced) {
     ASSERT_GT(std::count(mesh.tet_thin.begin(), mesh.tet_thin.end(), 1), 0);
     SecondOrderOptions options;
     options.bounds.distance = 0.01;
-    options.bounds.thin_angle = 30;  // which hardly any replacement has
+    options.bounds.thin_angle = 30;  // hardly any replacement has such angles
     options.exact = [&](unsigned dimension, Index, const Point& p) -> std::optional<Point> {
       if (dimension == 1) return std::nullopt;
       return Point{factor * p.x, factor * p.y, p.z};
@@ -278,7 +280,7 @@ TEST(SecondOrder, CancelledAtAnyTimeItIsOfFirstOrder) {
   EXPECT_EQ(mesh.points, meshed.result.mesh.points);
 }
 
-// In a mesh that misses a guarantee a curve may have an edge that no tet has, and a patch such a face.
+// In a mesh that misses a guarantee, a curve may have an edge, and a patch a face, that no tet has.
 TEST(SecondOrder, WhatIsInNoTetHasNodesOfItsOwn) {
   Meshed meshed = mesh_of(box(), with_size(0.5));
   TetMesh& mesh = meshed.result.mesh;
@@ -302,7 +304,7 @@ TEST(SecondOrder, WhatIsInNoTetHasNodesOfItsOwn) {
   EXPECT_NE(second_order_faults(meshed, mesh), "");
 }
 
-// As other programs give it: without features, with tags of its own, without triangles and edges.
+// A mesh as other programs write it: without features, with its own tags, without triangles and edges.
 TEST(SecondOrder, IsJudgedByPosition) {
   const Meshed meshed = improved(cylinder(1, 1, 60, 3), 0.4, 0.05);
   TetMesh mesh = meshed.result.mesh;

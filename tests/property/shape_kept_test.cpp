@@ -1,4 +1,4 @@
-// Small and thin regions keep their volume at default options, and the certificate says how much of it.
+// Small and thin regions keep their volume with default options, and the certificate measures how well.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ double enclosed_by(const PolygonSoup& soup) {
   return std::fabs(volume);
 }
 
-/// Surfaces within each other, from the outermost.
+/// Nested surfaces, the outermost first.
 struct Nested {
   std::string name;
   std::vector<PolygonSoup> soups;
@@ -74,7 +74,7 @@ TEST_P(ShapeKept, EveryRegionHasItsVolume) {
 
 INSTANTIATE_TEST_SUITE_P(Order, ShapeKept, ::testing::Values(1U, 2U));
 
-// A sphere bends both ways, so its chords take twice as much as those of a cylinder.
+// A sphere bends in two directions, so its chords remove twice as much as those of a cylinder.
 TEST(ShapeKept, ALargeBallLosesNoMoreThanARod) {
   PipelineOptions options;
   options.mesh = with_size(0.28);
@@ -84,7 +84,7 @@ TEST(ShapeKept, ALargeBallLosesNoMoreThanARod) {
               0.02 * made.check.of_input.volumes.at(1));
 }
 
-// A prism in place of a rod is a finding, unless the distance that allows it was asked for.
+// A prism in place of a rod is a finding, unless the options ask for a distance that allows it.
 TEST(ShapeKept, AVolumeThatIsLostIsAFinding) {
   const PolygonSoup rod = testing::cylinder(0.1, 1, 64);
   PipelineOptions options;
@@ -103,7 +103,7 @@ TEST(ShapeKept, AVolumeThatIsLostIsAFinding) {
   EXPECT_TRUE(report.warnings.empty());
 }
 
-// Of a coarsely cut ball the curved elements of the first try lose more than they may.
+// With a coarsely cut ball, the curved elements of the first try lose more than they may.
 TEST(ShapeKept, TheSecondTryHasASmallerDistance) {
   const std::vector<PolygonSoup> soups{testing::box({-1, -1, -1}, {1, 1, 1}), testing::icosphere(0.02, 2)};
   PipelineOptions options;
@@ -135,7 +135,7 @@ TEST(ShapeKept, AreasAndLengthsAreThoseOfFacesAndEdges) {
   }
 }
 
-// Two bodies of one region, and a void: what each closed surface encloses.
+// Two bodies of one region, and a void: the volumes that closed surfaces enclose.
 TEST(ShapeKept, EveryClosedSurfaceIsJudged) {
   const PolygonSoup soup = testing::joined(
       testing::joined(testing::box({-1, -1, -1}, {1, 1, 1}), testing::inverted(testing::icosphere(0.05, 8))),
@@ -220,7 +220,7 @@ PolygonSoup blade_on_a_block(double length, double thickness, double height) {
   return blade;
 }
 
-// The region is so large that its volume tells nothing of the blade.
+// The region is so large that its volume says nothing about the blade.
 TEST(ShapeKept, ABladeOnABlockKeepsItsThickness) {
   const double height = 2;
   const PolygonSoup soup = blade_on_a_block(1, 0.08, height);
@@ -254,11 +254,11 @@ TEST(ShapeKept, ABladeThatIsFlattenedIsAFinding) {
   EXPECT_FALSE(finds(0.1));
 }
 
-// A plane and a surface that leaves it at 3 degrees and soon bends away, 60 long: beside each other they run
-// on a hundredth of the surface alone.
+// A plane, and a surface 60 long that leaves it at 3 degrees and soon bends away: they are close to each
+// other on only a hundredth of the surface.
 PolygonSoup wedge_at_the_end_of_a_surface() {
   constexpr double bend = 0.3, steep = 45, degree = std::numbers::pi / 180;
-  constexpr Tag last_flat_side = 4;  // beneath, and at the other end
+  constexpr Tag last_flat_side = 4;  // flat sides: beneath, and at the other end
   std::vector<Point> outline{{0, 0, 0}};
   const auto go = [&](double degrees, double length) {
     const Point from = outline.back();
@@ -277,7 +277,7 @@ PolygonSoup wedge_at_the_end_of_a_surface() {
   return soup;
 }
 
-// What a mesh is off there its distance tells.
+// The distance bounds the mesh's deviation there.
 TEST(ShapeKept, AWedgeAtTheEndOfASurfaceIsNoWall) {
   const PolygonSoup soup = wedge_at_the_end_of_a_surface();
   PipelineOptions options;

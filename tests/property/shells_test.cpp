@@ -1,5 +1,4 @@
-// Surfaces on their own: triangles within the bounds on angles, that conform, judged by formulas of this
-// file.
+// Surfaces on their own: conforming triangles within the bounds on angles, judged by formulas of this file.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,7 +27,7 @@ PipelineResult shells_of(const PolygonSoup& soup, double size, unsigned order = 
   return mesh_shells(complex_of(soup), options);
 }
 
-/// The smallest and the largest angle, without triangles at some point.
+/// Returns the smallest and the largest angle, ignoring triangles at some point.
 std::pair<double, double> angles_of(const TetMesh& mesh, const Point& without = {INFINITY, 0, 0}) {
   double least = 180, most = 0;
   for (const auto& f : mesh.faces) {
@@ -51,7 +50,7 @@ double area_of(const TetMesh& mesh) {
   return area;
 }
 
-/// Numbers of sides of triangles by how many have them; a side that runs twice the same way counts as 0.
+/// Returns how many sides occur how often; a side that occurs twice in the same direction counts as 0.
 std::map<int, std::size_t> sides_of(const TetMesh& mesh) {
   std::map<std::pair<Index, Index>, std::pair<int, int>> sides;
   for (const auto& f : mesh.faces)
@@ -204,8 +203,8 @@ TEST(Shells, SharpCornersAreTold) {
   EXPECT_LT(made.check.triangles->at_sharp_corners, 6U);
 }
 
-/// Triangles of a strip of a length and a width that have the largest bases permitted, and angles of 30
-/// degrees.
+/// Returns the number of triangles in a strip of a length and a width, with the largest permitted bases and
+/// angles of 30 degrees.
 double fewest_in_strip(double length, double width) { return 2 * length / (2 * std::sqrt(3) * width); }
 
 TEST(Shells, NarrowFacesHaveGoodAngles) {

@@ -1,4 +1,4 @@
-// Patches that are cut open, against brute force: sectors around nodes, in random networks of fractures too.
+// Patches that are cut open, by brute force: sectors around nodes, also in random networks of fractures.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -36,7 +36,7 @@ PolygonSoup quad(const std::array<Point, 4>& corners, Tag tag) {
   return soup;
 }
 
-/// The unit cube with sheets, the k-th of which has the number 100 + k.
+/// The unit cube with sheets; sheet k has the tag 100 + k.
 std::vector<PolygonSoup> cube_with(const std::vector<std::array<Point, 4>>& sheets) {
   std::vector<PolygonSoup> soups{box({0, 0, 0}, {1, 1, 1})};
   for (std::size_t k = 0; k < sheets.size(); ++k) soups.push_back(quad(sheets[k], static_cast<Tag>(100 + k)));
@@ -53,8 +53,9 @@ PipelineResult mesh_of_soups(const std::vector<PolygonSoup>& soups, double size,
   return run_pipeline(soups, options);
 }
 
-/// The number of nodes that a place should have, by a flood over the tets there: two with a common triangle
-/// at the place hang together unless it is to be split. Tets that met without a common triangle count once.
+/// Returns the number of nodes that a place should have, by flooding the tets there: two tets with a common
+/// triangle at the place are connected unless the triangle is split. Tets that met without a common triangle
+/// count as connected.
 std::size_t nodes_wanted(const TetMesh& mesh, const std::vector<Index>& tets, const std::set<Index>& at,
                          const std::set<Corners>& open) {
   const auto pieces = [&](bool cut) {
@@ -87,7 +88,7 @@ std::size_t nodes_wanted(const TetMesh& mesh, const std::vector<Index>& tets, co
   return pieces(true) - pieces(false) + 1;
 }
 
-/// Compares the nodes at each place, corners and mid-edge nodes, with those wanted.
+/// Compares the number of nodes at each place, corners and mid-edge nodes, with the expected one.
 void expect_nodes_of_sectors(const TetMesh& before, const TetMesh& after, const std::set<Corners>& open) {
   std::map<Index, std::vector<Index>> tets_at;
   std::map<Index, std::set<Index>> ends_of, found;
@@ -121,7 +122,7 @@ SplitReport expect_right_split(TetMesh mesh, const SplitOptions& options) {
   SplitReport report = split(mesh, options);
   std::set<Tag> sides;
   for (const Sides& each : report.interfaces.sides) sides.insert({each.minus, each.plus});
-  std::set<Corners> open;  // in numbers of before: faces keep their places
+  std::set<Corners> open;  // in node numbers before the split, as faces keep their places
   for (Index f = 0; f < before.faces.size(); ++f)
     if (before.face_regions[f][1] != 0 && mesh.face_regions[f][1] == 0) open.insert(sorted(before.faces[f]));
   EXPECT_EQ(mesh.faces.size(), before.faces.size() + open.size());
@@ -199,7 +200,7 @@ TEST(Split, BlocksAreKeptApart) {
   }
 }
 
-/// The minus side's triangles and prisms look from it towards the plus side.
+/// The minus side's triangles and prisms point towards the plus side.
 TEST(Split, SidesAndPrismsAreOriented) {
   const std::vector<PolygonSoup> soups{box({0, 0, 0}, {1, 1, 1}), box({1, 0, 0}, {2, 1, 1})};
   const PipelineResult made = mesh_of_soups(soups, 0.5, 1, {.keep_apart = true, .cohesive = true});
@@ -290,7 +291,7 @@ TEST(SplitCertificate, FindsWrongSplits) {
   TetMesh moved = mesh;
   moved.points.back().x += 0.01;
   EXPECT_NE(first(moved), "");
-  TetMesh glued = mesh;  // at one node
+  TetMesh glued = mesh;  // glues the sides at one node
   const auto copy = static_cast<Index>(mesh.points.size() - 1);
   const auto original = static_cast<Index>(
       std::find(mesh.points.begin(), mesh.points.end(), mesh.points[copy]) - mesh.points.begin());

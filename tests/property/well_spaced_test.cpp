@@ -1,5 +1,6 @@
 // The invariant of Sparse Voronoi Refinement during the run (paper, section 3.1): whenever all skinny cells
-// are destroyed, before anything else goes in, the cells outside collars have a bounded radius-edge ratio.
+// are destroyed, before anything else is inserted, the cells outside collars have a bounded radius-edge
+// ratio.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -36,7 +37,7 @@ bool holds(const Box& box, const Point& p) {
   return true;
 }
 
-// Returns how many vertices came in blocks.
+// Returns the number of vertices that were inserted in blocks.
 std::size_t expect_well_spaced_all_along(const std::vector<PolygonSoup>& soups, double size,
                                          double feature_angle) {
   PlcOptions complex;
@@ -48,7 +49,7 @@ std::size_t expect_well_spaced_all_along(const std::vector<PolygonSoup>& soups, 
   Refinement refinement(plc, options, execution);
   std::size_t phases = 0, cells = 0, worse = 0;
   refinement.observe_quality_phases([&] {
-    // All of them early on, then ever fewer: each costs the whole mesh.
+    // Checks all phases early on, later ever fewer, because each check visits the whole mesh.
     const Triangulation& mesh = refinement.triangulation();
     if (++phases > 64 && phases % (37 + mesh.vertex_count() / 64) != 0) return;
     const Box box = bounds(mesh);
@@ -69,8 +70,7 @@ TEST(WellSpaced, AfterEachQualityPhase) {
   expect_well_spaced_all_along({testing::l_shape()}, 0.2, 0);
   expect_well_spaced_all_along({testing::icosphere(1, 12)}, 0.3, 30);
 }
-// Many cells and triangles are destroyed at once: what is left over between blocks comes before anything
-// else.
+// Many cells and triangles are destroyed at once: those that remain between blocks come before anything else.
 TEST(WellSpaced, BetweenRoundsOfBlocks) {
   EXPECT_GT(expect_well_spaced_all_along({testing::l_shape()}, 0.06, 0), 5000U);
   EXPECT_GT(expect_well_spaced_all_along({testing::icosphere(1, 12)}, 0.075, 30), 3000U);

@@ -1,5 +1,5 @@
-// The cost of a refinement by counting, not by clocks: what the paper bounds by the logarithm of the spread,
-// or by constants, stays below them while the input, or its spread, grows.
+// The cost of a refinement, measured by counts instead of clocks: quantities that the paper bounds by the
+// logarithm of the spread, or by constants, stay bounded while the input or its spread grows.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -39,7 +39,7 @@ void expect_well_spaced(const WorkCounts& counts) {
   EXPECT_LT(counts.largest_aspect, 14);
 }
 
-// The number of features is fixed.
+// The number of features is fixed here.
 TEST(WorkCounts, GrowWithTheLogarithmOfTheSpread) {
   for (const int exponent : {2, 6, 12, 20, 28}) {
     SCOPED_TRACE(exponent);
@@ -53,7 +53,7 @@ TEST(WorkCounts, GrowWithTheLogarithmOfTheSpread) {
   }
 }
 
-// Points on two lines: so do number and spread, one as the other.
+// Points on two lines: their number and their spread grow together.
 TEST(WorkCounts, OfAnObjectGrowNoFasterThanTheLogarithmOfTheirNumber) {
   for (const unsigned points : {10U, 40U, 160U, 640U}) {
     SCOPED_TRACE(points);
@@ -65,7 +65,7 @@ TEST(WorkCounts, OfAnObjectGrowNoFasterThanTheLogarithmOfTheirNumber) {
   }
 }
 
-// The edges of a cube are made ever finer in a mesh that has quality.
+// The edges of a cube are refined in a mesh that has quality.
 TEST(WorkCounts, OfFineCurvesAreThoseOfCoarseOnes) {
   const PolygonSoup cube = testing::box();
   const Plc plc = build_plc({&cube, 1});
@@ -81,7 +81,7 @@ TEST(WorkCounts, OfFineCurvesAreThoseOfCoarseOnes) {
   }
 }
 
-// Collars up front and in the pass, which asks for the gap size in the mesh.
+// With collars up front and in the pass, which queries the gap size in the mesh.
 TEST(WorkCounts, OfAGridOfWedgesAreThoseOfOne) {
   const PolygonSoup wedge = testing::acute::wedge(20).soups[0];
   for (const unsigned n : {1U, 2U, 4U})
@@ -127,10 +127,10 @@ const Family families[] = {
     {"a star", [](unsigned n) { return polylines::star(n / 4); }},
 };
 
-// No Delaunay triangulation of the input's vertices is built first: of most of these it is far larger than
-// the mesh, and while it is there each vertex destroys a large part of it. A ball whose vertices are half of
-// its radius apart, as the bound on radius-edge ratios lets them, has up to some 60 of them, and twice as
-// many cells.
+// Checks that no Delaunay triangulation of the input's vertices is built first: mostly it would be far larger
+// than the mesh, and each vertex would destroy a large part of it. If the vertices of a ball are half of its
+// radius apart, as the bound on radius-edge ratios allows, it has up to about 60 of them, and twice as many
+// cells.
 void expect_bounded_work(const WorkCounts& counts, double logarithm) {
   EXPECT_EQ(counts.before_quality, 0U);
   EXPECT_LE(counts.peak_cells_per_vertex, 8);
@@ -163,8 +163,8 @@ TEST(WorkCounts, OfPolylinesAreBoundedAsTheirSpreadGrows) {
   }
 }
 
-// Where cells are left in narrow gaps, as before coarsening, there are more of them at a vertex, but no more
-// as the number of segments grows. Between two zigzags there would be as many as its square.
+// If cells are left in narrow gaps, as before coarsening, a vertex has more of them, but their number does
+// not grow with the number of segments. Between two zigzags it could grow with its square.
 TEST(WorkCounts, OfPolylinesAreBoundedWhereNarrowCellsAreLeft) {
   for (const unsigned n : {100U, 400U, 1600U})
     for (const NarrowCells narrow : {NarrowCells::left, NarrowCells::bounded_if_cheap}) {
@@ -179,7 +179,7 @@ TEST(WorkCounts, OfPolylinesAreBoundedWhereNarrowCellsAreLeft) {
 
 namespace acute = testing::acute;
 
-// The same of inputs with collars; and a gap query asks few features where few are near.
+// The same for inputs with collars; and a gap query looks at few features where few are near.
 TEST(WorkCounts, OfAcuteFamiliesAreBounded) {
   std::vector<Shape> shapes{acute::star_prism(9, 0.4),
                             acute::spiked_octahedron(1),
@@ -203,7 +203,7 @@ TEST(WorkCounts, OfAcuteFamiliesAreBounded) {
   }
 }
 
-// At a hub a query asks all that meets there.
+// At a hub a query looks at all features that meet there.
 TEST(WorkCounts, AtHubsGrowWithWhatMeetsThere) {
   for (const unsigned k : {8U, 16U, 32U}) {
     SCOPED_TRACE(k);
@@ -217,7 +217,7 @@ TEST(WorkCounts, AtHubsGrowWithWhatMeetsThere) {
   }
 }
 
-// The same with every hypothesis of the proofs, as the number and as the spread grow. No size is asked for.
+// The same with every hypothesis of the proofs, as the number and the spread grow. No size is given.
 TEST(WorkCounts, InThePapersProfileAreBounded) {
   MeshOptions options = testing::with_size(0);
   options.profile = Profile::paper;

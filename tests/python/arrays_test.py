@@ -71,7 +71,7 @@ class OfArrays(unittest.TestCase):
         self.assertEqual(cube().periodic, [])
         for order in (1, 2):
             mesh = periodic_test.cube(2, order)
-            mesh.face_patch = mesh.face_tag - 1  # as of a complex, whose numbers .msh has
+            mesh.face_patch = mesh.face_tag - 1  # as in a complex, whose numbers .msh stores
             mesh.feature_dimension = numpy.full(len(mesh.points), 3, dtype=numpy.uint8)
             mesh.feature = numpy.full(len(mesh.points), -1)
             self.same_maps(mesh, mesh.partitioned(2))

@@ -46,7 +46,8 @@ except collarmesh.ReadError as error:
 
 
 def import_from_prefix(build, prefix):
-    """What `cmake --install` puts below a prefix is found where Debian's Python looks below /usr/local."""
+    """Files that `cmake --install` puts below a prefix are found where Debian's Python looks below
+    /usr/local."""
     for component in ("python", "modules"):
         subprocess.run(["cmake", "--install", build, "--prefix", prefix, "--component", component], check=True,
                        stdout=subprocess.DEVNULL)
@@ -71,7 +72,7 @@ def main():
         folder = pathlib.Path(folder)
         copy = folder / "sources"
         shutil.copytree(sources, copy, ignore=shutil.ignore_patterns("build", ".git", "*.egg-info"))
-        # numpy and pip are the system's: nothing is downloaded.
+        # Uses the system's numpy and pip, so that nothing is downloaded.
         subprocess.run([sys.executable, "-m", "venv", "--system-site-packages", folder / "venv"], check=True)
         python = folder / "venv" / "bin" / "python"
         environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}

@@ -161,7 +161,7 @@ class Inputs(unittest.TestCase):
         for path in (MODELS / "box.off", str(MODELS / "box.off")):
             mesh = collarmesh.mesh(path, size=0.5)
             self.assertTrue(mesh.passed, mesh.findings)
-        self.assertEqual(set(mesh.face_tag), set(range(1, 7)))  # numbered where the file has no tags
+        self.assertEqual(set(mesh.face_tag), set(range(1, 7)))  # numbers, if the file has no tags
 
     def test_a_cad_shape(self):
         real = os.environ.get("COLLARMESH_REAL")
@@ -244,7 +244,7 @@ class Inputs(unittest.TestCase):
 
 class Signatures(unittest.TestCase):
     def test_docstrings_tell_every_parameter(self):
-        """By themselves, or by that of `mesh` where they refer to it."""
+        """Every parameter is described in its own function, or in `mesh` if the description refers to it."""
         for function in (collarmesh.mesh, collarmesh.check, collarmesh.info, collarmesh.convert, collarmesh.repair,
                          collarmesh.read, collarmesh.Complex, collarmesh.Mesh.write, collarmesh.Mesh.partitioned,
                          collarmesh.Mesh.interpolate, collarmesh.Mesh.to_dolfinx, collarmesh.predict, collarmesh.sampled_sizes):
@@ -256,7 +256,7 @@ class Signatures(unittest.TestCase):
                     self.assertRegex(text, rf"\b{name}\b", function.__name__)
 
     def test_options_are_those_of_the_command_line(self):
-        """But for what is about output and messages."""
+        """The options are the command line's, except those about output and messages."""
         program = pathlib.Path(collarmesh.__file__).parents[2] / "bin/collarmesh"
         if not program.exists():
             self.skipTest("the program was not built")
@@ -434,7 +434,7 @@ class Meshes(unittest.TestCase):
                 collarmesh.mesh(box((0, 0, 0), (1, 1, 1)), size=0.6, partitions=partitions)
 
     def check_mistakes_of_converting(self, folder):
-        """Told before anything is meshed or read."""
+        """Mistakes are reported before anything is meshed or read."""
         surface = box((0, 0, 0), (1, 1, 1))
         for source in (surface, folder / "missing.vtu"):
             for output, options, message in (
@@ -477,7 +477,7 @@ class Meshes(unittest.TestCase):
             mesh = collarmesh.mesh(box((0, 0, 0), (1, 1, 1)), size=0.5, order=order)
             other = mesh.to_meshio()
             with tempfile.TemporaryDirectory() as folder:
-                # meshio has no mixed cells of second order in .xdmf.
+                # meshio cannot store mixed cells of second order in .xdmf.
                 for name in ("box.vtu", "box.xdmf")[: 3 - order]:
                     path = os.path.join(folder, name)
                     meshio.Mesh(other.points, other.cells, cell_data=other.cell_data).write(path)
@@ -532,7 +532,8 @@ class Stopping(unittest.TestCase):
             collarmesh.mesh(box((0, 0, 0), (1, 1, 1)), size=0.02, progress=fail)
 
     def run_script(self, script, after):
-        """Send Ctrl-C so many seconds after the script says that it begins; how long it takes to end."""
+        """Sends Ctrl-C `after` seconds after the script prints that it begins. Returns the time that it takes
+        to end."""
         process = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE,
                                    stderr=subprocess.PIPE, text=True)
         self.addCleanup(process.kill)
@@ -564,7 +565,7 @@ try:
 except KeyboardInterrupt:
     print("stopped", time.monotonic(), flush=True)
 """, 0.05)
-                self.assertLess(took, 2)  # a second, on a busy machine
+                self.assertLess(took, 2)  # a second, plus some time on a busy machine
 
     def test_interrupt_while_reading(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -588,7 +589,7 @@ os._exit(0)
                 collarmesh.mesh(endless, time_limit=0.2)
             self.assertLess(time.monotonic() - begin, 3)
             with open(endless, "w"):
-                pass  # let the abandoned reader end
+                pass  # so that the abandoned reader ends
 
     def test_time_limit(self):
         begin = time.monotonic()

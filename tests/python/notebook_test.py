@@ -1,4 +1,4 @@
-"""What those see who work in a notebook or a terminal: progress, predictions, tables, types."""
+"""Output in notebooks and terminals: progress, predictions, tables, types."""
 
 import contextlib
 import io

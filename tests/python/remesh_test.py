@@ -1,4 +1,4 @@
-"""Meshes are adapted from Python: sizes of each kind, meshes of Gmsh, errors that become sizes."""
+"""Meshes are adapted from Python: sizes of each kind, meshes of Gmsh, sizes from errors."""
 
 import unittest
 
@@ -11,7 +11,7 @@ CUBE = box((0, 0, 0), (1, 1, 1))
 
 
 def lengths(mesh):
-    """The middle of each edge and its length, each edge once."""
+    """Returns the middle and the length of each edge, each edge once."""
     ends = numpy.unique(numpy.sort(numpy.vstack([mesh.tets[:, pair] for pair in
                         ([0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3])]), axis=1), axis=0)
     a, b = mesh.points[ends[:, 0]], mesh.points[ends[:, 1]]
@@ -67,7 +67,8 @@ class Sizes(unittest.TestCase):
 
 
 def mesh_of_gmsh(size):
-    """A block with a hole and a ball of another material in it, tagged by Gmsh's entities; slivers are left."""
+    """Makes a block with a hole and a ball of another material in it, tagged by Gmsh's entities; slivers are
+    left."""
     import gmsh
 
     gmsh.initialize()

@@ -1,4 +1,4 @@
-"""Sizes by place: callables, meshes with values, sampled functions; and what is wrong with them, told with the place."""
+"""Sizes by place: callables, meshes with values, sampled functions; and errors in them, which name the place."""
 
 import math
 import unittest
@@ -12,7 +12,7 @@ CUBE = box((0, 0, 0), (1, 1, 1))
 
 
 def median_lengths(mesh):
-    """Of edges in the lower and the upper third."""
+    """Returns the median lengths of edges in the lower and the upper third."""
     ends = mesh.points[mesh.tets[:, [0, 1]]]
     lengths, z = numpy.linalg.norm(ends[:, 0] - ends[:, 1], axis=1), ends[:, :, 2].mean(axis=1)
     return numpy.median(lengths[z < 1 / 3]), numpy.median(lengths[z > 2 / 3])
@@ -37,12 +37,12 @@ class Callables(unittest.TestCase):
 
 
 class CallablesOfArrays(unittest.TestCase):
-    """Of one argument, places of shape (n, 3)."""
+    """Callables with one argument, places of shape (n, 3)."""
 
     def sizes(self, places):
         self.calls.append(len(places))
         self.assertEqual(places.shape, (len(places), 3))
-        self.assertTrue(((places >= 0) & (places <= 1)).all())  # of the part's box
+        self.assertTrue(((places >= 0) & (places <= 1)).all())  # in the part's box
         return 0.05 + 0.3 * places[:, 2]
 
     def setUp(self):

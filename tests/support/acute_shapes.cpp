@@ -50,7 +50,7 @@ void add_facet(PolygonSoup& soup, const std::vector<Point>& corners, Tag tag) {
   soup.add_facet(indices, tag);
 }
 
-// The cone over a polygon, tags from 1; the base is outermost below when the apex is above.
+// Makes the cone over a polygon, with tags from 1. The base points outwards below if the apex is above.
 PolygonSoup cone_over(std::vector<Point> base, const Point& apex) {
   PolygonSoup soup;
   for (std::size_t i = 0; i < base.size(); ++i)
@@ -68,17 +68,17 @@ std::vector<Point> triangle_with_angle(double angle) {
   return {{0, 0, 0}, on_circle(-angle / 2, 1), on_circle(angle / 2, 1)};
 }
 
-// Around the z axis.
+// Rotates around the z axis.
 PolygonSoup about_axis(const PolygonSoup& soup, double degrees) { return rotated(soup, {0, 0, 1}, degrees); }
 
-// A unit box with something in it: the region point makes loose segments and points features.
+// A unit box for other contents: the region point makes loose segments and points features.
 PolygonSoup room(const Point& min, const Point& max) {
   PolygonSoup soup = box(min, max);
   soup.region_points = {{min + Vector{0.01, 0.013, 0.017}, 1, 0}};
   return soup;
 }
 
-// A box whose bottom side contains a point or a segment between points that the box has already.
+// A box whose bottom side contains a point, or a segment between points that the box already has.
 PolygonSoup room_with_mark(const Point& min, const Point& max, const std::vector<Point>& mark) {
   const PolygonSoup plain = box(min, max);
   PolygonSoup soup;
@@ -99,7 +99,7 @@ double random_in(std::mt19937& random, double low, double high) {
   return std::uniform_real_distribution<double>(low, high)(random);
 }
 
-// With even chances for every order of magnitude.
+// Returns a random number with equal chances for every order of magnitude.
 double random_log(std::mt19937& random, double low, double high) {
   return std::exp(random_in(random, std::log(low), std::log(high)));
 }
@@ -303,7 +303,7 @@ Shape pairs_in_a_box(unsigned count, double size, std::uint32_t seed) {
     const Point to = from + size * along;
     for (const double turn : {0.0, radians(20)}) {
       const Vector side = size * (std::cos(turn) * across + std::sin(turn) * up);
-      add_facet(soup, {from, to, to + side}, 7);  // triangles are planar, rounded as they are
+      add_facet(soup, {from, to, to + side}, 7);  // as triangles, because rounding keeps these planar
       add_facet(soup, {from, to + side, from + side}, 7);
     }
   }
@@ -399,7 +399,7 @@ Shape round_cone(double half_angle) {
 }
 
 Shape lens(double rim_angle) {
-  // Two caps of a sphere whose tangents at the rim (radius 1) include the angle.
+  // Two caps of a sphere whose tangents at the rim (radius 1) form this angle.
   const double half = radians(rim_angle / 2), radius = 1 / std::sin(half), depth = radius * std::cos(half);
   std::vector<Point> profile;
   constexpr int n = 16;
@@ -472,7 +472,7 @@ Shape long_lens(double rim_angle, double width) {
 
 namespace {
 
-// Two tangents from a tip, where they meet at this angle, to a circle around the origin. The tip is first.
+// Two tangents from a tip, where they meet at this angle, to a circle around the origin. The tip comes first.
 std::vector<Point> drop(double angle, double radius) {
   constexpr int n = 20;
   std::vector<Point> outline{{-radius / std::sin(radians(angle / 2)), 0, 0}};

@@ -13,34 +13,34 @@ namespace collarmesh::testing::acute {
 struct Shape {
   std::string name;                ///< the call that makes it
   std::vector<PolygonSoup> soups;  ///< one complex
-  double volume = 0;               ///< of all regions together, for the planar ones
-  double feature_angle = 0;        ///< 30 for curved ones
+  double volume = 0;               ///< volume of all regions together, for planar shapes
+  double feature_angle = 0;        ///< 30 for curved shapes
 };
 
 /// A prism over a triangle with this angle between two sides of length 1.
 Shape wedge(double angle, double length = 1);
 
-/// A unit wedge and a similar one of this size just above its top, the gap as wide as the small one is.
+/// A unit wedge and a similar one of this size just above its top, with a gap as wide as the small one.
 Shape wedge_on_a_large_one(double angle, double small);
 
-/// A box with k rectangles inside that share one segment, at equal angles or (seed > 0) at random ones of
+/// A box with k rectangles inside that share one segment, at equal angles or, if seed > 0, at random ones of
 /// at least a third of that.
 Shape fan(unsigned k, std::uint32_t seed = 0);
 
 /// A prism over a regular k-gon cut into k regions that share its axis.
 Shape sectors(unsigned k);
 
-/// A pyramid of height 1 over a regular k-gon; the angle is that between opposite sides of the cone around
-/// it. A few degrees make it a needle.
+/// A pyramid of height 1 over a regular k-gon. `apex_angle` is between opposite sides of the cone around it;
+/// a few degrees make it a needle.
 Shape pyramid(unsigned k, double apex_angle);
 
 /// A pyramid over a random polygon around the origin, its apex anywhere above it.
 Shape random_pyramid(std::uint32_t seed);
 
-/// A prism over a star of this many points, whose inner corners have this radius, the outer ones 1.
+/// A prism over a star with this many points; its inner corners have this radius, the outer ones 1.
 Shape star_prism(unsigned points, double inner_radius);
 
-/// The same with random radii.
+/// A prism over a star with random radii.
 Shape random_star_prism(unsigned points, std::uint32_t seed);
 
 /// An octahedron with a spike of this height on every side.
@@ -49,16 +49,16 @@ Shape spiked_octahedron(double height);
 /// A blade that is sharpened to this angle along one side and ends in a point.
 Shape knife(double angle);
 
-/// Two knives that have the sharp side in common.
+/// Two knives with a common sharp side.
 Shape two_knives(double angle, double gap_angle);
 
 /// Two wedges that touch along their sharp edges only; the angle between them is the gap.
 Shape wedges_touching_in_an_edge(double angle, double gap_angle);
 
-/// Two cubes that touch in an edge, one turned about it so far.
+/// Two cubes that touch in an edge, one turned about it by this angle.
 Shape cubes_touching_in_an_edge(double gap_angle);
 
-/// Two pyramids that touch with their tips only, both upright or one lying beside the other at a gap.
+/// Two pyramids that touch only with their tips: both upright, or one lying beside the other with a gap.
 Shape pyramids_tip_to_tip(unsigned k, double apex_angle);
 
 /// Two cubes that touch in a corner only.
@@ -73,17 +73,17 @@ Shape facet_ending_inside(double angle);
 /// A box with a segment that rises from a point in its bottom at this angle and ends inside.
 Shape segment_meeting_a_facet(double angle);
 
-/// A box with some segments from one point inside, at random directions.
+/// A box with some segments from one point inside, in random directions.
 Shape segments_from_a_point(unsigned count, std::uint32_t seed);
 
 /// A unit box with some pairs of facets inside that meet at 20 degrees and have edges of this length. Nothing
-/// else has this size.
+/// else is of this size.
 Shape pairs_in_a_box(unsigned count, double size, std::uint32_t seed = 1);
 
 /// A wedge with a lone segment inside, parallel to its sharp edge at this distance or askew.
 Shape segment_near_a_crease(double angle, double distance, bool askew = false);
 
-/// A wedge with a dangling facet inside whose border passes its sharp edge at this distance.
+/// A wedge with a dangling facet inside, whose border passes its sharp edge at this distance.
 Shape facet_near_a_crease(double angle, double distance);
 
 /// A bar with triangular teeth of height 1 and the given angle at their tips.
@@ -95,7 +95,7 @@ Shape random_tetrahedron(std::uint32_t seed);
 /// Members of the planar families with random parameters, turned at random.
 std::vector<Shape> random_members(std::uint32_t seed);
 
-/// Turned by a random rotation.
+/// Turns a shape by a random rotation.
 Shape turned(Shape shape, std::uint32_t seed);
 
 /// Curved sharp rims. Their features need the feature angle 30.
@@ -110,7 +110,7 @@ Shape drop_bar(double angle);
 /// A cone of height 1 over a drop: its only side is one smooth patch, folded along a curve that is no crease
 /// and ends at the acute apex.
 Shape drop_cone(double angle, double apex_angle);
-/// The side of such a cone alone, inside a room.
+/// The side of such a cone alone, inside a box.
 Shape drop_cone_in_a_room(double angle, double apex_angle);
 /// A box with a sheet that rises from its bottom at this angle, becomes steeper by 60 degrees and ends
 /// inside.

@@ -6,7 +6,7 @@
 
 namespace collarmesh::testing {
 
-/// While it lives the program's locale writes 1.234,5: files have to be read and written as ever.
+/// Sets a locale that writes 1.234,5 during its lifetime: files must be read and written as usual.
 class CommaLocale {
  public:
   CommaLocale()

@@ -9,8 +9,7 @@
 
 namespace collarmesh::testing {
 
-/// What is allocated while it lives may be lost: other libraries' writers, with which tests make files, lose
-/// some.
+/// Permits leaks during its lifetime: other libraries' writers, with which tests make files, leak memory.
 class LeaksAllowed {
  public:
   LeaksAllowed() = default;

@@ -29,8 +29,8 @@ bool is_on_triangle(const Point& p, const Point& a, const Point& b, const Point&
 
 using Corners = std::array<Index, 3>;
 
-// Adds the faces, edges and features of a mesh whose points lie exactly on those of a complex, by
-// brute force. Each face or edge on a feature has a corner there that tells it from others.
+// Adds the faces, edges and features of a mesh whose points lie exactly on those of a complex, by brute
+// force. Each face or edge on a feature has a corner that distinguishes it from others.
 class FeatureMaker {
  public:
   FeatureMaker(TetMesh& mesh, const Plc& plc) : mesh_(mesh), plc_(plc) {}
@@ -80,7 +80,7 @@ class FeatureMaker {
 
   void add_faces() {
     struct Side {
-      Corners corners;  // counterclockwise from outside the tet
+      Corners corners;  // counterclockwise as seen from outside the tet
       Index region;
     };
     std::map<Corners, std::vector<Side>> sides;
@@ -156,14 +156,14 @@ TetMesh kuhn_mesh(Index n, Index layers) {
         for (std::size_t i = 0; i < orders.size(); ++i) {
           const Index a = x * step[0] + y * step[1] + z * step[2];
           Index b = a + step[orders[i][0]], c = b + step[orders[i][1]];
-          if (i >= 3) std::swap(b, c);  // odd permutations are turned the other way
+          if (i >= 3) std::swap(b, c);  // odd permutations have the opposite orientation
           mesh.tets.push_back({a, b, c, a + step[0] + step[1] + step[2]});
           mesh.tet_region.push_back(1);
         }
   return mesh;
 }
 
-// The tets between the triangles of a closed surface, turned outward, and a point.
+// Makes the tets between a point and the triangles of a closed surface, oriented outwards.
 TetMesh star_mesh(const PolygonSoup& surface, const Point& apex) {
   TetMesh mesh;
   mesh.points = surface.points;

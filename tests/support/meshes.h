@@ -3,7 +3,7 @@
 #include "collarmesh/plc.h"
 #include "collarmesh/tet_mesh.h"
 
-/// Right meshes that no mesher made, to judge judges by.
+/// Correct meshes that no mesher made, for testing the judges.
 namespace collarmesh::testing {
 
 struct MeshedComplex {
@@ -14,7 +14,7 @@ struct MeshedComplex {
 /// The unit box cut into n^3 cubes of six tets each (Kuhn, Some combinatorial lemmas in topology, 1960).
 MeshedComplex meshed_box(Index n);
 
-/// two_boxes(), each cut like that.
+/// two_boxes(), each cut in that way.
 MeshedComplex meshed_two_boxes(Index n);
 
 /// box_with_dangling_facet(0.5): a free facet inside. Precondition: n is a multiple of 4.
@@ -28,7 +28,7 @@ MeshedComplex meshed_ball(unsigned frequency, unsigned finer);
 /// segments: smooth closed curves, planar patches with a smooth border.
 MeshedComplex meshed_cylinder(unsigned segments, unsigned finer);
 
-/// The mesh as one reads it from a file: without features.
+/// Returns the mesh as it is when read from a file: without features.
 TetMesh without_features(TetMesh mesh);
 
 }  // namespace collarmesh::testing

@@ -12,7 +12,7 @@
 /// Maps of periodic faces for meshes that no mesher made, by brute force.
 namespace collarmesh::testing {
 
-/// The unit cube in 27 boxes, which its faces cut, along edges and at corners too.
+/// The unit cube divided into 27 boxes, which its faces cut, along edges and at corners, too.
 inline PolygonSoup cell_of_boxes(const std::array<double, 4>& cuts) {
   std::vector<PolygonSoup> boxes;
   for (unsigned i = 0; i < 3; ++i)
@@ -28,7 +28,7 @@ inline TetMesh::Motion translation(const Vector& shift) {
   return motion;
 }
 
-/// About the z axis by a right angle.
+/// A rotation about the z axis by a right angle.
 inline TetMesh::Motion quarter_turn() {
   TetMesh::Motion motion;
   motion.rows = {Vector{0, -1, 0}, Vector{1, 0, 0}, Vector{0, 0, 1}};
@@ -45,7 +45,7 @@ inline std::set<Index> nodes_with_tags(const TetMesh& mesh, const std::vector<Ta
   return nodes;
 }
 
-/// Each node of the first group is mapped onto the node of the second that is nearest to its image.
+/// Maps each node of the first group onto the node of the second group that is nearest to its image.
 inline TetMesh::PeriodicFaces mapped_faces(const TetMesh& mesh, std::vector<Tag> first,
                                            std::vector<Tag> second, const TetMesh::Motion& motion) {
   TetMesh::PeriodicFaces faces{std::move(first), std::move(second), motion, {}};
@@ -60,7 +60,7 @@ inline TetMesh::PeriodicFaces mapped_faces(const TetMesh& mesh, std::vector<Tag>
   return faces;
 }
 
-/// All three pairs of sides of a box with the tags 1 to 6, x, y, z, low and high.
+/// Makes all three pairs of sides of a box periodic, with the tags 1 to 6 (x, y, z, low and high).
 inline void make_box_periodic(TetMesh& mesh, const Vector& size) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     Vector shift{0, 0, 0};

@@ -30,7 +30,7 @@ void for_each_polygon(const PolygonSoup& soup, const Visit& visit) {
   }
 }
 
-// The soup without its facets.
+// Returns the soup without its facets.
 PolygonSoup shell_of(const PolygonSoup& soup) {
   PolygonSoup result;
   result.name = soup.name;
@@ -335,7 +335,7 @@ class Findings {
     }
   }
 
-  // Inside a patch two triangles share an edge, running along it in opposite directions.
+  // Checks patches: two triangles inside a patch that share an edge use it in opposite directions.
   void check_patches() {
     std::set<std::array<Index, 2>> on_curve;
     for (const Plc::Curve& curve : plc_.curves)
@@ -369,7 +369,7 @@ class Findings {
     if (curve.closed) visit(curve.points.back(), curve.points.front());
   }
 
-  // The patches of a curve are those that have each of its segments as an edge.
+  // Checks curves: the patches of a curve are those with each of its segments as an edge.
   void check_curves() {
     std::map<std::array<Index, 2>, std::set<Index>> patches_at;
     for (const Plc::Triangle& t : plc_.triangles)
@@ -391,7 +391,7 @@ class Findings {
     }
   }
 
-  // The area vectors of a closed surface cancel; the volumes of all regions are positive.
+  // Checks regions: the area vectors of a closed surface cancel, and all volumes are positive.
   void check_regions() {
     std::vector<Vector> sums(plc_.regions.size());
     double area = 0;

@@ -7,38 +7,40 @@
 #include "collarmesh/plc.h"
 #include "collarmesh/polygon_soup.h"
 
-/// Shapes for the tests of the complex. Closed ones have their facets' normals outwards.
+/// Shapes for tests of the complex. Facets of closed shapes have their normals outwards.
 namespace collarmesh::testing {
 
-/// Six quadrangles.
+/// A box of six quadrangles.
 PolygonSoup box(const Point& min, const Point& max);
 /// A box whose sides are n x n squares of two triangles each.
 PolygonSoup subdivided_box(const Point& min, const Point& max, Index n);
-/// Around the z axis, one layer of quadrangles between two polygons of n corners.
+/// A cylinder around the z axis: one layer of quadrangles between two polygons of n corners.
 PolygonSoup cylinder(Index n, double radius, double height);
-/// Triangles from a regular n-gon in the plane z = 0 to an apex above its centre; closed by the n-gon.
+/// A cone: triangles from a regular n-gon in the plane z = 0 to an apex above its centre, closed by the
+/// n-gon.
 PolygonSoup cone(Index n, double aperture_degrees, double height);
-/// A prism along the z axis over the triangle of two unit sides that enclose this angle at the origin.
+/// A prism along the z axis over the triangle of two unit sides that form this angle at the origin.
 PolygonSoup wedge(double angle_degrees, double length);
-/// Octahedron with sides cut in n, its points moved onto the unit sphere around `centre`.
+/// A sphere: an octahedron with sides cut in n, its points moved onto the unit sphere around `centre`.
 PolygonSoup sphere(Index n, double radius, const Point& centre);
 /// A band of n quadrangles, each cut in two, with a half twist.
 PolygonSoup moebius_strip(Index n);
 
-/// The same facets with their normals turned round.
+/// Returns the facets with their normals reversed.
 PolygonSoup reversed(const PolygonSoup& soup);
-/// Without one facet.
+/// Returns the soup without one facet.
 PolygonSoup without_facet(const PolygonSoup& soup, Index facet);
-/// All in one soup, points not merged.
+/// Returns all soups in one, with points not merged.
 PolygonSoup joined(const std::vector<PolygonSoup>& soups);
-/// Every facet's points copied, as in an .stl file.
+/// Returns the soup with separate points for each facet, as in an .stl file.
 PolygonSoup torn_apart(const PolygonSoup& soup);
-/// Points, facets and first corners in another order, some facets turned round if `turn`.
+/// Returns the soup with points, facets and first corners in another order; if `turn`, some facets are
+/// reversed.
 PolygonSoup shuffled(const PolygonSoup& soup, std::uint64_t seed, bool turn);
-/// Turned by a random rotation, scaled and moved.
+/// Returns the soup turned by a random rotation, scaled and moved.
 PolygonSoup moved(const PolygonSoup& soup, std::uint64_t seed, double scale, double offset);
 
-/// What is wrong with the complex: incidence lists that are not mutual, patches that are no oriented
+/// Returns the faults of the complex: incidence lists that are not mutual, patches that are no oriented
 /// manifolds, regions whose borders do not close, curves that are no chains of edges of their patches.
 std::vector<std::string> findings(const Plc& plc);
 

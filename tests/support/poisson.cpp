@@ -17,10 +17,10 @@ using Barycentric = std::array<double, 4>;
 
 struct QuadraturePoint {
   Barycentric at;
-  double weight;  // they sum to 1
+  double weight;  // weights sum to 1
 };
 
-// The product of Gauss rules on a cube collapsed to a tetrahedron: exact for polynomials of degree 5.
+// Returns the product of Gauss rules on a cube collapsed to a tetrahedron: exact for polynomials of degree 5.
 std::vector<QuadraturePoint> quadrature() {
   constexpr std::array<double, 4> at{0.06943184420297371, 0.33000947820757187, 0.66999052179242813,
                                      0.93056815579702629};
@@ -37,10 +37,10 @@ std::vector<QuadraturePoint> quadrature() {
   return points;
 }
 
-// The corners of the mid-side nodes in the order of TetMesh: ab, bc, ca, ad, bd, cd.
+// The ends of the edges with mid-edge nodes, in the order of TetMesh: ab, bc, ca, ad, bd, cd.
 constexpr std::array<std::array<unsigned, 2>, 6> sides{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
 
-// Shape functions and their derivatives by the second to fourth barycentric coordinate.
+// Shape functions and their derivatives with respect to the second to fourth barycentric coordinate.
 struct Shape {
   Eigen::VectorXd value;
   Eigen::MatrixXd derivative;  // nodes x 3
@@ -112,7 +112,7 @@ class PoissonProblem {
       if (u == 0) u = count_++;
   }
 
-  // At a quadrature point: where it is, the Jacobian's determinant times the weight, and the shape
+  // Data at a quadrature point: its place, the Jacobian's determinant times the weight, and the shape
   // functions' gradients.
   struct Place {
     Point at;
@@ -195,7 +195,7 @@ class PoissonProblem {
            largest_eigenvalue([&](const auto& x) { return factors.solve(x); });
   }
 
-  // By power iteration, to a thousandth.
+  // Returns the largest eigenvalue by power iteration, to a thousandth.
   template <class Apply>
   double largest_eigenvalue(const Apply& apply) const {
     Eigen::VectorXd x(count_);
@@ -216,7 +216,7 @@ class PoissonProblem {
   const Solution& exact_;
   std::vector<QuadraturePoint> points_;
   std::vector<Shape> shapes_;
-  std::vector<int> unknown_;  // of a node; negative: none
+  std::vector<int> unknown_;  // by node: its unknown; negative: none
   int count_ = 0;
   Matrix matrix_;
   Eigen::VectorXd right_;

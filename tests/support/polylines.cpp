@@ -20,7 +20,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-// The unit box around what is to be added. The region point makes loose segments features.
+// The unit box around the polylines. The region point makes loose segments features.
 PolygonSoup room() {
   PolygonSoup soup = box({0, 0, 0}, {1, 1, 1});
   soup.region_points = {{{0.01, 0.013, 0.017}, 1, 0}};
@@ -99,10 +99,10 @@ Shape helices(unsigned n) {
 
 Shape torus_knot(unsigned n) {
   PolygonSoup soup = room();
-  // Strands cross a cut of the tube, 2 pi 0.12 long, at so many places; the torus is 2 pi 0.28 long.
+  // This many strands cross a cut of the tube, which is 2 pi 0.12 long; the torus is 2 pi 0.28 long.
   const double per_length = std::sqrt(n / (2 * pi * 0.12 * 2 * pi * 0.28));
   const auto around = std::max(2U, static_cast<unsigned>(2 * pi * 0.12 * per_length));
-  const unsigned along = around + 1;  // coprime: one strand
+  const unsigned along = around + 1;  // coprime numbers make one strand
   std::vector<Point> points;
   for (unsigned i = 0; i < n; ++i) {
     const double t = 2 * pi * i / n, ring = 0.28 + 0.12 * std::cos(along * t);
@@ -157,7 +157,7 @@ Shape graph(unsigned n, std::uint32_t seed) {
   std::mt19937 random(seed);
   PolygonSoup soup = room();
   const unsigned count = std::max(4U, n / 2);
-  // In a grid of cells of one point each, moved at random: so the nearest ones are near in the grid.
+  // Each cell of a grid has one point, moved at random, so the nearest points are in nearby cells.
   const auto side = static_cast<unsigned>(std::ceil(std::cbrt(count) - 1e-9));
   const double pitch = 0.6 / side;
   std::vector<Point> points;

@@ -15,12 +15,12 @@
 #include "refine/unresolved_points.h"
 #include "refine/work_queue.h"
 
-/// Parts of the refinement without its loop: a test inserts what it likes and tells them in the loop's order.
+/// Parts of the refinement without its loop: a test inserts vertices and calls the parts in the loop's order.
 namespace collarmesh::testing {
 
-/// What is there: the mesh, and what is known of it.
+/// The mesh, and the parts that store data of it.
 struct KnownMesh {
-  /// The complex is kept by reference.
+  /// Keeps a reference to the complex.
   explicit KnownMesh(const Plc& plc, const MeshOptions& options = {})
       : domain(plc, options),
         mesh(plc, domain.box),
@@ -50,7 +50,7 @@ struct KnownMesh {
   ConflictZone zone;
 };
 
-/// A KnownMesh with curves and the parts they need; no subsegments yet.
+/// A KnownMesh with curves and the parts they need, without subsegments yet.
 struct KnownCurves : KnownMesh {
   explicit KnownCurves(const Plc& plc, const MeshOptions& options = {}) : KnownMesh(plc, options) {
     for (Index i = 0; i < plc.vertices.size(); ++i) points.add(domain.points[plc.vertices[i].point], {0, i});

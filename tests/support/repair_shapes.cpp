@@ -20,7 +20,7 @@ namespace {
 
 using std::numbers::pi;
 
-// Fans: with their signs they cover polygons that are not convex, too.
+// Visits fans: with their signs they cover polygons that are not convex, too.
 template <class Visit>
 void for_each_triangle(const PolygonSoup& soup, const Visit& visit) {
   for (Index q = 0; q < soup.polygon_count(); ++q) {
@@ -56,7 +56,7 @@ std::vector<Index> random_facets(const PolygonSoup& soup, Random& random, unsign
 }
 
 Point nearest_on_triangle(const Point& p, const Point& a, const Point& b, const Point& c) {
-  // Ericson, Real-Time Collision Detection, 5.1.5.
+  // Follows Ericson, Real-Time Collision Detection, 5.1.5.
   const Vector ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
   const double d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp),
                d6 = dot(ac, cp);
@@ -72,7 +72,7 @@ Point nearest_on_triangle(const Point& p, const Point& a, const Point& b, const 
   return a + (vb / (va + vb + vc)) * ab + (vc / (va + vb + vc)) * ac;
 }
 
-// A polygon in triangles, one ear after the other.
+// Cuts a polygon into triangles, one ear after the other.
 std::vector<std::array<Index, 3>> ears(const std::vector<Point>& points, std::span<const Index> polygon) {
   std::vector<Index> rest(polygon.begin(), polygon.end());
   Vector normal;
@@ -419,7 +419,7 @@ Sampled sampled_volume(const PolygonSoup& soup, Random& random, unsigned n) {
           b = direct_winding_number(soup, p) > 0.5;
         }
         inside += 0.5 * (int{in[0]} + int{in[1]});
-        squares += in[0] == in[1] ? 0 : 0.25;  // of the mean of two: (a - b)^2 / 4
+        squares += in[0] == in[1] ? 0 : 0.25;  // variance of the mean of two: (a - b)^2 / 4
       }
   const double cell = size.x * size.y * size.z;
   return {inside * cell, (std::sqrt(squares) + 1) * cell};
@@ -481,7 +481,7 @@ Convex convex_of(const PolygonSoup& soup) {
 Convex clipped(const Convex& body, const Point& origin, const Vector& normal) {
   Convex result;
   std::vector<Point> cut;
-  bool has_cap = false;  // a polygon in the plane
+  bool has_cap = false;  // whether a polygon lies in the plane
   const auto height = [&](const Point& p) { return dot(p - origin, normal); };
   for (const auto& polygon : body) {
     has_cap = has_cap ||
@@ -510,7 +510,7 @@ Convex clipped(const Convex& body, const Point& origin, const Vector& normal) {
     return std::atan2(dot(p - centre, v) / nv, dot(p - centre, u) / nu) <
            std::atan2(dot(q - centre, v) / nv, dot(q - centre, u) / nu);
   });
-  result.push_back(cut);  // points that are there twice do no harm
+  result.push_back(cut);  // repeated points do no harm
   return result;
 }
 

@@ -10,27 +10,27 @@
 
 #include "collarmesh/repair.h"
 
-/// Facets that are no complex, one generator per fault, and oracles for what they have to become. Lengths are
+/// Facets that are no complex, one generator per fault, and oracles for their repaired form. Lengths are
 /// about 1. Facets have tags above 0.
 namespace collarmesh::testing::faulty {
 
 using Random = std::mt19937_64;
 
-/// How many random members a test takes: `count`, times the environment variable COLLARMESH_FAMILY_SHARE
-/// (more than 1 to search longer, less with sanitizers), but at least one.
+/// Returns the number of random members that a test uses: `count` times the environment variable
+/// COLLARMESH_FAMILY_SHARE (above 1 for longer searches, below 1 with sanitizers), but at least one.
 unsigned members(unsigned count);
 
 double uniform(Random& random, double low, double high);
 Vector random_direction(Random& random);
-/// About a random axis through the origin, by a random angle.
+/// Turns a soup about a random axis through the origin by a random angle.
 PolygonSoup turned(const PolygonSoup& soup, Random& random);
-/// Every point moved by up to this much along each axis, so that nothing meets by symmetry.
+/// Moves every point by up to `by` along each axis, so that nothing meets by symmetry.
 PolygonSoup jittered(const PolygonSoup& soup, Random& random, double by);
-/// Every polygon cut into triangles.
+/// Cuts every polygon into triangles.
 PolygonSoup triangulated(const PolygonSoup& soup);
-/// Every polygon begins with another corner, its orientation kept.
+/// Lets every polygon begin with another corner; its orientation is kept.
 PolygonSoup corners_rotated(const PolygonSoup& soup, Random& random);
-/// Only the facets for which `keep` holds.
+/// Returns only the facets for which `keep` holds.
 template <class Keep>
 PolygonSoup filtered(const PolygonSoup& soup, const Keep& keep) {
   PolygonSoup result;
@@ -41,99 +41,101 @@ PolygonSoup filtered(const PolygonSoup& soup, const Keep& keep) {
     if (keep(f)) result.add_facet(soup.polygon(soup.facet_polygons(f)[0]), soup.facet_tag(f));
   return result;
 }
-/// All in one soup, points not merged.
+/// Returns all soups in one, with points not merged.
 PolygonSoup joined(std::span<const PolygonSoup> soups);
 
-// --- Shapes ---
+// Shapes
 
 /// Boxes whose corners are multiples of 1/4 between 0 and `grid` / 4: many share faces and edges, overlap in
 /// faces, touch or lie inside each other. No two are equal.
 std::vector<Box> random_boxes(Random& random, unsigned count, unsigned grid);
 PolygonSoup soup_of(const Box& box);
 
-/// The unit box with a rectangle (tag 7) across at z = height; `share` < 1: it ends inside. Its corners lie
-/// on sides of the box, or `overhang` outside.
+/// The unit box with a rectangle (tag 7) across it at z = height; with `share` < 1 it ends inside. Its
+/// corners lie on sides of the box, or `overhang` outside.
 PolygonSoup box_with_wall(double height, double share, double overhang = 0);
 
-/// A prism of height 1 over a regular k-gon of radius 1 whose top is twisted: sides are quadrangles that are
-/// not planar, or two triangles each.
+/// A prism of height 1 over a regular k-gon of radius 1 with a twisted top. Its sides are quadrangles that
+/// are not planar, or two triangles each.
 PolygonSoup twisted_prism(unsigned k, double degrees, bool quadrangles);
 
-/// Two spheres of radius 1 and `inner`, either turned inside out.
+/// Two spheres of radius 1 and `inner`, either of which may be turned inside out.
 PolygonSoup nested_spheres(double inner, bool outer_inverted, bool inner_inverted);
 
 struct OpenSphere {
   PolygonSoup soup;
-  std::vector<Point> holes;        ///< centres
-  std::vector<std::size_t> edges;  ///< around each
+  std::vector<Point> holes;        ///< centres of the holes
+  std::vector<std::size_t> edges;  ///< number of edges around each hole
 };
 /// A unit sphere without the facets around some of its points, which are far from each other.
 OpenSphere sphere_with_holes(Random& random, unsigned frequency, unsigned holes);
 
-/// Some facets a second time, the same way round or the other.
+/// Repeats some facets, in the same or in the opposite orientation.
 PolygonSoup with_repeated_facets(const PolygonSoup& soup, Random& random, unsigned count, bool inverted);
-/// Some facets turned round.
+/// Reverses some facets.
 PolygonSoup with_inverted_facets(const PolygonSoup& soup, Random& random, unsigned count);
 
-/// The unit box with some sides cut into n x n squares, so that their corners lie on edges of others.
+/// The unit box with some sides cut into n x n squares, whose corners lie on edges of other sides.
 PolygonSoup box_with_t_junctions(Random& random, unsigned n);
 
-/// A cube of edge 1 with a slot of this width, as deep as half of it, from above.
+/// A cube of edge 1 with a slot of this width from above, half as deep as the cube.
 PolygonSoup slotted_box(double width);
 /// A cube of edge 1 with a fin of this width and height 1/2 on top.
 PolygonSoup finned_box(double width);
-/// A cube of edge 1 with a pyramid of this width and height 1/2 on top: its base lies in a facet of
+/// A cube of edge 1 with a pyramid of this width and height 1/2 on top; its base lies in a facet of
 /// triangles.
 PolygonSoup spiked_box(double width);
 
 /// A block whose upper side is a landscape of n x n squares that folds over and through itself.
 PolygonSoup folded_terrain(Random& random, unsigned n, double fold);
 
-/// Moved by this much along a random direction, coordinates rounded to 32 bits.
+/// Moves a soup by `distance` along a random direction, and rounds coordinates to 32 bits.
 PolygonSoup in_single_precision(const PolygonSoup& soup, const Vector& offset);
 
-// --- Oracles ---
+// Oracles
 
 double signed_volume(const PolygonSoup& soup);
 double area(const PolygonSoup& soup);
 Box bounds(std::span<const PolygonSoup> soups);
 
-/// By its definition: the sum of the signed solid angles of all triangles over 4 pi.
+/// Returns the winding number by its definition: the sum of the signed solid angles of all triangles divided
+/// by 4 pi.
 double direct_winding_number(const PolygonSoup& soup, const Point& p);
 
 struct Sampled {
-  double volume = 0, deviation = 0;  ///< and its standard deviation
+  double volume = 0, deviation = 0;  ///< an estimate, with its standard deviation
 };
-/// The volume of what winding numbers above 1/2 enclose, from two random points in each of n^3 cells.
+/// Estimates the volume where winding numbers are above 1/2, from two random points in each of n^3 cells.
 Sampled sampled_volume(const PolygonSoup& soup, Random& random, unsigned n);
 
-/// The volumes of what boxes enclose, in pieces that are connected through facets: by label, sorted. The
-/// first box has the place; boxes with one label are one.
+/// Returns the volumes that boxes enclose, in pieces that are connected through facets: by label, sorted. If
+/// boxes overlap, the first one has the place; boxes with the same label count as one.
 std::map<Tag, std::vector<double>> piece_volumes(std::span<const Box> boxes, std::span<const Tag> labels);
 
-/// Polygons around a convex body, outwards.
+/// Polygons around a convex body, oriented outwards.
 using Convex = std::vector<std::vector<Point>>;
 Convex convex_of(const PolygonSoup& soup);
-/// What lies behind the plane.
+/// Returns the part of a body behind a plane.
 Convex clipped(const Convex& body, const Point& origin, const Vector& normal);
 Convex intersection(Convex a, const Convex& b);
 double volume(const Convex& body);
-/// By inclusion and exclusion. The second: what each has that no earlier one has.
+/// The first function computes the volume by inclusion and exclusion; the second one the volume that each
+/// body has and no earlier one.
 double union_volume(std::span<const Convex> bodies);
 std::vector<double> places(std::span<const Convex> bodies);
 
-// --- Judgement ---
+// Judgement
 
 double total_volume(const Plc& plc);
-/// By region tag, sorted.
+/// Returns the volumes by region tag, sorted.
 std::map<Tag, std::vector<double>> region_volumes(const Plc& plc);
 
-/// What is wrong with a repaired complex whatever it was before: the complex itself, tags that come from
-/// nowhere, corners further from the input than `reach` (absolute) that fill no hole.
+/// Returns the faults of a repaired complex, whatever its input: faults of the complex itself, unknown tags,
+/// and corners that fill no hole and are farther from the input than `reach` (absolute).
 std::vector<std::string> faults_of(const RepairedPlc& repaired, std::span<const PolygonSoup> input,
                                    double reach);
 
-/// Builds, or says what was thrown.
+/// Builds the complex; if that throws, fails the test with the message.
 RepairedPlc repaired(std::span<const PolygonSoup> soups, const RepairOptions& options = {});
 inline RepairedPlc repaired(const PolygonSoup& soup, const RepairOptions& options = {}) {
   return repaired({&soup, 1}, options);

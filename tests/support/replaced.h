@@ -6,7 +6,7 @@
 
 namespace collarmesh::testing {
 
-/// The text with `to` in place of the first `from`, which has to be there.
+/// Returns the text with its first `from` replaced by `to`. The text must contain `from`.
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;

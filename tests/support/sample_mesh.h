@@ -10,9 +10,9 @@
 
 namespace collarmesh::testing {
 
-/// A box of two regions, one above the other, with everything a mesh can carry: 12 n^3 tets, tagged
-/// patches (one tag is 0, one negative), curves and vertices with their features, some collar tets,
-/// coordinates that need all 53 bits.
+/// A box of two regions, one above the other, with all data that a mesh can have: 12 n^3 tets, tagged patches
+/// (one tag is 0, one negative), curves and vertices with their features, some collar tets, coordinates that
+/// need all 53 bits.
 class SampleMesh {
  public:
   explicit SampleMesh(Index n) : n_(n) {}
@@ -41,7 +41,8 @@ class SampleMesh {
     return {point % (n_ + 1), point / (n_ + 1) % (n_ + 1), point / (n_ + 1) / (n_ + 1)};
   }
 
-  /// The planes a grid point lies on, as bits: x 0 and 1, y 2 and 3, z 4 (bottom), 5 (interface), 6 (top).
+  /// Returns the planes that a grid point lies on, as bits: x 0 and 1, y 2 and 3, z 4 (bottom), 5
+  /// (interface), 6 (top).
   unsigned planes(const Grid& g) const {
     unsigned bits = 0;
     for (unsigned axis = 0; axis < 2; ++axis)
@@ -49,7 +50,7 @@ class SampleMesh {
     return bits | (g[2] == 0 ? 16U : 0U) | (g[2] == n_ ? 32U : 0U) | (g[2] == 2 * n_ ? 64U : 0U);
   }
 
-  /// A feature is the planes it lies on and, for what stands upright, which half.
+  /// A feature is given by the planes that it lies on and, if it is upright, by its half.
   Index feature(unsigned plane_bits, bool upper) {
     const bool upright = (plane_bits & 0x70U) == 0;
     const unsigned key = plane_bits | (upright && upper ? 128U : 0U);

@@ -9,7 +9,7 @@
 
 namespace collarmesh::testing {
 
-/// The mesh with a node at the middle of every edge; each lies on the features that its edge lies on.
+/// Returns the mesh with a node in the middle of every edge; each node lies on the features of its edge.
 inline TetMesh second_order(TetMesh mesh) {
   std::map<std::pair<Index, Index>, Index> nodes;
   std::map<std::pair<Index, Index>, TetMesh::VertexFeature> features;

@@ -46,7 +46,7 @@ class SoupMaker {
 
 double between(double a, double b, unsigned i, unsigned n) { return i == n ? b : a + (b - a) * i / n; }
 
-// One side of a box: the grid of the axes after `axis`, where that axis is at one end.
+// Adds one side of a box: a grid along the two axes after `axis`, at one end of that axis.
 void add_box_side(SoupMaker& maker, const Point& min, const Point& max, std::size_t axis, bool at_max,
                   unsigned n) {
   const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -87,7 +87,8 @@ std::vector<Point> circle(double radius, double z, unsigned segments) {
   return points;
 }
 
-// The band of triangles between two rings of a revolution, the second above the first seen from outside.
+// Adds the band of triangles between two rings of a revolution; seen from outside, the second ring is above
+// the first.
 void add_band(SoupMaker& maker, const std::vector<Point>& low, const std::vector<Point>& high) {
   const std::size_t n = std::max(low.size(), high.size());
   for (std::size_t i = 0; i < n; ++i) {
@@ -179,7 +180,7 @@ PolygonSoup icosphere(double radius, unsigned frequency) {
       {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
        {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
        {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}}};
-  // Points are named by their integer weights of the corners, so that neighbouring faces share them.
+  // Points are identified by their integer weights of the corners, so that neighbouring faces share them.
   std::map<std::vector<std::array<Index, 2>>, Index> numbers;
   PolygonSoup soup;
   const auto point = [&](const std::array<Index, 3>& face, const std::array<Index, 3>& weights) {
@@ -240,7 +241,7 @@ PolygonSoup cone(double radius, double height, unsigned segments, unsigned rings
 }
 
 PolygonSoup spiked_sphere(double spike_radius, double spike_height, unsigned segments) {
-  // The fillet touches the sphere from outside and the spike's side, with the spike's own radius.
+  // The fillet has the spike's radius and touches the sphere from outside, and the spike's side.
   const double fillet_x = 2 * spike_radius;
   const double fillet_z = std::sqrt((1 + spike_radius) * (1 + spike_radius) - fillet_x * fillet_x);
   const double contact = std::atan2(fillet_z, fillet_x) * 180 / pi;
@@ -271,7 +272,7 @@ PolygonSoup box_with_small_facet(double size) {
   SoupMaker maker;
   for (std::size_t axis = 0; axis < 3; ++axis)
     for (const bool at_max : {false, true}) add_box_side(maker, {0, 0, 0}, {1, 1, 1}, axis, at_max, 1);
-  maker.polygon(small);  // of the facet begun last, the top
+  maker.polygon(small);  // adds it to the last facet, the top
   maker.facet_hole(centre);
   maker.facet(small, 7);
   return maker.soup_;
@@ -352,7 +353,8 @@ PolygonSoup random_prism(std::uint32_t seed) {
   const unsigned k = 6 + random() % 5;
   std::vector<Point> polygon;
   for (unsigned i = 0; i < k; ++i) {
-    const double angle = 2 * pi * (i + 0.5 * unit(random)) / k;  // arcs of at most 90 degrees: obtuse corners
+    const double angle = 2 * pi * (i + 0.5 * unit(random)) / k;  // arcs of at most 90 degrees make obtuse
+                                                                 // corners
     polygon.push_back({std::cos(angle), std::sin(angle), 0});
   }
   const Vector axis = random_direction(random);
@@ -397,7 +399,7 @@ PolygonSoup scaled(const PolygonSoup& soup, double by) {
   return transformed(soup, [&](const Point& p) { return by * p; });
 }
 
-// Rodrigues' formula.
+// Uses Rodrigues' formula.
 PolygonSoup rotated(const PolygonSoup& soup, const Vector& axis, double degrees) {
   const Vector k = axis / norm(axis);
   const double c = std::cos(degrees * pi / 180), s = std::sin(degrees * pi / 180);
@@ -406,7 +408,7 @@ PolygonSoup rotated(const PolygonSoup& soup, const Vector& axis, double degrees)
 
 namespace {
 
-// The same soup with its facets in the given order, corners renumbered and perhaps turned.
+// Returns the soup with its facets in the given order, with renumbered and possibly rotated corners.
 PolygonSoup rebuilt(const PolygonSoup& soup, const std::vector<Index>& facets,
                     const std::vector<Index>& number, bool turn) {
   PolygonSoup result;

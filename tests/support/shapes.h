@@ -24,20 +24,20 @@ PolygonSoup l_shape();
 /// A regular k-gon extruded, with the corners on the unit circle.
 PolygonSoup regular_prism(unsigned k, double height = 1);
 
-/// The profile (x the radius, z the height, from bottom to top) rotated about the z axis, all triangles of
-/// tag 1. It starts and ends on the axis, or is closed (then the last point is not the first again).
+/// Rotates the profile (x the radius, z the height, from bottom to top) about the z axis; all triangles have
+/// tag 1. The profile starts and ends on the axis, or is closed (without repeating its first point).
 PolygonSoup revolution(std::span<const Point> profile, unsigned segments, bool closed = false);
 
-/// A sphere of 20 f^2 triangles, nearly regular. The points of frequency f are among those of k f.
+/// A sphere of 20 f^2 nearly regular triangles. The points of frequency f are among those of frequency k f.
 PolygonSoup icosphere(double radius, unsigned frequency);
-/// The same with about so many triangles.
+/// A sphere with approximately this number of triangles.
 PolygonSoup icosphere_of(double radius, std::size_t triangles);
 
 PolygonSoup uv_sphere(double radius, unsigned rings, unsigned segments);
 PolygonSoup cylinder(double radius, double height, unsigned segments, unsigned rings = 1);
 PolygonSoup torus(double major, double minor, unsigned major_segments, unsigned minor_segments);
 
-/// Its apex and, when it is slender, its rim are acute.
+/// A cone. Its apex is acute, and its rim, too, if it is slender.
 PolygonSoup cone(double radius, double height, unsigned segments, unsigned rings = 1);
 
 /// A sphere of radius 1 with a filleted, rounded spike of the given radius and height on its pole:
@@ -50,13 +50,13 @@ PolygonSoup box_with_cavity(double size);
 /// The unit box with a square facet (tag 7) of the given edge length in its top side.
 PolygonSoup box_with_small_facet(double size);
 
-/// The unit box on a second one, as one complex: the facet (tag 7) between them is there once, and
-/// region points give them the tags 10 (below) and 20.
+/// The unit box on a second one, as one complex. The facet between them (tag 7) occurs once, and region
+/// points give the boxes the tags 10 (below) and 20.
 PolygonSoup two_boxes();
-/// The same as two closed surfaces that touch.
+/// Two boxes as two closed surfaces that touch.
 std::vector<PolygonSoup> touching_boxes();
 
-/// Two bodies that meet in a straight edge only, and two rings that meet in a circle only.
+/// Two bodies that meet only in a straight edge, and two rings that meet only in a circle.
 std::vector<PolygonSoup> boxes_touching_in_an_edge();
 std::vector<PolygonSoup> rings_touching_in_a_circle();
 
@@ -66,7 +66,7 @@ PolygonSoup box_with_dangling_facet(double size = 0.4);
 /// The unit box with n points on each of two skew lines inside.
 PolygonSoup box_with_skew_lines(unsigned n);
 
-/// Boxes inside each other, all turned outward, largest first.
+/// Boxes inside each other, all oriented outwards, the largest first.
 std::vector<PolygonSoup> nested_boxes(unsigned levels);
 
 /// A plate 4 x 4 x 1 with a round hole: facets with holes, and a smooth one (tag 7).
@@ -75,21 +75,21 @@ PolygonSoup plate_with_hole(double radius, unsigned segments);
 /// A prism over a random convex polygon with obtuse corners, turned and slightly sheared.
 PolygonSoup random_prism(std::uint32_t seed);
 
-/// The convex hull of random points on a sphere: triangles, so that its segments meet at acute angles.
-/// Precondition: at most some 40 points.
+/// The convex hull of random points on a sphere, made of triangles, so its segments meet at acute angles.
+/// Precondition: at most about 40 points.
 PolygonSoup random_hull(std::uint32_t seed, unsigned points);
 
-/// Apply a map to every point of a soup. It has to keep the orientation and planes.
+/// Applies a map to every point of a soup. The map must keep the orientation and planes.
 PolygonSoup transformed(const PolygonSoup& soup, const std::function<Point(const Point&)>& map);
 PolygonSoup translated(const PolygonSoup& soup, const Vector& by);
 PolygonSoup scaled(const PolygonSoup& soup, double by);
-/// About an axis through the origin (any length), in degrees.
+/// Rotates a soup about an axis through the origin (of any length), in degrees.
 PolygonSoup rotated(const PolygonSoup& soup, const Vector& axis, double degrees);
-/// Turned inside out.
+/// Turns a soup inside out.
 PolygonSoup inverted(const PolygonSoup& soup);
-/// The same soup with its points and facets in another order.
+/// Returns the soup with its points and facets in another order.
 PolygonSoup permuted(const PolygonSoup& soup, std::uint32_t seed);
-/// Both in one soup, points not merged.
+/// Returns both in one soup, with points not merged.
 PolygonSoup joined(const PolygonSoup& a, const PolygonSoup& b);
 
 }  // namespace collarmesh::testing

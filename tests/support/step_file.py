@@ -4,7 +4,8 @@ QUADS = [(0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (
 
 
 class StepFile:
-    """Solids are numbered in the order of their products, faces in that of the solids, six each: -x, +x, -y, +y, -z, +z."""
+    """Writes a STEP file. Solids are numbered in the order of their products, and faces in the order of the
+    solids, six each: -x, +x, -y, +y, -z, +z."""
 
     def __init__(self):
         self._lines = []
@@ -20,12 +21,12 @@ class StepFile:
         self._styles = []
 
     def product(self, name, *solids):
-        """Returns what assemblies take; solids: what `box` returns."""
+        """Adds a product. Returns it for assemblies. solids: results of `box`."""
         axes = self._axes((0, 0, 0))
         return (*self._product(name, "ADVANCED_BREP_SHAPE_REPRESENTATION", [axes, *solids]), axes)
 
     def assembly(self, name, *instances):
-        """instances: (product, place)."""
+        """Adds an assembly. instances: (product, place)."""
         axes = self._axes((0, 0, 0))
         places = [self._axes(place) for _, place in instances]
         definition, shape = self._product(name, "SHAPE_REPRESENTATION", [axes, *places])
@@ -40,7 +41,7 @@ class StepFile:
         return definition, shape, axes
 
     def box(self, low, high, name="", colour=None, face_colours=None):
-        """colour: (r, g, b), from 0 to 1; face_colours: {place among the six: colour}."""
+        """Adds a box. colour: (r, g, b), from 0 to 1; face_colours: {number among the six: colour}."""
         points = [tuple((low, high)[k >> axis & 1][axis] for axis in range(3)) for k in range(8)]
         vertices = [self._add(f"VERTEX_POINT('',{self._point(p)})") for p in points]
         edges = {}

@@ -46,7 +46,7 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-/// The message of the error that `action` throws has to begin with the path and contain `part`.
+/// Expects that `action` throws an error whose message begins with the path and contains `part`.
 template <class Expected, class Action>
 void expect_error(Action action, const std::string& path, const std::string& part) {
   try {

@@ -6,7 +6,7 @@
 
 namespace collarmesh::testing {
 
-/// Every array is the same, to the last bit.
+/// Expects that every array is equal to the last bit.
 inline void expect_same(const TetMesh& a, const TetMesh& b) {
   EXPECT_EQ(a.points, b.points);
   EXPECT_EQ(a.tets, b.tets);

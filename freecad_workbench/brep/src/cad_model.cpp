@@ -19,7 +19,7 @@ namespace collarmesh::brep {
 
 namespace {
 
-/// Runs OpenCASCADE on a shape; its own exceptions become errors of the shape.
+/// Runs OpenCASCADE on a shape, and turns its exceptions into errors about the shape.
 template <class Work>
 auto on_shape(const std::string& name, const char* doing, const Work& work) {
   try {
@@ -40,7 +40,7 @@ double diagonal_of(const TopoDS_Shape& shape) {
   return box.IsVoid() ? 0 : std::sqrt(box.SquareExtent());
 }
 
-/// Returns the numbers of the faces, nearest first.
+/// Returns the faces' numbers with their distances, nearest first.
 std::vector<std::pair<double, int>> faces_by_distance(const Tessellation& tessellation, const Point& where) {
   std::vector<std::pair<double, int>> faces;
   for (const auto& [number, pieces] : tessellation.faces) {
@@ -136,7 +136,7 @@ std::string CadModel::invalid_parts() const {
       for (const TopoDS_Shape& part : subshapes(shape, kind))
         if (!analyzer.IsValid(part))
           invalid.push_back(fmt::format("{} at {}", parts_->topology.name(part), text(place_of(part))));
-      if (!invalid.empty()) break;  // shapes that contain them are invalid, too
+      if (!invalid.empty()) break;  // shapes that contain invalid ones are invalid, too
     }
   } catch (const Standard_Failure&) {
     return {};

@@ -1,4 +1,4 @@
-// Triangulates faces for which BRepMesh fails together with their neighbours.
+// Triangulates single faces if BRepMesh fails on them when it triangulates the whole shape.
 #include "face_mending.h"
 
 #include <BRepAdaptor_Surface.hxx>
@@ -35,7 +35,7 @@ using Parameters = std::array<double, 2>;
 Point to_point(const gp_Pnt& p) { return {p.X(), p.Y(), p.Z()}; }
 Ends sorted(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
 
-/// Returns the sides that an odd number of triangles has.
+/// Returns the sides that an odd number of triangles share.
 std::map<Ends, int> odd_sides(const std::vector<std::array<Index, 3>>& triangles) {
   std::map<Ends, int> uses;
   for (const auto& t : triangles)
@@ -92,7 +92,7 @@ MendedFace triangles_on(const TopoDS_Face& face) {
   return own;
 }
 
-/// Tries ways to triangulate, best first; the first one that fits is the result.
+/// Tries ways to triangulate a face, best first; the first one that fits is the result.
 class Mender {
  public:
   Mender(const TopoDS_Face& face, const Outline& outline, double deflection, double angle)
@@ -193,8 +193,8 @@ class Mender {
     return result;
   }
 
-  /// Returns the approximate length in space of a step of one in each parameter, so that triangles are good
-  /// in space.
+  /// Returns the approximate length in space of a unit step in each parameter, so that triangles can be well
+  /// shaped in space.
   Parameters lengths_of_parameters(const BRepAdaptor_Surface& surface) const {
     Parameters sum{0, 0};
     for (const Parameters& uv : outline_.parameters) {
@@ -241,7 +241,8 @@ class Mender {
     });
   }
 
-  /// Triangulates in the plane across the outline's area vector, if the triangles there are on the surface.
+  /// Triangulates in the plane orthogonal to the outline's area vector, if the triangles are then on the
+  /// surface.
   MendedFace in_fitted_plane() const {
     MendedFace result = bare();
     result.how = "from its outline in a fitted plane";
@@ -267,7 +268,7 @@ class Mender {
 
   bool lies_on_surface(const MendedFace& mended) const {
     ShapeAnalysis_Surface surface(BRep_Tool::Surface(face_));
-    constexpr double rough = 10;  // in deflections
+    constexpr double rough = 10;  // relative to the deflection
     return std::all_of(mended.triangles.begin(), mended.triangles.end(), [&](const auto& t) {
       const Point centre = mended.points[t[0]] + (mended.points[t[1]] - mended.points[t[0]]) / 3 +
                            (mended.points[t[2]] - mended.points[t[0]]) / 3;
@@ -281,13 +282,15 @@ class Mender {
     for (auto& t : mended.triangles) std::swap(t[1], t[2]);
   }
 
-  static constexpr Index first_own = Index(1) << 31U;  // numbers of own points, beyond the shape's points
+  static constexpr Index first_own = Index(1) << 31U;  // numbers of the face's own points, after the shape's
+                                                       // points
 
   const TopoDS_Face& face_;
   const Outline& outline_;
   double deflection_, angle_;
-  double near_ = 0;           // distance below which points of the outline and of the face alone are the same
-  std::vector<Ends> chords_;  // of points
+  double near_ = 0;           // distance below which points of the outline and of the face alone count as the
+                              // same
+  std::vector<Ends> chords_;  // chords between points
   MendedFace best_;
   std::size_t least_off_ = std::numeric_limits<std::size_t>::max();
 };

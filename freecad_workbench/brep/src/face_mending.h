@@ -9,24 +9,24 @@
 
 namespace collarmesh::brep {
 
-/// The outline of a face, with the points of its neighbours. A node is a point with parameters: points of a
-/// seam have two nodes.
+/// The outline of a face, with the points that its neighbours use. A node is a point with parameters; points
+/// of a seam have two nodes.
 struct Outline {
   std::vector<Index> points;  ///< by node: index in the shape's tessellation
   std::vector<Point> places;
   std::vector<std::array<double, 2>> parameters;
-  std::vector<std::array<Index, 2>> chords;  ///< of nodes
+  std::vector<std::array<Index, 2>> chords;  ///< chords between nodes
 };
 
 /// Triangles of one face, oriented like its surface's normal.
 struct MendedFace {
-  TopoDS_Face face;  ///< possibly healed; its surface is that of the parameters
+  TopoDS_Face face;  ///< possibly healed; the parameters refer to its surface
   std::vector<Point> points;
   std::vector<std::array<double, 2>> parameters;  ///< one per point, or empty
   std::vector<Index> outline_points;              ///< one per point: index in the outline, or none
   std::vector<std::array<Index, 3>> triangles;    ///< none: all ways failed
-  bool fits = false;                              ///< the border of the triangles is the outline
-  std::string how;                                ///< "by ...", for a note
+  bool fits = false;                              ///< whether the border of the triangles is the outline
+  std::string how;                                ///< how it was mended, as "by ...", for a note
 };
 
 /// Triangulates a face for which the tessellation of the whole shape fails, by the first of these ways that
@@ -36,8 +36,8 @@ struct MendedFace {
 /// angle is in radians.
 MendedFace mend_face(const TopoDS_Face& face, const Outline& outline, double deflection, double angle);
 
-/// Returns how many sides of a face's triangles and chords of its outline have no counterpart; 0: the outline
-/// is the border of the triangles. Corners and chords are indices of the same points.
+/// Returns the number of sides of a face's triangles, and of chords of its outline, that have no counterpart;
+/// 0: the outline is the border of the triangles. Corners and chords are indices of the same points.
 std::size_t sides_off(const std::vector<std::array<Index, 3>>& triangles,
                       const std::vector<std::array<Index, 2>>& chords);
 

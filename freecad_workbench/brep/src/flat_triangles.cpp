@@ -44,7 +44,7 @@ class Flipper {
     return found == triangle_at_.end() ? none : found->second;
   }
 
-  /// Returns the side i that passes the opposite corner without a gap; none if there is none.
+  /// Returns the side i that passes through the opposite corner; none if there is none.
   Index side_with_corner_on_it(Index t) const {
     Index longest = 0;
     for (Index i = 1; i < 3; ++i)
@@ -55,7 +55,7 @@ class Flipper {
   }
   double length(Index t, Index i) const { return distance(points_[corner(t, i)], points_[corner(t, i + 1)]); }
 
-  /// Returns the triangle on the other side, none if the side stays.
+  /// Flips a side. Returns the triangle on its other side; none if the side stays.
   Index flip(Index t, Index side) {
     const Index a = corner(t, side), b = corner(t, side + 1), c = corner(t, side + 2);
     const Index other = triangle_at(b, a);

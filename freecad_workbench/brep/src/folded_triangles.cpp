@@ -72,8 +72,8 @@ class Unfolder {
   }
   std::size_t folds_at(Index t) const { return folds_around(std::span(&t, 1), {}); }
 
-  /// Returns the number of folds between some triangles, and to those around them, if their corners are
-  /// replaced by `as` (unless that is empty). Their outer sides stay.
+  /// Returns the number of folds between some triangles and their surroundings. If `as` is not empty, it
+  /// replaces the triangles' corners; their outer sides stay.
   std::size_t folds_around(std::span<const Index> some, std::span<const Triangle> as) const {
     std::vector<Triangle> shapes(as.begin(), as.end());
     if (as.empty())
@@ -163,7 +163,8 @@ class Unfolder {
     return false;
   }
 
-  /// Returns the triangles of a star without its centre, all with this corner; empty if edges exist already.
+  /// Returns triangles that fill a star without its centre, all with this corner; empty if an edge exists
+  /// already.
   std::vector<Triangle> fan_from(Index apex, const std::vector<Index>& around, Index centre) const {
     std::vector<Triangle> fan;
     for (const Index s : around) {
@@ -181,8 +182,8 @@ class Unfolder {
     return fan;
   }
 
-  /// Returns whether the point is within the distance of a triangle's plane, with its foot inside, or of a
-  /// corner.
+  /// Returns whether the point is within the distance of a triangle's plane, with its foot inside the
+  /// triangle, or of a corner.
   bool keeps_near(Index p, const std::vector<Triangle>& fan, double distance_limit) const {
     return std::any_of(fan.begin(), fan.end(), [&](const Triangle& t) {
       const Vector n = normal(t);

@@ -61,7 +61,7 @@ class Cutter {
   Samples samples_of(const TopoDS_Edge& edge) const {
     const BRepAdaptor_Curve curve(edge);
     const int least =
-        curve.GetType() == GeomAbs_Line ? 2 : 3;  // points, so that a curve does not look straight
+        curve.GetType() == GeomAbs_Line ? 2 : 3;  // number of points, so that a curve does not look straight
     const GCPnts_TangentialDeflection cut(curve, options_.angle * std::numbers::pi / 180, options_.deflection,
                                           least);
     Samples samples;
@@ -115,8 +115,8 @@ class CutEdges {
  public:
   explicit CutEdges(double deflection) : reach_(2 * deflection) {}
 
-  /// Returns whether one is so near that its chords and those of this edge may cross. Straight edges are
-  /// their own chords.
+  /// Returns whether an earlier edge is so near that its chords and those of this edge may cross. The chords
+  /// of straight edges are the edges themselves.
   bool are_near(const TopoDS_Shape& edge) const {
     const bool straight = is_straight(edge);
     const Bnd_Box box = box_of(edge);
@@ -174,7 +174,8 @@ PolygonSoup cut_free_parts(const Topology& topology, const std::string& file,
   Cutter cutter(topology, file, options, result);
   CutEdges edges(options.deflection);
   LeftOut near_faces, near_edges;
-  const bool alone = topology.solids.empty();  // the builder of the complex cuts chords that cross
+  const bool alone = topology.solids.empty();  // in a shape of edges alone the builder of the complex cuts
+                                               // chords that cross
   for (const Topology::FreePart& part : topology.free_parts) {
     if (alone) {
       cutter.add(part);

@@ -1,4 +1,4 @@
-// Finds the edges and vertices of no face that lie inside a solid.
+// Finds the edges and vertices that belong to no face and lie inside a solid.
 #include "free_parts.h"
 
 #include "free_parts_fuse.h"
@@ -41,7 +41,7 @@ double tolerance_of(const TopoDS_Shape& part) {
   return largest;
 }
 
-/// Returns whether a part has a place: an edge may lack a curve in space with two ends.
+/// Returns whether a part has a place: some edges have no curve in space, or not two ends.
 bool has_place(const TopoDS_Shape& part) {
   if (!is_edge(part)) return true;
   const TopoDS_Edge& edge = TopoDS::Edge(part);
@@ -79,7 +79,7 @@ bool runs_along(const TopoDS_Shape& edge, const TopoDS_Shape& other, double tole
   return distance_between(middle_of(edge), other) <= tolerance;
 }
 
-/// Returns whether two parts meet elsewhere than end to end.
+/// Returns whether two parts meet in other ways than end to end.
 bool meet_amid(const TopoDS_Shape& a, const TopoDS_Shape& b) {
   const double tolerance = std::max(tolerance_of(a), tolerance_of(b));
   const BRepExtrema_DistShapeShape nearest(a, b);
@@ -116,8 +116,9 @@ class Faces {
     return least;
   }
 
-  /// Returns the distance of an edge's middle, or of a vertex, to the faces that are not planar; infinite if
-  /// there are none. An edge with both ends on a curved face may be as near to it as its triangles are.
+  /// Returns the distance of an edge's middle, or of a vertex, from the faces that are not planar; infinite
+  /// if there are none. An edge with both ends on a curved face may be as near to the face as the face's
+  /// triangles are.
   double distance_to_curved(const TopoDS_Shape& part) const {
     const TopoDS_Shape middle = is_edge(part) ? middle_of(part) : part;
     double least = std::numeric_limits<double>::infinity();
@@ -129,7 +130,7 @@ class Faces {
     return least;
   }
 
-  /// Returns places along an edge, one between any two neighbouring points where it meets faces.
+  /// Returns places along an edge: one between any two neighbouring points where it meets faces.
   std::vector<gp_Pnt> places_between(const TopoDS_Edge& edge) const {
     double first = 0, last = 0;
     const Handle(Geom_Curve) curve = BRep_Tool::Curve(edge, first, last);
@@ -149,7 +150,7 @@ class Faces {
   }
 
  private:
-  /// Returns the faces by the distances of their boxes.
+  /// Returns the faces sorted by the distances of their boxes.
   std::vector<std::pair<double, std::size_t>> by_distance_of_boxes(const TopoDS_Shape& part) const {
     const Bnd_Box box = box_of(part);
     std::vector<std::pair<double, std::size_t>> faces;
@@ -184,7 +185,7 @@ class Solids {
       }
   }
 
-  /// Returns whether a piece of a part lies inside one of them, neither outside nor on its faces.
+  /// Returns whether a piece of a part lies inside one of the solids, neither outside nor on its faces.
   bool hold_some_of(const TopoDS_Shape& part, const Faces& faces) const {
     return hold_some_of(samples_of(part)) ||
            (is_edge(part) &&
@@ -208,7 +209,7 @@ class Solids {
   std::vector<Bnd_Box> boxes_;
 };
 
-/// Sorts the parts of no face by their position.
+/// Sorts the parts of no face by their position: inside, outside or on faces.
 class Sorter {
  public:
   Sorter(const std::string& file, Topology& topology)
@@ -244,7 +245,7 @@ class Sorter {
     int number = 0;
     std::string name;
     double clearance = 0;
-    bool meets = false;  // it meets a face, or an earlier part
+    bool meets = false;  // whether it meets a face, or an earlier part
   };
 
   static std::string name_of(const TopoDS_Shape& part, int number) {
@@ -259,7 +260,7 @@ class Sorter {
     });
   }
 
-  /// Cuts parts where they meet faces or one another; returns false, without changes, if that fails.
+  /// Cuts parts where they meet faces or one another. Returns false, without changes, if that fails.
   bool cut() {
     std::vector<TopoDS_Shape> parts;
     parts.reserve(inside_.size());
@@ -294,7 +295,7 @@ class Sorter {
     if (!all_cut) meeting_.push_back(part.name);
   }
 
-  /// Keeps a piece if it lies inside a solid. Returns false if it does, but was not cut at the faces.
+  /// Keeps a piece if it lies inside a solid. Returns false if it lies inside but was not cut at the faces.
   bool keep_piece(const Candidate& part, const TopoDS_Shape& piece, const Faces& faces, bool& inside) {
     try {
       inside = solids_.hold_some_of(piece, faces);

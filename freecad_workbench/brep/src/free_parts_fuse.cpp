@@ -1,4 +1,4 @@
-// Cuts edges and vertices of no face at the faces that they meet, which get vertices there.
+// Cuts edges and vertices of no face at the faces that they meet, and inserts vertices into these faces.
 #include "free_parts_fuse.h"
 
 #include <TopoDS_Compound.hxx>
@@ -15,7 +15,7 @@ using Shapes = std::vector<TopoDS_Shape>;
 
 void append(Shapes& shapes, const Shapes& more) { shapes.insert(shapes.end(), more.begin(), more.end()); }
 
-/// Returns the closed solids, of which a region may have several, and the internal faces.
+/// Returns the internal faces and the closed solids; a region may have several solids.
 Shapes closed_parts(const Topology& topology) {
   Shapes closed;
   for (const Topology::Solid& solid : topology.solids)
@@ -56,7 +56,8 @@ void replace_faces(const PartsOf& parts_of, Topology& topology) {
 
 std::optional<PartsOf> fuse_free_parts(const Shapes& parts, const Shapes& unchanged, Topology& topology) {
   const Shapes closed = closed_parts(topology);
-  Shapes arguments{compound_of(closed)};  // one argument, so that its faces do not meet one another again
+  Shapes arguments{compound_of(closed)};  // all in one argument, so that its faces do not meet one another
+                                          // again
   append(arguments, parts);
   const Fuse fuse = general_fuse(arguments);
   if (!fuse || spoils_a_solid(*fuse, closed)) return std::nullopt;
@@ -76,7 +77,7 @@ std::optional<PartsOf> fuse_free_parts(const Shapes& parts, const Shapes& unchan
   topology.all = compound_of(after);
   append(after, pieces_of(parts, parts_of));
   append(after, unchanged);
-  topology.kept_numbers.clear();  // parts that are left out keep their numbers by `unchanged`
+  topology.kept_numbers.clear();  // parts that are left out keep their numbers through `unchanged`
   carry_numbers(compound_of(before), compound_of(after), parts_of, topology);
   return parts_of;
 }

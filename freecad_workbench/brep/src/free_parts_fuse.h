@@ -11,8 +11,8 @@ namespace collarmesh::brep {
 /// Cuts edges and vertices of no face where they meet faces or one another, and puts vertices, or edges, on
 /// the faces there (general fuse). Updates the topology's solids, internal faces and numbers; pieces have the
 /// number of their original. `unchanged` are further parts that keep their numbers. Returns a function that
-/// gives the pieces of a part; returns nothing, and leaves the topology as it was, if the fuse fails or
-/// spoils a solid.
+/// returns the pieces of a part. If the fuse fails or spoils a solid, returns nothing and leaves the topology
+/// unchanged.
 std::optional<PartsOf> fuse_free_parts(const std::vector<TopoDS_Shape>& parts,
                                        const std::vector<TopoDS_Shape>& unchanged, Topology& topology);
 

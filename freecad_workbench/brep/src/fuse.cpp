@@ -99,8 +99,8 @@ bool is_plane(const TopoDS_Shape& face) {
   return BRepAdaptor_Surface(TopoDS::Face(face), false).GetType() == GeomAbs_Plane;
 }
 
-/// Returns pairs of faces of solids without a common vertex, which may touch in a point that general fuse
-/// does not find. (Two planes touch at edges, where it does.)
+/// Returns pairs of faces of solids without a common vertex. Such faces may touch in a point, which general
+/// fuse does not find. (Two planes touch at edges, which it does find.)
 std::vector<std::array<TopoDS_Shape, 2>> pairs_apart(const std::vector<Argument>& solids) {
   std::map<std::array<std::size_t, 2>, Bnd_Box> tight;  // by solid and face
   const auto box = [&](std::size_t s, std::size_t f) -> const Bnd_Box& {
@@ -120,8 +120,8 @@ std::vector<std::array<TopoDS_Shape, 2>> pairs_apart(const std::vector<Argument>
   return apart;
 }
 
-/// Returns a vertex for each place where solids touch only in a point, which general fuse does not find. Each
-/// pair of faces costs milliseconds, so it does not search if there are many.
+/// Returns a vertex for each place where solids touch in a single point, which general fuse does not find.
+/// Does not search if there are many pairs of faces, because each costs milliseconds.
 std::vector<TopoDS_Shape> contact_points(const TopoDS_Shape& fused) {
   constexpr std::size_t many = 100;
   std::vector<Argument> solids;
@@ -162,7 +162,7 @@ double volume_of(const TopoDS_Shape& shape) {
 double unsoundness(BOPAlgo_Builder& fuse, const TopoDS_Shape& solid) {
   if (fuse.IsDeleted(solid)) return INFINITY;
   const TopTools_ListOfShape parts = fuse.Modified(solid);
-  if (parts.IsEmpty()) return 0;  // it is unchanged
+  if (parts.IsEmpty()) return 0;  // the solid is unchanged
   double volume = 0;
   for (const TopoDS_Shape& part : parts) {
     if (!open_edges(part).empty()) return INFINITY;
@@ -174,7 +174,7 @@ double unsoundness(BOPAlgo_Builder& fuse, const TopoDS_Shape& solid) {
 
 namespace {
 
-/// Fuses shapes with a vertex where solids touch in a point. Null if that fails.
+/// Fuses shapes, with a vertex at each place where solids touch in a point. Null if that fails.
 Fuse fuse_with_contacts(const std::vector<TopoDS_Shape>& shapes) {
   try {
     const Fuse fuse = general_fuse(shapes);
@@ -189,10 +189,10 @@ Fuse fuse_with_contacts(const std::vector<TopoDS_Shape>& shapes) {
   }
 }
 
-/// Fuses the shapes that may touch, without the solids of which it makes no sound parts: moves these from
-/// `shapes` to `left_out`, the worst one first, because it may spoil the others. Null if that fails.
+/// Fuses the shapes that may touch. If it makes no sound parts of some solids, moves these from `shapes` to
+/// `left_out` and fuses again: first the worst one, because it may spoil the others. Null if that fails.
 Fuse sound_fuse(std::vector<TopoDS_Shape>& shapes, std::vector<TopoDS_Shape>& left_out) {
-  constexpr int rounds = 3;  // rounds before all are left out
+  constexpr int rounds = 3;  // after so many rounds all remaining solids are left out
   for (int round = 1; shapes.size() > 1; ++round) {
     const Fuse fuse = fuse_with_contacts(shapes);
     if (!fuse) return nullptr;
@@ -210,7 +210,7 @@ Fuse sound_fuse(std::vector<TopoDS_Shape>& shapes, std::vector<TopoDS_Shape>& le
   return nullptr;
 }
 
-/// The parts that the solids were cut into, and the solids that hold each.
+/// The pieces into which the solids were cut, and the solids that contain each piece.
 class Pieces {
  public:
   Pieces(const std::vector<Topology::Solid>& solids, const PartsOf& parts_of) {
@@ -235,11 +235,11 @@ class Pieces {
   std::size_t count() const { return holders_.size(); }
   TopoDS_Shape shape(std::size_t piece) const { return pieces_(static_cast<int>(piece) + 1); }
   const std::vector<std::size_t>& holders(std::size_t piece) const { return holders_[piece]; }
-  /// Returns whether a solid has a part that belongs to another solid, too.
+  /// Returns whether a solid shares a piece with another solid.
   bool overlaps(std::size_t solid) const { return common_[solid]; }
 
-  /// Returns the first solid that contains a piece, or a solid that lies wholly inside that one, because it
-  /// would otherwise be lost.
+  /// Returns the owner of a piece: the first solid that contains it or, if one of the others lies wholly
+  /// inside that solid and would be lost otherwise, that one.
   std::size_t owner(std::size_t piece) const {
     for (const std::size_t s : holders_[piece])
       if (std::none_of(holders_[piece].begin(), holders_[piece].end(),
@@ -255,9 +255,10 @@ class Pieces {
 
   TopTools_IndexedMapOfShape pieces_;
   std::vector<std::vector<std::size_t>> holders_;
-  std::vector<std::size_t> size_;  // pieces of each solid
+  std::vector<std::size_t> size_;  // by solid: number of its pieces
   std::vector<bool> common_;
-  std::map<std::array<std::size_t, 2>, std::size_t> together_;  // pieces that two solids hold
+  std::map<std::array<std::size_t, 2>, std::size_t> together_;  // by pair of solids: number of pieces that
+                                                                // both contain
 };
 
 }  // namespace
@@ -292,7 +293,7 @@ std::string names_of(const std::vector<std::size_t>& holders, const std::vector<
 /// The common part of several solids, for a note.
 struct Common {
   std::vector<std::size_t> holders;
-  int number;  // number of the region that gets it
+  int number;  // number of the region that owns it
   double volume = 0, largest = 0;
   Point where;  // a place in its largest piece
 };
@@ -309,7 +310,7 @@ void tell_overlaps(const std::string& file, const std::vector<Common>& overlaps,
         fmt::format("{}: {} more overlaps of solids were resolved", file, overlaps.size() - listed));
 }
 
-/// Gives each piece to a region. Returns the regions in the order of their numbers.
+/// Assigns each piece to a region. Returns the regions in the order of their numbers.
 std::vector<Topology::Solid> distribute(const std::string& file, Overlap overlap, const Pieces& pieces,
                                         Topology& topology) {
   int next = 1;
@@ -354,7 +355,7 @@ std::vector<Topology::Solid> distribute(const std::string& file, Overlap overlap
   return result;
 }
 
-/// Solids and faces as they are after the fuses.
+/// The solids and faces after the fuses.
 class SharedFaces {
  public:
   SharedFaces(const std::string& file, Topology& topology) : file_(file), topology_(topology) {
@@ -407,7 +408,7 @@ class SharedFaces {
         file_, fmt::join(names, ", "), more ? ", ..." : "", text(place_of(left_out.front()))));
   }
 
-  /// Reports solids that touch no face of a solid around them: they are regions of their own there.
+  /// Adds notes on solids inside others whose faces they do not touch: they become regions of their own.
   void tell_nested(const std::vector<Argument>& arguments) {
     for (const Argument& inner : arguments)
       for (const Argument& outer : arguments)
@@ -460,7 +461,7 @@ class SharedFaces {
     topology_.internal_faces = internal;
   }
 
-  /// Returns the remaining faces: walls between parts of one region are removed.
+  /// Returns the faces that remain when walls between parts of one region are removed.
   TopoDS_Shape everything_after() const {
     if (fuses_.size() == 1 && fused_.Extent() == static_cast<int>(shapes_.size()) &&
         !has_walls(fuses_.front()->Shape()))
@@ -485,7 +486,7 @@ class SharedFaces {
 
   const std::string& file_;
   Topology& topology_;
-  std::vector<TopoDS_Shape> shapes_;  // faces first
+  std::vector<TopoDS_Shape> shapes_;  // faces come first
   std::vector<Fuse> fuses_;
   TopTools_MapOfShape fused_;
 };

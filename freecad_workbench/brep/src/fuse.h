@@ -10,9 +10,9 @@
 namespace collarmesh::brep {
 
 /// Makes closed solids and internal faces that touch share faces, edges and vertices (general fuse), and
-/// gives the common part of solids to one of them, with a note. Leaves solids and faces alone if the boxes of
-/// their faces meet no others. Solids whose fuse fails stay as they are, with a note: their surfaces must be
-/// cut.
+/// assigns the common part of solids to one of them, with a note. Leaves out solids and faces if the boxes of
+/// their faces meet no others. Solids whose fuse fails stay unchanged, with a note; their surfaces must be
+/// cut later.
 void share_faces(const std::string& file, const CadOptions& options, Topology& topology);
 
 using Fuse = std::shared_ptr<BOPAlgo_Builder>;
@@ -20,11 +20,11 @@ using Fuse = std::shared_ptr<BOPAlgo_Builder>;
 /// Runs OpenCASCADE's general fuse: shapes that meet share their common parts. Null if it fails.
 Fuse general_fuse(const std::vector<TopoDS_Shape>& shapes);
 
-/// Returns the relative difference between the volumes of a solid and of its parts; infinite if one is open
-/// or none is left.
+/// Returns the relative difference between the volume of a solid and that of its parts; infinite if a part is
+/// open or none is left.
 double unsoundness(BOPAlgo_Builder& fuse, const TopoDS_Shape& solid);
 
-/// Largest unsoundness that errors of integrals over trimmed faces explain.
+/// Largest unsoundness that errors in integrals over trimmed faces can explain.
 constexpr double rough_volume = 1e-3;
 
 /// Returns a region of several pieces without their common walls.

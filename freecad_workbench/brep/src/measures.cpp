@@ -29,7 +29,7 @@ namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-/// Runs OpenCASCADE, which fails on some shapes.
+/// Runs OpenCASCADE's integrals, which fail on some shapes.
 template <class Integral, class Value>
 Value integrate_or(const Value& otherwise, const Integral& integral) {
   try {
@@ -71,7 +71,8 @@ double volume_of_triangles(const PolygonSoup& soup) {
 
 struct FaceMeasure {
   double area = 0;
-  double cone = 0;  // volume of the cone over the face: positive if its normal points away from the apex
+  double cone = 0;  // signed volume of the cone over the face: positive if its normal points away from the
+                    // apex
 };
 
 /// Areas of faces and volumes of the cones over them, with an apex inside the shape. Each face is integrated
@@ -103,8 +104,8 @@ class FaceIntegrals {
     return {integrated<BRepGProp_Sinert>(face), integrated<BRepGProp_Vinert>(face)};
   }
 
-  /// Returns the face as a spline surface if it is an extruded or revolved spline curve: OpenCASCADE does not
-  /// know the spans of these, and adaptive integrals miss waves.
+  /// Returns the face as a spline surface if it is an extruded or revolved spline curve. OpenCASCADE does not
+  /// know the spans of such surfaces, and adaptive integrals then miss waves.
   static TopoDS_Face with_known_spans(const TopoDS_Face& face) {
     const BRepAdaptor_Surface surface(face, false);
     const bool is_swept =
@@ -121,7 +122,7 @@ class FaceIntegrals {
     BRepGProp_Face surface(face);
     BRepGProp_Domain domain(face);
     const int spans = surface.SUIntSubs() * surface.SVIntSubs();
-    constexpr int few = 8, many = 10'000;             // with many it would take long
+    constexpr int few = 8, many = 10'000;             // with many spans adaptive integrals would take long
     const double error = spans <= few ? 1e-3 : 1e-5;  // OpenCASCADE's estimate; on waves it is too low
     Integral integral;
     integral.SetLocation(apex_);
@@ -148,9 +149,9 @@ struct Sum {
     measure.cut += cut;
     allowed += off;
   }
-  /// Returns whether the two agree; otherwise one of them is wrong.
+  /// Returns whether the exact measure and the tessellation agree; otherwise one of them is wrong.
   bool is_plausible() const {
-    constexpr double share = 0.05;  // an arc of 20 degrees is longer than its chord by less than 1%
+    constexpr double share = 0.05;  // relative; an arc of 20 degrees exceeds its chord by less than 1%
     return std::fabs(measure.exact - measure.cut) <= share * measure.cut + allowed;
   }
 };

@@ -117,8 +117,8 @@ class FaceSurface {
     std::array<double, 2> uv;
     Point point;
   };
-  /// Searches the triangles in the nearest boxes first, then all whose boxes are as near. (Boost's iterator
-  /// over boxes by distance sorts its queue again at each step.)
+  /// Searches the triangles in the nearest boxes first, then all triangles whose boxes are as near as the
+  /// best of these. (Boost's iterator over boxes by distance sorts its queue again at each step.)
   std::optional<Start> start_near(const Point& p) const {
     std::optional<Start> start;
     double least = INFINITY;
@@ -151,7 +151,7 @@ class FaceSurface {
     if (!start) return std::nullopt;
     std::optional<Point> best = descend(start->uv, to_gp(p));
     if (best) return best;
-    constexpr double tolerance = 1e-12;  // in parameters
+    constexpr double tolerance = 1e-12;  // relative to the parameters
     const Extrema_ExtPS global(to_gp(p), surface_, tolerance, tolerance);
     if (global.IsDone())
       for (int i = 1; i <= global.NbExt(); ++i) keep_nearer(best, to_point(global.Point(i).Value()), p);
@@ -159,8 +159,8 @@ class FaceSurface {
     return best;
   }
 
-  /// Solves in each step for the nearest point of the tangent plane, and halves the step until it comes as
-  /// near. Ends when the next step is within rounding; returns nothing if it does not converge.
+  /// Moves in each step to the nearest point of the tangent plane, and halves the step until the distance
+  /// decreases. Ends when the next step is within rounding. Returns nothing if it does not converge.
   std::optional<Point> descend(std::array<double, 2> uv, const gp_Pnt& p) const {
     constexpr int steps = 50, halvings = 20;
     constexpr double rounding = 1e-15;
@@ -198,7 +198,7 @@ class FaceSurface {
       next[0] += a / e;
     else if (g > 0)
       next[1] += b / g;
-    // On a bound only the other parameter is free.
+    // On a bound of one parameter only the other one is free.
     const double u = std::clamp(next[0], surface_.FirstUParameter(), surface_.LastUParameter());
     if (u != next[0] && g > 0) next = {u, uv[1] + (b - f * (u - uv[0])) / g};
     const double v = std::clamp(next[1], surface_.FirstVParameter(), surface_.LastVParameter());

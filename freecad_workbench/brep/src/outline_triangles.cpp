@@ -26,14 +26,14 @@ using Ends = std::array<Index, 2>;
 
 Ends sorted(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
 
-/// Counts the uses of chords: crossing a chord an even number of times does not change the side.
+/// Counts the uses of chords. Crossing a chord that is used an even number of times does not change the side.
 std::map<Ends, int> uses_of(const std::vector<Ends>& chords) {
   std::map<Ends, int> uses;
   for (const auto& [a, b] : chords) ++uses[sorted(a, b)];
   return uses;
 }
 
-/// Marks sides from the infinite face to all others.
+/// Marks the side of each face, starting at the infinite one.
 void mark_sides(Triangulation& plane, const std::map<Ends, int>& uses) {
   std::vector<Triangulation::Face_handle> reached{plane.infinite_face()};
   reached.front()->info().seen = true;

@@ -13,8 +13,8 @@ struct CadModel::Parts {
   double diagonal = 0;
   Topology topology;
   Tessellation tessellation;
-  double deflection = 0;                  ///< of this tessellation
-  std::unique_ptr<NearestOnShape> exact;  ///< of this tessellation
+  double deflection = 0;                  ///< deflection of this tessellation
+  std::unique_ptr<NearestOnShape> exact;  ///< nearest points, by means of this tessellation
 };
 
 }  // namespace collarmesh::brep

@@ -31,7 +31,7 @@ class CapturedOutput {
   CapturedOutput(const CapturedOutput&) = delete;
   CapturedOutput& operator=(const CapturedOutput&) = delete;
 
-  /// Returns it on one line.
+  /// Returns the captured text on one line.
   std::string text() const {
     std::string text = text_.str();
     while (!text.empty() && text.back() == '\n') text.pop_back();
@@ -49,7 +49,8 @@ TopoDS_Shape read_brep(const std::string& path) {
   const CapturedOutput said;
   try {
     std::ifstream file(path);
-    // OpenCASCADE reads words from a stream until it knows one, even at the end of the stream.
+    // OpenCASCADE reads words from a stream until it recognizes one, even at the end of the stream; these
+    // exceptions stop it.
     file.exceptions(std::ios::failbit | std::ios::badbit);
     BRepTools::Read(shape, file, BRep_Builder());
   } catch (const std::ios::failure&) {
@@ -77,7 +78,7 @@ TopoDS_Shape read_exchange(const std::string& path, const char* format, XSContro
   return shape;
 }
 
-/// Returns the labels; none if OpenCASCADE fails on them, because only the shape matters.
+/// Returns the labels; none if OpenCASCADE fails on them, because a shape without labels can be used, too.
 CadLabels labels_of(const STEPControl_Reader& reader, const TopoDS_Shape& shape) {
   try {
     return step_labels(reader, shape);

@@ -39,7 +39,7 @@ Sewn sewn_within(double gap, const TopoDS_Shape& shape) {
   return sewn;
 }
 
-/// Sews within the smallest gap that leaves the fewest edges open; returns no shape if sewing fails.
+/// Sews with the smallest gap that leaves the fewest edges open. Returns no shape if sewing fails.
 Sewn sewn(const TopoDS_Shape& shape) {
   Sewn best;
   const double diagonal = rough_diagonal(shape);
@@ -64,7 +64,7 @@ TopoDS_Shell shell_of(const TopoDS_Shape& face) {
   return shell;
 }
 
-/// Returns the shells of sewn faces; a face without neighbours, such as a sphere, is in no shell yet.
+/// Returns the shells of sewn faces. A face without neighbours, such as a sphere, has no shell yet.
 std::vector<TopoDS_Shell> shells_of(const TopoDS_Shape& sewn) {
   std::vector<TopoDS_Shell> shells;
   for (const TopoDS_Shape& shell : subshapes(sewn, TopAbs_SHELL)) shells.push_back(TopoDS::Shell(shell));
@@ -81,7 +81,7 @@ TopoDS_Solid solid_of(const std::vector<TopoDS_Shell>& shells) {
   return solid;
 }
 
-/// Keeps all faces, sewn or, if sewing failed, unsewn, as a solid with holes.
+/// Keeps all faces, sewn or, if sewing failed, unsewn, as an open solid.
 void keep_open(const Sewn& sewn, const std::string& file, Topology& topology) {
   Topology::Solid open;
   open.shape = sewn.shape.IsNull() ? topology.all : sewn.shape;
@@ -102,8 +102,8 @@ bool nearly_closed(const TopoDS_Shape& shell) {
   return 2 * open_edges(shell).size() < subshapes(shell, TopAbs_EDGE).size();
 }
 
-/// Makes solids of closed shells, and open solids of nearly closed ones. Returns the number of faces that are
-/// in neither.
+/// Makes solids of closed shells, and open solids of nearly closed ones. Returns the number of the other
+/// faces.
 std::size_t make_solids(const std::vector<TopoDS_Shell>& shells, Topology& topology) {
   std::size_t left_out = 0;
   for (const TopoDS_Shell& shell : shells) {

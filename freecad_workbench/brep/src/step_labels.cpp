@@ -1,5 +1,6 @@
-// Reads names and colours of a STEP file: the entities that have them lead to the shapes that the reader made
-// of them. Sub-shapes are identified by their geometry (TShape), which instances of a product share.
+// Reads names and colours of a STEP file. Entities with a name or colour are traced to the shapes that the
+// reader made of them. Sub-shapes are identified by their geometry (TShape), which instances of a product
+// share.
 #include "step_labels.h"
 
 #include <Interface_InterfaceModel.hxx>
@@ -46,10 +47,10 @@ std::string text_of(const Handle(TCollection_HAsciiString) & text) {
   return text.IsNull() ? std::string() : std::string(text->ToCString());
 }
 
-/// Returns whether OpenCASCADE's writer made up the name, as it does for products without one.
+/// Returns whether OpenCASCADE's writer made up the name, as it does for products without a name.
 bool is_of_writer(const std::string& name) { return name.starts_with("Open CASCADE STEP translator"); }
 
-/// Returns how many shapes contain the first solid in a shape.
+/// Returns the depth of the first solid in a shape.
 std::size_t depth_of(const TopoDS_Shape& shape) {
   std::size_t depth = 0;
   TopoDS_Shape inner = shape;
@@ -77,7 +78,8 @@ class StepNames {
       if (product.own > 0) ++products_of_solids_;
   }
 
-  /// Returns the name of the innermost product, with the name of the solid if the product has several.
+  /// Returns the name of the innermost product, followed by the name of the solid if the product has several
+  /// solids.
   std::string find(const TopoDS_Shape& solid) const {
     const auto found = own_.find(geometry_of(solid));
     std::string own = found == own_.end() ? std::string() : found->second;
@@ -91,7 +93,7 @@ class StepNames {
  private:
   struct Product {
     std::string name;
-    std::size_t solids = 0;  // including those of the products in it
+    std::size_t solids = 0;  // including those of the products inside
     std::size_t depth = 0;   // depth of its first solid
     std::size_t own = 0;     // solids that are in no product inside this one
   };
@@ -161,7 +163,7 @@ std::optional<Colour> colour_of(const STEPConstruct_Styles& styles,
 
 using ByGeometry = std::map<Geometry, Colour>;
 
-/// Gives the sub-shapes of one kind the colours of the styles; colours of smaller shapes take precedence.
+/// Assigns the styles' colours to the sub-shapes of one kind; colours of smaller shapes take precedence.
 ByGeometry colours_of(const std::vector<std::pair<TopoDS_Shape, Colour>>& styled, TopAbs_ShapeEnum kind) {
   ByGeometry colours;
   for (const auto& [shape, colour] : styled)

@@ -58,7 +58,7 @@ class Tessellator {
   Tessellation run(const TessellationOptions& options) {
     finer_faces_.insert(options.finer_faces.begin(), options.finer_faces.end());
     BRepTools::Clean(topology_.all);
-    // Finer faces first: the others take over the chords of shared edges.
+    // Divide finer faces first: the others use the same chords on shared edges.
     if (const TopoDS_Compound finer = finer_faces(); finer.NbChildren() > 0) {
       set_fineness(options, true);
       cut(finer);
@@ -81,16 +81,16 @@ class Tessellator {
     measure();
     for (const Topology::Solid& solid : topology_.solids) result_.soups.push_back(soup_of(solid));
     if (!topology_.internal_faces.empty()) result_.soups.push_back(internal_soup());
-    if (!topology_.free_parts.empty())  // even if none is divided, because the number of soups must not
-                                        // depend on the fineness
+    if (!topology_.free_parts.empty())  // even if none is divided: the number of soups must not depend on the
+                                        // fineness
       result_.soups.push_back(cut_free_parts(topology_, file_, options, result_));
     return std::move(result_);
   }
 
  private:
   static constexpr double straight_ = 1e-13;  // rounding, relative to the diagonal
-  static constexpr double seam_gap_ = 1e-3;   // largest gap between the ends of edges in the parameter plane,
-                                              // relative
+  static constexpr double seam_gap_ = 1e-3;   // largest relative gap between the ends of edges in the
+                                              // parameter plane
   static constexpr double flat_ = 1e-3;       // height of a flat triangle, relative to the deflection
 
   void set_fineness(const TessellationOptions& options, bool finer) {
@@ -151,7 +151,7 @@ class Tessellator {
     return true;
   }
 
-  /// Returns whether a face has triangles, and the same points along its edges as the earlier faces.
+  /// Returns whether a face has triangles whose points along its edges are those of earlier faces.
   bool fits_neighbours(const TopoDS_Face& face, const Handle(Poly_Triangulation) & triangulation,
                        const TopLoc_Location& location) const {
     if (triangulation.IsNull() || triangulation->NbTriangles() == 0) return false;
@@ -179,7 +179,7 @@ class Tessellator {
     return chords;
   }
 
-  /// Records which points of the shape the triangulation's nodes on an edge are.
+  /// Records which of the shape's points are the triangulation's nodes on an edge.
   void add_edge(const TopoDS_Edge& edge, const Handle(Poly_Triangulation) & triangulation,
                 const TopLoc_Location& location, std::vector<Index>& at) {
     const Handle(Poly_PolygonOnTriangulation) polygon =
@@ -191,8 +191,8 @@ class Tessellator {
       at[slot(polygon->Node(i))] = points[BRep_Tool::Degenerated(edge) ? 0 : slot(i)];
   }
 
-  /// Returns the points on an edge in the order of its parameter; of a degenerate one its vertex. Divides the
-  /// edge at the parameters if that was not done yet.
+  /// Returns the points on an edge in the order of its parameter; for a degenerate edge, its vertex. Divides
+  /// the edge at the parameters if that was not done before.
   const std::vector<Index>& points_of(const TopoDS_Edge& edge, const std::vector<double>& parameters) {
     const std::size_t index = slot(edges_.FindIndex(edge));
     std::vector<Index>& points = edge_points_[index];
@@ -217,7 +217,7 @@ class Tessellator {
     return points;
   }
 
-  /// Divides an edge that only has faces for which BRepMesh failed.
+  /// Divides an edge all of whose faces BRepMesh failed on.
   void cut_edge(const TopoDS_Edge& edge) {
     if (!edge_points_[slot(edges_.FindIndex(edge))].empty()) return;
     const BRepAdaptor_Curve curve(TopoDS::Edge(edge.Oriented(TopAbs_FORWARD)));
@@ -232,7 +232,7 @@ class Tessellator {
     points_of(edge, parameters);
   }
 
-  /// Triangulates a face in another way, see mend_face. Notes tell which.
+  /// Triangulates a face in another way (see mend_face). A note tells which.
   void mend(const TopoDS_Face& face, int index) {
     for (TopExp_Explorer edge(face, TopAbs_EDGE); edge.More(); edge.Next())
       cut_edge(TopoDS::Edge(edge.Current()));
@@ -310,7 +310,7 @@ class Tessellator {
     return outline;
   }
 
-  /// Returns whether two parameters are near in the plane. Points of a seam have two places there.
+  /// Returns whether two parameters are near each other in the plane. Points of a seam have two places there.
   static bool near_in_plane(const BRepAdaptor_Surface& surface, const std::array<double, 2>& a,
                             const std::array<double, 2>& b) {
     constexpr double share = 0.01;  // share of a period
@@ -374,7 +374,7 @@ class Tessellator {
     }
   }
 
-  /// Returns the vertex inside a face at this place; none if there is none.
+  /// Returns the vertex inside a face at this place, or none.
   Index vertex_amid(const TopoDS_Face& face, const Point& p) const {
     for (TopExp_Explorer vertex(face, TopAbs_VERTEX, TopAbs_EDGE); vertex.More(); vertex.Next()) {
       const TopoDS_Vertex& v = TopoDS::Vertex(vertex.Current());
@@ -384,7 +384,7 @@ class Tessellator {
     return none;
   }
 
-  /// Inserts vertices inside a face that are no node of its triangulation: each divides its triangle into
+  /// Inserts vertices inside a face that are no nodes of its triangulation. Each divides its triangle into
   /// three.
   void insert_vertices_amid(const TopoDS_Face& face, const std::vector<Index>& nodes,
                             std::vector<std::array<Index, 3>>& triangles) const {
@@ -406,15 +406,15 @@ class Tessellator {
   double area_of(const std::array<Index, 3>& t) const {
     return 0.5 * norm(cross(points_[t[1]] - points_[t[0]], points_[t[2]] - points_[t[0]]));
   }
-  /// Returns the area of the three triangles that a point makes with the sides: that of the triangle if the
-  /// point lies in it.
+  /// Returns the sum of the areas of the triangles that a point forms with the sides. It equals the
+  /// triangle's area if the point lies inside.
   double area_with(const std::array<Index, 3>& t, Index p) const {
     return area_of({t[0], t[1], p}) + area_of({t[1], t[2], p}) + area_of({t[2], t[0], p});
   }
 
-  /// Adds a middle point to an edge of one chord if its curve leaves the chord by less than the deflection
-  /// (also because vertices lie off it), so that the complex knows that it is not straight. The triangles
-  /// there are divided into two.
+  /// Adds a middle point to an edge of a single chord if its curve deviates from the chord by less than the
+  /// deflection (also because its vertices lie off it), so that the complex knows that it is not straight.
+  /// Divides the triangles there into two.
   void bend_single_chords() {
     std::map<std::array<Index, 2>, Index> middle_of;
     for (int e = 1; e <= edges_.Extent(); ++e) {
@@ -445,11 +445,11 @@ class Tessellator {
         if (found == middle_of.end()) continue;
         triangles[t] = {found->second, corners[1], corners[2]};
         triangles.push_back({corners[0], found->second, corners[2]});
-        i = std::size_t(-1);  // other sides of this part
+        i = std::size_t(-1);  // the other sides are another part
       }
   }
 
-  /// Finds the edges that are features: all but seams (both sides on one face) and degenerate ones.
+  /// Finds the edges that are features: all except seams (both sides on one face) and degenerate edges.
   void find_features() {
     TopTools_IndexedDataMapOfShapeListOfShape faces_at;
     TopExp::MapShapesAndAncestors(topology_.all, TopAbs_EDGE, TopAbs_FACE, faces_at);
@@ -576,7 +576,7 @@ class Tessellator {
   std::vector<std::vector<std::array<Index, 3>>> face_triangles_;
   std::vector<bool> is_feature_, is_vertex_;
   std::set<Tag> finer_faces_;
-  double deflection_ = 0, angle_ = 0;  // of the faces that are being triangulated
+  double deflection_ = 0, angle_ = 0;  // bounds for the faces that are being triangulated
   double diagonal_ = 0;
   Tessellation result_;
 };

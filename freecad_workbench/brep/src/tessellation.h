@@ -20,12 +20,13 @@ struct Samples {
 };
 
 struct Tessellation {
-  /// One per solid, one for the internal faces and one for the free edges and vertices where there are any.
+  /// One soup per solid; one for the internal faces, and one for the free edges and vertices, if there are
+  /// any.
   std::vector<PolygonSoup> soups;
   std::map<int, std::vector<Samples>> edges, faces;  ///< by number
-  TopTools_DataMapOfShapeReal lengths, areas;        ///< of the chords of feature edges, and of the triangles
-  std::vector<std::string> notes;  ///< on faces that were triangulated in another way, or not at
-                                   ///< all
+  TopTools_DataMapOfShapeReal lengths, areas;        ///< measures of the chords of feature edges, and of the
+                                                     ///< triangles
+  std::vector<std::string> notes;  ///< notes on faces that were triangulated in another way, or not at all
 };
 
 /// Triangulates all faces; neighbours share the points of their edges, except for faces that notes name.

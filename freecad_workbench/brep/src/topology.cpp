@@ -1,4 +1,4 @@
-// Finds the solids of a shape, with numbered sub-shapes.
+// Finds the solids of a shape and numbers its sub-shapes.
 #include "topology.h"
 
 #include "free_parts.h"
@@ -198,7 +198,7 @@ std::string Topology::name(const TopoDS_Shape& shape) const {
 
 namespace {
 
-/// Keeps edges alone, for meshes of lines.
+/// Keeps the edges of a shape of edges alone, for meshes of lines.
 void take_wires(const TopoDS_Shape& shape, const std::string& file, Topology& topology) {
   for (const TopoDS_Shape& edge : subshapes(shape, TopAbs_EDGE))
     if (!BRep_Tool::Degenerated(TopoDS::Edge(edge)))

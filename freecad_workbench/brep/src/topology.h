@@ -22,15 +22,15 @@ struct Topology {
     TopoDS_Shape shape;
     int number = 0;
     std::vector<TopoDS_Shape> faces;  ///< faces of its boundary, with their orientation there
-    bool open = false;                ///< some edges border only one face
+    bool open = false;                ///< whether some edges border only one face
   };
 
-  /// An edge or vertex of no face, or a piece of one.
+  /// An edge or vertex that belongs to no face, or a piece of one.
   struct FreePart {
     TopoDS_Shape shape;
     int number = 0;
-    double clearance = 0;  ///< distance from the faces that it does not end on; from curved faces that of its
-                           ///< middle
+    double clearance = 0;  ///< distance from the faces that it does not end on; for curved faces, the
+                           ///< distance of its middle
   };
 
   std::vector<Solid> solids;                 ///< parts of one solid have the same number
@@ -38,25 +38,27 @@ struct Topology {
   std::vector<FreePart> free_parts;          ///< parts that lie inside a solid, or all edges of a shape of
                                              ///< edges alone
   TopoDS_Shape all;                          ///< the shape to tessellate
-  TopTools_DataMapOfShapeInteger numbers;    ///< of solids, faces, edges and vertices
-  std::vector<std::pair<TopoDS_Shape, int>> kept_numbers;  ///< of parts that no step changes
-  std::vector<std::pair<Tag, Tag>> replaced_faces;         ///< number that is gone, number in its place
+  TopTools_DataMapOfShapeInteger numbers;    ///< numbers of solids, faces, edges and vertices
+  std::vector<std::pair<TopoDS_Shape, int>> kept_numbers;  ///< numbers of parts that no step changes
+  std::vector<std::pair<Tag, Tag>> replaced_faces;         ///< pairs: the number that is gone, and the number
+                                                           ///< that replaces it
   std::vector<std::string> notes;
-  bool fused = true;      ///< all solids that touch or overlap were fused
-  std::string open_text;  ///< which solids are open, at which edges; empty: none
+  bool fused = true;      ///< whether all solids that touch or overlap were fused
+  std::string open_text;  ///< text on which solids are open, at which edges; empty: none
 
   int number(const TopoDS_Shape& shape) const { return numbers.IsBound(shape) ? numbers.Find(shape) : 0; }
-  /// Reserves the numbers of these parts and of their vertices.
+  /// Keeps the numbers of these parts and of their vertices from being used for others.
   void keep_numbers(const std::vector<TopoDS_Shape>& parts);
   /// Returns a name such as "Face7".
   std::string name(const TopoDS_Shape& shape) const;
 };
 
-/// Finds the solids of a shape, sews if there is none or one is open, and makes those that touch share faces.
-/// A shape of edges alone keeps these as free parts. Throws PlcError for a shape without faces and edges.
+/// Finds the solids of a shape. Sews faces if there is no solid or one is open, and makes solids that touch
+/// share faces. A shape of edges alone keeps these as free parts. Throws PlcError for a shape without faces
+/// and edges.
 Topology find_topology(const TopoDS_Shape& shape, const std::string& file, const CadOptions& options);
 
-/// Returns the sub-shapes of one kind, each once, in the order that numbers them.
+/// Returns the sub-shapes of one kind, each once, in the order of their numbers.
 std::vector<TopoDS_Shape> subshapes(const TopoDS_Shape& shape, TopAbs_ShapeEnum kind);
 
 TopoDS_Compound compound_of(const std::vector<TopoDS_Shape>& shapes);
@@ -70,9 +72,9 @@ std::vector<TopoDS_Shape> boundary_of(const TopoDS_Shape& solid);
 /// Returns the pieces of a sub-shape: itself, parts of it, or nothing.
 using PartsOf = std::function<TopTools_ListOfShape(const TopoDS_Shape&)>;
 
-/// Numbers the parts that the sub-shapes of `before` became in `after`: with the smallest number if several
-/// became one, and with the next free numbers for parts that come from none. Records the numbers of faces
-/// that are gone.
+/// Numbers the parts that the sub-shapes of `before` became in `after`. A part that several sub-shapes became
+/// gets the smallest of their numbers; new parts get the next free numbers. Records the numbers of faces that
+/// are gone.
 void carry_numbers(const TopoDS_Shape& before, const TopoDS_Shape& after, const PartsOf& parts_of,
                    Topology& topology);
 
@@ -88,13 +90,13 @@ Point place_of(const TopoDS_Shape& shape);
 /// Returns the diagonal of the box around a shape, which may be somewhat too large.
 double rough_diagonal(const TopoDS_Shape& shape);
 
-/// Returns "(1, 2, 3)".
+/// Returns coordinates as text: "(1, 2, 3)".
 std::string text(const Point& p);
 
 /// Throws a PlcError with one fault.
 [[noreturn]] void fail(PlcFault::Kind kind, const std::string& message, const Point& where = {});
 
-/// Returns OpenCASCADE's message of a failure; its exceptions are no std::exception.
+/// Returns OpenCASCADE's message of a failure, whose class is no std::exception.
 std::string text(const Standard_Failure& failure);
 
 }  // namespace collarmesh::brep

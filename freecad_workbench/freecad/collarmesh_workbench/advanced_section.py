@@ -19,13 +19,13 @@ class Row:
     name: str  # name of the property
     text: str
     unit: str = ""  # "mm" or "deg"
-    zero: str = ""  # text for 0
+    zero: str = ""  # text shown for 0
     choices: tuple = ()  # texts by value: numbers from 0, or the property's own words
-    tip: str = ""  # empty: the property's text
+    tip: str = ""  # tool tip; empty: the property's text
 
 
 def sections():
-    """Headings and their rows."""
+    """Returns headings and their rows."""
     any_number = translate("collarmesh", "any")
     any_growth = translate("collarmesh", "as the sizes ask for")
     no_limit, default = translate("collarmesh", "no limit"), translate("collarmesh", "default")
@@ -92,7 +92,7 @@ def sections():
 
 
 class AdvancedSection(QtGui.QWidget):
-    """Fields for the properties. `changed` is emitted when one is edited."""
+    """A form with a field for each property. Emits `changed` when one is edited."""
 
     changed = QtCore.Signal()
 

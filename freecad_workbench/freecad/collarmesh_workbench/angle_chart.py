@@ -9,8 +9,8 @@ STRAIGHT = 180  # degrees
 
 
 class AngleChart(QtGui.QWidget):
-    """Bars by angle: of each element its smallest and its largest one. A click on the mark of the worst tetrahedron
-    emits `worst_clicked`."""
+    """Bars by angle: of the smallest and of the largest angles of all elements. Emits `worst_clicked` when
+    the mark of the worst tetrahedron is clicked."""
 
     worst_clicked = QtCore.Signal()
 
@@ -45,7 +45,7 @@ class AngleChart(QtGui.QWidget):
         return QtCore.QSize(260, 130)
 
     def _frame(self):
-        """Returns the rectangle of the bars: the text is above and below."""
+        """Returns the rectangle of the bars; text is above and below it."""
         line = self.fontMetrics().height()
         return QtCore.QRectF(6, line + 4, self.width() - 12, self.height() - 2 * line - 12)
 
@@ -70,7 +70,7 @@ class AngleChart(QtGui.QWidget):
             for bin_number, count in enumerate(counts):
                 if count == 0:
                     continue
-                height = max(2, frame.height() * count / most)  # even a single element is visible
+                height = max(2, frame.height() * count / most)  # so that even a single element is visible
                 left = frame.left() + bin_number * width + i * width / 2
                 bar = QtCore.QRectF(left, frame.bottom() - height, width / 2 - 0.5, height)
                 painter.fillRect(bar, QtGui.QColor(colour))

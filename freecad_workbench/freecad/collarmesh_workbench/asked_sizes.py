@@ -1,6 +1,5 @@
-"""The sizes asked for on the surface of a part, by place. Works without the GUI.
-
-The mesh follows them; they do not show that it must be finer in thin places and at sharp corners."""
+"""The requested sizes on the surface of a part, by place. Works without the GUI.
+The mesh follows them, but it may be finer in thin places and at sharp corners, which these sizes do not show."""
 
 import dataclasses
 import math
@@ -9,17 +8,17 @@ import numpy
 
 from . import inputs, size_presets
 
-FINE = 1 / 60  # of the diagonal: largest length of the triangles' edges
-DEFLECTION = 1 / 200  # of the diagonal
-MOST = 20000  # triangles that are divided further
+FINE = 1 / 60  # largest length of the triangles' edges, relative to the diagonal
+DEFLECTION = 1 / 200  # relative to the diagonal
+MOST = 20000  # number of triangles above which none is divided further
 SAMPLES = 6  # samples of the curvature along each parameter of a face
-POINTS = 500  # largest number of points of a face or an edge for measuring distances
-GROWTH = 1  # growth of sizes away from finer faces and edges, unless another one is asked for
+POINTS = 500  # largest number of points on a face or an edge for measuring distances
+GROWTH = 1  # growth of sizes away from finer faces and edges, unless the user gives another one
 
 
 @dataclasses.dataclass
 class Surface:
-    """Separate triangles: places, shape (3 n, 3), and the number of each corner's face, 0 for none."""
+    """Separate triangles: places, shape (3 n, 3), and the number of the face of each corner, 0 for none."""
 
     places: numpy.ndarray
     faces: numpy.ndarray
@@ -45,8 +44,8 @@ def surface_of(part):
 
 
 def subdivided(triangles, faces, longest):
-    """Halves of triangles at their longest edge, as long as that is too long and there are not very many: their corners,
-    shape (n, 3, 3), and the numbers of their faces."""
+    """Halves triangles at their longest edge while it is too long and there are not very many. Returns their
+    corners, shape (n, 3, 3), and the numbers of their faces."""
     done = []
     while len(triangles):
         edges = numpy.linalg.norm(numpy.roll(triangles, -1, axis=1) - triangles, axis=2)
@@ -136,7 +135,7 @@ def _to_subshape(surface, shape, kind, number):
 
 
 def _to_points(places, points):
-    """Returns each place's distance from the nearest point; works in blocks to bound memory."""
+    """Returns for each place the distance from the nearest point. Works in blocks to bound memory."""
     points = points[:: max(1, math.ceil(len(points) / POINTS))]
     if not len(points):
         return numpy.full(len(places), numpy.inf)
@@ -148,8 +147,8 @@ def _to_points(places, points):
 
 
 def _of_curvature(surface, shape, count):
-    """Returns the size for N elements on a full circle, of the smallest radius of curvature near some places of the
-    face."""
+    """Returns the size for `count` elements on a full circle, for the smallest radius of curvature near some
+    places of the face."""
     sizes = numpy.full(len(surface.places), numpy.inf)
     for number, face in enumerate(shape.Faces, 1):
         if type(face.Surface).__name__ == "Plane":
@@ -165,7 +164,8 @@ def _of_curvature(surface, shape, count):
 
 
 def _parameters(face):
-    """Returns the parameters of places on a face, away from its ends, where some surfaces have no curvature."""
+    """Returns the parameters of places on a face, away from the ends of its parameter range, where some
+    surfaces have no curvature."""
     u0, u1, v0, v1 = face.ParameterRange
     for i in range(SAMPLES):
         for j in range(SAMPLES):

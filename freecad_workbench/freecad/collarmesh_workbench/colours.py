@@ -1,4 +1,4 @@
-"""Colours of text that is readable on light and on dark themes."""
+"""Colours of text that is readable with light and dark themes."""
 
 import FreeCADGui
 from PySide import QtGui
@@ -10,15 +10,15 @@ _DARK = (("#7fd8a0", "#17352a"), ("#ff8f8f", "#3c1d1d"), ("#f0b860", "#3a2c12"),
 
 
 def of(kind):
-    """Returns text colour and background for success, failure, warnings and unimportant text. FreeCAD's themes have
-    greys on which no colour is readable, so the text has its own background; without a theme it is "", the existing
-    one."""
+    """Returns text colour and background for success, failure, warnings and unimportant text. The text has
+    its own background, because FreeCAD's themes have greys on which no colour is readable. Without a theme
+    the background is "": unchanged."""
     ink, paper = (_DARK if is_dark() else _LIGHT)[kind]
     return ink, paper if QtGui.QApplication.instance().styleSheet() else ""
 
 
 def css(kind):
-    """The same for style sheets and rich text."""
+    """Returns these colours for style sheets and rich text."""
     ink, paper = of(kind)
     return f"color: {ink}; background-color: {paper}" if paper else f"color: {ink}"
 
@@ -32,7 +32,7 @@ def paint(item, column, kind):
 
 
 def is_dark():
-    """Returns whether the theme is dark. Themes are style sheets, so only a widget of the window can tell."""
+    """Returns whether the theme is dark. Themes are style sheets, so only a widget in the window can tell."""
     probe = QtGui.QLabel(FreeCADGui.getMainWindow())
     probe.ensurePolished()
     ink = probe.palette().color(QtGui.QPalette.WindowText)

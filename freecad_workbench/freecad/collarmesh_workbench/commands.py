@@ -18,7 +18,7 @@ GROUP_COMMAND = "Collarmesh_Group"
 
 
 def selected(condition):
-    """Returns the one selected object that meets the condition, else None."""
+    """Returns the selected object if exactly one is selected and it meets the condition, else None."""
     found = [each for each in FreeCADGui.Selection.getSelection() if condition(each)]
     return found[0] if len(found) == 1 else None
 
@@ -28,10 +28,10 @@ def selected_part():
 
 
 class Command:
-    """A button; `create` makes an object for the selection, which is then edited in its panel."""
+    """The command of a button. `create` makes an object for the selection, which is then edited in its panel."""
 
     icon, menu_text, tool_tip = "", "", ""
-    # Creation and first edit are one undo step, which "Cancel" of the panel undoes.
+    # Creation and first edit are a single undo step, which "Cancel" in the panel undoes.
     panel_commits = False
 
     def GetResources(self):
@@ -50,7 +50,7 @@ class Command:
 
     def Activated(self):
         target = self.target()
-        if target is None or other_panel.is_in_the_way():  # it may have been deleted since the click
+        if target is None or other_panel.is_in_the_way():  # it may have been deleted since
             return
         document = target.Document
         document.openTransaction(self.text())
@@ -99,7 +99,8 @@ class MeshFromShape(Command):
 
 
 def mesh_of(part):
-    """Returns our mesh object for a part, in the active analysis if there is one; None without one."""
+    """Returns our mesh object for a part, in the active analysis if there is one; None if there is no such
+    object."""
     import FemGui
 
     analysis = FemGui.getActiveAnalysis()
@@ -134,13 +135,14 @@ class Group(Refinement):
 
 
 class Size(Command):
-    """A size by place, for the selected mesh, or the mesh of the selected part, or the only mesh in the document."""
+    """Adds a size by place to the selected mesh, or to the mesh of the selected part, or to the only mesh in
+    the document."""
 
     kind = ""
     panel_commits = True
 
     def Activated(self):
-        # FreeCAD ends its transactions with the command, so this waits until the command has ended.
+        # FreeCAD closes the transaction of a command when the command ends, so wait until then.
         later(super().Activated)
 
     def target(self):
@@ -167,8 +169,8 @@ class Size(Command):
 
 
 def middle_of(elements):
-    """Returns the middle of faces and edges; of a hole a place on its axis. (Boxes around curved faces are larger than
-    these.)"""
+    """Returns the middle of faces and edges; for a hole, a place on its axis. (Boxes around curved faces are
+    larger than the faces.)"""
     extents = [each.Area if each.ShapeType == "Face" else each.Length for each in elements]
     total = sum(extents)
     middle = FreeCAD.Vector()
@@ -215,7 +217,8 @@ class SizeDistance(Size):
 
 
 class TakeOver(Command):
-    """Also for Netgen's objects, which have no context menu of their own before FreeCAD 1.0."""
+    """Takes over mesh objects of other meshers. Also needed for Netgen's objects, which have no context menu
+    of their own before FreeCAD 1.0."""
 
     icon = os.path.join(os.path.dirname(ICON), "take_over.svg")
     menu_text = mark("collarmesh", "Take over by collarmesh")
@@ -228,7 +231,7 @@ class TakeOver(Command):
 
     def Activated(self):
         target = self.target()
-        later(lambda: mesh_menu.take(target))  # see Size
+        later(lambda: mesh_menu.take(target))  # see `Size`
 
 
 COMMANDS = {

@@ -42,7 +42,7 @@ def meshed_object(mesh_object):
     return getattr(mesh_object, shape_property(mesh_object))
 
 
-REFINEMENT_LISTS = ("MeshRegionList", "MeshRefinementList")  # later versions have the second name
+REFINEMENT_LISTS = ("MeshRegionList", "MeshRefinementList")  # later versions use the second name
 
 
 def refinements_of(mesh_object):
@@ -57,19 +57,21 @@ def set_refinements(mesh_object, refinements):
 
 
 def is_suppressed(obj):
-    """Returns whether the user has suppressed it, as is possible for objects of an analysis from FreeCAD 1.0 on."""
+    """Returns whether the user has suppressed the object, which FreeCAD 1.0 and later permit for objects of
+    an analysis."""
     return bool(getattr(obj, "Suppressed", False))
 
 
 def is_plain_refinement(obj):
-    """Returns whether it is a size on sub-shapes. From FreeCAD 1.1 on lists of refinements have other kinds, too."""
+    """Returns whether the object is a size on sub-shapes. From FreeCAD 1.1 on, lists of refinements contain
+    other kinds, too."""
     kind = getattr(getattr(obj, "Proxy", None), "Type", "")
     return not kind.startswith("Fem::Mesh") or kind in ("Fem::MeshRegion", "Fem::MeshRefinement")
 
 
 def size_by_place(obj):
-    """Returns the request of a refinement by place of FreeCAD 1.1, (kind, size, size far away, distance to there, properties) for one of
-    ours; None for other objects."""
+    """Converts a refinement by place of FreeCAD 1.1 to one of ours: returns (kind, size, size far away,
+    distance to there, properties); None for other objects."""
     kind = getattr(getattr(obj, "Proxy", None), "Type", "")
     if kind == "Fem::MeshDistance":
         between = obj.DistanceMaximum.Value - obj.DistanceMinimum.Value
@@ -91,7 +93,7 @@ def mesh_objects(document):
 
 
 def make_refinement(document, mesh_object):
-    """Makes FreeCAD's object for a size on sub-shapes; later versions call it a refinement."""
+    """Makes FreeCAD's object for a size on sub-shapes, which later versions call a refinement."""
     make = getattr(ObjectsFem, "makeMeshRegion", None) or ObjectsFem.makeMeshRefinement
     return make(document, mesh_object)
 
@@ -100,13 +102,13 @@ def make_group(document, mesh_object):
     return ObjectsFem.makeMeshGroup(document, mesh_object)
 
 
-_in_transaction = set()  # names of documents
+_in_transaction = set()  # names of documents with an open transaction
 
 
 @contextlib.contextmanager
 def transaction(document, name):
-    """One undo step, which an exception undoes. A nested one is part of the outer one. A transaction of FreeCAD's that
-    is still open is closed first: scripts and deletions leave theirs open."""
+    """Makes the enclosed changes one undo step; an exception undoes them. A nested transaction is part of the
+    outer one. Closes a transaction of FreeCAD's that is still open, as scripts and deletions leave it."""
     if document.Name in _in_transaction:
         yield
         return
@@ -126,8 +128,8 @@ def transaction(document, name):
 
 
 def write_constraints_on(*finders):
-    """FreeCAD's writers for solvers look for the nodes of constraints by place. Have them take the nodes of the
-    elements that a finder gives for (mesh, object, name of a face), where it is not None."""
+    """Changes FreeCAD's writers for solvers, which look for the nodes of constraints by place. They use the
+    nodes of the elements that `finder` returns for (mesh, object, name of a face), unless it returns None."""
     by_place, loads_by_place = meshtools.get_femnodes_by_refshape, meshtools.get_force_obj_face_nodeload_table
 
     def elements_of(*reference):
@@ -166,15 +168,16 @@ def write_constraints_on(*finders):
 
 
 def force_of(constraint):
-    """Returns the force in N, as a quantity if the property is one, from FreeCAD 0.21 on, as its writer then
-    requires."""
+    """Returns the force in N: from FreeCAD 0.21 on as a quantity, as the property is one and FreeCAD's writer
+    requires it."""
     force = constraint.Force
     return FreeCAD.Units.Quantity(force.getValueAs("N")) if hasattr(force, "getValueAs") else force
 
 
 def extend_context_menus(fill):
-    """`fill(menu, object)` adds entries to the context menus of FreeCAD's own mesh objects. Their view providers are
-    classes in Python; Netgen's is one from FreeCAD 1.0 on, before it has no menu of its own."""
+    """Adds entries to the context menus of FreeCAD's own mesh objects, by calling `fill(menu, object)`. Their
+    view providers are classes in Python; Netgen's is one from FreeCAD 1.0 on, and has no menu of its own
+    before."""
     for module, name in (("view_mesh_gmsh", "VPMeshGmsh"), ("view_mesh_netgen", "VPMeshNetgen")):
         try:
             provider = getattr(importlib.import_module("femviewprovider." + module), name)
@@ -194,22 +197,24 @@ def _extend(provider, fill):
 
 
 class Manipulator:
-    """The methods that FreeCAD 1.0 and later call when a workbench builds its bars."""
+    """An object with the methods that FreeCAD 1.0 and later call when a workbench builds its bars."""
 
     def __init__(self, places):
-        """`places`: for each command FreeCAD's command to put it beside; several beside one in this order."""
+        """`places`: for each command, FreeCAD's command after which it is put. Several after one keep this
+        order."""
         self.places = places
 
     def modifyToolBars(self):
         return [{"insert": command, "toolItem": place} for command, place in self.places.items()]
 
     def modifyMenuBar(self):
-        # Each command goes directly after its place, so the last one comes first.
+        # Each command is put directly after its place, so the last one is put first.
         return [{"insert": command, "menuItem": place, "after": ""} for command, place in reversed(self.places.items())]
 
 
 def add_to_bars(places):
-    """Puts commands into FreeCAD's toolbars and menus; returns False if it cannot, before 1.0."""
+    """Puts commands into FreeCAD's toolbars and menus. Returns False if FreeCAD, before 1.0, does not support
+    that."""
     import FreeCADGui
 
     if not hasattr(FreeCADGui, "addWorkbenchManipulator"):
@@ -219,7 +224,8 @@ def add_to_bars(places):
 
 
 def as_number(button):
-    """Returns standard buttons of panels as FreeCAD requires; in PySide6 (FreeCAD 1.x) they are an enumeration."""
+    """Returns standard buttons of panels in the type that FreeCAD requires; in PySide6 (FreeCAD 1.x) they are
+    an enumeration."""
     return button.value if hasattr(button, "value") else int(button)
 
 

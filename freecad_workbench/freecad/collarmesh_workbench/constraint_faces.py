@@ -1,7 +1,7 @@
-"""Faces to choose for constraints on the mesh of a triangle mesh, which has none: an object with planar faces for each
-group of the mesh's faces. FEM's panels accept them like a part's faces. Face1 belongs to the first group, Face2 to
-the second one, and so on; groups that are not plane have further faces after these. Each face stands for its whole
-group: when constraints are written for a solver, the nodes are those of the group."""
+"""Faces that can be chosen for constraints on the mesh of a triangle mesh, which has no faces of its own. For
+each group of the mesh's faces, an object has a planar face, which FEM's panels accept like a part's face.
+Face1 belongs to the first group, Face2 to the second one, and so on; groups that are not planar have further
+faces after these. Each face stands for its whole group: a solver gets the nodes of the group."""
 
 import FreeCAD
 import numpy
@@ -27,7 +27,7 @@ class Proxy(compatibility.Stateless):
             obj.setEditorMode(name, 1)  # read-only
 
     def execute(self, _obj):
-        """Does nothing: the faces only change with the mesh."""
+        """Does nothing: the faces change only with the mesh."""
 
 
 def is_ours(obj):
@@ -35,18 +35,18 @@ def is_ours(obj):
 
 
 def can_be_made(mesh_object):
-    """Returns whether it is a mesh of a triangle mesh, with elements."""
+    """Returns whether the object is a mesh of a triangle mesh, with elements."""
     part = compatibility.meshed_object(mesh_object)
     return part is not None and elements.is_there(mesh_object.FemMesh) and inputs.triangles_of(part) is not None
 
 
 def of(mesh_object):
-    """Returns the object with the faces of a mesh; None without one."""
+    """Returns the object with the faces of a mesh; None if there is none."""
     return next((each for each in mesh_object.InList if is_ours(each)), None)
 
 
 def make(mesh_object):
-    """Returns the object with the faces, a new one if necessary. Raises MesherError."""
+    """Returns the object with the faces; makes it if necessary. Raises MesherError."""
     if not can_be_made(mesh_object):
         text = translate(
             "collarmesh", "{label}: only a mesh of triangles needs faces for constraints, and it must be made first.")
@@ -66,7 +66,7 @@ def make(mesh_object):
 
 
 def references(mesh_object, names):
-    """Returns the `References` of a constraint on groups of these names. Raises MesherError."""
+    """Returns the `References` of a constraint on the groups with these names. Raises MesherError."""
     obj = make(mesh_object)
     groups = getattr(obj, GROUPS)
     for name in names:
@@ -101,7 +101,7 @@ def refresh(mesh_object):
 
 
 def _fill(obj, fem_mesh):
-    """Gives the object the faces of a mesh's groups."""
+    """Makes the faces of a mesh's groups, and stores them in the object."""
     nodes = fem_mesh.Nodes
     numbers = numpy.array(sorted(nodes))
     points = numpy.array([tuple(nodes[number]) for number in numbers.tolist()])
@@ -124,7 +124,7 @@ def _groups_of_faces(fem_mesh):
 
 
 def _face_of(groups, name):
-    """Returns the face that a constraint on a group refers to, whichever of its faces was chosen."""
+    """Returns the face that a constraint on a group refers to, whichever of the group's faces was chosen."""
     return f"Face{groups.index(name) + 1}"
 
 
@@ -140,8 +140,8 @@ def _constraints_on(obj):
 
 
 def _has_references(obj):
-    """Returns whether it has references to sub-shapes, as constraints do; other add-ons may use this name for other
-    properties."""
+    """Returns whether the object has references to sub-shapes, as constraints do; other add-ons may use this
+    name for other properties."""
     return (REFERENCES in obj.PropertiesList
             and obj.getTypeIdOfProperty(REFERENCES).startswith("App::PropertyLinkSubList"))
 
@@ -152,8 +152,8 @@ def _set_references(constraint, wanted):
 
 
 def elements_of(fem_mesh, obj, name):
-    """Returns the face elements of the group that a face stands for; None for other objects, for edges, and in a mesh
-    without that group."""
+    """Returns the face elements of the group that a face stands for; None for other objects and edges, and if
+    the mesh has no such group."""
     if not is_ours(obj):
         return None
     group = _group_of(getattr(obj, GROUPS), name)

@@ -6,7 +6,7 @@ import os
 from . import compatibility, constraint_faces, views
 
 ICON = os.path.join(views.ICONS, "group.svg")
-STEP = 0.381966  # share of the colour wheel: consecutive colours differ clearly
+STEP = 0.381966  # share of the colour wheel; it makes consecutive colours differ clearly
 
 
 class ConstraintFacesViewProvider(compatibility.Stateless):
@@ -23,7 +23,7 @@ class ConstraintFacesViewProvider(compatibility.Stateless):
         return ICON
 
     def updateData(self, obj, name):
-        if name == constraint_faces.GROUPS:  # set after the shape
+        if name == constraint_faces.GROUPS:  # the groups are set after the shape
             obj.ViewObject.DiffuseColor = colours(getattr(obj, name))
 
 
@@ -34,7 +34,7 @@ def colours(groups):
 
 
 def show(mesh_object):
-    """Shows the faces, made if necessary, instead of the mesh and its part. Raises MesherError."""
+    """Shows the faces instead of the mesh and its part, and makes them if necessary. Raises MesherError."""
     faces = constraint_faces.make(mesh_object)
     for each in (mesh_object, compatibility.meshed_object(mesh_object)):
         each.ViewObject.Visibility = False

@@ -1,5 +1,5 @@
-"""Groups of the faces and edges at which solids touch, and the elements for constraints on them. Works without the
-GUI."""
+"""Groups of the faces and edges at which solids touch, and elements for constraints on them. Works without
+the GUI."""
 
 import re
 
@@ -10,8 +10,8 @@ SIDES = ("_minus", "_plus")  # the program's suffixes for the two sides of a fac
 
 
 def add(shape, fem_mesh, apart):
-    """Gives each face and edge of touching solids its group: in the mesh common parts are in the group with the
-    smallest number; where solids are kept apart, each side has its group."""
+    """Gives each face and edge of touching solids its group. In the mesh, common parts are in the group with
+    the smallest number; where solids are kept apart, each side has its own group."""
     here = contacts.of(shape)
     owners = _Owners(here, fem_mesh) if apart else None
     for kind, find in (("Face", fem_mesh.getFacesByFace), ("Edge", fem_mesh.getEdgesByEdge)):
@@ -50,7 +50,7 @@ class _Owners:
         self._nodes = {}
 
     def own(self, kind, number, elements):
-        """Returns those that belong to the solids of a face."""
+        """Returns the elements that belong to the solids of a face."""
         nodes = [self._nodes_of(solid) for solid in self.here.solids(kind, number)]
         return {each for each in elements if any(set(self.fem_mesh.getElementNodes(each)) <= those for those in nodes)}
 
@@ -62,7 +62,8 @@ class _Owners:
 
 
 def _elements_of_tags(fem_mesh, kind):
-    """Returns the elements by the number of their face or edge in the mesh, those of both sides together."""
+    """Returns the elements by the number of their face or edge in the mesh; both sides of a face are
+    combined."""
     found = {}
     for name, number in named(fem_mesh).items():
         match = re.fullmatch(rf"{kind}(\d+)({'|'.join(SIDES)})?", name)

@@ -1,5 +1,5 @@
-"""The common faces and edges of touching solids. The mesh has a common part once, with the smallest of its numbers.
-Works without the GUI."""
+"""The common faces and edges of touching solids. The mesh contains a common part once, with the smallest of
+its numbers. Works without the GUI."""
 
 import collections
 import dataclasses
@@ -7,14 +7,14 @@ import functools
 
 import numpy
 
-SAME_PLACE = 1e-6  # of the shape's diagonal
-SHARE = 1e-6  # of a face's area, or an edge's length: a smaller common part does not count
+SAME_PLACE = 1e-6  # relative to the shape's diagonal
+SHARE = 1e-6  # share of a face's area or an edge's length; smaller common parts do not count
 ANALYTIC = ("Plane", "Cylinder", "Cone", "Sphere", "Toroid", "Line", "Circle", "Ellipse")
 KINDS = ("Face", "Edge")
 SOURCES = {"patches": "Face", "curves": "Edge"}  # names in the program's size field
-SHAPES = 5  # shapes to remember
+SHAPES = 5  # number of shapes that are remembered
 
-_known = collections.deque(maxlen=SHAPES)  # Contacts
+_known = collections.deque(maxlen=SHAPES)  # Contacts of recent shapes
 
 
 def of(shape):
@@ -29,8 +29,8 @@ def of(shape):
 
 
 def in_mesh_numbers(settings, shape):
-    """Returns Settings with the mesh's numbers of faces and edges: sizes for all faces of which a face has parts. If no
-    solids touch, none are kept apart."""
+    """Returns Settings with the mesh's numbers of faces and edges. A size for a face applies to all faces
+    that have parts of it. If no solids touch, none are kept apart."""
     here = of(shape)
     sizes = {}
     for field, kind in (("face_sizes", "Face"), ("edge_sizes", "Edge")):
@@ -54,7 +54,7 @@ def _field_in_mesh_numbers(field, here):
 
 
 class Contacts:
-    """The contacts of one shape. Names are FreeCAD's: `kind` is Face or Edge, numbers begin with 1."""
+    """The contacts of one shape. Names are FreeCAD's: `kind` is Face or Edge, and numbers begin with 1."""
 
     def __init__(self, shape):
         self.shape = shape
@@ -66,12 +66,13 @@ class Contacts:
         return self._of_kind[kind].tags(number) if kind in self._of_kind else [number]
 
     def has_all(self, kind, tag, number):
-        """Returns whether everything with the number `tag` in the mesh is a part of Face7. Precondition: it is one of
-        its tags."""
+        """Returns whether everything that has the number `tag` in the mesh is a part of Face7. Precondition:
+        `tag` is one of the face's tags."""
         return tag == number or self._of_kind[kind].has_all(tag, number)
 
     def names(self, kind, tag):
-        """Returns the names of which a part may have this number in the mesh: Face7, Face9."""
+        """Returns the names of the faces or edges that may have a part with this number in the mesh: Face7,
+        Face9."""
         return [f"{kind}{number}" for number in (tag, *self._larger(kind, tag))]
 
     def numbers(self, kind):
@@ -79,7 +80,7 @@ class Contacts:
         return range(1, len(self._of_kind[kind].elements) + 1) if kind in self._of_kind else ()
 
     def in_contact(self, kind):
-        """Returns the numbers of those that have a part with a smaller number in the mesh."""
+        """Returns the numbers of the faces or edges that have a part with a smaller number in the mesh."""
         return [number for number in self.numbers(kind) if self.tags(kind, number) != [number]]
 
     def solids(self, kind, number):
@@ -87,12 +88,12 @@ class Contacts:
         return sorted(solid + 1 for solid in self._of_kind[kind].solids[number - 1])
 
     def name(self, kind, tag):
-        """Returns one name for them: "Face7 = Face9"."""
+        """Returns one name for all of them: "Face7 = Face9"."""
         return " = ".join(self.names(kind, tag))
 
     def glued_faces(self):
-        """Returns pairs of numbers of faces with a common part; the same number twice for a face that two solids share
-        already."""
+        """Returns pairs of numbers of faces with a common part; a pair of equal numbers for a face that two
+        solids share already."""
         if not self._of_kind:
             return []
         holders = self._of_kind["Face"].solids
@@ -107,13 +108,13 @@ class Contacts:
 
 
 class _ContactsOfKind:
-    """Contacts between faces, or between edges."""
+    """The contacts between faces, or those between edges."""
 
     def __init__(self, shape, kind):
         self.shape, self.kind = shape, kind
         self.elements = getattr(shape, kind + "s")
         self.tolerance = SAME_PLACE * shape.BoundBox.DiagonalLength
-        self._pairs, self._left = {}, {}  # pairs with a common part; elements with a part of their own
+        self._pairs, self._left = {}, {}  # pairs with a common part; elements that have a part of their own
 
     @functools.cached_property
     def solids(self):
@@ -126,16 +127,16 @@ class _ContactsOfKind:
 
     @functools.cached_property
     def boxes(self):
-        """Returns lower corners and negated upper ones."""
+        """Returns the boxes' lower corners and their negated upper ones."""
         boxes = [each.BoundBox for each in self.elements]
         return numpy.array([(b.XMin, b.YMin, b.ZMin, -b.XMax, -b.YMax, -b.ZMax) for b in boxes]).reshape(-1, 6)
 
     def met(self, number):
-        """Returns the numbers of elements of other solids that have a common part with this one."""
+        """Returns the numbers of elements of other solids that have a common part with this element."""
         return [other for other in self._near(number) if self._meet(min(number, other), max(number, other))]
 
     def tags(self, number):
-        if number > len(self.elements):  # the program reports the missing element
+        if number > len(self.elements):  # the program reports that the element is missing
             return [number]
         tags = [other for other in self.met(number) if other < number and self._is_left(other)]
         return [*tags, number] if self._is_left(number) else tags
@@ -145,7 +146,7 @@ class _ContactsOfKind:
         return _is_nothing(other.cut(self.elements[number - 1]), other)
 
     def _is_left(self, number):
-        """Returns whether a part of it has its number in the mesh."""
+        """Returns whether a part of the element has its number in the mesh."""
         if number not in self._left:
             element = self.elements[number - 1]
             smaller = [self.elements[other - 1] for other in self.met(number) if other < number]
@@ -153,14 +154,14 @@ class _ContactsOfKind:
         return self._left[number]
 
     def _near(self, number):
-        """Returns elements of other solids whose boxes meet its box."""
+        """Returns elements of other solids whose boxes meet the element's box."""
         opposite = -self.boxes[number - 1][[3, 4, 5, 0, 1, 2]]
         meet = (self.boxes <= opposite + self.tolerance).all(axis=1)
         mine = self.solids[number - 1]
         return [int(i) + 1 for i in numpy.flatnonzero(meet) if not self.solids[i] & mine]
 
     def _meet(self, *numbers):
-        """Returns whether the two have a common part."""
+        """Returns whether two elements have a common part."""
         if numbers not in self._pairs:
             a, b = (self.elements[number - 1] for number in numbers)
             is_possible = not self._seams & set(numbers) and _may_coincide(a, b, self.tolerance)
@@ -182,20 +183,20 @@ class _ContactsOfKind:
 
 
 def is_seam(shape, edge):
-    """Returns whether it is a face's seam or a degenerate edge: the mesh has no such edge."""
+    """Returns whether the edge is a face's seam or degenerate: the mesh has no such edge."""
     return edge.Degenerated or any(edge.isSeam(face) for face in shape.Faces if any(edge.isSame(e) for e in face.Edges))
 
 
 def _is_nothing(part, whole):
-    """Returns whether its area or length is negligible."""
+    """Returns whether the part's area or length is negligible."""
     if whole.ShapeType == "Face":
         return part.Area <= SHARE * whole.Area
     return part.Length <= SHARE * whole.Length
 
 
 def _may_coincide(a, b, tolerance):
-    """Returns False if points of one are off the surface or the curve of the other. Planes, cylinders and similar
-    surfaces coincide everywhere or nowhere."""
+    """Returns False if points of one of them are off the surface or the curve of the other. Planes, cylinders
+    and similar surfaces coincide everywhere or nowhere."""
     if _is_analytic(a):
         a, b = b, a
     if not _is_analytic(b):
@@ -214,7 +215,7 @@ def _is_analytic(element):
 
 
 def _distance(geometry, point):
-    """Returns the distance to a surface or a curve, without its ends."""
+    """Returns the distance to a surface or a curve, beyond its ends."""
     place = geometry.parameter(point)
     return point.distanceToPoint(geometry.value(*(place if isinstance(place, tuple) else (place,))))
 

@@ -5,11 +5,11 @@ from PySide import QtCore, QtGui
 from . import compatibility, contacts, inputs
 from .translations import translate
 
-MOST = 3  # faces to name; the tool tip lists all
+MOST = 3  # number of faces named; the tool tip lists all
 
 
 class ContactsSection(QtGui.QWidget):
-    """Hidden where no solids touch. `changed` is emitted when the box is ticked or unticked."""
+    """A form that is hidden if no solids touch. Emits `changed` when the box is ticked or unticked."""
 
     changed = QtCore.Signal()
 
@@ -36,7 +36,7 @@ class ContactsSection(QtGui.QWidget):
         self.look_soon()
 
     def look_soon(self):
-        """Looks at the shape after the window has shown its current contents."""
+        """Looks at the shape after the window has been redrawn."""
         self._timer.start()
 
     def store(self):
@@ -66,7 +66,7 @@ class ContactsSection(QtGui.QWidget):
             return []
         try:
             pairs = contacts.of(inputs.shape_of(part)).glued_faces()
-        except Exception:  # also OpenCASCADE's; the run reports the problem
+        except Exception:  # OpenCASCADE's exceptions, too; the run reports the problem
             return []
         return [f"Face{first}" if first == second else f"Face{first} = Face{second}" for first, second in pairs]
 

@@ -1,4 +1,4 @@
-"""The cost of a mesh, and when to ask the user before making it. Works without the GUI."""
+"""The cost of a mesh, and the question to ask before an expensive one is made. Works without the GUI."""
 
 import math
 
@@ -6,10 +6,10 @@ from . import inputs
 from .size_presets import count_text, duration_text
 from .translations import translate
 
-MANY = 5_000_000  # elements
-BYTES = {1: 1000, 2: 2000}  # bytes of memory per element, by order: in the mesher, and then in FreeCAD
+MANY = 5_000_000  # number of elements
+BYTES = {1: 1000, 2: 2000}  # bytes of memory per element, by order: first in the mesher, then in FreeCAD
 GIGABYTE = 1e9
-LOADING = {1: 5e-6, 2: 12e-6}  # seconds per element, by order, for FreeCAD to read it
+LOADING = {1: 5e-6, 2: 12e-6}  # seconds per element that FreeCAD takes to read it, by order
 
 
 def elements_by_extent(part, size, dimension=3):
@@ -26,8 +26,8 @@ def elements_by_extent(part, size, dimension=3):
 
 
 def estimates(part, sizes, dimension):
-    """Returns {size: (elements, None)} for meshes that the program does not predict; ignores curvature and small
-    faces."""
+    """Returns {size: (elements, None)} for meshes that the program does not predict. Ignores curvature and
+    small faces."""
     return {} if part is None else {size: (elements_by_extent(part, size, dimension), None) for size in sizes if size > 0}
 
 
@@ -46,7 +46,8 @@ def free_memory():
 
 
 def question(elements, order, seconds=None):
-    """Returns the question to ask before this many elements are made; "" for none. `seconds`: None if unknown."""
+    """Returns the question to ask before this many elements are made; "" for none. `seconds` may be None:
+    unknown."""
     needed, free = BYTES[order] * elements, free_memory()
     if elements <= MANY and needed <= free:
         return ""

@@ -8,7 +8,7 @@ from .translations import translate
 
 
 class DimensionSection(QtGui.QWidget):
-    """`changed` is emitted when another dimension is chosen."""
+    """A form with a choice. Emits `changed` when another dimension is chosen."""
 
     changed = QtCore.Signal()
 
@@ -35,7 +35,7 @@ class DimensionSection(QtGui.QWidget):
         self.combo.currentIndexChanged.connect(lambda _index: self.changed.emit())
 
     def asked(self):
-        """Returns 1, 2 or 3; 0: from the shape."""
+        """Returns the chosen dimension, 1, 2 or 3; 0: from the shape."""
         return self.combo.currentIndex()
 
     def store(self):
@@ -47,17 +47,17 @@ class DimensionSection(QtGui.QWidget):
         settings.dimension = self.asked()
 
     def chosen(self, fill_holes):
-        """Returns 1, 2 or 3, by the shape if the user has not chosen."""
+        """Returns the dimension, 1, 2 or 3: the chosen one, or that of the shape."""
         part = compatibility.meshed_object(self.object)
         if part is None:
             return self.asked() or 3
         try:
             return open_shape.dimension(part, self.asked(), fill_holes)
-        except Exception:  # also OpenCASCADE's; the run reports the problem
+        except Exception:  # OpenCASCADE's exceptions, too; the run reports the problem
             return self.asked() or 3
 
     def show_note(self, fill_holes):
-        """Shows the dimension chosen from the shape, and what FEM needs for it."""
+        """Shows the dimension that follows from the shape, and what FEM needs for it."""
         part, chosen = compatibility.meshed_object(self.object), self.chosen(fill_holes)
         words = [] if part is None or self.asked() else [open_shape.word(part, chosen)]
         words.append(missing_section(self.object, chosen))

@@ -1,4 +1,4 @@
-"""FreeCAD's dock, which shows the panels."""
+"""FreeCAD's dock, in which panels are shown."""
 
 import contextlib
 
@@ -7,13 +7,14 @@ from PySide import QtCore, QtGui
 
 
 def widen(form, width):
-    """Makes room for a panel's whole width (pixels), once it is in its dock, which only shows what fits."""
+    """Makes room for a panel's whole width (pixels) when it is in its dock, which otherwise shows only what
+    fits."""
     QtCore.QTimer.singleShot(0, lambda: _widen(form, width))
 
 
 def _widen(form, width):
     window = FreeCADGui.getMainWindow()
-    with contextlib.suppress(RuntimeError):  # the panel is closed already
+    with contextlib.suppress(RuntimeError):  # the panel may be closed already
         for dock in window.findChildren(QtGui.QDockWidget):
             if dock.isAncestorOf(form) and not dock.isFloating() and dock.width() < width:
                 window.resizeDocks([dock], [width], QtCore.Qt.Horizontal)

@@ -1,8 +1,8 @@
-"""The elements of a mesh: tetrahedra, or else triangles, or else lines. Works without the GUI."""
+"""The elements of a mesh: tetrahedra if it has any, else triangles, else lines. Works without the GUI."""
 
 
 def dimension(fem_mesh):
-    """Returns 3, 2 or 1; 0 for an empty mesh."""
+    """Returns the dimension of the elements, 3, 2 or 1; 0 for an empty mesh."""
     counts = (fem_mesh.VolumeCount, fem_mesh.FaceCount, fem_mesh.EdgeCount)
     return next((3 - i for i, count in enumerate(counts) if count > 0), 0)
 
@@ -13,12 +13,12 @@ def numbers(fem_mesh):
 
 
 def is_there(fem_mesh):
-    """Returns whether it is the mesh of a run. Edges alone come with every mesh."""
+    """Returns whether the mesh is the result of a run. Edges alone do not tell: every mesh has them."""
     return fem_mesh.NodeCount > 0 and dimension(fem_mesh) > 0
 
 
 def order(fem_mesh):
-    """Returns 1 or 2; 1 for an empty mesh."""
+    """Returns the order of the elements, 1 or 2; 1 for an empty mesh."""
     nodes = {3: 10, 2: 6, 1: 3}
     first = next(iter(numbers(fem_mesh)), None)
     return 2 if first is not None and len(fem_mesh.getElementNodes(first)) == nodes[dimension(fem_mesh)] else 1

@@ -7,7 +7,7 @@ from . import inputs
 
 
 def bounding_box(part):
-    """Returns the box of a shape or of a triangle mesh; not valid if there is none."""
+    """Returns the box of a shape or of a triangle mesh; an invalid one if there is none."""
     if part is None:
         return FreeCAD.BoundBox()
     mesh = inputs.triangles_of(part)
@@ -18,7 +18,7 @@ def bounding_box(part):
 
 
 def box_of_subshape(part, name):
-    """Returns the box of a sub-shape such as Face7; not valid if the part does not have it."""
+    """Returns the box of a sub-shape such as Face7; an invalid one if the part does not have it."""
     try:
         return Part.getShape(part).getElement(name).BoundBox
     except (AttributeError, ValueError, IndexError, RuntimeError, Part.OCCError):

@@ -16,17 +16,17 @@ BESIDE = {
     GROUP_COMMAND: "FEM_MeshGroup",
     "Collarmesh_TakeOver": GROUP_COMMAND,
 }
-EVERY = 200  # milliseconds
+EVERY = 200  # milliseconds between checks
 
 
 def freecads_place(command):
-    """Returns FreeCAD's own command beside which ours is put, directly or after others of ours."""
+    """Returns FreeCAD's own command after which ours is put, directly or after others of ours."""
     place = BESIDE[command]
     return freecads_place(place) if place in BESIDE else place
 
 
 class Inserter(QtCore.QObject):
-    """Looks for FreeCAD's actions each time a workbench becomes active, and puts ours after them."""
+    """Puts our actions after FreeCAD's each time a workbench becomes active."""
 
     def __init__(self, window):
         super().__init__(window)
@@ -46,7 +46,7 @@ class Inserter(QtCore.QObject):
         return action
 
     def grey(self):
-        """Disables commands that would do nothing now, like FreeCAD's own."""
+        """Disables commands that would do nothing now, as FreeCAD does with its own."""
         for action in self.actions:
             action.setEnabled(FreeCADGui.Command.get(action.objectName()).isActive())
 

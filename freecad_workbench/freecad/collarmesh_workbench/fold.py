@@ -4,7 +4,7 @@ from PySide import QtCore, QtGui
 
 
 class Fold(QtGui.QToolButton):
-    """A line with an arrow, which shows and hides a widget."""
+    """A line with an arrow that shows and hides a widget."""
 
     def __init__(self, body, text=""):
         super().__init__()

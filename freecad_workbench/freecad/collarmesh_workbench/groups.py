@@ -1,9 +1,8 @@
-"""Groups of elements by the names of FEM's objects, made from those of faces, edges and solids.
-
-FreeCAD finds the elements of a material by the places of their nodes, which loses some of them where solids touch.
-It believes a volume group called `<material>_...` instead. Those are kept right here: a document observer makes them
-anew when a material's references, or what belongs to the analysis, change. Constraints need no groups: the nodes lie
-on the exact faces."""
+"""Groups of elements with the names of FEM's objects, made from those of faces, edges and solids.
+FreeCAD finds the elements of a material by the places of their nodes, which loses some where solids touch. It
+prefers a volume group called `<material>_...`. A document observer keeps these groups up to date: it makes
+them anew when a material's references or the members of the analysis change. Constraints need no groups,
+because their nodes lie on the exact faces."""
 
 import re
 
@@ -22,7 +21,7 @@ def named(fem_mesh):
 
 
 def analysis_of(mesh_object):
-    """Returns the analysis that contains the mesh, None without one."""
+    """Returns the analysis that contains the mesh; None if there is none."""
     return next((each for each in mesh_object.InList if each.isDerivedFrom("Fem::FemAnalysis")), None)
 
 
@@ -32,7 +31,8 @@ def materials_of(analysis):
 
 
 def elements_of(fem_mesh, part, subshapes):
-    """Returns the kind of group and the elements for names like Face7; by place if the mesh has no such group."""
+    """Returns the kind of group and the elements for names like Face7; searches by place if the mesh has no
+    such group."""
     groups, kind, elements = named(fem_mesh), "", set()
     for name in subshapes:
         kind = next((value for key, value in KINDS.items() if name.startswith(key)), "")
@@ -46,8 +46,8 @@ def elements_of(fem_mesh, part, subshapes):
 
 
 def names_in(part, references):
-    """Returns the names that the sub-shapes of references have in a part, if it has all of them; otherwise nothing.
-    FreeCAD looks for them by place, and takes the first of two that coincide."""
+    """Returns the names that the sub-shapes of references have in a part, if it has all of them, else
+    nothing. FreeCAD would look for them by place, and take the first of two that coincide."""
     names = [name_in(part, obj, name) for obj, subshapes in references for name in subshapes]
     return sorted(names) if all(names) else []
 
@@ -66,7 +66,7 @@ def name_in(part, obj, name):
 
 
 def _is_same(first, second):
-    """Returns whether it is the same sub-shape at the same place."""
+    """Returns whether both are the same sub-shape at the same place."""
     near = contacts.SAME_PLACE * second.BoundBox.DiagonalLength
     return first.isPartner(second) and first.BoundBox.Center.distanceToPoint(second.BoundBox.Center) <= near
 
@@ -74,7 +74,7 @@ def _is_same(first, second):
 def wanted(mesh_object, fem_mesh):
     """Returns the groups that the mesh must have besides those of sub-shapes: [(name, kind, elements)]."""
     part = compatibility.meshed_object(mesh_object)
-    if inputs.triangles_of(part) is not None:  # its segments are groups already
+    if inputs.triangles_of(part) is not None:  # its segments already are groups
         return []
     references = {}
     for group in mesh_object.MeshGroupList:
@@ -96,8 +96,8 @@ def wanted(mesh_object, fem_mesh):
 
 
 def materials_elsewhere(mesh_object):
-    """Returns messages on materials that get no elements because they refer to solids which the meshed part does not
-    have."""
+    """Returns messages on materials without elements, because they refer to solids that the meshed part does
+    not have."""
     part = compatibility.meshed_object(mesh_object)
     if part is None or inputs.triangles_of(part) is not None:
         return []
@@ -115,7 +115,7 @@ def materials_elsewhere(mesh_object):
 
 
 def add_groups(mesh_object, fem_mesh):
-    """Updates the groups of `fem_mesh`; returns True if it had to be changed."""
+    """Updates the groups of `fem_mesh`. Returns True if any had to be changed."""
     made = {f"{name}_{kind}s" for name in names_of_owners(mesh_object) for kind in KINDS.values()}
     groups = wanted(mesh_object, fem_mesh)
     have = named(fem_mesh)

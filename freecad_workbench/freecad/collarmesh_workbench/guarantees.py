@@ -1,4 +1,4 @@
-"""The guarantees of a mesh, in words, from the report of a run."""
+"""The guarantees of a mesh, as text, from the report of a run."""
 
 from .translations import translate
 
@@ -51,7 +51,7 @@ def _groups_of_lines():
 
 
 def _groups():
-    """Groups the certificate's names by what they guarantee."""
+    """Returns the certificate's names, grouped by what they guarantee."""
     return [
         (translate("collarmesh", "The mesh fills the shape: every face, edge and corner is kept"),
          ("conforming", "watertight", "curve_cover", "curve_distance", "patch_area", "patch_border", "patch_distance",

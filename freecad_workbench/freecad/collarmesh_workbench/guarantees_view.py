@@ -9,7 +9,7 @@ from .translations import translate
 
 
 class GuaranteesView(QtGui.QWidget):
-    """A single line if all hold, which unfolds to the list."""
+    """A single line if all guarantees hold; it unfolds to the list."""
 
     def __init__(self):
         super().__init__()
@@ -33,7 +33,7 @@ class GuaranteesView(QtGui.QWidget):
         self.show()
 
     def show_out_of_date(self, out_of_date):
-        """Shows the results in grey, because they are those of an older mesh."""
+        """Shows the results in grey if they belong to an older mesh."""
         if self._report is not None and out_of_date != self._out_of_date:
             self._out_of_date = out_of_date
             self._write()

@@ -1,4 +1,4 @@
-"""Loaded by FreeCAD when it starts, with and without its window."""
+"""FreeCAD loads this when it starts, with and without its window."""
 
 from . import compatibility, constraint_faces, contact_groups, groups, mesh_undo
 

@@ -1,11 +1,11 @@
-"""Loaded by FreeCAD when its GUI starts."""
+"""FreeCAD loads this when its GUI starts."""
 
 import FreeCADGui
 
 from . import (commands, constraint_faces_view, fem_buttons, mesh_menu, meshing_process, preferences, size_view,
                translations, view_provider)
 
-translations.load()  # before any text is used
+translations.load()  # must come before any text is used
 commands.register()
 view_provider.register()
 size_view.register()

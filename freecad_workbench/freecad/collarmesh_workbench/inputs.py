@@ -8,7 +8,7 @@ from .program import MesherError
 from .translations import translate
 
 KINDS = ("Part::Feature", "App::Part", "App::LinkGroup", "Mesh::Feature")
-REST = "Rest"  # the group of the triangles in no segment
+REST = "Rest"  # the group of triangles that are in no segment
 
 
 def triangles_of(part):
@@ -32,14 +32,14 @@ def shape_of(part):
 
 
 def can_be_meshed(obj):
-    """Returns whether meshing is worth a try. Called often, so it only checks kinds; shapes that are no closed solids
-    are rejected when they are meshed."""
+    """Returns whether meshing may work. Called often, so it only checks kinds; shapes that are no closed
+    solids are rejected when they are meshed."""
     linked = obj.getLinkedObject(True)
     return linked is not None and any(linked.isDerivedFrom(kind) for kind in KINDS)
 
 
 def file_name(part):
-    """Returns a file name for `write`, in a format that fits."""
+    """Returns a file name for `write`, with the extension of a suitable format."""
     return "shape.brep" if triangles_of(part) is None else "triangles.msh"
 
 
@@ -60,7 +60,8 @@ def write(part, path):
 
 
 def segments(mesh):
-    """Returns for each triangle the number of its segment, from 1, the first one if it is in several; 0: in none."""
+    """Returns for each triangle the number of its segment, from 1: the first one if it is in several, 0 if it
+    is in none."""
     numbers = numpy.zeros(mesh.CountFacets, dtype=int)
     for number in range(mesh.countSegments(), 0, -1):
         numbers[numpy.array(mesh.getSegment(number - 1), dtype=int)] = number

@@ -1,14 +1,14 @@
-"""Actions from Qt's main loop. FreeCAD's progress bar runs timers in the middle of a recompute, when no document may be
-changed: a nested recompute, or an object deleted meanwhile, can crash FreeCAD."""
+"""Runs actions from Qt's main loop. FreeCAD's progress bar runs timers in the middle of a recompute, when no
+document may be changed: a nested recompute, or an object deleted meanwhile, can crash FreeCAD."""
 
 import FreeCAD
 from PySide import QtCore
 
-AGAIN = 100  # milliseconds
+AGAIN = 100  # milliseconds between attempts
 
 
 def later(action, milliseconds=0):
-    """Calls `action` after this time, or when no document is being recomputed any more."""
+    """Calls `action` after this time or, if a document is being recomputed then, after that."""
     QtCore.QTimer.singleShot(milliseconds, lambda: _try(action))
 
 

@@ -9,7 +9,7 @@ from .program import MesherError, find_program
 from .translations import translate
 from .work_folder import WorkFolder
 
-# FreeCAD's own export writes only some of these, and loses groups of faces in .inp.
+# FreeCAD's own export writes only some of these formats, and loses groups of faces in .inp.
 FORMATS = (
     ("VTK, ParaView", ".vtu"), ("VTK", ".vtk"), ("Gmsh", ".msh"), ("Gmsh 2.2", ".msh2"), ("Abaqus, CalculiX", ".inp"),
     ("I-DEAS, SALOME", ".unv"), ("Medit", ".mesh"), ("TetGen", ".ele"), ("STL", ".stl"), ("OBJ", ".obj"), ("PLY", ".ply"),
@@ -28,8 +28,8 @@ def extension_in(text):
 
 
 def _run(mesh_object, arguments):
-    """Runs the program and returns its standard output; `MESH` among the arguments is the object's mesh. Raises
-    MesherError."""
+    """Runs the program and returns its standard output. The word `MESH` among the arguments stands for the
+    object's mesh. Raises MesherError."""
     if not elements.is_there(mesh_object.FemMesh):
         raise MesherError(translate("collarmesh", "{label} has no mesh yet.").format(label=mesh_object.Label))
     program = find_program(preferences.program())
@@ -51,8 +51,8 @@ def _run(mesh_object, arguments):
 
 
 def export(mesh_object, path):
-    """Writes the object's mesh, with its groups by sub-shapes and their names if the format has a place for them. The
-    path's extension gives the format. Raises MesherError."""
+    """Writes the object's mesh, with its groups by sub-shapes and, if the format can store them, their names.
+    The path's extension determines the format. Raises MesherError."""
     _run(mesh_object, ["convert", "MESH", "-o", path, "--quiet"])
 
 

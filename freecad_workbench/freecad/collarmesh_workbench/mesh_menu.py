@@ -1,4 +1,4 @@
-"""The context menus of mesh objects, ours and those of FreeCAD's meshers."""
+"""The context menus of mesh objects: of ours and of those of FreeCAD's meshers."""
 
 import FreeCADGui
 from PySide import QtCore, QtGui
@@ -14,7 +14,7 @@ def fill(menu, obj):
     """Fills the menu of one of our mesh objects."""
     has_mesh = elements.is_there(obj.FemMesh)
     for name, text, action, enabled in (
-        ("edit", translate("collarmesh", "Edit mesh"), edit, True),  # like a double click
+        ("edit", translate("collarmesh", "Edit mesh"), edit, True),  # as on a double click
         ("mesh_again", translate("collarmesh", "Mesh again"), mesh_again, True),
         ("export", translate("collarmesh", "Export mesh..."), export, has_mesh),
         ("statistics", translate("collarmesh", "Statistics..."), statistics, has_mesh),
@@ -33,7 +33,7 @@ def fill_for_others(menu, obj):
 def _add(menu, name, text, action, obj):
     entry = menu.addAction(text)
     entry.setObjectName("collarmesh_" + name)
-    # Later, when the menu is closed: the object of the menu may be removed.
+    # Run the action later, when the menu is closed: it may remove the menu's object.
     entry.triggered.connect(lambda: later(lambda: _run(action, obj)))
     return entry
 
@@ -49,7 +49,7 @@ def _run(action, obj):
 
 
 def edit(obj):
-    """Opens the panel."""
+    """Opens the panel of the object."""
     document = FreeCADGui.getDocument(obj.Document.Name)
     if document.getInEdit():
         document.resetEdit()
@@ -57,7 +57,7 @@ def edit(obj):
 
 
 def mesh_again(obj):
-    """Opens the panel and starts meshing."""
+    """Opens the panel of the object and starts meshing."""
     edit(obj)
     panel = obj.ViewObject.Proxy.panel
     if panel is not None:
@@ -69,7 +69,7 @@ def export(obj):
     title = translate("collarmesh", "Export mesh")
     dialog = QtGui.QFileDialog(FreeCADGui.getMainWindow(), title, "", mesh_file.filters())
     dialog.setAcceptMode(QtGui.QFileDialog.AcceptSave)
-    # The dialog adds the extension itself, so that it asks before it overwrites a file.
+    # Let the dialog add the extension, so that it asks before it overwrites a file.
     dialog.filterSelected.connect(lambda text: dialog.setDefaultSuffix(mesh_file.extension_in(text)))
     dialog.setDefaultSuffix(mesh_file.extension_in(dialog.selectedNameFilter()))
     dialog.selectFile(f"{obj.Label.replace('/', '_')}.{dialog.defaultSuffix()}")

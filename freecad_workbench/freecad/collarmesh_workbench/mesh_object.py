@@ -10,7 +10,7 @@ from . import (compatibility, constraint_faces, contact_groups, contacts, elemen
 from .program import GUARANTEE_MISSED, Job, MesherError
 from .translations import translate
 
-TINY = 0.01  # of the target edge length: shorter edges are probably unintended
+TINY = 0.01  # shorter edges, relative to the target edge length, are probably unintended
 
 
 def add_properties(obj):
@@ -20,7 +20,7 @@ def add_properties(obj):
 
 
 class MeshProxy(compatibility.Stateless):
-    """The Python side of the object. FEM's tools check `Type`."""
+    """The Python part of the object. FEM's tools check `Type`."""
 
     Type = mesh_properties.TYPE
 
@@ -32,7 +32,7 @@ class MeshProxy(compatibility.Stateless):
         add_properties(obj)
 
     def execute(self, obj):
-        """Handles a recompute by FreeCAD: the mesh stays, and is marked if it is out of date."""
+        """Handles a recompute by FreeCAD: keeps the mesh, and marks it if it is out of date."""
         up_to_date.show(obj)
 
 
@@ -47,7 +47,8 @@ def make(document, part=None, name="FEMMeshCollarmesh"):
 
 
 def start(obj, program="", settings=None):
-    """Returns a Job to run, with the shape written; `settings` replaces the object's own. Raises MesherError."""
+    """Returns a Job that is ready to run, with the shape written. `settings` replaces the object's own.
+    Raises MesherError."""
     part = mesh_properties.part_to_mesh(obj)
     state = up_to_date.state_of(obj)
     settings = settings or mesh_properties.settings_of(obj)
@@ -107,7 +108,7 @@ def tiny_edges(shape, size):
 
 
 def finish(obj, job, exit_code=0):
-    """Puts the mesh of a job that has ended into the object. Raises MesherError; the object keeps its mesh then."""
+    """Puts the mesh of a completed job into the object. Raises MesherError; the object keeps its mesh then."""
     job.require_success(exit_code)
     fem_mesh = Fem.read(job.mesh)
     if elements.dimension(fem_mesh) != job.dimension:
@@ -132,14 +133,14 @@ def finish(obj, job, exit_code=0):
 
 
 def remesh(obj, progress=None):
-    """Makes the object's mesh again and waits; returns the program's report. Raises MesherError."""
+    """Makes the object's mesh again and waits. Returns the program's report. Raises MesherError."""
     with start(obj) as job:
         exit_code = job.run(progress)
         return finish(obj, job, exit_code)
 
 
 def mesh(shape_or_object, document, analysis, name, settings):
-    """See `collarmesh_workbench.mesh`."""
+    """Makes a mesh object, see `collarmesh_workbench.mesh`."""
     part = shape_or_object if hasattr(shape_or_object, "Document") else None
     document = document or (part.Document if part else FreeCAD.ActiveDocument) or FreeCAD.newDocument()
     added = []

@@ -8,7 +8,7 @@ from .translations import doc, translate
 
 TYPE = "Fem::FemMeshCollarmesh"  # the type that FEM's tools check
 
-# Names shared with FreeCAD's Gmsh object, which macros use as well, come first. Lines: type, name, field of
+# First come the names that FreeCAD's Gmsh object has, too, and that macros use. Rows: type, name, field of
 # Settings, group in the property editor, text.
 SIZES, FEATURES, QUALITY, RUN = "Sizes", "Features", "Quality", "Run"
 PROPERTIES = (
@@ -172,8 +172,8 @@ PROPERTIES = (
     ("App::PropertyFloat", "TimeLimit", "time_limit", RUN, doc("Give up after so many seconds; 0: never")),
 )
 ORDERS = ["1st", "2nd"]
-DIMENSIONS = ["From Shape", "1D", "2D", "3D"]  # as Gmsh's object has them
-REPAIRS = {"Automatic": "auto", "None": "none", "Wrap": "wrap"}  # the program's words
+DIMENSIONS = ["From Shape", "1D", "2D", "3D"]  # the same as in Gmsh's object
+REPAIRS = {"Automatic": "auto", "None": "none", "Wrap": "wrap"}  # values: the program's words
 REFINEMENTS = {"Solid": "solid_sizes", "Face": "face_sizes", "Edge": "edge_sizes"}
 
 
@@ -182,7 +182,7 @@ def is_ours(obj):
 
 
 def add_properties(obj):
-    """Add the properties that the object does not have yet, with their defaults."""
+    """Adds the properties that the object does not have yet, with their defaults."""
     defaults = Settings(improve=preferences.improve_level())
     have = obj.PropertiesList
     if "Shape" not in have and "Part" not in have:
@@ -230,7 +230,7 @@ def add_properties(obj):
 
 
 def settings_of(obj):
-    """Returns the Settings of the object's properties. Raises MesherError."""
+    """Returns the Settings that the object's properties represent. Raises MesherError."""
     values = {}
     for _kind, name, field, _group, _text in PROPERTIES:
         value = getattr(obj, name)
@@ -251,7 +251,7 @@ def settings_of(obj):
 
 
 def apply_settings(obj, settings):
-    """Sets the properties from Settings; sizes by sub-shape have no property."""
+    """Sets the properties from Settings, except sizes by sub-shape, which have no property."""
     for _kind, name, field, _group, _text in PROPERTIES:
         setattr(obj, name, getattr(settings, field))
     obj.ElementOrder = ORDERS[settings.order - 1]
@@ -260,7 +260,8 @@ def apply_settings(obj, settings):
 
 
 def add_refinement(region, part, settings):
-    """Adds the sizes of a mesh region object; the smallest counts if several have one."""
+    """Adds the sizes of a mesh region object. If several objects give a size to a sub-shape, the smallest
+    counts."""
     size = getattr(region.CharacteristicLength, "Value", region.CharacteristicLength)
     if not size:
         return

@@ -1,8 +1,8 @@
 """Undo and redo of a meshing.
-
-FreeCAD 0.20 writes a new mesh into the very mesh that its undo remembers, so that undo brings the new one back. Here
-the meshes of an object are kept by number. The number is a property, which undo and redo get right, and whose mesh is
-put in place then. No two meshes have the same number, also of objects that have the same name one after the other."""
+FreeCAD 0.20 writes a new mesh into the same mesh data that its undo remembers, so undo would bring the new
+mesh back. Therefore this module keeps the meshes of an object by number. The number is a property, which undo
+and redo restore correctly; the mesh with that number is then put in place. All meshes have different numbers,
+even those of objects that have the same name one after the other."""
 
 import itertools
 import time
@@ -14,9 +14,9 @@ from .translations import doc
 
 NUMBER = "MeshNumber"
 KEPT = 20  # as many steps of undo as FreeCAD has by default
-NODES = 4_000_000  # nodes in all kept meshes of an object; the last two are kept in any case
+NODES = 4_000_000  # limit on the nodes of all kept meshes of an object; the last two meshes are kept in any case
 
-_numbers = itertools.count(int(time.time()))  # differs from numbers of earlier sessions, which files contain
+_numbers = itertools.count(int(time.time()))  # differs from the numbers of earlier sessions, which files contain
 _kept = {}  # by document and object: {number: mesh}, the current one last
 _in_place = {}  # by document and object: the object's number when this module last handled its mesh
 
@@ -41,7 +41,7 @@ def replace(obj, fem_mesh):
     meshes = _kept.setdefault(_key(obj), {})
     before, number = getattr(obj, NUMBER), next(_numbers)
     kept = meshes.pop(before, None)
-    # Other code may have cleared or replaced the mesh since then.
+    # Other code may have cleared or replaced the mesh.
     meshes[before] = kept if kept is not None and same(kept, obj.FemMesh) else obj.FemMesh.copy()
     meshes[number] = fem_mesh
     while len(meshes) > 2 and (len(meshes) > KEPT or sum(each.NodeCount for each in meshes.values()) > NODES):
@@ -52,7 +52,7 @@ def replace(obj, fem_mesh):
 
 
 def same(first, second):
-    """Returns whether it is the same mesh. Groups do not count."""
+    """Returns whether two meshes are the same, regardless of groups."""
     if any(
         getattr(first, each) != getattr(second, each)
         for each in ("NodeCount", "EdgeCount", "FaceCount", "VolumeCount")
@@ -61,7 +61,7 @@ def same(first, second):
     numbers = range(1, first.NodeCount + 1, max(1, first.NodeCount // 100))
     try:
         return all(first.getNodeById(number) == second.getNodeById(number) for number in numbers)
-    except ValueError:  # a mesh of another mesher, with gaps in its numbers
+    except ValueError:  # a mesh of another mesher may have gaps in its numbers
         return False
 
 
@@ -77,7 +77,7 @@ class Observer:
             if not mesh_properties.is_ours(each):
                 continue
             number = getattr(each, NUMBER)
-            if number != _in_place.get(_key(each)):  # otherwise this undo step did not change the mesh
+            if number != _in_place.get(_key(each)):  # if equal, this undo step did not change the mesh
                 _in_place[_key(each)] = number
                 _put(each, _kept.get(_key(each), {}).get(number))
             up_to_date.show(each)
@@ -89,7 +89,7 @@ class Observer:
 
 
 def _put(obj, fem_mesh):
-    """Replaces the object's mesh, if it is another one; None: it is no longer kept."""
+    """Replaces the object's mesh if it is a different one. None: that mesh is no longer kept."""
     if fem_mesh is None or same(fem_mesh, obj.FemMesh):
         return
     fem_mesh = fem_mesh.copy()

@@ -1,7 +1,7 @@
-"""Runs of the mesher beside FreeCAD's window: one process for each mesh object, whether its panel is open or not.
-
-An object's mesh is replaced when a run has ended well, and only then. A run is killed when its object is deleted, when
-its document is closed and when FreeCAD ends."""
+"""Runs of the mesher beside FreeCAD's window: one process for each mesh object, whether its panel is open or
+not.
+An object's mesh is replaced only when a run has succeeded. A run is killed when its object is deleted, when
+its document is closed, and when FreeCAD ends."""
 
 import contextlib
 import dataclasses
@@ -20,7 +20,7 @@ from .translations import translate
 
 WAIT = 200  # milliseconds until a run that has ended checks again whether its mesh can be put in place
 _runs = {}  # runs in progress, by (document, object)
-_outcomes = {}  # of the last runs
+_outcomes = {}  # outcomes of the last runs
 
 
 @dataclasses.dataclass
@@ -30,8 +30,8 @@ class Outcome:
     report: dict = None  # None: no mesh
     error: str = ""
     cancelled: bool = False
-    page: str = ""  # path of the report for people
-    part_changed: bool = False  # while it was being meshed
+    page: str = ""  # path of the report as a page
+    part_changed: bool = False  # whether the part changed during meshing
     warnings: tuple = ()  # warnings about the shape, from before the run
     mesh_number: int = 0  # see mesh_undo
 
@@ -46,8 +46,8 @@ def run_of(obj):
 
 
 def outcome_of(obj):
-    """Returns the outcome of the object's last run since its document was opened, else None. The mesh may differ from
-    that of the run, for example after undo."""
+    """Returns the outcome of the object's last run since its document was opened, else None. The object's
+    mesh may be another one, for example after undo."""
     outcome = _outcomes.get(_key(obj))
     if outcome is None or outcome.report is None:
         return outcome
@@ -98,7 +98,7 @@ class MeshingProcess(QtCore.QObject):
         self._process.kill()
 
     def abandon(self):
-        """Ends the run at once, without an outcome, because nothing is left that could use it."""
+        """Ends the run at once, without an outcome: nothing is left that could use it."""
         self._abandoned = True
         if processes.end(self._process):
             self.job.folder.program_is(None)
@@ -120,7 +120,7 @@ class MeshingProcess(QtCore.QObject):
         self._read()
         self.progress = Progress("load", 1, self.progress.tets if self.progress else 0)
         self.advanced.emit(self.progress)
-        later(lambda: self._end(exit_code), 20)  # after the window shows that
+        later(lambda: self._end(exit_code), 20)  # after the window has been redrawn
 
     def _end(self, exit_code):
         if self._abandoned:
@@ -133,7 +133,7 @@ class MeshingProcess(QtCore.QObject):
         key = _key(self.object)
         try:
             outcome = self._outcome(exit_code)
-        except Exception as error:  # exceptions of FreeCAD: the panel continues
+        except Exception as error:  # exceptions of FreeCAD; the panel continues
             FreeCAD.Console.PrintError(traceback.format_exc())
             outcome = Outcome(error=f"{type(error).__name__}: {error}")
         _outcomes[key] = outcome
@@ -168,8 +168,8 @@ class MeshingProcess(QtCore.QObject):
         return outcome
 
     def _something_else_is_edited(self):
-        """Returns whether another object is edited in an undo step that is still open, so that "Cancel" can undo it:
-        putting a mesh in place would end that step."""
+        """Returns whether another object is being edited in an undo step that is still open, so that "Cancel"
+        can undo it. Putting a mesh in place would end that step."""
         document = self.object.Document
         if not document.HasPendingTransaction:
             return False
@@ -179,7 +179,7 @@ class MeshingProcess(QtCore.QObject):
 
 @contextlib.contextmanager
 def _told_in_report_view():
-    """Reports failures after the mesh is in place, which do not affect the mesh."""
+    """Reports a failure of what follows the mesh in the report view; the mesh itself is not affected."""
     try:
         yield
     except Exception:
@@ -187,7 +187,7 @@ def _told_in_report_view():
 
 
 def _tell(obj, outcome):
-    """Tells users whose panel is closed."""
+    """Tells the user about the outcome if the panel is closed."""
     text = translate("collarmesh", "{object}: the mesh is made")
     if outcome.report is None:
         text = translate("collarmesh", "{object}: no new mesh is made")
@@ -215,7 +215,7 @@ def _forget(condition):
 
 
 def _abandon_all():
-    with contextlib.suppress(RuntimeError):  # Qt's objects may be gone
+    with contextlib.suppress(RuntimeError):  # Qt's objects may no longer exist
         _forget(lambda _key: True)
 
 

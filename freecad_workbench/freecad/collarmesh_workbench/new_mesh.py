@@ -1,4 +1,4 @@
-"""Removal of a mesh object that the button has made and the user does not want."""
+"""Removal of a mesh object that the button has made and that the user does not want."""
 
 import FreeCAD
 
@@ -8,7 +8,7 @@ CREATION = mark("collarmesh", "FEM mesh from shape by collarmesh")  # name of th
 
 
 def take_back(document_name, name):
-    """Undoes its creation, or removes it if that was not the last step."""
+    """Undoes the object's creation, or removes it if its creation was not the last step."""
     document = FreeCAD.listDocuments().get(document_name)
     if document is None or document.getObject(name) is None:
         return

@@ -1,4 +1,4 @@
-"""Numbers as people type and read them: with a decimal comma or point, with units, and as sums."""
+"""Numbers as users type and read them: with a decimal comma or point, with units, and as sums."""
 
 import math
 import sys
@@ -10,7 +10,7 @@ from .translations import translate
 
 
 def shown(text):
-    """Replaces the decimal point in a text of numbers by the sign of the user's language."""
+    """Replaces the decimal points in a text of numbers by the decimal sign of the user's language."""
     return text.replace(".", QtCore.QLocale().decimalPoint())
 
 
@@ -31,10 +31,10 @@ def quantity(text, obj):
         raise ValueError(translate("collarmesh", "there is no value"))
     try:
         value = _parsed(_with_point(text), obj)
-    except Exception as error:  # FreeCAD's exceptions have many base classes
+    except Exception as error:  # FreeCAD's exceptions have various base classes
         raise ValueError(translate("collarmesh", "'{text}' is no value").format(text=text)) from error
     _require_finite(value.Value, text)
-    if value.Value == sys.float_info.min:  # FreeCAD's value of an empty text
+    if value.Value == sys.float_info.min:  # FreeCAD's value for an empty text
         raise ValueError(translate("collarmesh", "'{text}' is no value").format(text=text))
     return value
 

@@ -1,5 +1,5 @@
-"""Shapes without a volume: their kinds, the elements for meshing them, and whether they may be closed. Works without
-the GUI."""
+"""Shapes without a volume: their kinds, the elements that they can be meshed with, and the question whether
+to close them. Works without the GUI."""
 
 import collections
 
@@ -7,15 +7,16 @@ from . import inputs
 from .program import MesherError
 from .translations import translate
 
-SEWN = 1e-5  # of the diagonal: faces this close meet, as in the program
-SHAPES = 5  # shapes whose open edges are remembered
+SEWN = 1e-5  # relative to the diagonal: faces this close count as meeting, as in the program
+SHAPES = 5  # number of shapes whose open edges are remembered
 
 _known = collections.deque(maxlen=SHAPES)  # (shape, number of its open edges)
 
 
 def dimension(part, asked, fill_holes):
-    """Returns the dimension of the elements: the requested one, or, for 0, by the shape: 3 for solids and shapes that
-    enclose a volume, also after filling holes; 2 for faces and open surfaces; 1 for wires."""
+    """Returns the dimension of the elements: `asked` or, if that is 0, the dimension of the shape. It is 3
+    for solids and for shapes that enclose a volume, also after filling holes; 2 for faces and open surfaces;
+    1 for wires."""
     if asked:
         return asked
     shape = _without_volume(part)
@@ -27,8 +28,8 @@ def dimension(part, asked, fill_holes):
 
 
 def check(part, dimension_of_elements, fill_holes):
-    """Raises MesherError if tetrahedra are requested for wires, faces or open surfaces, unless their holes may be
-    filled, and if there are no faces for triangles, or no edges for lines."""
+    """Raises MesherError if a shape cannot be meshed with such elements: tetrahedra for wires, faces or open
+    surfaces (unless their holes may be filled), triangles without faces, lines without edges."""
     text = fault(part, dimension_of_elements)
     if not text and dimension_of_elements == 3 and not fill_holes and question(part):
         text = question(part) + " " + translate("collarmesh", "Or set “Fill holes of open surfaces”.")
@@ -37,7 +38,7 @@ def check(part, dimension_of_elements, fill_holes):
 
 
 def fault(part, dimension_of_elements=3):
-    """Returns why the shape cannot be meshed with such elements; "" if it can."""
+    """Returns the reason why the shape cannot be meshed with such elements; "" if it can."""
     shape = inputs.shape_of(part)
     text = ""
     if dimension_of_elements == 2 and not shape.isNull() and not shape.Faces:
@@ -74,20 +75,20 @@ def question(part):
 
 
 def word(part, chosen):
-    """Returns the panel's text on a dimension chosen from the shape; "" for solids."""
+    """Returns the panel's text on a dimension that follows from the shape; "" for solids."""
     text = {1: translate("collarmesh", "{label} has edges only: it is meshed with lines, for beams."),
             2: translate("collarmesh", "{label} encloses no volume: it is meshed with triangles, for shells.")}.get(chosen, "")
     return text.format(label=part.Label)
 
 
 def _without_volume(part):
-    """Returns the shape of an object that has no solids; None for others."""
+    """Returns the shape of an object if it has no solids, else None."""
     shape = inputs.shape_of(part)
     return None if shape.isNull() or shape.Solids else shape
 
 
 def open_edges(shape):
-    """Returns how many edges border only one face after sewing faces that meet."""
+    """Returns the number of edges that border only one face after sewing faces that meet."""
     found = next((count for known, count in _known if known.isSame(shape)), None)
     if found is None:
         found = _count_open_edges(shape)

@@ -5,11 +5,11 @@ from PySide import QtCore, QtGui
 from .translations import translate
 
 
-NODES = {1: (2, 3), 2: (3, 6), 3: (4, 10)}  # nodes of elements, by dimension, for both orders
+NODES = {1: (2, 3), 2: (3, 6), 3: (4, 10)}  # numbers of nodes of elements, by dimension, for both orders
 
 
 class OrderSection(QtGui.QWidget):
-    """`changed` is emitted when another order is chosen."""
+    """A form with a choice. Emits `changed` when another order is chosen."""
 
     changed = QtCore.Signal()
 
@@ -37,7 +37,7 @@ class OrderSection(QtGui.QWidget):
         self.combo.currentIndexChanged.connect(self._choose)
 
     def order(self):
-        """Returns 1 or 2."""
+        """Returns the chosen order, 1 or 2."""
         return self.combo.currentIndex() + 1
 
     def show_dimension(self, dimension):

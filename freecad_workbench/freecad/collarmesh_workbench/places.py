@@ -1,4 +1,5 @@
-"""The findings of a run, by place: problems, warnings, repairs, nodes off their faces. Independent of the window."""
+"""The findings of a run, by place: problems, warnings, repairs, nodes off their faces. Independent of the
+window."""
 
 import dataclasses
 import re
@@ -23,18 +24,19 @@ class Place:
 
 
 def told(kind, text, points=()):
-    """Returns a message with the places that it mentions."""
+    """Returns a Place with a message and the places that it mentions."""
     found = tuple(tuple(map(float, numbers)) for numbers in _POINT.findall(text))
     return Place(kind, text, found or tuple(map(tuple, points)), tuple(dict.fromkeys(_SUBSHAPE.findall(text))))
 
 
 def in_error(message):
-    """Returns a Place for each line of a run without a mesh."""
+    """Returns a Place for each line of the message of a run without a mesh."""
     return [told(PROBLEM, line) for line in message.splitlines() if line.strip()]
 
 
 def in_report(report, warnings=()):
-    """Returns the Places of a run with a mesh, each message once; `warnings` are not in the report."""
+    """Returns the Places of a run with a mesh, each message once. `warnings` are those that the report does
+    not have."""
     places = [told(PROBLEM, each["message"], [each["where"]]) for each in report["check"]["findings"]]
     if report["message"] and not report["guarantees_hold"]:
         places.insert(0, told(PROBLEM, report["message"]))

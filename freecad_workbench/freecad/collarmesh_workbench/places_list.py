@@ -5,12 +5,13 @@ from PySide import QtCore, QtGui
 from . import places
 from .translations import translate
 
-MOST = 200  # rows of one kind
+MOST = 200  # rows shown of one kind
 MOST_PIXELS = 10000  # height of a row
 
 
 class PlacesList(QtGui.QTreeWidget):
-    """A click, or the arrow keys, emit `picked` with the Places of the row: one, or all of a heading."""
+    """A tree of findings. Emits `picked` on a click or an arrow key: with the Place of the row, or with all
+    Places of a heading."""
 
     picked = QtCore.Signal(object)
 
@@ -27,7 +28,7 @@ class PlacesList(QtGui.QTreeWidget):
         self.setToolTip(translate("collarmesh", "Click to see the place"))
         self.itemClicked.connect(self._clicked)
         self.currentItemChanged.connect(self._moved)
-        self._moved_to = None  # by the current click
+        self._moved_to = None  # item that the current click has moved to
         self._filling = False
 
     def fill(self, found):
@@ -60,7 +61,7 @@ class PlacesList(QtGui.QTreeWidget):
         return top
 
     def pick_first(self, kind):
-        """Picks the first row of the kind, like a click."""
+        """Picks the first row of the kind, as a click would."""
         for i in range(self.topLevelItemCount()):
             top = self.topLevelItem(i)
             if top.data(0, QtCore.Qt.UserRole)[0].kind == kind:
@@ -81,7 +82,7 @@ class PlacesList(QtGui.QTreeWidget):
             self._pick(item)
 
     def _clicked(self, item, _column):
-        """Handles a click on the current row: the view may have moved since."""
+        """Handles a click on the current row, because the view may have moved since it was picked."""
         if item is not self._moved_to:
             self._pick(item)
 
@@ -90,7 +91,7 @@ class PlacesList(QtGui.QTreeWidget):
 
 
 class _Wrapped(QtGui.QStyledItemDelegate):
-    """Rows as high as their texts need."""
+    """Makes rows as high as their texts need."""
 
     def sizeHint(self, option, index):
         tree = self.parent()

@@ -1,4 +1,4 @@
-"""Merges triangles into few planar faces: triangles in one plane become one face, with its holes."""
+"""Merges triangles into few planar faces. Triangles in one plane become one face, with its holes."""
 
 import math
 
@@ -6,13 +6,13 @@ import numpy
 import Part
 
 FLAT = 0.1  # degrees: triangles whose normals differ by less are in one plane
-COARSE = 1  # degrees; doubled again and again if there would be too many faces
+COARSE = 1  # degrees; doubled until there are not too many faces
 MOST = 2000
 
 
 def faces(points, triangles):
-    """Faces for triangles (numbers of `points`, counterclockwise seen from outside), the largest first. Of a surface that
-    is curved so finely that it has too many planes, the faces are only near the triangles."""
+    """Returns faces for triangles (numbers of `points`, counterclockwise as seen from outside), the largest
+    first. If a finely curved surface would have too many planes, its faces are only near the triangles."""
     normals = numpy.cross(points[triangles[:, 1]] - points[triangles[:, 0]],
                           points[triangles[:, 2]] - points[triangles[:, 0]])
     areas = numpy.linalg.norm(normals, axis=1)
@@ -40,8 +40,8 @@ def _neighbours(triangles):
 
 
 def _pieces(normals, areas, neighbours, angle):
-    """Returns connected triangles whose normals are within `angle` of that of the first one, largest triangles
-    first."""
+    """Returns pieces: connected triangles whose normals are within `angle` of the normal of the first one.
+    Begins with the largest triangles."""
     least, free, pieces = math.cos(math.radians(angle)), [True] * len(normals), []
     vectors = normals.tolist()
     for seed in numpy.argsort(-areas, kind="stable").tolist():
@@ -50,7 +50,7 @@ def _pieces(normals, areas, neighbours, angle):
         free[seed] = False
         x, y, z = vectors[seed]
         piece = [seed]
-        for number in piece:  # the list grows in this loop
+        for number in piece:  # this loop appends to the list
             for other in neighbours[number]:
                 if free[other]:
                     u, v, w = vectors[other]
@@ -69,7 +69,7 @@ def _face(points, triangles, normal):
         face = Part.makeFace(wires, "Part::FaceMakerBullseye")
         if face.ShapeType != "Face" or not face.isValid():
             raise ValueError
-    except (Part.OCCError, ValueError):  # an outline that touches itself, or crosses itself in the plane
+    except (Part.OCCError, ValueError):  # the outline touches itself, or crosses itself in the plane
         face = Part.Face(_wire(points[triangles[0]], origin, normal))
     if numpy.dot(face.normalAt(*(sum(face.ParameterRange[i:i + 2]) / 2 for i in (0, 2))), normal) < 0:
         face.reverse()
@@ -86,7 +86,7 @@ def _wire(corners, origin, normal):
 
 
 def _loops(triangles):
-    """Returns the outlines of triangles, none of which passes a point twice."""
+    """Returns the outlines of triangles. No outline passes a point twice."""
     edges = {(a, b) for corners in triangles for a, b in zip(corners, corners[1:] + corners[:1])}
     after = {}
     for a, b in sorted(edges):

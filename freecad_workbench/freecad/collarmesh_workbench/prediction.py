@@ -1,4 +1,4 @@
-"""Predicts with the program, before meshing, how many elements sizes will make, and how long that takes."""
+"""Predicts with the program, before meshing, how many elements each size makes and how long that takes."""
 
 import collections
 import contextlib
@@ -17,13 +17,14 @@ WAIT = 400  # milliseconds after the last change
 COUNTING = {"--size-min", "--elements-per-circle", "--elements-across-gap", "--gradation", "--region-size",
             "--patch-size", "--curve-size", "--distance", "--order", "--planar-tolerance", "--weld", "--repair",
             "--repair-tolerance", "--crease-angle"}
-SHAPES = 50  # shapes whose answers are kept
+SHAPES = 50  # number of shapes whose answers are kept
 
 _answers = collections.deque(maxlen=SHAPES)  # (numbers of a shape, {(arguments, size field, size): answer})
 
 
 def _answers_for(numbers):
-    """Returns the answers for the shape with these numbers (see up_to_date); they are kept while FreeCAD runs."""
+    """Returns the answers for the shape with these numbers (see up_to_date). They are kept while FreeCAD
+    runs."""
     for known_numbers, answers in _answers:
         if up_to_date.same_shape(known_numbers, numbers):
             return answers
@@ -32,14 +33,15 @@ def _answers_for(numbers):
 
 
 class Predictions(QtCore.QObject):
-    """Predicts in a process of its own, a moment after the last `ask`. Reports nothing if the program does not know."""
+    """Predicts in a separate process, a moment after the last `ask`. Reports nothing if the program makes no
+    prediction."""
 
     made = QtCore.Signal(object)  # all known answers: {asked size in mm: (number of tetrahedra, seconds)}
 
     def __init__(self, obj, parent=None):
         super().__init__(parent)
         self.object = obj
-        self._folder = None  # contains the shape, once it is needed
+        self._folder = None  # created when needed; contains the shape
         self._shape = ""  # path of the shape's file
         self._numbers = None  # numbers that identify the shape; None: not computed
         self._known = {}  # known answers for the shape
@@ -49,8 +51,8 @@ class Predictions(QtCore.QObject):
         self._timer.timeout.connect(self._begin)
 
     def ask(self, settings, sizes, wait=WAIT):
-        """Predicts for the Settings with each of these sizes (mm); returns the answers that are known already. The
-        program makes no predictions for meshes that are not coarsened."""
+        """Asks for predictions for the Settings with each of these sizes (mm). Returns the answers that are
+        known already. The program makes no predictions for meshes that are not coarsened."""
         answers = self.known(settings, sizes)
         if settings.coarsen:
             self._timer.start(wait)
@@ -63,7 +65,7 @@ class Predictions(QtCore.QObject):
         settings = self._in_mesh_numbers(settings)
         self._arguments = tuple(_arguments(settings))
         self._size_field = json.dumps(settings.size_field) if settings.size_field else ""
-        sizes = [size for size in sizes if size >= settings.size_min]  # the program rejects smaller ones
+        sizes = [size for size in sizes if size >= settings.size_min]  # the program rejects sizes below size_min
         self._sizes = tuple(dict.fromkeys(sizes)) if settings.coarsen else ()
         return self._told()
 
@@ -85,23 +87,23 @@ class Predictions(QtCore.QObject):
         return self._process is not None
 
     def shape_has_changed(self):
-        """Returns whether the shape differs from the one of the answers."""
+        """Returns whether the shape differs from the one that the answers are for."""
         part = compatibility.meshed_object(self.object)
         return self._numbers is not None and not up_to_date.has_shape(part, self._numbers)
 
     def _look_at_shape(self):
-        """Looks at the shape and uses known answers for it, also those made for another panel."""
+        """Looks at the shape and uses the known answers for it, including those made for another panel."""
         if self._numbers is None:
             try:
                 self._numbers = up_to_date.shape_numbers(mesh_properties.part_to_mesh(self.object))
                 self._known = _answers_for(self._numbers)
-            except Exception:  # also OpenCASCADE's; the run reports the problem
+            except Exception:  # OpenCASCADE's exceptions, too; the run reports the problem
                 self._known = {}
 
     def _in_mesh_numbers(self, settings):
         try:
             return contacts.in_mesh_numbers(settings, inputs.shape_of(compatibility.meshed_object(self.object)))
-        except Exception:  # also OpenCASCADE's; the run reports the problem
+        except Exception:  # OpenCASCADE's exceptions, too; the run reports the problem
             return settings
 
     def _stop(self):
@@ -118,7 +120,7 @@ class Predictions(QtCore.QObject):
             if asked:
                 program = find_program(preferences.program())
                 self._write_files()
-        except Exception:  # also OpenCASCADE's; the run reports the problem
+        except Exception:  # OpenCASCADE's exceptions, too; the run reports the problem
             asked = []
         if not asked:
             self._tell()
@@ -157,7 +159,7 @@ class Predictions(QtCore.QObject):
         return os.path.join(self._folder.name, "sizes.json")
 
     def _read(self):
-        """Reads output: the program reports each size as soon as it knows it."""
+        """Reads output. The program writes the prediction for each size as soon as it is known."""
         known = len(self._known)
         while self._process.canReadLine():
             self._learn(bytes(self._process.readLine()))
@@ -170,7 +172,7 @@ class Predictions(QtCore.QObject):
         self._tell()
 
     def _learn(self, line):
-        """Records a line of the program; ignores other lines."""
+        """Records a prediction from a line of the program's output; ignores other lines."""
         with contextlib.suppress(ValueError, KeyError, TypeError):
             made = json.loads(line)["prediction"]
             self._known[self._key(made["size"])] = made["tets"], made["seconds"]
@@ -184,6 +186,6 @@ class Predictions(QtCore.QObject):
 
 def _arguments(settings):
     """Returns the options that affect the number of elements, except the size."""
-    arguments = dataclasses.replace(settings, keep_apart=False).arguments()  # pairs: no flags
+    arguments = dataclasses.replace(settings, keep_apart=False).arguments()  # pairs of option and value, no flags
     pairs = zip(arguments[::2], arguments[1::2])
     return [word for pair in pairs if pair[0] in COUNTING for word in pair]

@@ -1,4 +1,4 @@
-"""The user's preferences: the program's path, its threads and the defaults of new meshes."""
+"""The user's preferences: the program's path, its number of threads, and the defaults of new meshes."""
 
 import FreeCAD
 
@@ -24,7 +24,7 @@ def improve_level():
 
 
 def improve_levels():
-    """Returns texts by level."""
+    """Returns the texts for the levels of improvement."""
     return (translate("collarmesh", "none"), translate("collarmesh", "quick"), translate("collarmesh", "good"),
             translate("collarmesh", "best"))
 

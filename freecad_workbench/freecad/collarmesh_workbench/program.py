@@ -1,4 +1,4 @@
-"""The collarmesh program as a process. This module knows nothing of FreeCAD's documents."""
+"""The collarmesh program as a process. This module knows nothing about FreeCAD's documents."""
 
 import dataclasses
 import json
@@ -12,15 +12,15 @@ from . import subshape_words
 from .translations import translate
 from .work_folder import WorkFolder
 
-GUARANTEE_MISSED = 7  # exit code with which the mesh is written although a guarantee is missed
+GUARANTEE_MISSED = 7  # exit code of a run that writes the mesh although a guarantee is missed
 
 
 class MesherError(RuntimeError):
-    """A fault of the input or the program, with its place and a remedy."""
+    """A fault of the input or of the program, with its place and a remedy."""
 
 
 class Cancelled(MesherError):
-    """The caller cancelled the run."""
+    """Raised if the caller cancelled the run."""
 
 
 @dataclasses.dataclass
@@ -49,10 +49,10 @@ class Settings:
     dimension: int = 0  # dimension of the elements: 3 tetrahedra, 2 triangles, 1 lines; 0: from the shape
     repair: str = "auto"  # or "none", or "wrap"
     fill_holes: bool = False  # fill holes of open surfaces; otherwise such surfaces are rejected
-    keep_apart: bool = False  # give touching solids separate nodes, for contact; otherwise they share nodes
+    keep_apart: bool = False  # give touching solids separate nodes, for contact; if false, they share nodes
     split: list = dataclasses.field(default_factory=list)  # faces whose sides get separate nodes: "Face7"
-    periodic: list = dataclasses.field(default_factory=list)  # pairs of faces: "x", "Face1=Face2", ...
-    interior_node: bool = False  # each tetrahedron gets a corner that is on no face
+    periodic: list = dataclasses.field(default_factory=list)  # pairs of periodic faces: "x", "Face1=Face2", ...
+    interior_node: bool = False  # require that each tetrahedron has a corner on no face
     solid_sizes: dict = dataclasses.field(default_factory=dict)
     face_sizes: dict = dataclasses.field(default_factory=dict)
     edge_sizes: dict = dataclasses.field(default_factory=dict)
@@ -88,8 +88,9 @@ class Settings:
 
 
 def find_program(preferred=""):
-    """Path of the program: `preferred`, the environment variable COLLARMESH_PROGRAM, the one inside the add-on, the
-    PATH, the folder that the add-on is installed in, or its sources. Raises MesherError when it is nowhere."""
+    """Returns the path of the program: the first that exists of `preferred`, the environment variable
+    COLLARMESH_PROGRAM, the program inside the add-on, the PATH, the folder that the add-on is installed in,
+    or its sources. Raises MesherError if none exists."""
     for candidate in (preferred, os.environ.get("COLLARMESH_PROGRAM", "")):
         if candidate:
             if shutil.which(candidate):
@@ -98,7 +99,7 @@ def find_program(preferred=""):
             raise MesherError(text.format(path=candidate))
     addon = pathlib.Path(__file__).resolve().parents[2]
     beside = [addon.parent / "build" / "release" / "bin" / "collarmesh"]
-    if len(addon.parents) > 3:  # installed: WHERE/share/freecad/Mod/collarmesh and WHERE/bin
+    if len(addon.parents) > 3:  # an installed add-on is in WHERE/share/freecad/Mod/collarmesh, and the program in WHERE/bin
         beside.append(addon.parents[3] / "bin" / "collarmesh")
     inside = addon / "bin" / "collarmesh"
     for candidate in (str(inside), "collarmesh", *map(str, beside)):
@@ -116,7 +117,7 @@ def find_program(preferred=""):
 @dataclasses.dataclass
 class Progress:
     phase: str
-    fraction: float  # of the whole run, 0 to 1
+    fraction: float  # share of the whole run, 0 to 1
     tets: int
 
 
@@ -132,17 +133,17 @@ def parse_line(line):
 
 
 def as_warning(line):
-    """Returns a message on the input or its repair as a warning; None for other lines."""
+    """Returns a line as a warning if it is a message on the input or its repair; None for other lines."""
     if line.startswith("repaired: "):
         return "warning: the shape was repaired: " + line.removeprefix("repaired: ")
     return line if line.startswith("warning: ") else None
 
 
 class Job:
-    """One run: a folder with the shape, the mesh and the report, which is removed at the end."""
+    """One run. Its folder, with the shape, the mesh and the report, is removed at the end."""
 
     def __init__(self, settings, program="", threads=0, input_name="shape.brep"):
-        """`threads`: how many the program may use, 0: as many as there are cores; `input_name`: of the file that the
+        """`threads`: largest number of threads, 0: one per core; `input_name`: name of the file that the
         caller writes to `self.shape`."""
         self.folder = WorkFolder()
         self.shape = os.path.join(self.folder.name, input_name)
@@ -156,7 +157,7 @@ class Job:
             self.command += ["--size-field", path]
         self.messages = []
         self.explain = lambda text: text  # rewrites the program's messages in the caller's terms
-        self.names = None  # of faces, edges and solids by their numbers in the mesh; None: the input has none
+        self.names = None  # names of faces, edges and solids by their numbers in the mesh; None: the input has none
 
     def __enter__(self):
         return self
@@ -174,7 +175,8 @@ class Job:
         return None
 
     def _for_people(self, text):
-        """Removes the folder from a message, because it no longer exists when the message is read."""
+        """Removes the folder's path from a message, because the folder no longer exists when the message is
+        read."""
         text = subshape_words.in_names(text, self.names) if self.names else text
         text = text.replace(self.shape, "the shape").replace(self.folder.name + os.sep, "")
         return re.sub(r"(^|^collarmesh: |\. )the shape\b", r"\1The shape", text)
@@ -201,19 +203,19 @@ class Job:
         return report
 
     def add_page(self):
-        """Makes the report for people, too."""
+        """Makes the program write the report as a page, too."""
         self._page = os.path.join(self.folder.name, "report.html")
         self.command += ["--report", self._page]
 
     def move_page(self, path, name):
-        """Moves that report to a permanent place. `name` is what it calls the shape."""
+        """Moves that page to a permanent place. `name` is what it calls the shape."""
         with open(self._page, encoding="utf-8") as page:
             text = page.read().replace(self.shape, _in_page(name)).replace(self.folder.name + os.sep, "")
         with open(path, "w", encoding="utf-8") as moved:
             moved.write(text)
 
     def run(self, progress=None):
-        """Run and wait; returns the exit code. `progress(Progress)` may return False to cancel.
+        """Runs the program and waits. Returns the exit code. `progress(Progress)` may return False to cancel.
         Raises MesherError."""
         try:
             with subprocess.Popen(self.command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
@@ -234,5 +236,5 @@ class Job:
 
 
 def _in_page(name):
-    """Returns a name as it appears in the report's page: in a string of JSON, in a script."""
+    """Returns a name as it appears in the report's page: in a JSON string inside a script."""
     return json.dumps(name)[1:-1].replace("<", "\\u003c")

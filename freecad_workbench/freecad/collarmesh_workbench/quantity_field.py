@@ -1,7 +1,6 @@
 """Fields for numbers with a unit: "2.5 mm", "1/8 in", "3 mm + 1 mm".
-
-FreeCAD's own Gui::InputField is not for panels made in Python: of one that is gone a wrapper may stay (seen in 0.20.2),
-which FEM's panels are then given for theirs, and fail."""
+FreeCAD's own Gui::InputField cannot be used in panels made in Python: a Python wrapper of a deleted one may
+remain (seen in 0.20.2); FEM's panels then get it in place of their own field, and fail."""
 
 import FreeCAD
 from PySide import QtGui
@@ -9,13 +8,13 @@ from PySide import QtGui
 from . import colours, numbers_typed
 from .translations import translate
 
-ROUNDING = 1e-3  # relative: largest change by rounding to FreeCAD's number of decimals
+ROUNDING = 1e-3  # largest relative change by rounding to FreeCAD's number of decimals
 ANY, NOT_NEGATIVE, POSITIVE = range(3)
 
 
 class QuantityField:
-    """A quantity in "mm" or "deg" in a QLineEdit, `widget`; text that is none is red. A number
-    without a unit is in the one that the field has shown last, which depends on FreeCAD's preferences."""
+    """A quantity in "mm" or "deg" in a QLineEdit, `widget`. Text that is no quantity is shown in red. A
+    number without a unit has the unit that the field has shown last, which depends on FreeCAD's preferences."""
 
     def __init__(self, unit, value, obj, allowed=NOT_NEGATIVE, zero=""):
         """`value` in `unit`; `obj` resolves names in the text; `zero`: the meaning of 0 and of an empty field."""
@@ -36,7 +35,7 @@ class QuantityField:
         self._text = self.widget.text()
 
     def value(self):
-        """Returns the value in `unit`: exactly the shown one unless it was edited. Raises ValueError."""
+        """Returns the value in `unit`: exactly the shown one if it was not edited. Raises ValueError."""
         value = self._shown if self.widget.text() == self._text else self._typed(self.widget.text())
         if value < 0 and self.allowed != ANY:
             raise ValueError(translate("collarmesh", "'{text}' is negative").format(text=self.widget.text()))

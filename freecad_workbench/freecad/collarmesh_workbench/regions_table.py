@@ -9,8 +9,8 @@ from .translations import translate
 from .whole_table import WholeTable
 
 MOST = 6  # rows visible without scrolling
-MUCH = 1  # percent
-DIFFERENCE = 3  # column
+MUCH = 1  # percent; larger differences are highlighted
+DIFFERENCE = 3  # number of the column
 
 
 @dataclasses.dataclass

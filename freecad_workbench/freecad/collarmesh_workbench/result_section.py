@@ -40,7 +40,7 @@ class ResultSection(QtGui.QWidget):
         self.message.show()
 
     def show_out_of_date(self, out_of_date):
-        """Shows or hides that the mesh is out of date."""
+        """Shows whether the mesh is out of date."""
         self.out_of_date.setVisible(out_of_date)
         self.guarantees.show_out_of_date(out_of_date)
 
@@ -69,7 +69,7 @@ class ResultSection(QtGui.QWidget):
 
 
 def counts_text(report):
-    """Returns the counts of the mesh, for people."""
+    """Returns the counts of the mesh, as text."""
     mesh = report["mesh"]
     dimension, time = report["options"]["dimension"], _time(report["seconds"]["total"])
     if dimension == 1:
@@ -90,7 +90,7 @@ def counts_text(report):
 
 
 def filled_text(areas):
-    """Describes the holes of the shape that repair has filled, mm²."""
+    """Returns text on the holes of the shape that repair has filled; areas in mm²."""
     if len(areas) == 1:
         text = translate("collarmesh", "A hole of the shape is filled, with {area} mm²; the list has its place.")
     else:

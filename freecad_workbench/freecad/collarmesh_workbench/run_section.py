@@ -9,7 +9,7 @@ from .translations import translate
 
 
 class RunSection(QtGui.QWidget):
-    """Emits `run_clicked` and `cancel_clicked`."""
+    """A form with buttons and progress. Emits `run_clicked` and `cancel_clicked`."""
 
     run_clicked = QtCore.Signal()
     cancel_clicked = QtCore.Signal()
@@ -44,13 +44,13 @@ class RunSection(QtGui.QWidget):
         self.rest()
 
     def ask(self, text, answer=""):
-        """Asks a question; another click on the button, which shows the answer, confirms."""
+        """Asks a question. The button then shows the answer; another click on it confirms."""
         self.question.setText(text)
         self.question.show()
         self.run.setText(answer or translate("collarmesh", "Mesh all the same"))
 
     def asked(self):
-        """Returns the current question; "" without one."""
+        """Returns the current question; "" if there is none."""
         return self.question.text()
 
     def withdraw(self):
@@ -68,7 +68,7 @@ class RunSection(QtGui.QWidget):
         self.left.hide()
 
     def begin(self, time_left):
-        """`time_left`: a TimeLeft."""
+        """Shows that a run has begun. `time_left`: a TimeLeft."""
         self.withdraw()
         self.run.setEnabled(False)
         self.cancel.setEnabled(True)
@@ -80,7 +80,7 @@ class RunSection(QtGui.QWidget):
         self.left.show()
 
     def advance(self, progress, seconds):
-        """`seconds` since the start."""
+        """Shows the progress; `seconds` have passed since the start."""
         self.bar.setValue(int(1000 * progress.fraction))
         self.bar.setFormat(phase_text(progress.phase) + " %p%")
         left = self._time_left.seconds(seconds, progress.fraction)
@@ -96,7 +96,7 @@ class RunSection(QtGui.QWidget):
 
 
 def phase_text(phase):
-    """Returns words for people for the program's name of a stage."""
+    """Translates the program's name of a stage into plain words."""
     return {
         "read": translate("collarmesh", "reading the shape"),
         "repair": translate("collarmesh", "repairing"),

@@ -4,11 +4,12 @@ from . import extent
 from .program import MesherError
 from .translations import translate
 
-LEAST = 1e-5  # of the part's diagonal
+LEAST = 1e-5  # relative to the part's diagonal
 
 
 def check(settings, sources, part):
-    """`sources` are those of the size field with their labels. Raises MesherError, which names the wrong size."""
+    """Checks sizes. `sources` are those of the size field, with their labels. Raises MesherError, which names
+    the wrong size."""
     diagonal = extent.diagonal(part)
     asked = [(translate("collarmesh", "Size of the elements"), settings.size)] if settings.size else []
     for kind, sizes in (("Solid", settings.solid_sizes), ("Face", settings.face_sizes), ("Edge", settings.edge_sizes)):

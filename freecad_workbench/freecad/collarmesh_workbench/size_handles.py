@@ -1,15 +1,16 @@
-"""Handles of a sphere, box or cylinder in the 3D view: those at its middle move it, the others change its lengths."""
+"""Handles of a sphere, box or cylinder in the 3D view. Those at its middle move it; the others change its
+lengths."""
 
 import FreeCAD
 import FreeCADGui
 from pivy import coin
 from PySide import QtCore
 
-SHARE = 0.1  # of the object's diagonal: half a handle's length
-SHARE_OF_VIEW = 0.025  # of the visible height: the least half length
+SHARE = 0.1  # half a handle's length, relative to the object's diagonal
+SHARE_OF_VIEW = 0.025  # least half length, relative to the visible height
 THICK = 1.3  # thickness relative to Coin's arrows
 EVERY = 20  # ms
-LEAST = 1e-3  # of the object's diagonal: dragging makes no length smaller
+LEAST = 1e-3  # shortest length that dragging can make, relative to the object's diagonal
 AXES = {"X": FreeCAD.Vector(1, 0, 0), "Y": FreeCAD.Vector(0, 1, 0), "Z": FreeCAD.Vector(0, 0, 1)}
 
 
@@ -74,7 +75,7 @@ class Handles:
     def __init__(self, obj, kind, changed):
         self.object = obj
         self.changed = changed
-        self.node = coin.SoAnnotation()  # in front of everything
+        self.node = coin.SoAnnotation()  # drawn in front of everything
         self.node.setName("collarmesh_size_handles")
         self.handles = []
         self._hidden_from_mouse = []
@@ -104,7 +105,7 @@ class Handles:
         style = coin.SoPickStyle()
         style.style = coin.SoPickStyle.UNPICKABLE
         root = self.object.ViewObject.RootNode
-        root.insertChild(style, 1)  # behind the handles
+        root.insertChild(style, 1)  # in the scene before the handles
         self._hidden_from_mouse.append((root, style))
 
     def remove(self):
@@ -136,7 +137,7 @@ class Handles:
         self._held = held
 
     def place(self, but=None):
-        """Puts the handles where the object is; `but` is the name of the dragged one."""
+        """Puts the handles where the object is, except the one named `but`, which is being dragged."""
         placement = self.object.Placement
         self._height = self._shown_height()
         scale = max(SHARE * self.object.Shape.BoundBox.DiagonalLength, SHARE_OF_VIEW * self._height)
@@ -161,7 +162,7 @@ class Handles:
         return self.object.Proxy.middle(self.object)
 
     def _end(self, handle):
-        """Returns the end of a length, in the object's frame."""
+        """Returns the position of the handle of a length, in the object's frame."""
         along = AXES[handle.axis] * getattr(self.object, handle.name).Value
         middle = self._middle()
         if handle.name == "Radius":

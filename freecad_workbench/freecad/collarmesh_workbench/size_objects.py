@@ -10,14 +10,14 @@ from .program import MesherError
 from .translations import doc, translate
 
 GROWTH = 0.3
-DEFAULT_SHARE = 0.1  # of the part's diagonal: a new sphere's radius
+DEFAULT_SHARE = 0.1  # radius of a new sphere, relative to the part's diagonal
 TURNED = 1e-9  # rad
 
 
 class Size(compatibility.Stateless):
     """The common part of all size objects: the size inside, and its growth outside."""
 
-    lengths = ()  # lengths of the body: name, share for a new one, text
+    lengths = ()  # lengths of the body: name, share for a new object, text
 
     def __init__(self, obj):
         obj.Proxy = self
@@ -51,7 +51,7 @@ class Size(compatibility.Stateless):
         return FreeCAD.Vector()
 
     def sources(self, obj, _part):
-        """Returns its sources in the program's size field. Raises MesherError."""
+        """Returns the object's sources for the program's size field. Raises MesherError."""
         for name in ("Size", *(name for name, _, _ in self.lengths)):
             if getattr(obj, name).Value <= 0:
                 text = translate("collarmesh", "{label}: {property} is {value}, but must be positive.")
@@ -124,7 +124,7 @@ class Distance(Size):
     TAGS = {
         "Face": "patches",
         "Edge": "curves",
-    }  # in the program's size field, whose tags are FreeCAD's numbers
+    }  # names in the program's size field, whose tags are FreeCAD's numbers
 
     def add_properties(self, obj):
         super().add_properties(obj)
@@ -136,7 +136,7 @@ class Distance(Size):
             obj.setEditorMode("Placement", 2)
 
     def place(self, obj, part):
-        """Does nothing: its place is that of its faces and edges."""
+        """Does nothing: the place follows from the faces and edges."""
 
     def execute(self, obj):
         shapes = [inputs.shape_of(linked).getElement(name) for linked, name in references(obj) if name]
@@ -194,17 +194,17 @@ def references(obj):
 
 
 def kind_and_number(name):
-    """Returns ("Face", 7) for Face7, ("", 0) for names of no sub-shape."""
+    """Returns ("Face", 7) for Face7; ("", 0) for other names."""
     match = re.fullmatch(r"([A-Za-z]+)([1-9]\d*)", name)
     return (match[1], int(match[2])) if match else ("", 0)
 
 
 KINDS = {"Sphere": Sphere, "Box": Box, "Cylinder": Cylinder, "Distance": Distance}
-PROPERTY = "MeshSizeList"  # of a mesh object
+PROPERTY = "MeshSizeList"  # property of a mesh object
 
 
 def kind_of(obj):
-    """Returns a key of KINDS; None for other objects."""
+    """Returns the object's key in KINDS; None for other objects."""
     of_proxy = getattr(getattr(obj, "Proxy", None), "Type", "")
     return next((kind for kind, proxy in KINDS.items() if proxy.Type == of_proxy), None)
 
@@ -233,21 +233,23 @@ def make(mesh_object, kind, size=0, name=""):
 
 
 def sources_of(mesh_object):
-    """Returns the requests of a mesh object's size objects: [(label, source of the program's size field)]. Raises
-    MesherError."""
+    """Returns the sources of a mesh object's size objects: [(label, source of the program's size field)].
+    Raises MesherError."""
     part = compatibility.meshed_object(mesh_object)
     objects = [obj for obj in getattr(mesh_object, PROPERTY) if not compatibility.is_suppressed(obj)]
     return [(obj.Label, source) for obj in objects for source in obj.Proxy.sources(obj, part)]
 
 
 def field_of(mesh_object):
-    """Returns the program's size field for a mesh object's size objects; None without any. Raises MesherError."""
+    """Returns the program's size field for a mesh object's size objects; None if there are none. Raises
+    MesherError."""
     found = [source for _, source in sources_of(mesh_object)]
     return {"sources": found} if found else None
 
 
 def with_labels(message, labels):
-    """Rewrites the program's messages on its size field in terms of the objects. `labels` are those of the sources."""
+    """Rewrites the program's messages on its size field so that they name the objects. `labels` are those of
+    the sources."""
     match = re.search(
         r"\S*: size field: sources\[(\d+)\](?:\.(patches|curves): no \w+ have the tag (\d+))?", message
     )

@@ -37,7 +37,8 @@ def titles():
 
 
 class SizePanel:
-    """All changes are one undo step, together with the creation of a new object; "Cancel" undoes them."""
+    """The panel. All changes are one undo step, together with the creation of a new object; "Cancel" undoes
+    them."""
 
     def __init__(self, obj):
         self.object = obj
@@ -83,7 +84,7 @@ class SizePanel:
         self.fields[name] = field
 
     def _typed(self, field, store):
-        """Stores a value, unless it is invalid; invalid values are red."""
+        """Stores a value if it is valid; shows it in red if not."""
         with contextlib.suppress(ValueError):
             self._changed(store, field.value())
 
@@ -202,7 +203,7 @@ class SizePanel:
     def reject(self):
         document = self.object.Document
         self.close()
-        document.abortTransaction()  # also removes a new object, which the edit's end would commit
+        document.abortTransaction()  # this also removes a new object, which the end of the edit would commit
         FreeCADGui.getDocument(document.Name).resetEdit()
         document.recompute()
         return True

@@ -1,10 +1,10 @@
-"""Sizes to choose from: named ones that fit the shape, from very coarse to very fine."""
+"""Named sizes that fit the shape, from very coarse to very fine."""
 
 import math
 
 from .translations import translate
 
-DEFAULT_PART_OF_DIAGONAL = 1 / 20  # the program's default, which is the medium preset
+DEFAULT_PART_OF_DIAGONAL = 1 / 20  # the program's default, as in the medium preset
 DAY, YEAR = 86400, 365 * 86400  # seconds
 SUPERSCRIPTS = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -27,7 +27,7 @@ def rounded(length, digits=2):
 
 
 def count_text(count):
-    """Returns a rounded number of elements for people: 12 000."""
+    """Returns a rounded number of elements as text: 12 000."""
     if count >= 1e9:
         mantissa, exponent = f"{count:.0e}".split("e")
         return f"{mantissa}·10" + str(int(exponent)).translate(SUPERSCRIPTS)
@@ -35,7 +35,7 @@ def count_text(count):
 
 
 def duration_text(seconds):
-    """Returns a rounded duration."""
+    """Returns a rounded duration as text."""
     if seconds < 1:
         return translate("collarmesh", "< 1 s")
     if seconds < 100:

@@ -9,17 +9,17 @@ from . import asked_sizes, compatibility, numbers_typed
 from .translations import translate
 
 NAME = "collarmesh_sizes"
-# From the smallest size to the largest one; lightness increases, so that the colours can be distinguished in
+# Colours from the smallest size to the largest one. Lightness increases, so that they can be told apart in
 # grey.
 SCALE = numpy.array([(0.267, 0.005, 0.329), (0.230, 0.322, 0.546), (0.128, 0.567, 0.551), (0.369, 0.789, 0.383),
                      (0.993, 0.906, 0.144)])
-WAIT = 300  # milliseconds after a change
-HEIGHT = 12  # height of the scale, pixels
+WAIT = 300  # milliseconds to wait after a change
+HEIGHT = 12  # height of the colour scale, pixels
 
 
 class SizePreview(QtGui.QWidget):
-    """A button that shows the part in colours while it is down. `settings()` returns Settings, or None if there are
-    none."""
+    """A button that shows the part in colours while it is down. `settings()` returns Settings, or None if the
+    fields are invalid."""
 
     def __init__(self, obj, settings):
         super().__init__()
@@ -54,7 +54,7 @@ class SizePreview(QtGui.QWidget):
     def clear(self):
         """Restores the appearance of part and mesh."""
         self._timer.stop()
-        with contextlib.suppress(ReferenceError, RuntimeError):  # objects may be gone
+        with contextlib.suppress(ReferenceError, RuntimeError):  # objects may no longer exist
             if self._node is not None:
                 self._remove()
             for obj, visible in self._before:
@@ -78,7 +78,7 @@ class SizePreview(QtGui.QWidget):
         try:
             self._surface = self._surface or asked_sizes.surface_of(part)
             sizes = asked_sizes.on(self._surface, part, settings)
-        except Exception:  # also OpenCASCADE's; the run reports the problem
+        except Exception:  # OpenCASCADE's exceptions, too; the run reports the problem
             return
         if len(sizes) == 0:
             return
@@ -95,7 +95,7 @@ class SizePreview(QtGui.QWidget):
         if self._node is not None:
             self._remove()
         self._node = coloured(coin, self._surface.places, colours(sizes))
-        self.object.ViewObject.RootNode.addChild(self._node)  # visible although the object is hidden
+        self.object.ViewObject.RootNode.addChild(self._node)  # it stays visible when the object is hidden
 
     def _remove(self):
         node, self._node = self._node, None
@@ -113,7 +113,7 @@ class SizePreview(QtGui.QWidget):
 
 
 def colours(sizes):
-    """Returns red, green and blue for each size, by its logarithm; the same colour if all sizes are equal."""
+    """Returns red, green and blue for each size, by its logarithm; one colour if all sizes are equal."""
     smallest, largest = numpy.log(sizes.min()), numpy.log(sizes.max())
     if largest - smallest < 1e-6:
         return on_scale(numpy.ones(len(sizes)))
@@ -121,7 +121,7 @@ def colours(sizes):
 
 
 def on_scale(shares):
-    """Returns colours, shape (n, 3), for shares from 0 to 1."""
+    """Returns colours, shape (n, 3), for positions on the scale from 0 to 1."""
     marks = numpy.linspace(0, 1, len(SCALE))
     return numpy.stack([numpy.interp(shares, marks, SCALE[:, i]) for i in range(3)], axis=1)
 

@@ -11,12 +11,13 @@ NAME, SIZE, ELEMENTS, TIME = range(4)
 
 
 class SizeSection(QtGui.QWidget):
-    """A table of presets with predictions, and a field. `changed` is emitted when another size is chosen."""
+    """A table of presets with predictions, and a field. Emits `changed` when another size is chosen."""
 
     changed = QtCore.Signal()
 
     def __init__(self, obj, diagonal):
-        """For a mesh object, whose size may be 0 for the default; `diagonal` is that of the shape's bounding box."""
+        """Makes the section for a mesh object, whose size may be 0 for the default. `diagonal` is that of the
+        shape's bounding box."""
         super().__init__()
         self.presets = size_presets.presets(diagonal)
         self.table = self._table()
@@ -85,7 +86,7 @@ class SizeSection(QtGui.QWidget):
             return 0
 
     def _mark_row(self):
-        """Marks the row of the size in the field."""
+        """Marks the row of the size that is in the field."""
         size = self._size_or_zero()
         sizes = [preset for _, preset in self.presets]
         number = sizes.index(size) if size in sizes else len(sizes)

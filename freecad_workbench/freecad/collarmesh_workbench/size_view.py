@@ -23,7 +23,7 @@ class SizeViewProvider(compatibility.Stateless):
         view.LineWidth = 1.5
         if size_objects.kind_of(view.Object) == "Distance":
             view.LineWidth = 4
-        view.Selectable = False  # objects inside must stay within reach of the mouse
+        view.Selectable = False  # so that the mouse can reach objects inside
 
     def attach(self, view):
         self.ViewObject = view
@@ -34,7 +34,7 @@ class SizeViewProvider(compatibility.Stateless):
 
     def setEdit(self, view, mode=0):
         if mode != 0:
-            return None  # FreeCAD's own dragger, by "Transform" in the context menu
+            return None  # FreeCAD's own dragger, opened by "Transform" in the context menu
         if other_panel.is_in_the_way():
             return False
         view.show()

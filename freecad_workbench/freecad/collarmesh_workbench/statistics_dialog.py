@@ -11,7 +11,7 @@ BAR = 160  # width of the longest bar in pixels
 
 
 def page(mesh_object):
-    """Returns HTML. Raises MesherError."""
+    """Returns the statistics as HTML. Raises MesherError."""
     fem_mesh = mesh_object.FemMesh
     if elements.dimension(fem_mesh) < 3:
         return _table(_rows_of_shell(fem_mesh)) + _groups(fem_mesh)
@@ -32,7 +32,7 @@ def page(mesh_object):
 
 
 def _rows_of_shell(fem_mesh):
-    """Returns rows for triangles or lines."""
+    """Returns table rows for a mesh of triangles or lines."""
     of_triangles = elements.dimension(fem_mesh) == 2
     name = translate("collarmesh", "Triangles") if of_triangles else translate("collarmesh", "Lines")
     return [(name, f"{len(elements.numbers(fem_mesh))}"),

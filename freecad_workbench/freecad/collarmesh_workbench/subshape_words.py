@@ -1,4 +1,5 @@
-"""Replaces patches, curves and regions in the program's messages by FreeCAD's names of faces, edges and solids."""
+"""Replaces patches, curves and regions in the program's messages by FreeCAD's names of faces, edges and
+solids."""
 
 import re
 

@@ -1,5 +1,5 @@
-"""A mesh object of Gmsh or Netgen becomes one of ours, and ours one of Gmsh: with sizes, refinements, groups, mesh and
-place in the analysis. Works without the GUI."""
+"""Turns a mesh object of Gmsh or Netgen into one of ours, or ours into one of Gmsh: with sizes, refinements,
+groups, mesh and place in the analysis. Works without the GUI."""
 
 import math
 
@@ -9,7 +9,7 @@ from . import compatibility, extent, inputs, mesh_object, mesh_properties, size_
 from .program import MesherError
 from .translations import doc, translate
 
-# Netgen's names for the growth of sizes and the number of elements along a radius of curvature.
+# Netgen's growth of sizes and number of elements along a radius of curvature, by the names of its levels.
 FINENESS = {
     "VeryCoarse": (0.7, 1),
     "Coarse": (0.5, 1.5),
@@ -19,7 +19,7 @@ FINENESS = {
 }
 COMMON = ("CharacteristicLengthMax", "CharacteristicLengthMin",
           "MeshSizeFromCurvature", "ElementOrder", "ElementDimension")
-# Gmsh's settings without a counterpart of ours: the property, and the value that means it is not used.
+# Gmsh's settings that have no counterpart of ours: each property, and the value with which it is not used.
 ONLY_GMSH = (
     ("RecombineAll", False),
     ("Recombine3DAll", False),
@@ -43,8 +43,8 @@ def mesher_of(obj):
 
 
 def take_over(old):
-    """Replaces a mesh object of Gmsh or Netgen by ours: returns (the new object, what got lost, for people). One undo
-    step. Raises MesherError."""
+    """Replaces a mesh object of Gmsh or Netgen by ours, as one undo step. Returns the new object, and
+    sentences on what was lost. Raises MesherError."""
     mesher = mesher_of(old)
     if not mesher:
         raise MesherError(
@@ -82,8 +82,8 @@ def take_gmsh(old, new):
 
 
 def take_sizes_by_place(refinements, new):
-    """Makes our size objects for those that later versions of FreeCAD have for Gmsh; returns notes on those without a
-    counterpart, which stay in the document."""
+    """Makes our size objects for those that later versions of FreeCAD have for Gmsh. Returns notes on those
+    without a counterpart, which stay in the document."""
     lost = []
     for each in refinements:
         wanted = compatibility.size_by_place(each)
@@ -126,7 +126,8 @@ def value_of(obj, name):
 
 
 def hand_over(old):
-    """Replaces our object by Gmsh's: returns (the new object, what got lost, for people). One undo step."""
+    """Replaces our object by Gmsh's, as one undo step. Returns the new object, and sentences on what was
+    lost."""
     document = old.Document
     notes = []
     with compatibility.transaction(document, translate("collarmesh", "Hand over to Gmsh")):
@@ -142,7 +143,7 @@ def hand_over(old):
         compatibility.set_refinements(new, old.MeshRegionList)
         new.MeshGroupList = old.MeshGroupList
         sizes = getattr(old, size_objects.PROPERTY)
-        if sizes:  # Gmsh ignores them, but they are kept for taking the mesh over again
+        if sizes:  # Gmsh ignores them, but they are kept in case the mesh is taken over again
             new.addProperty(
                 "App::PropertyLinkList", size_objects.PROPERTY, "Base", doc("Sizes of collarmesh"), 4
             )
@@ -166,7 +167,7 @@ def replace(old, new):
     if "ViewObject" in dir(old) and old.ViewObject is not None and new.ViewObject is not None:
         new.ViewObject.Visibility = old.ViewObject.Visibility
     label = old.Label
-    # Removing objects of some kinds also removes the objects that they list.
+    # Removing an object of some kinds also removes the objects that it lists.
     for name in ("MeshRegionList", "MeshRefinementList", "MeshGroupList", size_objects.PROPERTY):
         if name in old.PropertiesList:
             setattr(old, name, [])

@@ -25,17 +25,17 @@ from .view_marks import ViewMarks
 
 WIDTH = 400  # pixels
 MOMENT = 100  # milliseconds; a part that is being dragged changes again within this time
-WHAT_IS_MESHED = ("Shape", "Placement", "Mesh", "LinkPlacement")  # properties with the geometry
+WHAT_IS_MESHED = ("Shape", "Placement", "Mesh", "LinkPlacement")  # properties that hold geometry
 
 
 class MeshTaskPanel:
-    """Shows the run of its object; the run continues when the panel is closed."""
+    """The panel of a mesh object. It shows the object's run, which continues when the panel is closed."""
 
     def __init__(self, obj):
         self.object = obj
         self.run = None
         self.outcome = None  # the outcome that is shown
-        self.known = {}  # predictions
+        self.known = {}  # known predictions
         self.marks = ViewMarks(obj)
         self._build()
         self.predictions = prediction.Predictions(obj)
@@ -51,7 +51,7 @@ class MeshTaskPanel:
             self._show_outcome(meshing_process.outcome_of(obj))
         out_of_date = up_to_date.is_out_of_date(obj)
         self.result.show_out_of_date(out_of_date)
-        self._predict(None if elements.is_there(obj.FemMesh) and not out_of_date else 0)  # only look
+        self._predict(None if elements.is_there(obj.FemMesh) and not out_of_date else 0)  # view only
         self.form.destroyed.connect(self.dismiss)
         self.changes = QtCore.QTimer(self.form, singleShot=True, interval=MOMENT)
         self.changes.timeout.connect(self._ask_anew)
@@ -117,8 +117,8 @@ class MeshTaskPanel:
         self._predict(prediction.WAIT)
 
     def _predict(self, wait):
-        """Predicts the meshes for the sizes with the current fields, after this many milliseconds; with None, and while
-        the mesher runs, shows only known answers."""
+        """Predicts the meshes for the sizes with the current fields, after `wait` milliseconds. With None,
+        and while the mesher runs, only shows known answers."""
         settings = self._settings()
         if settings is None:
             return
@@ -135,7 +135,7 @@ class MeshTaskPanel:
             self._show_predictions(self.predictions.ask(settings, self.size.sizes(), wait), "…")
 
     def _settings(self):
-        """Returns the Settings in the fields; None if they are invalid."""
+        """Returns the Settings of the fields; None if they are invalid."""
         try:
             settings = mesh_properties.settings_of(self.object)
         except MesherError:
@@ -182,7 +182,7 @@ class MeshTaskPanel:
         self.report_button.hide()
 
     def _asks(self):
-        """Shows a question if one must be answered before meshing; returns False if there is none."""
+        """Shows a question if one must be answered before meshing. Returns False if there is none."""
         holes, question = "" if self.object.FillHoles else self._open_surface(), self._question()
         if holes:
             self.run_section.ask(" ".join((holes, question)), translate("collarmesh", "Fill the holes"))
@@ -191,7 +191,7 @@ class MeshTaskPanel:
         return bool(holes or question)
 
     def _open_surface(self):
-        """Returns the question about an open surface that will be filled with tetrahedra; "" for other parts."""
+        """Returns the question about filling the holes of an open surface for tetrahedra; "" for other parts."""
         part = compatibility.meshed_object(self.object)
         return open_shape.question(part) if part is not None and self.dimension.chosen(self.object.FillHoles) == 3 else ""
 
@@ -238,8 +238,8 @@ class MeshTaskPanel:
             run.ended.disconnect(self._ended)
 
     def show_state(self, out_of_date):
-        """Updates the state after a recompute, a run or an undo: whether the mesh is the shown one, and up to date.
-        Messages on the fields or the part stay."""
+        """Updates the state after a recompute, a run or an undo: whether the mesh is the shown one, and
+        whether it is up to date. Keeps messages about the fields or the part."""
         outcome = meshing_process.outcome_of(self.object)
         tells_of_mesh = self.outcome is None or self.outcome.report is not None
         if self.run is None and tells_of_mesh and outcome is not self.outcome:
@@ -247,8 +247,8 @@ class MeshTaskPanel:
         self.result.show_out_of_date(out_of_date)
 
     def _show_outcome(self, outcome):
-        """Shows the outcome of a run. None: only the worst elements are known of a mesh made before the document was
-        opened."""
+        """Shows the outcome of a run. None: the mesh was made before the document was opened, so only its
+        worst elements are known."""
         self.outcome = outcome
         if outcome is None:
             self.result.clear()
@@ -277,7 +277,7 @@ class MeshTaskPanel:
         self.preview.button.setChecked(False)
         try:
             constraint_faces_view.show(self.object)
-        except MesherError as error:  # an undo removed the mesh
+        except MesherError as error:  # an undo may have removed the mesh
             self.result.say(str(error), colours.BAD)
 
     def getStandardButtons(self):
@@ -296,12 +296,12 @@ class MeshTaskPanel:
         return True
 
     def reject(self):
-        """Removes a new mesh object that is still empty; a run continues."""
+        """Removes a new mesh object if it is still empty; a run continues."""
         is_wanted = not self.object.ViewObject.Proxy.is_new or self.object.FemMesh.NodeCount or self.run is not None
         self._close()
         if not is_wanted:
             key = self.object.Document.Name, self.object.Name
-            later(lambda: new_mesh.take_back(*key))  # when the panel is closed
+            later(lambda: new_mesh.take_back(*key))  # after the panel is closed
         return True
 
     def _close(self):
@@ -314,7 +314,7 @@ class MeshTaskPanel:
             FreeCAD.removeDocumentObserver(self)
         self._let_go()
         self.predictions.forget()
-        with contextlib.suppress(ReferenceError, RuntimeError):  # the object may be gone
+        with contextlib.suppress(ReferenceError, RuntimeError):  # the object may no longer exist
             self.marks.clear()
             self.preview.clear()
 
@@ -323,7 +323,8 @@ class MeshTaskPanel:
             self.changes.start()
 
     def slotRecomputedDocument(self, _document):
-        """Handles a recompute: a link or a container may show another shape without a change of its own."""
+        """Handles a recompute, after which a link or a container may show another shape without having
+        changed itself."""
         if self.predictions.shape_has_changed():
             self.changes.start()
 

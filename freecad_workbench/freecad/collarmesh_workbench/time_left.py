@@ -2,10 +2,10 @@
 
 import math
 
-LEAST_SECONDS, LEAST_SHARE = 2, 0.13  # the run itself permits no estimate before these
-GROWTH = 1.5  # the estimate grows by at most this factor
+LEAST_SECONDS, LEAST_SHARE = 2, 0.13  # below these the run itself permits no estimate
+GROWTH = 1.5  # the estimate may grow by at most this factor
 
-# The share of the time that has passed at each fraction reported by the program: rounded means over several
+# The share of the time that has passed at each fraction that the program reports: rounded means over several
 # runs.
 _SHARES = ((0, 0), (0.08, 0.1), (0.131, 0.13), (0.59, 0.3), (0.675, 0.7), (0.76, 0.88), (0.811, 0.91),
            (0.93, 0.97), (1, 1))
@@ -20,16 +20,17 @@ def share_of_time(fraction):
 
 
 class TimeLeft:
-    """The remaining time of one run. `predicted` and `afterwards` are the predicted seconds of the program and of the
-    steps after it; `predicted` is None without a prediction."""
+    """Estimates the remaining time of one run. `predicted` and `afterwards` are the predicted seconds of the
+    program and of the steps after it; `predicted` is None without a prediction."""
 
     def __init__(self, predicted=None, afterwards=0):
         self._predicted, self._afterwards = predicted, afterwards
-        self._fraction, self._end = -1, math.inf  # last fraction, and the end that the run itself suggests
+        self._fraction, self._end = -1, math.inf  # last fraction, and the total time that the run itself suggests
         self._least = math.inf  # smallest estimate shown
 
     def seconds(self, passed, fraction):
-        """Returns the remaining seconds after this many; None: unknown; infinite: longer than estimated before."""
+        """Returns the remaining seconds when `passed` seconds have passed. None: unknown; infinite: longer
+        than estimated before."""
         share = share_of_time(fraction)
         left = self._by_run(passed, fraction, share) if self._predicted is None else self._by_prediction(passed, share)
         if left is None or left > GROWTH * self._least:
@@ -38,12 +39,13 @@ class TimeLeft:
         return left
 
     def _by_prediction(self, passed, share):
-        """Estimates from the prediction: a run that is slower than predicted stays as slow."""
+        """Estimates from the prediction. A run that has been slower than predicted is assumed to stay as
+        slow."""
         pace = passed / (max(share, LEAST_SHARE) * self._predicted)
         return (1 - share) * self._predicted * max(1, pace) + self._afterwards
 
     def _by_run(self, passed, fraction, share):
-        """Estimates from the run itself; time passes even if the program's fraction does not change."""
+        """Estimates from the run itself. Time passes even if the program's fraction does not change."""
         if passed < LEAST_SECONDS or share < LEAST_SHARE:
             return None
         if fraction > self._fraction:

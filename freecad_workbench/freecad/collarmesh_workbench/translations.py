@@ -1,4 +1,4 @@
-"""Texts in the user's language, through Qt's files."""
+"""Texts in the user's language, by Qt's translation files."""
 
 import pathlib
 
@@ -8,7 +8,7 @@ FOLDER = pathlib.Path(__file__).resolve().parents[2] / "translations"
 
 
 def load():
-    """Installs the translations for the language of FreeCAD's window; texts used before are English."""
+    """Installs the translations for the language of FreeCAD's window. Texts used before are English."""
     import FreeCADGui
 
     FreeCADGui.addLanguagePath(str(FOLDER))
@@ -21,10 +21,12 @@ def translate(context, text):
 
 
 def mark(_context, text):
-    """Returns `text` unchanged and gives it an entry in the files: it is translated where it is shown."""
+    """Returns `text` unchanged. The call makes an entry in the files, so that the text can be translated
+    where it is shown."""
     return text
 
 
 def doc(text):
-    """Marks a property's documentation, which FreeCAD translates when it shows it (context "App::Property")."""
+    """Marks the documentation of a property. FreeCAD translates it when it shows it (context
+    "App::Property")."""
     return text

@@ -1,5 +1,5 @@
-"""Decides whether a mesh still belongs to its shape, its sizes and its settings. A mesh object records in hidden
-properties what its mesh was made of. Nothing here makes a mesh."""
+"""Decides whether a mesh still belongs to its shape, its sizes and its settings. Hidden properties of a mesh
+object record from what its mesh was made. Nothing here makes a mesh."""
 
 import dataclasses
 import json
@@ -13,15 +13,16 @@ from .translations import doc, translate
 
 SHAPE, SETTINGS = "MeshedShape", "MeshedSettings"
 MARKS = 8  # number of values that identify a shape
-SAME_PLACE = 1e-9  # relative to the largest coordinate; files of FreeCAD keep 16 digits
-DIGITS = 10  # digits of a setting
-HIDDEN = 4 | 16  # for addProperty: Prop_Hidden, and Prop_NoRecompute as it changes no mesh
+SAME_PLACE = 1e-9  # relative to the largest coordinate; FreeCAD's files keep 16 digits
+DIGITS = 10  # digits of a setting that are compared
+HIDDEN = 4 | 16  # for addProperty: Prop_Hidden, and Prop_NoRecompute because it changes no mesh
 WITHOUT_EFFECT = ("time_limit",)
 
 
 @dataclasses.dataclass
 class State:
-    """The shape, as identifying numbers, and the settings, as text, that a mesh was made of."""
+    """The shape and the settings from which a mesh was made: identifying numbers of the shape, and a text of
+    the settings."""
 
     shape: list
     settings: str
@@ -49,7 +50,7 @@ def sample(shape):
     """Returns points on every vertex, edge and face."""
     for vertex in shape.Vertexes:
         yield vertex.Point
-    inside = (0.11, 0.5, 0.83)  # shares of the parameters' range, not symmetric
+    inside = (0.11, 0.5, 0.83)  # positions in the range of parameters, not symmetric
     for edge in shape.Edges:
         if not edge.Degenerated:
             first, last = edge.ParameterRange
@@ -60,8 +61,8 @@ def sample(shape):
 
 
 def marks(points, *numbers):
-    """Returns sums of all coordinates and numbers with weights that depend on their positions; the last one is the
-    largest coordinate, which tells how exact they are."""
+    """Returns sums of all coordinates with weights that depend on their positions. The last number is the
+    largest coordinate, which determines how exact the sums are."""
     sums = numpy.zeros(MARKS)
     frequencies = numpy.sqrt(numpy.arange(2, 2 + MARKS))
     for values in (points, *numbers):
@@ -82,12 +83,12 @@ def has_shape(part, numbers):
     """Returns whether the object has the shape with these numbers. False for shapes that cannot be read."""
     try:
         return same_shape(numbers, shape_numbers(part))
-    except Exception:  # also OpenCASCADE's: a shape that cannot be read cannot be meshed
+    except Exception:  # OpenCASCADE's exceptions, too: a shape that cannot be read cannot be meshed
         return False
 
 
 def settings_text(settings, groups):
-    """`groups`: for each group object its name and sub-shapes."""
+    """Returns the settings as text. `groups`: for each group object its name and sub-shapes."""
     values = {
         name: value for name, value in dataclasses.asdict(settings).items() if name not in WITHOUT_EFFECT
     }
@@ -95,8 +96,8 @@ def settings_text(settings, groups):
 
 
 def same_settings(first, second):
-    """Compares settings. One that only one of them has counts as the default in the other, which is of an older
-    version."""
+    """Compares settings. If only one of the two has a setting, the other is of an older version, and counts
+    as having the default."""
     if not (first.startswith("{") and second.startswith("{")):
         return first == second
     defaults = json.loads(settings_text(Settings(), []))
@@ -143,7 +144,7 @@ def is_out_of_date(obj):
         return False
     try:
         now = state_of(obj)
-    except Exception:  # also OpenCASCADE's: a shape that cannot be read cannot be meshed
+    except Exception:  # OpenCASCADE's exceptions, too: a shape that cannot be read cannot be meshed
         return True
     return not (same_settings(made_with, now.settings) and same_shape(list(getattr(obj, SHAPE)), now.shape))
 

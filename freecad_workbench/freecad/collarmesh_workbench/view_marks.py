@@ -9,8 +9,8 @@ import numpy
 from . import compatibility, extent
 
 NAME = "collarmesh_marks"
-TRANSPARENCY = 80  # percent, for the mesh while something in it is marked
-AROUND = 0.15  # of the diagonal: the least visible radius around a point
+TRANSPARENCY = 80  # percent; transparency of the mesh while something in it is marked
+AROUND = 0.15  # least visible radius around a point, relative to the diagonal
 
 
 class ViewMarks:
@@ -45,12 +45,12 @@ class ViewMarks:
             part, visible, transparency = self._before
             self._before = None
             self.object.ViewObject.Transparency = transparency
-            with contextlib.suppress(ReferenceError):  # the part was deleted
+            with contextlib.suppress(ReferenceError):  # the part may be deleted
                 if part is not None and part.Document is not None:
                     part.ViewObject.Visibility = visible
 
     def _make_room(self, part, part_too):
-        """Makes the mesh transparent, and shows the part only while sub-shapes of it are selected."""
+        """Makes the mesh transparent. Shows the part only while its sub-shapes are selected."""
         view = self.object.ViewObject
         FreeCADGui.Selection.clearSelection()
         self._before = part, part.ViewObject.Visibility if part else False, view.Transparency
@@ -89,7 +89,8 @@ class ViewMarks:
 
 
 def move_camera(obj, centre, radius):
-    """Moves the camera to show everything within this radius (mm) of a point, without changing its direction."""
+    """Moves the camera so that everything within this radius (mm) of a point is visible, without changing its
+    direction."""
     from pivy import coin
 
     views = FreeCADGui.getDocument(obj.Document.Name).mdiViewsOfType("Gui::View3DInventor")

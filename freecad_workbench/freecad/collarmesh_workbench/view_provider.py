@@ -10,8 +10,8 @@ from .views import ICON, OUT_OF_DATE_ICON
 class MeshViewProvider(compatibility.Stateless):
     out_of_date = False
     panel = None  # set while the panel is open
-    is_new = False  # created by the button, still without a mesh
-    hid_part = False  # when the mesh appeared
+    is_new = False  # the button has made the object, and it has no mesh yet
+    hid_part = False  # the part was hidden when the mesh appeared
 
     def __init__(self, view):
         view.Proxy = self
@@ -33,22 +33,22 @@ class MeshViewProvider(compatibility.Stateless):
             self.ViewObject.signalChangeIcon()
         if self.panel is not None:
             self.panel.show_state(out_of_date)
-        if self.Object.FemMesh.NodeCount == 0:  # by undo
+        if self.Object.FemMesh.NodeCount == 0:  # undo has removed the mesh
             self.show_part_again()
 
     def show_in_place_of_part(self):
-        """Hides the part when the mesh appears: a part at the same place would be seen through it."""
+        """Hides the part when the mesh appears: a part at the same place would show through the mesh."""
         part = compatibility.meshed_object(self.Object)
         self.is_new = False
         if elements.dimension(self.Object.FemMesh) == 2:
-            self.ViewObject.BackfaceCulling = False  # shells are seen from both sides
+            self.ViewObject.BackfaceCulling = False  # so that shells are visible from both sides
         self.ViewObject.show()
         if part is not None and part.ViewObject.Visibility:
             part.ViewObject.Visibility = False
             self.hid_part = True
 
     def show_part_again(self):
-        """Shows the part again when the mesh disappears, if it was hidden for it."""
+        """Shows the part again when the mesh disappears, if it was hidden for the mesh."""
         part = compatibility.meshed_object(self.Object)
         if self.hid_part and part is not None:
             part.ViewObject.Visibility = True

@@ -1,5 +1,5 @@
-"""Registers how new objects are shown in FreeCAD's window, so that modules of the document need not import modules of
-the window."""
+"""Registers how new objects are shown in FreeCAD's window, so that modules about the document need not import
+modules about the window."""
 
 import os
 
@@ -11,11 +11,11 @@ _providers = {}
 
 
 def register(kind, provider):
-    """`kind` is the `Type` of the objects' proxies."""
+    """Registers the view provider for objects whose proxies have this `Type`."""
     _providers[kind] = provider
 
 
 def show(kind, obj):
-    """Shows an object; does nothing without a window."""
+    """Shows an object. Does nothing without a window."""
     if kind in _providers:
         _providers[kind](obj.ViewObject)

@@ -1,4 +1,4 @@
-"""A table that is as high as its rows, whatever the theme adds around them."""
+"""A table that is as high as its rows, including the borders that a theme adds."""
 
 from PySide import QtCore, QtGui
 
@@ -6,7 +6,8 @@ SPARE = 2  # pixels for the line below the rows
 
 
 class WholeTable(QtGui.QTreeWidget):
-    """Rows without a hierarchy; the first column takes the remaining width. Scrolls beyond `most` rows."""
+    """Rows without a hierarchy. The first column takes the remaining width. Scrolls if there are more than
+    `most` rows."""
 
     def __init__(self, headings, most=100):
         super().__init__()
@@ -31,7 +32,7 @@ class WholeTable(QtGui.QTreeWidget):
         return row
 
     def fit(self):
-        """Fits the table to its rows and its width."""
+        """Fits the table's height and columns to its rows and its width."""
         rows = min(self._most, self.topLevelItemCount())
         around = self.height() - self.viewport().height()
         self.setFixedHeight(around + rows * max(1, self.sizeHintForRow(0)) + SPARE)

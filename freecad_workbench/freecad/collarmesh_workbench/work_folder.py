@@ -1,7 +1,6 @@
-"""A temporary folder of which nothing stays, however the process ends that made it.
-
-A shell holds the end of a pipe to this process. When the pipe closes, by `cleanup` or because this process has ended or
-was killed, the shell kills the program that was at work and removes the folder."""
+"""A temporary folder that is removed however the process that made it ends.
+A shell holds the end of a pipe to this process. The pipe closes on `cleanup`, or when this process ends or is
+killed. Then the shell kills the program that worked in the folder, and removes the folder."""
 
 import contextlib
 import subprocess
@@ -21,7 +20,7 @@ done
 
 
 class WorkFolder:
-    """Like `tempfile.TemporaryDirectory`, with a program that works in it."""
+    """Like `tempfile.TemporaryDirectory`, for a folder in which a program works."""
 
     def __init__(self):
         self.name = tempfile.mkdtemp(prefix="collarmesh-")

@@ -40,7 +40,7 @@ def worst(fem_mesh, count=20):
     return numbers[order], angles[order], corners[order]
 
 
-MOST = 100000  # elements up to which FreeCAD's mesh is searched for the worst ones, which takes a second
+MOST = 100000  # largest number of elements for which FreeCAD's mesh is searched, which takes a second
 
 
 def in_report(fem_mesh, report):

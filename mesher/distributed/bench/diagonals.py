@@ -1,7 +1,7 @@
 """python3 diagonals.py MESH.h5...: dihedral angles of straight refinement by the rule for the diagonal.
 
-No vertex moves. The meshes are of collarmesh-mpi with --levels 0. Printed are the extreme angles outside
-collars and, where there are some, in collars: of the coarse mesh | after one | after two levels.
+No vertex moves. The meshes come from collarmesh-mpi with --levels 0. Prints the extreme angles outside collars
+and, if there are collars, in them: of the coarse mesh | after one level | after two levels.
 """
 
 import itertools
@@ -14,7 +14,7 @@ ARRANGEMENTS = [(0, 1, 2, 3), (1, 2, 0, 3), (2, 0, 1, 3)]
 
 
 def dihedrals(tets):
-    """Degrees, six for each tet."""
+    """Returns the six dihedral angles of each tet in degrees."""
     found = []
     for i, j in itertools.combinations(range(4), 2):
         k, m = (x for x in range(4) if x not in (i, j))
@@ -26,7 +26,8 @@ def dihedrals(tets):
 
 
 def children(p):
-    """Eight tets of each in the order of PETSc, which cuts between the middles of the edges 01 and 23."""
+    """Returns the eight children of each tet in the order of PETSc, which cuts between the middles of the
+    edges 01 and 23."""
     x = [p[:, k] for k in range(4)]
     a, b, c, d, e, f = ((x[i] + x[j]) / 2 for i, j in ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3)))
     tets = [(x[0], a, c, d), (a, x[1], b, e), (c, b, x[2], f), (d, e, f, x[3]),

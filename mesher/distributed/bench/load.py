@@ -9,7 +9,7 @@ from petsc4py import PETSc  # noqa: E402
 
 
 def load(path, comm=PETSc.COMM_WORLD):
-    """The DMPlex of a file, distributed, with its labels."""
+    """Loads the DMPlex of a file, distributed, with its labels."""
     plex = PETSc.DMPlex().create(comm=comm)
     plex.setName("mesh")
     viewer = PETSc.ViewerHDF5().create(path, mode=PETSc.Viewer.Mode.READ, comm=comm)

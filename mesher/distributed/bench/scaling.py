@@ -1,8 +1,8 @@
 """Time and memory of each rank: python3 scaling.py PROGRAM MODEL [--million 1 8] [--ranks 1 2] [--repeat 3]
 
-For each number of tets (millions, about) and ranks: the quickest of several runs of collarmesh-mpi with two
-or three levels, by its report. Efficiency is that of the last level: its time on one rank, by the ranks times
-its time on them. Loading is that of load.py, by petsc4py, and of dolfinx; starting Python counts.
+For each number of tets (about, in millions) and of ranks, prints the quickest of several runs of collarmesh-mpi with
+two or three levels, from its report. Efficiency refers to the last level: its time on one rank, divided by the number
+of ranks times its time on these. Loading is measured with load.py (petsc4py) and dolfinx, including the start of Python.
 """
 
 import argparse
@@ -33,7 +33,8 @@ def mpirun(ranks, *command):
 
 
 def loading(repeat, ranks, *command):
-    """The seconds of the quickest, as text; "fails" where a rank dies, most likely for want of memory."""
+    """Returns the time of the quickest run in seconds, as text; "fails" if a rank dies, most likely for lack
+    of memory."""
     try:
         return f"{min(mpirun(ranks, *command) for _ in range(repeat)):.1f}"
     except SystemExit as failed:
@@ -49,7 +50,7 @@ def coarse_tets(program, model, size, folder):
 
 
 def size_for(program, model, tets, folder):
-    """A size that makes about so many tets."""
+    """Finds a size that makes about this number of tets."""
     size, made = 4.0, 0
     for _ in range(3):
         made = coarse_tets(program, model, size, folder)

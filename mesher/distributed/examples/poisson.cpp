@@ -1,7 +1,8 @@
 // Solves a problem on a part, all in memory: mpirun -n 2 poisson part.off [SIZE [LEVELS]]
 //
 // The equation -div grad u = f is solved with linear elements on the coarse mesh and after each level of
-// refinement; u is given on all patches, so that the error is known. Each level divides it by four.
+// refinement. The exact solution is known, and u is given on all patches; each level divides the error by
+// four.
 #include <collarmesh/distributed.h>
 #include <collarmesh/io/soup_io.h>
 #include <collarmesh/mesher.h>
@@ -30,7 +31,7 @@ struct Tet {
   std::array<Point, 4> corners;
 };
 
-/// A discretisation with one unknown at each vertex.
+/// A discretization with one unknown at each vertex.
 class Poisson {
  public:
   Poisson(DM mesh, double scale) : scale_(scale) {
@@ -105,7 +106,7 @@ class Poisson {
     return std::fabs(collarmesh::six_volume(a, b, c, d)) / 6;
   }
 
-  /// Visits the values at the four points of a quadrature that is exact for quadratic polynomials.
+  /// Visits the values at the four points of a quadrature rule that is exact for quadratic polynomials.
   template <class Visit>
   static void quadrature(const Tet& tet, const Visit& visit) {
     constexpr double near = 0.5854101966249685, far = 0.1381966011250105;
@@ -148,7 +149,7 @@ class Poisson {
     PetscCallAbort(PETSC_COMM_WORLD, DMRestoreLocalVector(dm_, &local));
   }
 
-  /// Sets the given values, at the points with the label `patch`.
+  /// Constrains the unknowns on patches (label `patch`) to the given values.
   void constrain(Mat matrix, Vec load, Vec solution) const {
     PetscSection global = nullptr;
     PetscCallAbort(PETSC_COMM_WORLD, DMGetGlobalSection(dm_, &global));
@@ -170,7 +171,7 @@ class Poisson {
         for (PetscInt k = count - 3; k < count; ++k) {
           PetscInt row = 0;
           PetscCallAbort(PETSC_COMM_WORLD, PetscSectionGetOffset(global, closure[2 * k], &row));
-          if (row < 0) row = -row - 1;  // owned by another rank
+          if (row < 0) row = -row - 1;  // another rank owns it
           rows.push_back(row);
           PetscCallAbort(
               PETSC_COMM_WORLD,
@@ -229,7 +230,7 @@ class Poisson {
 void run(const std::string& path, double size, int levels) {
   int rank = 0;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
-  // Every rank knows the complex, rank 0 meshes it.
+  // Every rank knows the complex; rank 0 meshes it.
   const collarmesh::PolygonSoup soups[] = {collarmesh::io::read_soup(path)};
   const collarmesh::Plc plc = collarmesh::build_plc(soups);
   collarmesh::PipelineOptions options;

@@ -1,7 +1,7 @@
-"""From files of collarmesh-mpi to a solution with dolfinx: mpirun -n 2 python3 poisson.py part_0 part_1
+"""Solves a problem with dolfinx on files of collarmesh-mpi: mpirun -n 2 python3 poisson.py part_0 part_1
 
-Each name is that of a mesh, part_0.xdmf and part_0_faces.xdmf. Solves -div grad u = f, with u given on every
-patch, so that the error is known: with a mesh of one level more it falls by four (eight in second order).
+Each name stands for a mesh: part_0.xdmf and part_0_faces.xdmf. Solves -div grad u = f, with u given on every patch.
+The exact solution is known: each further level divides the error by four (by eight in second order).
 """
 
 import sys
@@ -15,7 +15,7 @@ from petsc4py import PETSc
 
 
 def read(name, comm=MPI.COMM_WORLD):
-    """The mesh and the tags of its patches."""
+    """Reads the mesh and the tags of its patches."""
     with dolfinx.io.XDMFFile(comm, f"{name}.xdmf", "r") as file:
         mesh = file.read_mesh(name="mesh")
     mesh.topology.create_connectivity(2, 3)
@@ -25,7 +25,7 @@ def read(name, comm=MPI.COMM_WORLD):
 
 
 def solve(mesh, patches):
-    """The error in the norm of L2, and the norm of the solution."""
+    """Returns the L2 norms of the error and of the solution."""
     comm = mesh.comm
     x = mesh.geometry.x
     greatest = comm.allreduce(x.max(axis=0), lambda a, b: numpy.maximum(a, b))

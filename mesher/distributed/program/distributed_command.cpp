@@ -50,10 +50,10 @@ class Session {
   Session& operator=(const Session&) = delete;
 };
 
-/// Ends all ranks because they are out of step; one of them prints the reason.
+/// Ends all ranks because they no longer do the same; one of them prints the reason.
 [[noreturn]] void end_all(process::ExitCode code, const std::string& message) {
   const Ranks ranks(MPI_COMM_WORLD);
-  // If several fail at once the first one reports: it ends the others before they do.
+  // If several ranks fail at once, the first one reports and ends the others before they do.
   std::this_thread::sleep_for(std::chrono::milliseconds(200) * ranks.rank);
   process::abandon_staged_files();
   const std::string text = fmt::format("collarmesh: {}\n", message);
@@ -64,7 +64,7 @@ class Session {
   std::_Exit(static_cast<int>(code));
 }
 
-/// Ends after a crash, because HDF5 and MPI may crash if they get no memory. mpirun ends the other ranks.
+/// Ends the program after a crash: HDF5 and MPI may crash if they get no memory. mpirun ends the other ranks.
 [[noreturn]] void end_after_crash(int) {
   const bool short_of_memory = process::memory_is_short();
   process::abandon_staged_files();
@@ -87,8 +87,8 @@ class Session {
                   failure.what()));
 }
 
-/// Does work that is not collective and may end the program: if it does on one rank it does on all, and the
-/// first of them reports the reason.
+/// Does work that is not collective and may end the program. If it ends on one rank, it ends on all, and the
+/// first such rank reports the reason.
 void together(const std::function<void()>& work) {
   std::exception_ptr thrown;
   std::optional<process::Stopped> stopped;
@@ -190,7 +190,7 @@ std::uint64_t fingerprint(const Plc& plc) {
 
 /// The data of the input on every rank, and the mesh that rank 0 made of it.
 struct Coarse {
-  cli::MadeMesh made;  ///< on ranks other than 0 only the input and the complex
+  cli::MadeMesh made;  ///< ranks other than 0 only have the input and the complex
   Shape shape() const {
     const Plc& plc = made.run.plc;
     return {plc, made.input->has_cad() ? made.input->exact_geometry(plc) : ExactGeometry{},
@@ -199,7 +199,7 @@ struct Coarse {
   PipelineOptions options;
 };
 
-/// Makes the mesh on rank 0, and on the others its complex.
+/// Makes the mesh on rank 0, and its complex on the other ranks.
 Coarse make_coarse(const DistributedArguments& arguments) {
   const Ranks ranks(MPI_COMM_WORLD);
   Coarse coarse;
@@ -357,7 +357,7 @@ std::string with_name(std::string message, const std::filesystem::path& from,
   return message;
 }
 
-/// Writes files under temporary names first, in a folder of rank 0, which moves them to their places when all
+/// Writes files under temporary names into a folder of rank 0. Rank 0 moves them to their places when all
 /// ranks are done.
 void write_files(const DistributedArguments& arguments, const ParallelMesh& mesh, Report& report) {
   const bool first = Ranks(MPI_COMM_WORLD).rank == 0;
@@ -377,7 +377,7 @@ void write_files(const DistributedArguments& arguments, const ParallelMesh& mesh
   } catch (const PetscFailure& failure) {
     end_all(process::ExitCode::cannot_write, fmt::format("{}: cannot be written ({}); is the disk full?",
                                                          arguments.mesh.output, failure.what()));
-  } catch (const WriteError& error) {  // from all ranks, with the temporary name
+  } catch (const WriteError& error) {  // all ranks throw it; the message has the temporary name
     const std::filesystem::path target = arguments.mesh.output;
     throw WriteError(
         with_name(error.what(), std::filesystem::path(place).parent_path(), target.parent_path()));
@@ -450,14 +450,14 @@ process::ExitCode mesh_distributed(const DistributedArguments& arguments) {
 }  // namespace
 
 process::ExitCode run(int argc, char** argv) {
-  // Before MPI is initialized: it writes files of its own, and one that grows too large must not end the
-  // program.
+  // Install the handlers before MPI is initialized: MPI writes files of its own, and one that grows too large
+  // must not end the program.
   process::install_interrupt_handlers();
   const Session session;
   if (Ranks(MPI_COMM_WORLD).rank != 0) process::be_silent();
   std::signal(SIGSEGV, end_after_crash);  // replaces PETSc's handler
-  // Watch only until the result is known: after a rank has ended with an error, which is reported by then,
-  // mpirun asks those that are still in MPI_Finalize to stop.
+  // Watch only until the result is known. After a rank has ended with an error (which has been reported by
+  // then), mpirun asks ranks that are still in MPI_Finalize to stop.
   const process::ExitCode result = process::run_interruptible([&] {
     return cli::guarded([&]() -> process::ExitCode {
       try {

@@ -17,11 +17,11 @@ struct ExtremeAngles {
 /// Returns the extreme angles. Precondition: the tet is not flat.
 inline ExtremeAngles extreme_angles(const std::array<Point, 4>& p) {
   const Vector ab = p[1] - p[0], ac = p[2] - p[0], ad = p[3] - p[0], bc = p[2] - p[1], bd = p[3] - p[1];
-  // The normals of the faces opposite the corners, all outward or all inward.
+  // The normals of the faces opposite the corners, all outwards or all inwards.
   const std::array<Vector, 4> normals{cross(bc, bd), cross(ad, ac), cross(ab, ad), cross(ac, ab)};
   std::array<double, 4> lengths;
   for (std::size_t i = 0; i < 4; ++i) lengths[i] = norm(normals[i]);
-  double least = 1, most = -1;  // cosines
+  double least = 1, most = -1;  // cosines of the least and the largest angle
   for (std::size_t i = 0; i < 4; ++i)
     for (std::size_t j = i + 1; j < 4; ++j) {
       const double cosine = -dot(normals[i], normals[j]) / (lengths[i] * lengths[j]);

@@ -14,19 +14,19 @@ namespace collarmesh::distributed {
 namespace {
 
 std::string first_message;
-bool out_of_memory = false;  // memory ran out, as the code or message says
+bool out_of_memory = false;  // whether the code or message says that memory ran out
 
 PetscErrorCode remember(MPI_Comm, int, const char* function, const char*, PetscErrorCode code,
                         PetscErrorType type, const char* message, void*) {
   if (type == PETSC_ERROR_INITIAL) {
     first_message = fmt::format("{} ({})", message != nullptr ? message : "no reason given", function);
-    // PETSc 3.18 returns the number of a line as code if it cannot allocate.
+    // If PETSc 3.18 cannot allocate, it returns the number of a line as its code.
     out_of_memory = code == PETSC_ERR_MEM || std::string_view(function).starts_with("PetscMalloc");
   }
   return code;
 }
 
-/// The kind of a caught exception, to be thrown again on other ranks. The order is that of `rethrow`.
+/// The kind of a caught exception, with which other ranks throw it again. The order is that of `rethrow`.
 enum class Kind { nothing, option, read, plc, write, memory, petsc, other };
 
 struct Thrown {
@@ -71,8 +71,8 @@ Thrown caught(const std::function<void()>& work) {
   }
 }
 
-/// Waits for a request without using the processor, which other ranks of the machine may need; MPI's own
-/// waiting keeps it busy.
+/// Waits for a request without using the processor, which other ranks on the machine may need; MPI's own
+/// waiting would keep it busy.
 void wait_quietly(MPI_Request request) {
   using namespace std::chrono_literals;
   auto pause = 10us;

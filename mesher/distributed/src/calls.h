@@ -12,7 +12,7 @@
 /// Errors of PETSc and MPI, and errors that concern all ranks.
 namespace collarmesh::distributed {
 
-/// A call of PETSc failed. Ranks may be out of step then, so the program can only end.
+/// Thrown if a call of PETSc failed. Ranks may no longer agree then, so the program can only end.
 struct PetscFailure : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -20,7 +20,7 @@ struct PetscOutOfMemory : PetscFailure {
   using PetscFailure::PetscFailure;
 };
 
-/// Collects PETSc's message about its first error in one line; PETSc prints nothing while one of these lives.
+/// Collects PETSc's message about its first error in one line. PETSc prints nothing during its lifetime.
 class PetscMessages {
  public:
   PetscMessages();
@@ -35,9 +35,9 @@ inline void call(PetscErrorCode code) {
   if (code != 0) fail(code);
 }
 
-/// Does work of each rank that is not collective. If it throws on one rank, all ranks throw the exception of
-/// the first that failed: of its class among those of collarmesh/error.h, or std::bad_alloc, with its
-/// message. Waiting for others takes no processor time.
+/// Does work of each rank that is not collective. If it throws on some ranks, all ranks throw the exception
+/// of the first of them, with its message: of the same class if that is one of collarmesh/error.h or
+/// std::bad_alloc. Waiting for other ranks takes no processor time.
 void agree(MPI_Comm communicator, const std::function<void()>& work);
 
 /// A rank and the number of ranks.
@@ -49,7 +49,7 @@ struct Ranks {
   int rank = 0, count = 1;
 };
 
-/// Returns the values of rank 0.
+/// Returns the text or values of rank 0 on all ranks.
 std::string broadcast(MPI_Comm communicator, std::string text);
 
 double all_reduce(MPI_Comm communicator, double value, MPI_Op operation);

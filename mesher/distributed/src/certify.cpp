@@ -1,5 +1,5 @@
-// The certificate: each guarantee recomputed from the DMPlex and the complex alone. Each rank judges its
-// cells, and of what ranks share the one that owns it.
+// The certificate: each guarantee recomputed from the DMPlex and the complex alone. Each rank judges its own
+// cells; the owner judges points that ranks share.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ namespace {
 
 using checks::At;
 
-/// Two sums of numbers that are made of cells.
+/// A hash that does not depend on the order of cells: two sums of numbers made from the cells.
 class Fingerprint {
  public:
   static std::uint64_t of(const Point& p) {
@@ -51,14 +51,15 @@ class Fingerprint {
   std::array<std::uint64_t, 2> sums_{};
 };
 
-/// Returns the subject of the checks without a mesh: the complex, and how far a mesh may be off it.
+/// Returns the subject of the checks without a mesh: the complex, and the allowed distances of a mesh from
+/// it.
 checks::Subject subject_of(const Shape& shape, const TetMesh& nothing) {
   CheckOptions options;
   options.bounds.tolerance = SurfaceTolerance(shape.distance);
   return checks::make_subject(nothing, shape.plc, options);
 }
 
-/// What the complex says about its features, and how far the mesh may be off.
+/// The expected measures of the complex's features, and the allowed differences.
 struct Expected {
   explicit Expected(const Shape& shape) : subject(subject_of(shape, nothing)), sizes(measures_of(shape.plc)) {
     const Plc& plc = shape.plc;
@@ -79,12 +80,12 @@ struct Expected {
   TetMesh nothing;
   checks::Subject subject;
   ShapeMeasures sizes;
-  std::vector<double> length_room, area_room;  ///< by curve and by patch
+  std::vector<double> length_room, area_room;  ///< allowed differences, by curve and by patch
   std::map<Tag, double> volumes, volume_room;
 
  private:
-  // Returns the area of the triangles' projections onto the plane, which depends on the border alone:
-  // triangles of a patch that is planar up to a tolerance may be tilted.
+  // Returns the area of the triangles' projections onto the plane. It depends on the border alone, so it does
+  // not matter if triangles of a patch that is planar up to a tolerance are tilted.
   static double area_in_plane(const Plc& plc, const Plc::Patch& patch) {
     double sum = 0;
     for (Index t = patch.first_triangle; t < patch.first_triangle + patch.triangle_count; ++t) {
@@ -94,8 +95,9 @@ struct Expected {
     return std::fabs(sum);
   }
 
-  // What is moved by d becomes longer or larger by no more than d times what it turns by (Steiner's formula),
-  // to first order, and by what its ends move. Turned polygons turn as much as what they approximate.
+  // Measures by how much a curve turns. If points of a feature move by d, its length or area changes by at
+  // most d times the angle by which it turns, to first order (Steiner's formula), and by the moves of its
+  // ends. An inscribed polygon turns by as much as the curve that it approximates.
   void measure_turn(const Plc& plc, Index c) {
     const Plc::Curve& curve = plc.curves[c];
     const std::vector<Index>& chain = curve.points;
@@ -113,7 +115,8 @@ struct Expected {
   double room_of(const Plc& plc, const Plc::Patch& patch) const {
     const std::size_t p = area_room.size();
     double turn = 0;
-    std::map<std::array<Index, 2>, std::pair<double, Vector>> sides;  // length, normal of the first
+    std::map<std::array<Index, 2>, std::pair<double, Vector>> sides;  // length, and normal of the first
+                                                                      // triangle
     for (Index t = patch.first_triangle; !patch.planar && t < patch.first_triangle + patch.triangle_count;
          ++t) {
       const auto& q = plc.triangles[t].points;
@@ -190,7 +193,7 @@ class Certification {
     lengths_.assign(plc_.curves.size(), 0);
   }
 
-  /// What ranks share has the same place on each, bit by bit.
+  /// Checks that points which ranks share have the same coordinates on each rank, bit by bit.
   void check_shared_places() {
     const auto check = [&](const SharedPoints& points, const std::vector<Point>& places, const char* what) {
       const std::vector<std::size_t>& shared = points.shared();
@@ -250,7 +253,7 @@ class Certification {
            allowed_.most[kind]);
   }
 
-  /// How many tets each face has, and the least and greatest tag of their regions.
+  /// Finds the number of tets at each face, and the least and greatest tag of their regions.
   void find_sides() {
     const std::size_t n = shared_faces_.size();
     tets_of_.assign(n, 0);
@@ -314,7 +317,7 @@ class Certification {
          At{centre}, patch, plc_.patches[patch].tag, least, most_region_[f], wanted.first, wanted.second);
   }
 
-  // Triangles on planar patches are measured by their projections, as the patches are.
+  // Measures a face. Triangles on planar patches are measured by their projections, as the patches are.
   void measure_face(PetscInt face, const std::array<Index, 3>& corners, const std::array<Point, 3>& p,
                     Index patch) {
     const Plc::Patch& on = plc_.patches[patch];
@@ -377,7 +380,7 @@ class Certification {
         if (shared_edges_.owned(e)) check(edge_codes_[e], nodes_[e], "The mid-side node");
   }
 
-  /// Every vertex within a curve has two edges on it.
+  /// Checks that every vertex inside a curve has two edges on it.
   void check_chains() {
     std::vector<PetscInt> edges_of(mesh_->points.size(), 0);
     for (std::size_t e = 0; e < edges_->size(); ++e) {
@@ -427,7 +430,8 @@ class Certification {
     return back != 0 || front != 0;
   }
 
-  /// Rank 0 does. What lies outside all regions the mesh does not have.
+  /// Compares the sums with the complex; only rank 0 does so. Leaves out features outside all regions, which
+  /// the mesh does not have.
   void compare_with_complex() {
     gather_corners();
     if (ranks_.rank != 0) return;
@@ -484,7 +488,7 @@ class Certification {
     checks::check_vertices_present(expected_->subject, findings_);
   }
 
-  /// All findings, on all ranks.
+  /// Collects the findings of all ranks on all ranks.
   void gather() {
     std::string own;
     for (const auto& finding : found_.findings) own += finding.guarantee + '\t' + finding.message + '\n';
@@ -518,13 +522,15 @@ class Certification {
   std::optional<LocalMesh> mesh_;
   std::optional<Edges> edges_;
   std::optional<Expected> expected_;
-  std::vector<Point> nodes_;  // amid the edges
+  std::vector<Point> nodes_;  // mid-edge nodes
   PetscInt first_tet_ = 0;
   std::vector<PetscInt> regions_, collars_, vertex_codes_, edge_codes_, face_codes_;
-  std::vector<PetscInt> tets_of_, least_region_, most_region_;  // by face
-  std::vector<double> areas_, lengths_;                         // by patch and by curve
-  std::vector<Point> corners_;                                  // vertices on those of the complex
-  CheckReport found_;                                           // on this rank
+  std::vector<PetscInt> tets_of_, least_region_, most_region_;  // by face: number of tets, least and greatest
+                                                                // tag
+  std::vector<double> areas_, lengths_;                         // measured areas by patch and lengths by
+                                                                // curve
+  std::vector<Point> corners_;                                  // mesh vertices at vertices of the complex
+  CheckReport found_;                                           // findings of this rank
   checks::Findings findings_{found_, Certificate::listed};
   Fingerprint fingerprint_;
   Certificate certificate_;

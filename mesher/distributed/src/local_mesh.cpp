@@ -20,7 +20,7 @@ std::array<Index, n> closure_vertices(DM dm, PetscInt point, PetscInt first_vert
   return vertices;
 }
 
-/// The coordinates of vertices, and where those of each begin.
+/// The coordinates of vertices, and the position of each vertex's coordinates.
 class VertexCoordinates {
  public:
   explicit VertexCoordinates(DM dm) {
@@ -108,7 +108,7 @@ void set_points(DM dm, const std::vector<Point>& points) {
     at[2] = p.z;
   }
   call(VecRestoreArray(coordinates.values(), &values));
-  call(DMSetCoordinatesLocal(dm, coordinates.values()));  // the global coordinates are out of date
+  call(DMSetCoordinatesLocal(dm, coordinates.values()));  // the global coordinates are outdated now
 }
 
 std::array<Index, 4> corners_of(DM dm, PetscInt tet, PetscInt first_vertex) {

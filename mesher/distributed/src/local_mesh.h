@@ -17,7 +17,7 @@ using Corners = std::array<Point, 4>;
 /// The label `feature`: see ParallelMesh.
 inline constexpr const char* feature_label = "feature";
 inline PetscInt encoded(const TetMesh::VertexFeature& feature) {
-  // All vertices of the complex share one value: their places identify them.
+  // All vertices of the complex share one value: their places tell them apart.
   return feature.dimension == 0 ? 0 : static_cast<PetscInt>(4 * feature.feature + feature.dimension);
 }
 inline TetMesh::VertexFeature decoded(PetscInt code) {
@@ -30,7 +30,7 @@ std::vector<PetscInt> label_values(DM dm, const char* name, PetscInt first, std:
 
 /// The tets of a rank and their vertices, numbered from 0 as in the DMPlex.
 struct LocalMesh {
-  /// Reads corners and coordinates; first order.
+  /// Reads corners and coordinates of a mesh of first order.
   explicit LocalMesh(DM dm);
 
   Corners corners(std::size_t tet) const {
@@ -39,15 +39,15 @@ struct LocalMesh {
   }
 
   std::vector<Point> points;
-  /// Positively oriented, as in TetMesh, if they are in the DMPlex.
+  /// Positively oriented tets, as in TetMesh, if the DMPlex has them so.
   std::vector<std::array<Index, 4>> tets;
 };
 
 /// Sets the coordinates of the DMPlex's vertices.
 void set_points(DM dm, const std::vector<Point>& points);
 
-/// Returns the corners of a tet in the order of PETSc, whose tets are mirror images of ours, counted from
-/// `first_vertex`.
+/// Returns the corners of a tet in the order of PETSc, whose tets are mirror images of ours. Vertices are
+/// numbered from `first_vertex`.
 std::array<Index, 4> corners_of(DM dm, PetscInt tet, PetscInt first_vertex);
 /// Return the corners of a face and of an edge.
 std::array<Index, 3> corners_of_face(DM dm, PetscInt face, PetscInt first_vertex);

@@ -32,7 +32,7 @@ std::array<Index, 3> Edges::of_face(PetscInt face, const std::array<Index, 3>& c
 }
 
 std::array<Index, 6> Edges::of_tet(PetscInt tet, const std::array<Index, 4>& corners) const {
-  std::array<PetscInt, 12> edges;  // of its faces; each edge occurs twice
+  std::array<PetscInt, 12> edges;  // edges of its faces; each edge occurs twice
   const PetscInt* faces = nullptr;
   call(DMPlexGetCone(dm_, tet, &faces));
   for (std::size_t f = 0; f < 4; ++f) {

@@ -22,12 +22,12 @@ class Edges {
 
   std::size_t size() const { return ends_.size(); }
   const std::array<Index, 2>& ends(std::size_t edge) const { return ends_[edge]; }
-  /// Return the edges of a tet and of a face (ab, bc, ca), from their numbers in the DMPlex and their
+  /// Return the edges of a tet and of a face (ab, bc, ca), given their numbers in the DMPlex and their
   /// corners.
   std::array<Index, 6> of_tet(PetscInt tet, const std::array<Index, 4>& corners) const;
   std::array<Index, 3> of_face(PetscInt face, const std::array<Index, 3>& corners) const;
 
-  /// Returns the nodes as in the coordinates of the DMPlex. Precondition: these are of order 2.
+  /// Returns the nodes that the coordinates of the DMPlex contain. Precondition: these are of order 2.
   std::vector<Point> nodes() const;
   void set_nodes(const std::vector<Point>& nodes);
 

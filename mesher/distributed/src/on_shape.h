@@ -6,7 +6,7 @@
 
 namespace collarmesh::distributed {
 
-/// Returns the places on a shape of nodes on curves and patches. Keeps the shape by reference.
+/// Finds the places on a shape of nodes on curves and patches. Keeps a reference to the shape.
 class OnShape {
  public:
   explicit OnShape(const Shape& shape)
@@ -22,7 +22,7 @@ class OnShape {
            : feature.dimension == 2 ? !plc_.patches[feature.feature].planar
                                     : false;
   }
-  /// Returns whether nodes on this feature belong off their chords.
+  /// Returns whether nodes on this feature may have a place off their chords.
   bool has_places(const TetMesh::VertexFeature& feature) const {
     const bool on_feature = feature.dimension == 1 || feature.dimension == 2;
     return on_feature && feature.feature != none && (exact_ || is_smooth(feature));

@@ -1,6 +1,6 @@
 // Moves the vertices of a refined mesh onto the shape. Decisions about a vertex depend on all tets around it,
-// which may be on several ranks, and only use minima, maxima and sums of whole numbers: these are the same in
-// any order, so the mesh is the same on any number of ranks, bit by bit.
+// which may be on several ranks. They only use minima, maxima and sums of whole numbers, whose results do not
+// depend on the order. So the mesh is the same on any number of ranks, bit by bit.
 #include "placement.h"
 
 #include <algorithm>
@@ -20,32 +20,34 @@ namespace collarmesh::distributed {
 
 namespace {
 
-// The shares of their way that vertices keep as they move back, step by step.
+// The shares of their displacement that vertices keep when they move back, step by step.
 constexpr std::array<double, 4> shares{1, 0.5, 0.25, 0};
 // A move longer than this many times the shortest edge at the vertex would pass through other tets.
 constexpr double longest_way = 2;
 // Least cosine between an edge of a curve and its initial direction.
 constexpr double least_course = 0.5;
-// Degrees: angles up to this far beyond the bounds are a last resort.
+// Largest violation of the bounds on angles that is acceptable as a last resort, degrees.
 constexpr double tolerated = 10;
-// Least score of a tet that may stay: a share of the range from the last resort to the bounds.
+// Least score of a tet that may stay: 0 is the last resort, 1 is within the bounds.
 constexpr double least_score = 0.2;
-// The score of a flat tet; inverted ones have less.
+// The score of a flat tet; inverted tets have lower scores.
 constexpr double flat_score = -100;
-// The unit in which squared penalties are rounded to whole numbers. Doubles add these without rounding.
+// The unit to which squared penalties are rounded. Doubles add such multiples without rounding.
 constexpr double unit_of_lack = 0x1p-16;
 // The maximum number of sweeps that make room, and the steps that a vertex tries, relative to its shortest
 // edge.
 constexpr unsigned most_sweeps = 60;
 constexpr std::array<double, 3> steps{0.3, 0.1, 0.03};
 constexpr std::size_t places = 2 + 6 * steps.size();  // places that a vertex tries, including its own
-// Each sweep uses other directions. A vertex tries this often in vain, unless something around it changes.
+// Each sweep uses other directions. A vertex that found no better place is tried this many times, unless
+// something around it changes.
 constexpr std::uint8_t tries = 4;
-// A move that gains less is not worth it.
+// Least gain of a move.
 constexpr double least_gain = 1e-3;
-// A way off a plane or a straight curve shorter than this, relative to the shortest edge, counts as none.
+// A displacement off a plane or a straight curve counts as none if it is shorter than this, relative to the
+// shortest edge.
 constexpr double no_way = 1e-6;
-// How often vertices that moved back are tried again.
+// Number of times that vertices that moved back are tried again.
 constexpr unsigned retries = 2;
 
 std::uint64_t mixed(std::uint64_t h) {  // the finalizer of MurmurHash3
@@ -56,7 +58,7 @@ std::uint64_t mixed(std::uint64_t h) {  // the finalizer of MurmurHash3
   return h ^ (h >> 33U);
 }
 
-/// Returns three directions at right angles.
+/// Returns three orthogonal directions.
 std::array<Vector, 3> frame_of(unsigned sweep) {
   if (sweep == 0) return {Vector{1, 0, 0}, Vector{0, 1, 0}, Vector{0, 0, 1}};
   const double s = sweep;
@@ -85,8 +87,8 @@ class Placement {
     share_places();
     for (std::size_t v = 0; v < mesh_->points.size(); ++v)
       if (has_way_[v]) mesh_->points[v] = place_of(v);
-    std::vector<Index> look_at;  // tets to check; straight ones may have poorer angles than the coarse mesh,
-                                 // too
+    std::vector<Index> look_at;  // tets to check; straight ones, too, may have poorer angles than the coarse
+                                 // mesh
     std::int64_t spoilt = 0;
     for (Index t = 0; t < mesh_->tets.size(); ++t) {
       if (score(t, mesh_->corners(t)) < 1) look_at.push_back(t);
@@ -133,7 +135,7 @@ class Placement {
     has_way_.assign(n, false);
   }
 
-  // Finds the places; the owners do it for all ranks.
+  // Finds the places of vertices; the owners do so for all ranks.
   void find_places() {
     targets_ = origins_;
     for (std::size_t v = 0; v < features_.size(); ++v)
@@ -209,7 +211,7 @@ class Placement {
   double least(Index tet) const { return wanted_.least[in_collar_[tet] ? 1 : 0]; }
   double most(Index tet) const { return wanted_.most[in_collar_[tet] ? 1 : 0]; }
 
-  /// Returns 1 for a tet within the bounds of angles, 0 at the last resort.
+  /// Returns 1 for a tet within the bounds on angles, 0 at the last resort.
   double score(Index tet, const Corners& p) const {
     const double six = six_volume(p[0], p[1], p[2], p[3]);
     if (!(six > 0)) {
@@ -271,7 +273,7 @@ class Placement {
     return h;
   }
 
-  /// Returns vertices that may gain, no two of one tet.
+  /// Returns vertices that may gain from a move, no two of one tet.
   std::vector<Index> independent_vertices(const std::vector<Index>& tets, unsigned sweep) const {
     std::vector<PetscInt> wishes(mesh_->points.size(), 0);
     for (const Index t : tets) {
@@ -283,8 +285,8 @@ class Placement {
     return independent(wishes, sweep);
   }
 
-  /// Returns a set of vertices without two of one tet: of two the one with the greater hash of its place. The
-  /// same on all ranks that have the vertex, if the wishes are.
+  /// Returns a subset of the wished vertices without two of one tet: of two, the one with the greater hash of
+  /// its place. All ranks that have a vertex decide alike if they have the same wishes.
   std::vector<Index> independent(const std::vector<PetscInt>& wishes, unsigned sweep) const {
     std::vector<Index> vertices;
     std::vector<PetscInt> yields(mesh_->points.size(), 0);
@@ -301,12 +303,12 @@ class Placement {
     return vertices;
   }
 
-  /// Combines values of some vertices, `width` each, over the ranks.
+  /// Combines values of some vertices over the ranks, `width` values for each.
   void combine(const std::vector<Index>& vertices, std::vector<PetscReal>& values, MPI_Op operation,
                std::size_t width) const {
     const std::vector<std::size_t>& shared = vertices_.shared();
     std::vector<PetscReal> of_shared(shared.size() * width, 0);
-    const auto for_each_shared = [&](const auto& visit) {  // both lists ascend
+    const auto for_each_shared = [&](const auto& visit) {  // both lists are ascending
       std::size_t i = 0;
       for (std::size_t k = 0; k < shared.size(); ++k) {
         while (i < vertices.size() && vertices[i] < shared[k]) ++i;
@@ -319,7 +321,8 @@ class Placement {
     for_each_shared([](const PetscReal& there, PetscReal& here) { here = there; });
   }
 
-  /// Returns the sum of the penalties of the tets around a vertex, or a part of it that is at least `enough`.
+  /// Returns the sum of the penalties of the tets around a vertex; if it is at least `enough`, possibly only
+  /// a part of it that is.
   double lack_around(Index vertex, const Point& place, double enough) const {
     double sum = 0;
     for (const Index t : tets_at_[vertex]) {
@@ -333,7 +336,7 @@ class Placement {
   }
 
   std::vector<Index> move(const std::vector<Index>& movers, const std::array<Vector, 3>& frame) {
-    // The shortest edge, and the box of the neighbours, its upper corner negative.
+    // Facts: the shortest edge, and the box of the neighbours, its upper corner negated.
     constexpr std::size_t facts = 7;
     std::vector<PetscReal> known(facts * movers.size(), INFINITY), before, after(places * movers.size());
     for (std::size_t i = 0; i < movers.size(); ++i) {
@@ -399,8 +402,8 @@ class Placement {
     return tried;
   }
 
-  /// Moves back, in each tet that cannot stay, the vertex with the longest way; if all are back, those that
-  /// made room. Returns the tets around them.
+  /// Moves back, in each tet that cannot stay, the vertex with the longest displacement or, if all have moved
+  /// back, those that made room. Returns the tets around these vertices.
   std::vector<Index> draw_back(const std::vector<Index>& tets) {
     std::vector<PetscInt> marks(mesh_->points.size(), 0);
     const auto mark_longest = [&](const auto& corners) {
@@ -441,7 +444,8 @@ class Placement {
     return around;
   }
 
-  /// Moves vertices that moved back forward again if they have room by now. Returns false if none has.
+  /// Moves vertices that moved back forward again if they have room by now. Returns false if none of them
+  /// has.
   bool try_again(unsigned sweep) {
     std::vector<PetscInt> wishes(mesh_->points.size(), 0);
     for (std::size_t v = 0; v < wishes.size(); ++v) wishes[v] = has_way_[v] && back_[v] > 0 ? 1 : 0;
@@ -507,9 +511,9 @@ class Placement {
   std::vector<std::array<Index, 2>> curve_edges_;
   CellsAtVertices tets_at_;
   std::vector<Point> origins_, targets_;
-  std::vector<std::uint8_t> back_;  // by vertex: index in shares
+  std::vector<std::uint8_t> back_;  // by vertex: its index in shares
   std::vector<bool> has_way_, frozen_;
-  std::vector<std::uint8_t> fresh_;  // by vertex: remaining tries unless something around it changes
+  std::vector<std::uint8_t> fresh_;  // by vertex: number of tries left unless something around it changes
   std::int64_t moves_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// Adds mid-edge nodes, on the shape if the edge is.
+// Adds mid-edge nodes; those of edges on features are on the shape.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,11 +16,11 @@ namespace collarmesh::distributed {
 namespace {
 
 // A node farther from the middle of its edge than this, relative to the edge, belongs to another part of its
-// feature. A half circle has 0.5.
+// feature. On a half circle it is 0.5.
 constexpr double farthest = 0.5;
 // The default of SecondOrderOptions::least_jacobian.
 constexpr double least_jacobian = 0.1;
-// The shares of their way that nodes keep as they move back, step by step.
+// The shares of their displacement that nodes keep when they move back, step by step.
 constexpr std::array<double, 4> shares{1, 0.5, 0.25, 0};
 
 class Curving {
@@ -78,7 +78,7 @@ class Curving {
   }
   Point node(std::size_t edge) const { return middle(edge) + shares[back_[edge]] * ways_[edge]; }
 
-  // Finds the ways; the owners do it for all ranks.
+  // Finds the displacements of the nodes; the owners do so for all ranks.
   void find_ways() {
     ways_.assign(edges_.size(), {});
     back_.assign(edges_.size(), 0);
@@ -115,7 +115,7 @@ class Curving {
     }
   }
 
-  /// Returns for each invalid tet the edges whose nodes have the longest way.
+  /// Returns the edges of each invalid tet whose nodes have the longest displacement.
   std::vector<PetscInt> faulty() {
     std::vector<PetscInt> marks(edges_.size(), 0);
     const auto way_of = [&](Index e) { return shares[back_[e]] * norm(ways_[e]); };
@@ -144,8 +144,8 @@ class Curving {
   LocalMesh mesh_;
   Edges edges_;
   SharedPoints shared_;
-  std::vector<Vector> ways_;        // by edge: from its middle to the place of its node
-  std::vector<std::uint8_t> back_;  // by edge: index in shares
+  std::vector<Vector> ways_;        // by edge: displacement of its node from its middle
+  std::vector<std::uint8_t> back_;  // by edge: its index in shares
   std::vector<CurvedCell> curved_;
 };
 

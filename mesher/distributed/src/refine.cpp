@@ -16,18 +16,19 @@ namespace collarmesh::distributed {
 
 namespace {
 
-/// PETSc cuts the octahedron in the middle of a tet between the middles of the edges 01 and 23 of its
-/// corners. Turned by these arrangements, which keep the last corner, the tet has other edges there.
-///
-/// It numbers the corners of the eight tets so that their own diagonals are those of Bey's rule (Tetrahedral
-/// grid refinement, 1995): the four in the octahedron are cut next between the middle of this diagonal and of
-/// the edge opposite, the others like the tet they are similar to. By that rule the tets within one have
-/// three shapes at most, at any level, and the first level has all of them. So the choice is made there,
-/// once: the best diagonal at each level makes ever new shapes, and worse ones.
+/// Turns of a tet's corners. PETSc cuts the octahedron in the middle of a tet between the middles of the
+/// edges 01 and 23. Rotating the other three corners by these amounts, with the last corner fixed, chooses
+/// another pair of edges.
+/// PETSc numbers the corners of the eight children so that their own diagonals are those of Bey's rule
+/// (Tetrahedral grid refinement, 1995): the four tets in the octahedron are cut next between the middle of
+/// this diagonal and that of the opposite edge, the other four like the tet that they are similar to. By that
+/// rule the tets inside one have at most three shapes at any level, all of which appear at the first level.
+/// So the diagonal is chosen only once, there. Choosing the best diagonal at each level would make ever new
+/// and worse shapes.
 constexpr std::array<PetscInt, 3> arrangements{0, 1, 2};
 
 /// Returns the quality of the four tets around the diagonal between the edges ij and kl: the smaller of their
-/// least angle and of 180 degrees minus their greatest angle.
+/// least angle and the difference between 180 degrees and their greatest angle.
 double goodness(const Corners& p, std::size_t i, std::size_t j, std::size_t k, std::size_t l) {
   const auto middle = [&](std::size_t a, std::size_t b) { return 0.5 * (p[a] + p[b]); };
   const Point from = middle(i, j), to = middle(k, l);
@@ -66,7 +67,8 @@ LevelReport ParallelMesh::refine(const Shape& shape) {
   const auto start = std::chrono::steady_clock::now();
   PetscInt first = 0, end = 0;
   call(DMPlexGetHeightStratum(dm_, 0, &first, &end));
-  // Each tet adds two faces, and more than an edge and a fifth of a vertex; numbers count those of all ranks.
+  // Estimates the number of points: each tet adds two faces, and more than an edge and a fifth of a vertex.
+  // Numbers count the points of all ranks.
   const std::int64_t points = 8 * 9 * all_reduce(communicator_, std::int64_t{end - first}, MPI_SUM) / 2;
   agree(communicator_, [&] {
     if (order_ != 1) throw OptionError("meshes of second order are not refined; raise the order afterwards");

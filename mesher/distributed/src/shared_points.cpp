@@ -9,7 +9,7 @@ namespace collarmesh::distributed {
 
 namespace {
 
-/// A type of several values of a basic type. PETSc accepts a single value only by its own name.
+/// An MPI type of several values of a basic type. For a single value PETSc accepts only its own name.
 class UnitType {
  public:
   UnitType(MPI_Datatype basic, std::size_t width) : type_(basic), is_made_(width > 1) {
@@ -46,7 +46,7 @@ SharedPoints::SharedPoints(DM dm, PetscInt depth)
   owned_.assign(static_cast<std::size_t>(end - first_), true);
   const Ranks ranks(communicator_);
   if (ranks.count == 1) return;
-  // All points of the DMPlex, then those of this depth, then those that are shared.
+  // The steps: all points of the DMPlex, then those of this depth, then the shared ones.
   PetscSF all = nullptr;
   call(DMGetPointSF(dm, &all));
   PetscInt roots = 0, leaves = 0;

@@ -10,8 +10,8 @@
 namespace collarmesh::distributed {
 
 /// The points of one depth of a DMPlex (0 vertices, 1 edges, 2 faces, 3 tets), numbered from 0 on each rank,
-/// and those among them that other ranks have, too. Combines their values by minima, maxima or sums of
-/// integers, which are the same in any order.
+/// and which of them other ranks have, too. Combines their values by minima, maxima or sums of integers,
+/// whose results do not depend on the order.
 class SharedPoints {
  public:
   SharedPoints(DM dm, PetscInt depth);
@@ -19,25 +19,26 @@ class SharedPoints {
   SharedPoints(const SharedPoints&) = delete;
   SharedPoints& operator=(const SharedPoints&) = delete;
 
-  PetscInt first() const { return first_; }  ///< number in the DMPlex
+  PetscInt first() const { return first_; }  ///< number of the first point in the DMPlex
   std::size_t size() const { return owned_.size(); }
   /// Returns whether this rank owns a point; each point has one owner.
   bool owned(std::size_t i) const { return owned_[i]; }
-  /// Returns the number of points of this rank.
+  /// Returns the number of points that this rank owns.
   std::size_t owned_count() const;
   /// Returns the shared points, ascending.
   const std::vector<std::size_t>& shared() const { return shared_; }
 
-  /// Combines the values of each shared point over the ranks that have it, `width` values for each point; all
-  /// of them get the result. T: PetscInt or PetscReal. MPI_REPLACE: all get the owner's.
+  /// Combines the values of each shared point over the ranks that have it, `width` values for each point. All
+  /// these ranks get the result. T: PetscInt or PetscReal. With MPI_REPLACE all get the owner's values.
   template <class T>
   void combine(std::vector<T>& values, MPI_Op operation, std::size_t width = 1) const;
 
-  /// Does the same for values of the points in `shared()` alone, in that order.
+  /// Combines values that are given for the points in `shared()` only, in that order.
   template <class T>
   void combine_shared(std::vector<T>& values, MPI_Op operation, std::size_t width = 1) const;
 
-  /// Returns consecutive numbers over all ranks, of each rank's own points in their order, from `begin` on.
+  /// Returns numbers from `begin` on that are consecutive over all ranks: those of each rank's own points, in
+  /// their order.
   std::vector<PetscInt> global_numbers(PetscInt begin = 0) const;
 
  private:

@@ -31,7 +31,7 @@ struct Cells {
 };
 
 struct Grid {
-  std::vector<PetscReal> points;  ///< of this rank's own nodes, in the order of their numbers
+  std::vector<PetscReal> points;  ///< this rank's own nodes, in the order of their numbers
   std::array<Cells, 3> cells;     ///< tets, faces, edges
 };
 
@@ -146,11 +146,11 @@ class GridMaker {
 class ValueFile {
  public:
   ValueFile(MPI_Comm communicator, const std::string& path) : communicator_(communicator) {
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // we report errors ourselves
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // the program reports errors itself
     call(PetscViewerHDF5Open(communicator, path.c_str(), FILE_MODE_WRITE, &viewer_));
   }
   ~ValueFile() {
-    // Closing is collective, and after an error the other ranks may not take part.
+    // Closing is collective; after an error the other ranks may not take part.
     if (std::uncaught_exceptions() == 0) PetscViewerDestroy(&viewer_);
   }
   ValueFile(const ValueFile&) = delete;
@@ -167,7 +167,7 @@ class ValueFile {
     if (given == PETSC_FALSE) call(PetscOptionsClearValue(nullptr, option));
     call(PetscViewerPopFormat(viewer_));
   }
-  /// Writes rows. Returns how many there are on all ranks.
+  /// Writes rows. Returns their number on all ranks.
   std::int64_t write(const std::string& group, const std::string& name, const std::vector<PetscInt>& values,
                      std::size_t columns) {
     IS set = nullptr;
@@ -219,7 +219,7 @@ void write_text(const fs::path& path, const std::string& text) {
   if (!file) throw WriteError(fmt::format("{}: cannot be written; is the disk full?", path.string()));
 }
 
-/// Checks for disk space: a full disk is better reported before writing than in the middle.
+/// Checks for disk space: it is better to report a full disk before writing than in the middle.
 void require_space(DM dm, const fs::path& path) {
   constexpr double bytes_per_tet = 150;  // lower bound
   const MPI_Comm communicator = PetscObjectComm(reinterpret_cast<PetscObject>(dm));
@@ -227,7 +227,7 @@ void require_space(DM dm, const fs::path& path) {
   call(DMPlexGetHeightStratum(dm, 0, &first, &end));
   const double needed =
       bytes_per_tet * static_cast<double>(all_reduce(communicator, std::int64_t{end - first}, MPI_SUM));
-  // The file has the faces, edges and ends of all points in one array, some 12.5 for a tet.
+  // The file has the faces, edges and ends of all points in one array, about 12.5 entries per tet.
   const bool countable =
       needed / bytes_per_tet * 13 < static_cast<double>(std::numeric_limits<PetscInt>::max());
   agree(communicator, [&] {

@@ -54,7 +54,7 @@ std::string piece_name(const fs::path& path, int rank) {
 void write_index(const fs::path& path, int pieces) {
   pugi::xml_document piece, index;
   const fs::path first = path.parent_path() / piece_name(path, 0);
-  // Reads only the XML before the values, so it is incomplete.
+  // Parses only the XML before the values, so the document is incomplete.
   if (!piece.load_file(first.c_str(), pugi::parse_default | pugi::parse_fragment).operator bool())
     throw WriteError(fmt::format("{}: cannot be read back", first.string()));
   pugi::xml_node file = index.append_child("VTKFile");

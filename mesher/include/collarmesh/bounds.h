@@ -15,20 +15,22 @@ struct Bounds {
   /// across a thin wall, half of the angle that they leave is enough. Dihedral and face angles of thin tets
   /// are at most 150.
   double thin_angle = 8;
-  /// Tets may be thin only at creases and in narrow places; otherwise anywhere. A place is narrow if the
-  /// distance between features that have no point in common, or that meet in a crease, is below the longest
-  /// edge over `radius_edge`.
+  /// Allows thin tets only at creases and in narrow places; if false, anywhere. A place is narrow if two
+  /// features without a common point, or two features that meet in a crease, are closer there than the
+  /// longest edge divided by `radius_edge`.
   bool thin_in_narrow_places_only = false;
   double collar_angle = 150;  ///< largest dihedral angle in collars; 100 to 175
   double crease_angle = 60;   ///< features that meet below it form a crease and get a collar
-  /// Largest distance from smooth patches and curves, absolute; 0: `default_tolerance`.
+  /// Largest distance of the mesh from smooth patches and curves, absolute; 0: `default_tolerance`.
   double distance = 0;
-  std::optional<SurfaceTolerance> tolerance = {};  ///< by place, in place of `distance`
-  /// Share of the bounds on angles of thin tets (from 0 and from 180 degrees) and of the width of narrow
-  /// places that is kept in reserve for later stages that move vertices (`project_boundary`); 0 to 0.5.
+  std::optional<SurfaceTolerance> tolerance = {};  ///< a tolerance that depends on the place; replaces
+                                                   ///< `distance`
+  /// Share of two bounds that is kept in reserve for later stages that move vertices (`project_boundary`): of
+  /// the bounds on angles of thin tets, measured from 0 and 180 degrees, and of the width of narrow places. 0
+  /// to 0.5.
   double reserve = 0;
-  /// Allows edges that the input forces to be short to lower the smallest angle of thin tets. A mesh made
-  /// without this is within the bounds with it.
+  /// Lowers the bound on the smallest angle of thin tets where the input forces edges to be short. A mesh
+  /// made with false also keeps the bounds for true.
   bool lower_where_forced = true;
   /// Requires that no tet has all corners on boundaries, interfaces or patches inside regions. Where features
   /// meet, at least two tets then share the angle, so each may have half of the angle asked of a single one.
@@ -42,7 +44,7 @@ struct Bounds {
 /// mesh made with this target edge length (0: its default).
 SurfaceTolerance tolerance_of(const Plc& plc, const Bounds& bounds, double size, int order = 1);
 
-/// Returns the distance for a mesh of unknown target edge length: the distance that the largest one allows.
+/// Returns the distance for a mesh whose target edge length is unknown: the largest one over all lengths.
 SurfaceTolerance tolerance_of_any_size(const Plc& plc, const Bounds& bounds);
 
 }  // namespace collarmesh

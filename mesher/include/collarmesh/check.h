@@ -15,12 +15,12 @@
 namespace collarmesh {
 
 struct CheckOptions {
-  /// If the mesh marks thin tets, only marked ones may be thin, in memory as well as read from a file. Cells
-  /// of a collar are exempt at creases only.
+  /// The bounds to check against. If the mesh marks thin tets, only marked ones may be thin. Cells of a
+  /// collar are exempt at creases only.
   Bounds bounds = {};
-  ShapeMeasures exact = {};  ///< measures of the exact geometry behind the complex; NaN or missing: the
-                             ///< complex's own
-  std::size_t findings_per_guarantee = 20;  ///< more are counted, not listed
+  ShapeMeasures exact = {};  ///< measures of the exact geometry behind the complex; where NaN or missing,
+                             ///< those of the complex count
+  std::size_t findings_per_guarantee = 20;  ///< further findings are counted but not listed
   unsigned threads = 0;                     ///< maximum number of threads; 0: all cores
 };
 
@@ -32,11 +32,11 @@ struct Finding {
   Point where;
 };
 
-/// The triangles of a mesh without tets.
+/// Measures of the triangles of a mesh without tets.
 struct TriangleMeasures {
   static constexpr std::size_t bins = 18;
   std::size_t triangles = 0;
-  double min_angle = 180, max_angle = 0;       ///< degrees, of the triangles' corners
+  double min_angle = 180, max_angle = 0;       ///< angles at the triangles' corners, degrees
   std::array<std::size_t, bins> min_angles{};  ///< triangles by their smallest angle, 10 degrees a bin
   std::array<std::size_t, bins> max_angles{};  ///< triangles by their largest angle
   std::size_t at_sharp_corners = 0;  ///< triangles below the bound only because the input has a sharp corner
@@ -45,45 +45,49 @@ struct TriangleMeasures {
 struct CheckReport {
   std::vector<Finding> findings;
   std::size_t findings_total = 0;     ///< findings, including those not listed
-  std::vector<std::string> notes;     ///< sentences: labels that differ from the complex's, so that positions
-                                      ///< decided
+  std::vector<std::string> notes;     ///< sentences: differing labels, which made the check match features by
+                                      ///< position
   std::vector<std::string> warnings;  ///< sentences: volumes and thin places that changed noticeably
-  // Measurements:
+  // Measurements of the mesh:
   std::size_t tets = 0, points = 0, faces = 0, edges = 0, collar_tets = 0, thin_tets = 0;
-  double max_radius_edge = 0;       ///< of tets outside collars that are not thin
-  double max_thin_radius_edge = 0;  ///< of thin tets
+  double max_radius_edge = 0;       ///< largest ratio of tets that are neither thin nor in collars
+  double max_thin_radius_edge = 0;  ///< largest ratio of thin tets
   std::size_t forced_tets = 0;  ///< thin tets within their bounds only because the input forces short edges
   double min_forced_dihedral = 180;             ///< smallest dihedral angle of those tets
   double min_dihedral = 180, max_dihedral = 0;  ///< dihedral angles outside collars, degrees
   double max_collar_dihedral = 0;
   double min_collar_dihedral = 180;
-  double max_surface_distance = 0;  ///< in both directions, on smooth patches and curves
+  double max_surface_distance = 0;  ///< largest distance between mesh and complex on smooth patches and
+                                    ///< curves, in both directions
   double median_edge = 0;
   std::size_t surface_tets = 0;        ///< tets with all corners on boundaries, interfaces or patches inside
                                        ///< regions
-  std::vector<double> region_volumes;  ///< by region index, [0] unused; curved elements with their curvature
-  ShapeMeasures of_input, of_mesh;     ///< empty when labels or points are not usable
-  MeshMeasures measures;               ///< collars included; of no tet when labels or points are not usable
+  std::vector<double> region_volumes;  ///< by region index, [0] unused; of curved elements if the order is 2
+  ShapeMeasures of_input, of_mesh;     ///< empty if labels or points are not usable
+  MeshMeasures measures;               ///< measures of all tets, collars included; of no tet if labels or
+                                       ///< points are not usable
   std::optional<TriangleMeasures> triangles;  ///< only for a mesh without tets (`check_shells`)
 
-  bool cancelled = false;  ///< the execution cancelled the check, so it is incomplete
+  bool cancelled = false;  ///< the execution was cancelled, so the check is incomplete
 
   bool passed() const { return findings_total == 0 && !cancelled; }
 };
 
 /// Recomputes every guarantee from the mesh alone, independently of how it was made: positive volumes,
 /// conformity, watertight regions, region volumes, curves as unions of edges, facets as unions of faces with
-/// equal area, radius-edge ratio or angles, surface distance. A region may lose or gain 5% of its volume with
-/// elements of first order, 1% with those of second order, unless the bounds ask for a distance; a warning
-/// names regions that are more than 2% off. The same holds for what closed surfaces enclose (`shells_of`).
-/// Walls keep half of their thickness, and gaps of their width, in the mean of a patch. A mesh read from a
-/// file (no feature indices) is matched to the complex by tags and position; if its tags are not the
-/// complex's, or it has no boundary triangles or curve edges, by position alone. Tets count as cells of a
-/// collar only at creases of the complex. Cancellation takes effect between groups of guarantees.
+/// equal area, radius-edge ratio or angles, surface distance.
+/// A region may lose or gain 5% of its volume with elements of first order, 1% with those of second order,
+/// unless the bounds ask for a distance; a warning names regions that are more than 2% off. The same
+/// allowance holds for the volumes that closed surfaces enclose (`shells_of`). Averaged over a patch, walls
+/// keep at least half of their thickness and gaps half of their width.
+/// A mesh read from a file (no feature indices) is matched to the complex by tags and position; it is matched
+/// by position alone if its tags are not the complex's or if it has no boundary triangles or curve edges.
+/// Tets count as cells of a collar only at creases of the complex. Cancellation takes effect between groups
+/// of guarantees.
 CheckReport check(const TetMesh& mesh, const Plc& plc, const CheckOptions& options = {},
                   const Execution& execution = {});
 
-/// Bounds on the angles of a surface mesh, degrees. At a sharp corner of the input, between two curves, the
+/// Bounds on the angles of a surface mesh, degrees. At a sharp corner between two curves of the input, the
 /// smallest angle may be half of the corner's angle.
 inline constexpr double least_triangle_angle = 20, largest_triangle_angle = 120;
 

@@ -7,8 +7,8 @@
 
 #include "collarmesh/geometry.h"
 
-/// Faults of the user's input. Each names the entity, its coordinates and what to do next.
-/// Faults of our own are asserts; cancellation and spent budgets are statuses of the result.
+/// Errors for faults of the user's input. Each names the entity, its coordinates and what to do next. Faults
+/// of our own are asserts; cancellation and spent budgets are statuses of the result.
 namespace collarmesh {
 
 struct Error : std::runtime_error {
@@ -26,14 +26,14 @@ struct WriteError : Error {
   using Error::Error;
 };
 
-/// One thing that is wrong with a complex.
+/// One fault of a complex.
 struct PlcFault {
   enum class Kind {
     duplicate_points,
     degenerate_facet,
     non_planar_polygon,
     intersection,    ///< two features meet outside a common feature
-    not_orientable,  ///< the facets of a component cannot be oriented
+    not_orientable,  ///< a region is required, but its boundary is open
     open_boundary,   ///< a region was asked for and its boundary is open
     empty,           ///< nothing to mesh
     bad_point        ///< a coordinate is not finite or an index is out of range

@@ -12,7 +12,7 @@ namespace collarmesh {
 /// Index of a point, feature or element in the array that holds it.
 using Index = std::uint32_t;
 
-/// "No such entity".
+/// Stands for "no such entity".
 inline constexpr Index none = 0xffffffffU;
 
 /// The label that a source (CAD face id, .poly marker, file number) gave to an entity; 0 if it gave none.

@@ -8,16 +8,15 @@
 
 namespace collarmesh {
 
-/// Where a point lies in a mesh.
+/// The place of a point in a mesh.
 struct MeshPlace {
   Index tet = none;                   ///< none: the point is outside all tets
-  std::array<double, 4> shares = {};  ///< barycentric coordinates: shares of the tet's corners, whose sum is
-                                      ///< 1
-  Index nearest = none;               ///< nearest point of the mesh, if the place is outside
+  std::array<double, 4> shares = {};  ///< barycentric coordinates of the point in that tet; their sum is 1
+  Index nearest = none;               ///< nearest point of the mesh, if the point is outside all tets
 };
 
-/// Finds points in a mesh, tets of second order taken as straight. Cost: near linear in the mesh and the
-/// points.
+/// Finds the tets that contain points. Tets of second order count as straight. Cost: near linear in the mesh
+/// and the points.
 std::vector<MeshPlace> locate(const TetMesh& mesh, std::span<const Point> points);
 
 }  // namespace collarmesh

@@ -11,7 +11,7 @@ namespace collarmesh {
 enum class CutFacets {
   nothing,  ///< keep them: for formats of complexes
   complex,  ///< facets of several polygons or with holes, which most surface formats cannot hold
-  all       ///< every one with more than three corners
+  all       ///< all facets with more than three corners
 };
 
 struct MergeSoupsOptions {
@@ -21,25 +21,24 @@ struct MergeSoupsOptions {
 
 /// Counts of the changes that `merge_soups` made.
 struct MergeReport {
-  Index welded_points = 0;      ///< merged with another one
+  Index welded_points = 0;      ///< points merged with another one
   Index unused_points = 0;      ///< points that no facet or segment uses: dropped, except those of a complex
   Index cut_facets = 0;         ///< facets that became triangles
-  Index degenerate_facets = 0;  ///< facets with less than three corners after welding: dropped
-  Index repeated_facets = 0;    ///< facets with the corners of another one, in either direction: dropped
+  Index degenerate_facets = 0;  ///< facets with fewer than three corners after welding: dropped
+  Index repeated_facets = 0;    ///< duplicate facets, in either direction: dropped
 };
 
-/// Joins several soups as they are: reorients nothing, and leaves intersections and open borders. Facets
-/// keep their order and tags; region points, hole points and holes of facets are kept.
-/// Throws PlcError for points that are not finite, indices out of range, and facets to be cut that are not
-/// planar.
-/// Cost: O(n log n) for n corners.
+/// Joins several soups without repairing them: reorients nothing, and leaves intersections and open borders.
+/// Facets keep their order and tags; region points, hole points and holes of facets are kept. Throws PlcError
+/// for points that are not finite, indices out of range, and facets to be cut that are not planar. Cost: O(n
+/// log n) for n corners.
 PolygonSoup merge_soups(std::span<const PolygonSoup> soups, const MergeSoupsOptions& options,
                         MergeReport& report);
 
 /// Replaces the region and hole points of a soup by those of a complex that was built from it: one point
 /// inside each region with its tag and size, one inside each cavity. A region too thin for a point in
-/// floating-point numbers gets none. Returns how many did not get one.
-/// Cost: O(n log n) for n triangles.
+/// floating-point numbers gets none. Returns the number of regions without a point. Cost: O(n log n) for n
+/// triangles.
 Index place_region_points(const Plc& plc, PolygonSoup& soup);
 
 }  // namespace collarmesh

@@ -14,8 +14,9 @@ struct FilesResult : SoupPipelineResult {
   std::vector<std::string> notes;  ///< changes to CAD shapes, a line each
 };
 
-/// Meshes the solids that files bound, and certifies the mesh. Reads all formats that the program reads:
-/// surfaces, complexes and CAD shapes, whose exact geometry the mesh follows. Link with `collarmesh::files`.
+/// Meshes the solids that the files bound, and certifies the mesh. Reads all formats that the program reads:
+/// surfaces, complexes and CAD shapes. The mesh follows the exact geometry of CAD shapes. Link with
+/// `collarmesh::files`.
 /// `format` overrides the files' extensions. Uses the options of the mesh, `overlap`, `names` and
 /// `size_field_file`; `names` may be a path or the text itself. Throws ReadError, PlcError and OptionError,
 /// as `run_pipeline` does.

@@ -18,9 +18,10 @@ struct MeshMeasures {
   };
 
   double min_dihedral = 180, max_dihedral = 0;  ///< degrees
-  double max_radius_edge = 0;  ///< of tets that are neither thin nor in a collar, for which it is bounded
-  double max_thin_radius_edge = 0;                ///< of thin tets; 0: there are none
-  double max_collar_radius_edge = 0;              ///< in collars; 0: there are none
+  double max_radius_edge = 0;  ///< largest ratio of the tets for which it is bounded: neither thin nor in a
+                               ///< collar
+  double max_thin_radius_edge = 0;                ///< largest ratio of thin tets; 0: there are none
+  double max_collar_radius_edge = 0;              ///< largest ratio in collars; 0: there are none
   std::array<std::size_t, bins> min_dihedrals{};  ///< tets by their smallest dihedral angle, 10 degrees a bin
   std::array<std::size_t, bins> max_dihedrals{};  ///< tets by their largest dihedral angle
   std::array<std::size_t, bins>
@@ -30,14 +31,14 @@ struct MeshMeasures {
   std::vector<Extreme> smallest_angles, largest_angles;
 
   enum class Kind { plain, thin, collar };
-  /// Counts a tet of this quality. Call it in the order of the tets.
+  /// Counts a tet of this quality. Call it for the tets in their order.
   void add(Index tet, const TetQuality& quality, Index region, Kind kind);
 };
 
 /// Measures a tet by its corners; the volume is that of the curved tet if the mesh is of second order.
 TetQuality measure_tet(const TetMesh& mesh, Index tet);
 
-/// Measures all tets; those of a mesh without regions are in region 1.
+/// Measures all tets. In a mesh without regions all tets are in region 1.
 MeshMeasures measure_mesh(const TetMesh& mesh);
 
 }  // namespace collarmesh

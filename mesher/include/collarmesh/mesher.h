@@ -15,52 +15,55 @@
 
 namespace collarmesh {
 
-/// When the balls of collars are placed: in the pass, each when the mesh has become fine enough around its
-/// crease (paper, section 3.2), or before the first vertex is inserted. The guarantees are the same.
+/// The moment at which the balls of collars are placed: during refinement, each as soon as the mesh is fine
+/// enough around its crease (paper, section 3.2), or before the first vertex is inserted. The guarantees are
+/// the same.
 enum class CollarCreation { in_pass, up_front };
 
 /// A setting for the refinement as a whole: meshes for use, or exactly what the paper's proofs assume.
 enum class Profile {
   standard,
-  /// Exactly the assumptions of the proofs. Creases are all features that meet below 90 degrees. Input is
-  /// inserted where it is medial; otherwise the balls around it are split. One bound on circumradius /
-  /// shortest edge holds everywhere during the run, also in collars and outside regions. A crease gets its
-  /// balls when it is isolated. Sheets that face each other get no exception; nothing is refined in blocks,
-  /// coarsened or improved; sizes apply only if they are given.
+  /// Makes exactly the assumptions of the proofs. All features that meet below 90 degrees are creases. A
+  /// feature's point is inserted where it is medial; otherwise the balls around it are split. One bound on
+  /// circumradius / shortest edge holds everywhere during the run, also in collars and outside regions. A
+  /// crease gets its balls when it is isolated. Sheets that face each other get no exception; nothing is
+  /// refined in blocks, coarsened or improved; sizes apply only if they are given.
   paper
 };
 
-/// The bound on the radius-edge ratio of cells in narrow places: between features that have no point in
-/// common and are nearer to each other than a tenth of the size, as across a thin wall. Such cells may exceed
-/// it in meshes that will be coarsened, where angles are bounded instead of the ratio (Bounds::thin_angle).
+/// The cells in narrow places that the radius-edge bound applies to. A place is narrow between features that
+/// have no point in common and are nearer to each other than a tenth of the size, as across a thin wall. Such
+/// cells may exceed the bound in meshes that will be coarsened, where angles are bounded instead of the ratio
+/// (Bounds::thin_angle).
 enum class NarrowCells {
   bounded,
   left,
-  bounded_if_cheap  ///< bounded where that takes at most about twice the vertices; otherwise all are left
+  bounded_if_cheap  ///< bounded if that takes at most about twice the vertices; otherwise all are left
 };
 
-/// The goals of `generate`. Lengths are absolute, in input units, and are target edge lengths:
-/// the median edge of a large mesh comes out about a tenth above them, as other meshers' does.
+/// The goals of `generate`. Lengths are absolute, in input units, and are target edge lengths: the median
+/// edge of a large mesh is about a tenth longer, as in other meshers.
 struct MeshOptions {
   Profile profile = Profile::standard;  ///< sets some of the other options, see `with_profile`
-  double size = 0;  ///< target edge length everywhere; 0: 1/20 of the diagonal, in the paper's profile all of
-                    ///< it
-  double size_min = 0;                     ///< smallest target edge length of sizes and fields; 0: none
+  double size = 0;  ///< target edge length everywhere; 0: 1/20 of the diagonal (Profile::paper: the diagonal)
+  double size_min = 0;                     ///< lower bound on target edge lengths given by sizes and size
+                                           ///< fields; 0: none
   std::map<Tag, double> region_size = {};  ///< target edge length by region tag
-  std::map<Tag, double> patch_size = {};   ///< by patch tag
-  std::map<Tag, double> curve_size = {};   ///< by curve tag
-  /// Growth of size per unit length away from a finer patch, curve or region; 0: unlimited.
+  std::map<Tag, double> patch_size = {};   ///< target edge length by patch tag
+  std::map<Tag, double> curve_size = {};   ///< target edge length by curve tag
+  /// Increase of the target edge length per unit of distance from a finer patch, curve or region; 0:
+  /// unlimited.
   double gradation = 0;
   SizeField size_field = {};       ///< target edge length at a point; may be empty
   double elements_per_circle = 0;  ///< number of target edge lengths on a full circle with the curvature of
-                                   ///< smooth patches and curves; 0: any
+                                   ///< smooth patches and curves; 0: no effect
   /// Minimum number of edges per full circle on smooth curves that turn by half a circle or more, so that
   /// small holes stay round. It does not change target edge lengths; 0: none.
   double edges_per_hole = 7;
   double elements_across_gap = 0;  ///< number of target edge lengths between a patch and the feature that it
-                                   ///< faces across a region; 0: any
+                                   ///< faces across a region; 0: no effect
   Bounds bounds = {};
-  /// Bound on circumradius / shortest edge outside every region, if larger than the bound inside; edges
+  /// Bound on circumradius / shortest edge outside every region; used if larger than the bound inside. Edges
   /// straight across a gap do not count there.
   double exterior_radius_edge = 8;
   NarrowCells narrow_cells = NarrowCells::bounded;
@@ -81,20 +84,20 @@ struct MeshOptions {
 /// Returns the options with those that their profile sets.
 MeshOptions with_profile(MeshOptions options);
 
-/// MeshOptions::size, or its default for this complex.
+/// Returns MeshOptions::size, or its default for this complex if it is 0.
 double default_size(const Plc& plc, const MeshOptions& options);
 
 /// Returns a sentence for each option of sizes that makes nothing finer: sizes by tag that are not below
-/// `size`, and numbers of elements per circle that shorten no edge. Sizes that depend on the place are not
-/// judged.
+/// `size`, and numbers of elements per circle that shorten no edge. Does not judge sizes that depend on the
+/// place.
 std::vector<std::string> sizes_without_effect(const Plc& plc, const MeshOptions& options);
 
-/// Returns the surface distance tolerance unless another one is asked for: a tenth of the target edge length
-/// (0: of its default, as in MeshOptions), at most 1/200 of the diagonal. A circle with a radius near the
-/// target length then gets about eight edges: the chord error is that of edges of the length asked for. Small
-/// curves may be rougher than large ones, but see MeshOptions::edges_per_hole. For cells of second order at
-/// most 1/550 of the diagonal: they are judged by the triangles of their corners, which would otherwise be
-/// too coarse to curve without inverting elements. Absolute.
+/// Returns the default of the surface distance tolerance, absolute: a tenth of the target edge length (0: of
+/// its default, as in MeshOptions), at most 1/200 of the diagonal. A circle whose radius is near the target
+/// length then gets about eight edges: edges of that length have this chord error. Small curves may be
+/// rougher than large ones, but see MeshOptions::edges_per_hole. For cells of second order it is at most
+/// 1/550 of the diagonal: it applies to the triangles of their corners, and coarser triangles could not be
+/// curved without inverting elements.
 double default_distance(double size, double diagonal, int order = 1);
 
 enum class MeshStatus {
@@ -104,35 +107,35 @@ enum class MeshStatus {
   cancelled          ///< no mesh
 };
 
-/// Counts of the work that the paper's analysis bounds. Filled in if MeshOptions::count_work asks for
-/// them.
+/// Counts of the work that the paper's analysis bounds; filled in if MeshOptions::count_work is set.
 struct WorkCounts {
-  std::size_t located = 0;         ///< points and protective balls with a location at a mesh vertex
-  std::size_t relocated = 0;       ///< moves of such a point or ball to a new vertex that is nearer
+  std::size_t located = 0;         ///< points and protective balls that were located at a mesh vertex
+  std::size_t relocated = 0;       ///< moves of such a point or ball to a new, nearer vertex
   std::size_t looks = 0;           ///< inspections of such a point or ball for a new vertex or a candidate
   std::size_t gap_queries = 0;     ///< queries of the gap size, with collars created in the pass
   std::size_t gap_cells = 0;       ///< Voronoi cells that these queries explored
   std::size_t gap_interviews = 0;  ///< pieces of features whose distance these queries computed
-  std::size_t largest_degree = 0;  ///< neighbours of a new vertex
-  std::size_t largest_cavity = 0;  ///< cells that one insertion destroyed
-  /// The same, except at vertices and curves of the complex where very many features meet.
+  std::size_t largest_degree = 0;  ///< largest number of neighbours of a new vertex
+  std::size_t largest_cavity = 0;  ///< largest number of cells that one insertion destroyed
+  /// The largest cavity except at vertices and curves of the complex where very many features meet.
   std::size_t largest_cavity_outside_hubs = 0;
-  double peak_cells_per_vertex = 0;  ///< of the whole triangulation, at any time
-  std::size_t before_quality = 0;    ///< vertices inserted for another reason while a skinny cell waited
+  double peak_cells_per_vertex = 0;  ///< largest ratio in the whole triangulation, at any time
+  std::size_t before_quality = 0;    ///< vertices inserted for other reasons while a skinny cell waited
   std::size_t ripped_out = 0;        ///< vertices in collars that are not in the result (paper, Procedure 5)
   /// Extremes of R_v / r_v (paper, section 1.2), the largest circumradius at a vertex over half of its
-  /// shortest edge, where all cells at the vertex lie in regions and outside collars; 0 where there is no
-  /// such vertex.
+  /// shortest edge, over vertices whose cells all lie in regions and outside collars; 0 if there is no such
+  /// vertex.
   double smallest_aspect = 0, largest_aspect = 0;
 };
 
 struct MeshStatistics {
-  std::size_t vertices_inserted = 0;   ///< of the whole triangulation, the box and the outside included
+  std::size_t vertices_inserted = 0;   ///< vertices of the whole triangulation, including the box and the
+                                       ///< outside
   std::size_t vertices_in_blocks = 0;  ///< vertices inserted in blocks that several threads may refine
   std::size_t cells = 0;
   std::size_t exact_predicates = 0;   ///< decisions that the floating-point filter left to exact arithmetic
   std::size_t warps = 0, yields = 0;  ///< destroy() calls that warped to input or yielded to a lower ball
-  std::size_t peak_bytes = 0;         ///< of the mesh structures
+  std::size_t peak_bytes = 0;         ///< memory of the mesh structures
   double seconds = 0;
   WorkCounts counts;
 };
@@ -152,8 +155,8 @@ struct MeshResult {
 /// `build_plc` and may have creases. Guarantee (status complete): every tet in a region and outside collars
 /// has circumradius / shortest edge <= radius_edge, every one in a collar no dihedral angle above
 /// collar_angle; curves are unions of edges, patches unions of faces, planar ones exactly up to rounding and
-/// smooth ones within `distance`. Throws OptionError when options contradict each other, PlcError where
-/// features come so near to each other that no collar fits between them. Cost: near linear in the output.
+/// smooth ones within `distance`. Throws OptionError when options contradict each other, PlcError if features
+/// come so near to each other that no collar fits between them. Cost: near linear in the output.
 MeshResult generate(const Plc& plc, const MeshOptions& options = {}, const Execution& execution = {});
 
 }  // namespace collarmesh

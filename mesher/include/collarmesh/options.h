@@ -13,8 +13,8 @@
 #include "collarmesh/io/tet_mesh_io.h"
 #include "collarmesh/pipeline.h"
 
-/// The table of options: the command line, its help, manual page and completions, the Python package,
-/// reports, the page about options and the add-on for FreeCAD are made from it.
+/// The table of options, from which the command line, its help, manual page and completions, the Python
+/// package, reports, the page about options and the add-on for FreeCAD are made.
 namespace collarmesh {
 
 /// The owner of the common part of several solids of a CAD file.
@@ -46,7 +46,7 @@ struct RunOptions : PipelineOptions {
 using OptionValue =
     std::variant<bool, std::uint64_t, double, std::string, std::map<Tag, double>, std::vector<std::string>>;
 
-/// An option: its name, range and purpose.
+/// An option: its name, the range of its values and its help.
 struct Option {
   enum class Kind { flag, choice, count, number, text, texts, sizes };
   enum class Unit { number, length, degrees, of_diagonal, ratio, seconds, bytes };
@@ -77,9 +77,9 @@ struct Option {
   Unit unit = Unit::number;
   double low = 0, high = std::numeric_limits<double>::infinity();  ///< range of a number
   bool finer = false;                                              ///< makes some elements finer than `size`
-  bool zero = false;              ///< 0 is allowed although it is out of range
-  std::string default_text = {};  ///< text shown in place of 0 or nothing, if these stand for a default or
-                                  ///< for none
+  bool zero = false;              ///< 0 is allowed although it is outside the range
+  std::string default_text = {};  ///< text shown in place of a value that is 0 or empty and stands for a
+                                  ///< default or for none
   std::string group = {};         ///< heading in the help
   std::string help = {};          ///< a clause without a full stop; text after a semicolon is less important
   std::string details = {};       ///< further clauses, for pages
@@ -112,10 +112,11 @@ RunOptions with_profile(RunOptions options);
 /// Throws OptionError for values out of the range of their option and for values that contradict each other.
 void validate(const RunOptions& options);
 
-/// Converts "1.5G" to bytes; K, M, G and T are powers of 1024, in either case. Nothing for other text.
+/// Converts "1.5G" to bytes; K, M, G and T are powers of 1024, in either case. Returns nothing for other
+/// text.
 std::optional<std::size_t> read_bytes(std::string_view text);
 
-/// Converts "7=0.25" to {7, 0.25}. Nothing unless it is a whole number and a positive length.
+/// Converts "7=0.25" to {7, 0.25}. Returns nothing unless the text is a whole number and a positive length.
 std::optional<std::pair<Tag, double>> read_tag_value(std::string_view text);
 
 }  // namespace collarmesh

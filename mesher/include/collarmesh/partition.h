@@ -10,8 +10,8 @@ namespace collarmesh {
 struct PartitionMeasures {
   std::size_t partitions = 0;             ///< number of partitions that have tets; 0: the mesh is not
                                           ///< partitioned
-  std::size_t smallest = 0, largest = 0;  ///< tets of one partition
-  double imbalance = 0;                   ///< tets of the largest partition / mean - 1
+  std::size_t smallest = 0, largest = 0;  ///< number of tets in the smallest and the largest partition
+  double imbalance = 0;                   ///< tets of the largest partition divided by the mean, minus 1
   std::size_t cut_faces = 0;              ///< triangles between tets of two partitions
 };
 
@@ -21,12 +21,12 @@ PartitionMeasures measure_partitions(const TetMesh& mesh);
 /// Throws OptionError, with the package to install, if the library that partitions (Scotch) is missing.
 void require_partitioner();
 
-/// Divides the tets among ranks (`TetMesh::tet_partition`), so that few faces lie between two of them. No
+/// Divides the tets among ranks (`TetMesh::tet_partition`), so that few faces lie between two partitions. No
 /// partition is empty, and none has more tets than 1.03 times the mean, or the mean rounded up. The result is
 /// the same on any machine and with any number of threads. Throws OptionError unless `partitions` is from 1
-/// to the number of tets, and as `require_partitioner` does. Cost: n log(partitions); for each tet that
-/// Scotch puts into a partition beyond that bound (these are few) at worst another n. Memory: 200 bytes per
-/// tet for a while.
+/// to the number of tets, and as `require_partitioner` does. Cost: n log(partitions) for n tets, and at worst
+/// another n for each of the few tets by which Scotch exceeds that bound. Memory: temporarily 200 bytes per
+/// tet.
 void partition(TetMesh& mesh, unsigned partitions);
 
 }  // namespace collarmesh

@@ -9,12 +9,12 @@
 #include "collarmesh/plc.h"
 #include "collarmesh/tet_mesh.h"
 
-/// Periodic faces, for periodic boundary conditions: pairs of groups of patches, one the image of the other,
-/// whose meshes are images of each other, too.
+/// Periodic faces, for periodic boundary conditions: pairs of groups of patches. One group is the image of
+/// the other, and so is its mesh.
 namespace collarmesh {
 
 struct PeriodicOptions {
-  /// Each is an axis, or two groups of patches and the motion that takes the first to the second:
+  /// The pairs. Each is an axis, or two groups of patches and the motion that takes the first to the second:
   /// - "x", "y" or "z": the planar patches at the low and the high end of the shape along that axis;
   /// - "A=B" or "A=B:translation": names or numbers of patches, several with commas between them; the
   ///   translation takes the middle of the first group's box to that of the second's;
@@ -38,17 +38,18 @@ struct PeriodicReport {
   };
   std::vector<Pair> pairs;
   std::size_t inserted_nodes = 0;  ///< nodes inserted to give each group the nodes of the other
-  std::size_t removed_nodes = 0;   ///< nodes removed that only one group had
+  std::size_t removed_nodes = 0;   ///< nodes removed because only one group had them
   std::size_t turned_edges = 0;
 };
 
 /// Throws OptionError if a pair cannot be read, a name is unknown, or the patches are not images of each
-/// other within this distance: the message names the patch, the largest distance and its place.
+/// other within this distance. The message names the patch, the largest distance and its place.
 void require_periodic_patches(const PeriodicOptions& options, const Plc& plc, double distance);
 
 /// Gives the second group of each pair the nodes, edges and triangles of the first, moved. The tets beside
-/// them may be poor. Sets `mesh.periodic`, except for its nodes. Preconditions: patches of these groups are
-/// planar and have a region on one side only. Throws OptionError as `require_periodic_patches` does.
+/// them may have poor shapes. Sets `mesh.periodic`, except for its nodes. Preconditions: patches of these
+/// groups are planar and have a region on one side only. Throws OptionError as `require_periodic_patches`
+/// does.
 PeriodicReport make_periodic(TetMesh& mesh, const Plc& plc, const PeriodicOptions& options, double distance);
 
 }  // namespace collarmesh

@@ -30,18 +30,18 @@ namespace collarmesh {
 
 /// The mesh that a run begins with.
 enum class Start {
-  automatic,   ///< refinement; where that takes far too many vertices, the constrained tetrahedra
+  automatic,   ///< refinement; if it takes far too many vertices, the constrained tetrahedra
   refinement,  ///< refinement: features are inserted one by one, with all guarantees
-  /// Tetrahedra whose faces and edges are the facets and segments of the complex, which are then brought to
-  /// the size. They are about as many as the facets, however near features are to each other, but some keep
-  /// angles beyond their bounds.
+  /// Constrained tetrahedra: their faces and edges are the facets and segments of the complex. Later stages
+  /// bring them to the size. Their number is about that of the facets, even if features are very near each
+  /// other, but some keep angles beyond their bounds.
   constrained
 };
 
 struct PipelineOptions {
   PlcOptions complex = {};    ///< how a complex is built from facets
   RepairOptions repair = {};  ///< how facets that are no complex are repaired
-  MeshOptions mesh = {};      ///< sizes, bounds and budgets; the time limit is one for all stages
+  MeshOptions mesh = {};      ///< sizes, bounds and budgets; the time limit holds for all stages together
   Start start = Start::automatic;
   bool coarsen = true;      ///< remove tets that the sizes do not need
   unsigned improve = 2;     ///< level of improvement, 1 to 3; 0: leave the slivers
@@ -51,8 +51,8 @@ struct PipelineOptions {
   unsigned dimension = 3;
   std::vector<std::string> faces =
       {};  ///< names or numbers of the patches to mesh with triangles; empty: all
-  /// Number of seeds to try, from `mesh.seed` on, until every guarantee holds; at least 1. The first mesh is
-  /// kept if no seed succeeds.
+  /// Number of seeds to try, from `mesh.seed` on, until every guarantee holds; at least 1. If no seed
+  /// succeeds, the first mesh is kept.
   unsigned seeds = 2;
   SplitOptions split = {};   ///< internal patches that get nodes of their own on each side, after the check
   LayerOptions layers = {};  ///< boundary layers, made after the check and before the split
@@ -78,11 +78,11 @@ struct PipelineResult {
   std::optional<ProjectReport> projection;  ///< nothing without exact geometry
   SecondOrderReport second_order;
   CheckReport check;
-  std::optional<InteriorNodesReport> interior_nodes;  ///< nothing unless each tet had to have an interior
+  std::optional<InteriorNodesReport> interior_nodes;  ///< nothing unless each tet has to have an interior
                                                       ///< node
-  std::optional<PeriodicReport> periodic;             ///< nothing unless patches were to be periodic
-  std::optional<LayersReport> layers;                 ///< nothing unless layers were to be made
-  std::optional<SplitReport> split;                   ///< nothing unless something was to be split
+  std::optional<PeriodicReport> periodic;             ///< nothing unless patches have to be periodic
+  std::optional<LayersReport> layers;                 ///< nothing unless layers are asked for
+  std::optional<SplitReport> split;                   ///< nothing unless patches are to be split
   Trace trace;  ///< trace of the run that made the mesh, or of a refinement that ended early
 
   bool guarantees_hold() const { return result.status == MeshStatus::complete && check.passed(); }
@@ -95,37 +95,38 @@ struct SoupPipelineResult : PipelineResult {
   RepairReport repair;  ///< the changes that made it a complex
 };
 
-/// The source of the complexes to mesh, one for each repair that is tried.
+/// The source of the complexes to mesh. It builds one for each repair that is tried.
 class ComplexSource {
  public:
   virtual ~ComplexSource() = default;
   /// Builds the next complex. The report says whether it was cancelled. Throws PlcError.
   virtual RepairedPlc build(const RepairOptions& repair, const Execution& execution) = 0;
-  /// Sets the options that depend on the complex built last: sizes by place, exact geometry. They may refer
-  /// to it. Throws OptionError.
+  /// Sets the options that depend on the complex built last, such as sizes by place and exact geometry; they
+  /// may keep references to it. Throws OptionError.
   virtual void adapt(const Plc& plc, PipelineOptions& options) = 0;
 };
 
 /// Meshes the solids of a complex, and certifies the mesh against it. If a guarantee is missed, tries further
 /// repairs (`further_repairs`), then further seeds; if no mesh passes, the first one is kept. A refinement
-/// that takes far more vertices than the sizes ask for ends early, and coarser repairs are tried
-/// (`coarser_repairs`) that lose no body, region, name or tag except numbers of CAD faces. If none of these
-/// complexes does better, the first one is meshed within the budgets, or, if there are none, with up to twice
-/// that many vertices; if that fails, too, the mesh is made from the constrained tetrahedra of the complex
-/// (`Start`). `check.notes` lists the attempts. `execution.progress` is also called at the beginning of each
-/// stage (`ProgressReport::begins`); its fraction covers all stages. If cancelled or out of time, the result
-/// has that status and no mesh. Throws PlcError for facets that are no complex and cannot be repaired,
-/// OptionError for options that contradict each other and for sizes of tags that the complex does not have.
+/// that takes far more vertices than the sizes ask for ends early, and coarser repairs (`coarser_repairs`)
+/// are tried; such a repair must lose no body, region, name or tag except numbers of CAD faces. If none of
+/// these complexes does better, the first one is meshed within the budgets, or, without budgets, with up to
+/// twice as many vertices as the first try took; if that fails, too, the mesh is made from the constrained
+/// tetrahedra of the complex (`Start`). `check.notes` lists the attempts. `execution.progress` is also called
+/// at the beginning of each stage (`ProgressReport::begins`); its fraction covers all stages. If cancelled or
+/// out of time, the result has that status and no mesh. Throws PlcError for facets that are no complex and
+/// cannot be repaired, OptionError for options that contradict each other and for sizes of tags that the
+/// complex does not have.
 SoupPipelineResult run_pipeline(ComplexSource& source, const PipelineOptions& options = {},
                                 const Execution& execution = {});
 
-/// Meshes the solids that one or several soups bound, in the same way.
+/// Meshes the solids that one or several soups bound, as the function above does.
 SoupPipelineResult run_pipeline(std::span<const PolygonSoup> soups, const PipelineOptions& options = {},
                                 const Execution& execution = {});
 
-/// Meshes a complex that exists already, with further seeds but no further repairs. Where a
-/// refinement takes far more vertices than the sizes ask for and no budget is given, the mesh begins with
-/// constrained tetrahedra; if these are of no use either, it ends with the status `budget_hit`.
+/// Meshes a complex that exists already, with further seeds but no further repairs. Where a refinement takes
+/// far more vertices than the sizes ask for and no budget is given, the mesh begins with constrained
+/// tetrahedra; if these fail, too, the run ends with the status `budget_hit`.
 PipelineResult run_pipeline(const Plc& plc, const PipelineOptions& options = {},
                             const Execution& execution = {});
 

@@ -29,26 +29,26 @@ struct Plc {
   /// Mesh vertices may lie anywhere on its polyline.
   struct Curve {
     std::vector<Index> points;  ///< the polyline, at least 2; a closed curve does not repeat its first
-    std::array<Index, 2> ends{
-        none, none};  ///< vertices; both none for a closed curve without one; equal for a loop at one vertex
-    bool closed = false;    ///< closed without any vertex on it (ends are none)
-    bool straight = false;  ///< within the planar tolerance of its chord
+    std::array<Index, 2> ends{none, none};  ///< the vertices at its ends; both none for a closed curve
+                                            ///< without a vertex; equal for a loop at one vertex
+    bool closed = false;                    ///< closed without any vertex on it (ends are none)
+    bool straight = false;                  ///< within the planar tolerance of its chord
     Tag tag = 0;
     std::vector<Index> patches;  ///< sorted; the patches that contain it (in their border or interior)
   };
-  // A loop at one vertex repeats that vertex's point at the end of `points`.
+  // `points` of a loop at one vertex begin and end with that vertex's point.
 
   /// A feature of dimension 2: a planar polygonal facet with holes, or the facets that one smooth
   /// face was cut into. Its triangles are oriented alike: `regions[0]` lies behind them (opposite to
   /// the normal (b-a) x (c-a)), `regions[1]` in front. They form an orientable manifold with border.
   struct Patch {
     Index first_triangle = 0, triangle_count = 0;  ///< its range in `triangles`
-    bool planar = false;  ///< all its points within the planar tolerance of one plane
-    Vector normal;        ///< unit; of the plane if planar, else zero
+    bool planar = false;  ///< all its points lie within the planar tolerance of one plane
+    Vector normal;        ///< unit normal of the plane if planar, else zero
     Point origin;         ///< a point on that plane
     std::array<Index, 2> regions{0, 0};
     Tag tag = 0;
-    std::vector<Index> curves;    ///< sorted; border and embedded curves
+    std::vector<Index> curves;    ///< sorted; curves of its border and curves embedded in it
     std::vector<Index> vertices;  ///< sorted; all its feature vertices, on curves or isolated inside
     Index file = 0;               ///< index of the soup it came from
   };
@@ -62,16 +62,16 @@ struct Plc {
     Tag tag = 0;        ///< region number, or the tag of a region point
     double volume = 0;  ///< volume in the complex, input units cubed
     double size = 0;    ///< target edge length, 0: none given
-    std::string name;   ///< for messages: file name or tag
+    std::string name;   ///< name for messages: file name or tag
   };
 
-  /// Changes of the builder that made the input a complex.
+  /// Counts of the changes by which the builder made the input a complex.
   struct Cleanup {
     Index welded_points = 0;         ///< points merged with another one
-    Index degenerate_triangles = 0;  ///< triangles without an area, dropped
+    Index degenerate_triangles = 0;  ///< triangles without area, dropped
     Index repeated_triangles = 0;    ///< duplicate triangles in one soup, dropped
     Index shared_triangles = 0;      ///< duplicate triangles of several soups, which became interfaces
-    /// For these triangles, sorted: the tag that is gone and the one in its place.
+    /// Sorted pairs of tags for those shared triangles: the tag that was dropped and the tag that was kept.
     std::vector<std::pair<Tag, Tag>> replaced_tags;
   };
 
@@ -88,12 +88,12 @@ struct Plc {
   std::vector<Triangle> triangles;
   std::vector<Region> regions;  ///< regions[0] is the outside (and every hole)
   TagNames names;               ///< names that files gave to tags
-  /// The tags of all patches (curves) come from `number_untagged`, so they depend on the order of the
-  /// facets.
+  /// Whether the tags of all patches (curves) come from `number_untagged`, so that they depend on the order
+  /// of the facets.
   bool numbered_patches = false, numbered_curves = false;
 
   Box bounds;
-  double planar_tolerance = 0;  ///< absolute, input units: the tolerance that this complex was built with
+  double planar_tolerance = 0;  ///< tolerance that this complex was built with, absolute
   double largest_deviation =
       0;  ///< absolute: the largest distance by which merging (weld, planar, collinear) moved the input
   Cleanup cleanup;

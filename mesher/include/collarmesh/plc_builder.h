@@ -11,28 +11,27 @@ namespace collarmesh {
 
 /// The space that a complex divides.
 enum class DomainShape {
-  enclosed,  ///< what its facets enclose
-  box        ///< a box around everything: its points, segments and facets need not enclose anything
+  enclosed,  ///< the space that its facets enclose
+  box        ///< a box around all points, segments and facets, which need not enclose anything
 };
 
 struct PlcOptions {
   DomainShape domain = DomainShape::enclosed;
-  /// Distance of the box from what is in it, relative to the largest side of its bounding box.
+  /// Distance of the box from its contents, relative to the largest side of their bounding box.
   double box_margin = 1;
   double feature_angle =
       30;  ///< degrees; edges that deviate more from flat are segments. 0: every non-coplanar edge
   double planar_tolerance = 1e-6;  ///< relative to the bounding-box diagonal; 0: the exact predicate
   double weld = 1e-9;              ///< relative to the bounding-box diagonal; points closer than this are
                                    ///< merged
-  bool require_solid = true;       ///< a complex that bounds no region is an error
+  bool require_solid = true;       ///< throw an error if the complex bounds no region
 };
 
-/// Builds the complex of one or several soups: weld, orient, merge coplanar and collinear
-/// neighbours, find curves, patches and regions, and validate.
-/// Regions are numbered from 1 in soup order (a nested inward-oriented shell is a cavity, an
-/// outward one a region of its own; region and hole points decide for their soup).
-/// Throws PlcError with every fault found.
-/// Cost: O(n log n) for n corners.
+/// Builds the complex of one or several soups: welds points, orients facets, merges coplanar and collinear
+/// neighbours, finds curves, patches and regions, and validates the result. Regions are numbered from 1 in
+/// soup order (a nested shell is a cavity if it is oriented inwards, else a region of its own; in a soup with
+/// region and hole points, these decide). Throws PlcError with every fault found. Cost: O(n log n) for n
+/// corners.
 Plc build_plc(std::span<const PolygonSoup> soups, const PlcOptions& options = {});
 
 /// Numbers the patches from 1 in their order if no facet has a tag, and the curves if no segment has one.
@@ -54,7 +53,7 @@ struct Crease {
 /// Returns all creases with an angle below the threshold (degrees), smallest angle first.
 std::vector<Crease> find_creases(const Plc& plc, double threshold = 60);
 
-/// Counts, angles and sizes of a complex, for people.
+/// Counts, angles and sizes of a complex, for display.
 struct PlcSummary {
   Index points = 0, vertices = 0, curves = 0, straight_curves = 0, patches = 0, planar_patches = 0,
         triangles = 0, regions = 0;
@@ -91,7 +90,7 @@ struct CurveSummary {
 /// Summarizes the curves by tag. Cost: linear.
 std::vector<CurveSummary> summarize_curves(const Plc& plc);
 
-/// Returns a sentence for people: the features that meet, where, and at which angle.
+/// Returns a sentence for display: the features that meet, where, and at which angle.
 std::string describe(const Plc& plc, const Crease& crease);
 
 }  // namespace collarmesh

@@ -44,17 +44,17 @@ class PolygonSoup {
   std::vector<Tag> point_tags;  ///< one per point, or empty
   std::vector<Segment> segments;
   std::vector<Index> vertices;  ///< points that are features by themselves
-  /// If true, the features are the vertices, segments, borders of tags and folds above 90 degrees.
+  /// Whether the features are given: the vertices, segments, borders of tags and folds above 90 degrees.
   bool given_features = false;
-  std::vector<RegionPoint> region_points;  ///< .poly: region_points and hole_points decide for their file
-                                           ///< which space is solid
-  std::vector<Point> hole_points;          ///< the region around each is empty
+  std::vector<RegionPoint> region_points;  ///< .poly: region_points and hole_points decide which space of
+                                           ///< their file is solid
+  std::vector<Point> hole_points;          ///< points in holes: the region around each is empty
   std::vector<RegionPoint> named_regions;  ///< points that give regions a name but do not decide which space
                                            ///< is solid
   std::vector<FacetHole> facet_holes;
   TagNames tag_names;  ///< names of the file for its tags
   std::optional<Tag>
-      region_tag;  ///< tag of the regions that this surface is the first to bound; default: their number
+      region_tag;  ///< tag of the regions that this surface is the first to bound; by default their number
 
   /// Begins a facet; the polygons added next belong to it.
   void begin_facet(Tag tag = 0) { facets_.push_back({polygon_count(), tag}); }
@@ -71,7 +71,7 @@ class PolygonSoup {
     add_polygon(corners);
   }
 
-  /// Adds a number to the tags of facets and to their names.
+  /// Adds `by` to the tags of facets and to the tags of their names.
   void shift_facet_tags(Tag by) {
     for (Facet& facet : facets_) facet.tag += by;
     TagNames shifted;

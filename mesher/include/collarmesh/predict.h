@@ -9,16 +9,17 @@
 
 namespace collarmesh {
 
-/// Estimates of the size of a mesh and of its time; bench/README.md says how far off they are.
+/// Estimates of the size of a mesh and of its time. bench/README.md gives their errors.
 struct Prediction {
   double size = 0;  ///< the target edge length, absolute, input units
-  double tets = 0;  ///< at least 1; infinite if too many for a double; 0 if the complex has no region
+  double tets = 0;  ///< number of tets, at least 1; infinite if too many for a double; 0 if the complex has
+                    ///< no region
   double seconds =
       0;  ///< time of all stages from the refinement to the certificate, on the machine of the benchmarks
 };
 
 /// Predicts the mesh that `run_pipeline` makes of a complex with these options, for each of these target edge
-/// lengths (input units; 0: `options.mesh.size`), without making it: from the features of the complex, the
+/// lengths (input units; 0: `options.mesh.size`), without making it. Uses the features of the complex, the
 /// widths between them and the sizes. Sizes by region, patch, curve, curvature, gap, gradation and place
 /// count; budgets do not. Precondition: the complex comes from `build_plc`. Throws OptionError for sizes that
 /// are negative or below `size_min`, for sizes of tags that the complex does not have, and where coarsening

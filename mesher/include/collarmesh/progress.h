@@ -11,7 +11,7 @@ namespace collarmesh {
 struct ProgressReport {
   std::string_view phase;  ///< "read", "complex", "refine", "coarsen", "improve", "project", "second order",
                            ///< "check", "write"
-  double fraction = 0;     ///< of the whole operation, 0 to 1; an estimate
+  double fraction = 0;     ///< share of the whole operation that is done, 0 to 1; an estimate
   std::size_t vertices = 0;  ///< mesh vertices so far
   std::size_t tets = 0;      ///< cells so far
   bool begins = false;       ///< a stage of a whole run begins (`run_pipeline`)

@@ -11,10 +11,9 @@
 namespace collarmesh {
 
 struct ProjectOptions {
-  Bounds bounds = {};  ///< bounds that no tet breaks; vertices farther than the distance from their feature
-                       ///< stay
-  double tolerance = 1e-9;  ///< absolute: the distance from its feature below which a vertex that stays is no
-                            ///< exception
+  Bounds bounds = {};  ///< bounds that no tet breaks; vertices farther than `distance` from their feature
+                       ///< stay where they are
+  double tolerance = 1e-9;  ///< absolute; a vertex that stays nearer than this to its feature is no exception
   unsigned threads = 0;     ///< maximum number; 0: all cores
 };
 
@@ -37,11 +36,12 @@ struct ProjectReport {
 };
 
 /// Moves the vertices on curves and patches onto the exact geometry. No move inverts a tet, breaks the
-/// radius-edge bound or, in a collar, the bound on its dihedral angles: if one would, the tet's corners make
-/// room by moving inside their region or along their exact features, and keep faces and edges within half of
-/// the distance of the exact geometry. A vertex that cannot get there in this way stays where it is; the
-/// report lists these exceptions. On curves and patches that are straight or planar in the complex but not in
-/// the exact geometry, vertices go only as near as the complex permits. Preconditions: `mesh` comes from
+/// radius-edge bound or, in a collar, the bound on dihedral angles. If a move would do so, the tet's other
+/// corners first move inside their region or along their exact features, so that faces and edges stay within
+/// half of the distance from the exact geometry. A vertex that cannot reach its place in this way stays where
+/// it is; the report lists it as an exception. On curves and patches that are straight or planar in the
+/// complex but not in the exact geometry, vertices go only as near as the complex permits. Preconditions:
+/// `mesh` comes from
 /// `generate` for `plc`, first order; `exact` maps each point that it returns to itself. Cost: linear in the
 /// tets, with a large factor for those that would become invalid.
 ProjectReport project_boundary(TetMesh& mesh, const Plc& plc, const ExactGeometry& exact,

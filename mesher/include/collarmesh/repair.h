@@ -28,8 +28,8 @@ struct RepairOptions {
       5e-3;  ///< tolerance of the closed surface around everything, relative to the bounding-box diagonal
   bool wrap_at_once = false;  ///< in `RepairMode::wrap`: wrap even if the other steps make a solid
   /// Maximum work before repair gives up, counted in pairs of facets near each other; a cut of an
-  /// intersecting pair counts 1000. So it ends in the same place on every machine. `RepairMode::wrap` gets a
-  /// quarter of this.
+  /// intersecting pair counts 1000. Counting work instead of time makes the result the same on every machine.
+  /// `RepairMode::wrap` gets a quarter of this.
   std::size_t max_work = 200'000'000;
 };
 
@@ -53,7 +53,7 @@ struct FilledHole {
 struct RepairReport {
   bool repaired = false;
   bool wrapped = false;
-  double tolerance = 0;              ///< absolute; the tolerance that was used
+  double tolerance = 0;              ///< the tolerance that was used, absolute
   std::size_t split_polygons = 0;    ///< polygons that were not planar, now triangles
   std::size_t dropped_polygons = 0;  ///< polygons without an area
   RepairPlaces repeated;             ///< duplicate triangles, dropped
@@ -61,19 +61,20 @@ struct RepairReport {
   RepairPlaces stitched;             ///< points of borders; size: largest distance
   RepairPlaces collapsed;        ///< points, edges and triangles below the tolerance; size: largest distance
   RepairPlaces cut;              ///< pairs of facets that intersected
-  RepairPlaces kept;             ///< places left as before, because creases there would become sharper
+  RepairPlaces kept;             ///< places left unrepaired because creases there would become sharper
   RepairPlaces flakes;           ///< closed parts thinner than the tolerance, dropped; size: volume
-  std::size_t second_sides = 0;  ///< triangles of surfaces that had two sides everywhere, dropped
+  std::size_t second_sides = 0;  ///< triangles dropped from surfaces that were double everywhere
   RepairPlaces merged;           ///< triangles inside solids, removed; size: area
   RepairPlaces dropped;          ///< triangles of open sheets outside of all solids, removed
   RepairPlaces thin_chambers;    ///< thin regions between facets that nearly coincide, now part of their
                                  ///< neighbours; size: volume
-  RepairPlaces vanished;         ///< regions of valid input, as thin as the tolerance; size: volume
+  RepairPlaces vanished;         ///< regions of valid input, as thin as the tolerance, that are gone; size:
+                                 ///< volume
   RepairPlaces united;  ///< number of other regions of valid input that are gone; places: in the remaining
                         ///< ones
   std::vector<FilledHole> filled;
   std::vector<Tag> lost_tags;     ///< tags of facets that have no facet left
-  std::vector<Tag> lost_groups;   ///< those of the lost tags that are more than numbers of CAD faces
+  std::vector<Tag> lost_groups;   ///< the lost tags except those that are only numbers of CAD faces
   std::vector<Tag> lost_regions;  ///< tags that the input gives and that no region of the complex has
   /// The largest distance of the repaired facets from those of the input, absolute. Facets that fill holes do
   /// not count.
@@ -99,12 +100,12 @@ struct RepairResult {
   RepairReport report;
 };
 
-/// Repairs the soups so that `build_plc` accepts them. Tags and features survive cutting; each soup keeps the
-/// space that it, and no earlier soup, encloses (winding number above 1/2). Region points, hole points and
-/// loose segments stay. `build_plc` reports faults that cannot be repaired. If repair gave up or was
-/// cancelled, as the report says, the soups are the original ones. Throws PlcError for points that are not
-/// finite and indices out of range. Cost: O(n log n), and exact constructions for each pair of facets that
-/// intersect. Based on Zhou, Grinspun, Zorin, Jacobson 2016 (arrangements) and Jacobson, Kavan,
+/// Repairs the soups so that `build_plc` accepts them. Tags and features survive cutting. Each soup keeps the
+/// space that it encloses (winding number above 1/2), except the part that an earlier soup encloses. Region
+/// points, hole points and loose segments stay. `build_plc` reports faults that cannot be repaired. If repair
+/// gave up or was cancelled, as the report says, the soups are the original ones. Throws PlcError for points
+/// that are not finite and indices out of range. Cost: O(n log n), and exact constructions for each pair of
+/// facets that intersect. Based on Zhou, Grinspun, Zorin, Jacobson 2016 (arrangements) and Jacobson, Kavan,
 /// Sorkine-Hornung 2013 (winding numbers).
 RepairResult repair(std::span<const PolygonSoup> soups, const RepairOptions& options = {},
                     const PlcOptions& complex = {}, const Execution& execution = {});
@@ -117,31 +118,31 @@ struct RepairedPlc {
       soups;  ///< the repaired soups that the complex was built from; empty without repairs
 };
 
-/// Returns `plc`, the complex of the soups, or the complex of the repaired soups if it has features below the
-/// tolerance: shorter curves, features that come as close without meeting, slits. If they cannot be removed,
-/// `plc` stays and gets a warning.
+/// Returns `plc`, the complex of the soups, unless it has features below the tolerance: shorter curves,
+/// slits, or features that come as close without meeting. In that case returns the complex of the repaired
+/// soups. If the features cannot be removed, returns `plc` with a warning.
 RepairedPlc remove_noise(Plc plc, std::span<const PolygonSoup> soups, const PlcOptions& options = {},
                          const RepairOptions& repair_options = {}, const Execution& execution = {});
 
 /// Builds the complex, after `repair` if there are faults or noise, with a tolerance that grows while that
-/// helps. Valid soups without features below the tolerance give the complex of `build_plc`. If the report
-/// says that it was cancelled, the complex is empty. Throws PlcError with the faults of the input and a
-/// remedy.
+/// helps. For valid soups without features below the tolerance, returns the complex of `build_plc`. If the
+/// report says that it was cancelled, the complex is empty. Throws PlcError with the faults of the input and
+/// a remedy.
 RepairedPlc build_repaired_plc(std::span<const PolygonSoup> soups, const PlcOptions& options = {},
                                const RepairOptions& repair_options = {}, const Execution& execution = {});
 
 /// Returns the repairs to try, one after the other, while no mesh of the complex keeps every guarantee. If
-/// something was repaired, the first one is three times as coarse, because refinement does not end in folds
-/// about as fine as the tolerance, which a repair may leave. Then follows, in `RepairMode::wrap`, a surface
-/// around everything.
+/// something was repaired, the first has three times the tolerance: a repair may leave folds about as fine as
+/// its tolerance, in which refinement does not end. In `RepairMode::wrap`, a surface around everything comes
+/// last.
 std::vector<RepairOptions> further_repairs(const RepairOptions& options, const RepairReport& report);
 
 /// Returns the repairs to try, one after the other, if the refinement of a complex takes far more vertices
-/// than its sizes ask for: it may resolve features just above the tolerance as if they mattered. The
-/// tolerances are 1e-4 and 1e-3 of the diagonal, none above a hundredth of `size` (absolute).
+/// than its sizes ask for, because it resolves irrelevant features just above the tolerance. The tolerances
+/// are 1e-4 and 1e-3 of the diagonal, none above a hundredth of `size` (absolute).
 std::vector<RepairOptions> coarser_repairs(const RepairOptions& options, double size, double diagonal);
 
-/// Returns a line for each kind of change with counts, sizes and places, for people; empty without changes.
+/// Returns a line with counts, sizes and places for each kind of change, for display; empty without changes.
 std::vector<std::string> describe(const RepairReport& report);
 
 }  // namespace collarmesh

@@ -12,10 +12,10 @@
 namespace collarmesh {
 
 struct SecondOrderOptions {
-  ExactGeometry exact = {};  ///< if empty or without a point, the complex's own polyline or triangles are
-                             ///< used
-  double least_jacobian =
-      0.1;  ///< least Jacobian everywhere in a curved tet, relative to the straight one; 0: just positive
+  ExactGeometry exact = {};     ///< without it, or where it returns no point, the complex's own polyline or
+                                ///< triangles are used
+  double least_jacobian = 0.1;  ///< lower bound on the Jacobian everywhere in a curved tet, relative to that
+                                ///< of the straight tet; 0: just positive
   /// The bounds of the mesh. Tets that cannot be curved are replaced by others, which may be thin; with a
   /// thin angle of 0 the tets stay.
   Bounds bounds = {};
@@ -24,7 +24,7 @@ struct SecondOrderOptions {
 
 struct SecondOrderReport {
   std::size_t nodes = 0;   ///< number of mid-edge nodes
-  std::size_t curved = 0;  ///< nodes off the middle of their edge, on a smooth feature
+  std::size_t curved = 0;  ///< nodes on smooth features that are off the middle of their edge
 
   std::ptrdiff_t more_tets = 0;  ///< change of the number of tets by replacements
   std::size_t moved_inside = 0;  ///< nodes in regions and planar patches moved off the middle of their edge
@@ -41,7 +41,7 @@ struct SecondOrderReport {
   };
   std::vector<Straightened> straightened;  ///< by index of the point
   double seconds = 0;
-  bool cancelled = false;  ///< the execution cancelled: the mesh has first order
+  bool cancelled = false;  ///< the execution was cancelled: the mesh has first order
 };
 
 /// Turns a mesh into one of second order: every edge gets a mid-edge node, shared by all tets, faces and

@@ -16,7 +16,8 @@ namespace collarmesh {
 /// Returns the target edge length at a point, absolute, in input units; for `MeshOptions::size_field`.
 using SizeField = std::function<double(const Point&)>;
 
-/// Records which sources of a size field made anything finer, that is, asked somewhere for less than a size.
+/// Records which sources of a size field made anything finer: which of them somewhere asked for less than the
+/// given size.
 class SizeFieldUse {
  public:
   explicit SizeFieldUse(double size) : size_(size) {}
@@ -43,9 +44,9 @@ class SizeFieldUse {
 SizeField read_size_field(const std::string& path, const Plc& plc,
                           const std::shared_ptr<SizeFieldUse>& use = nullptr);
 
-/// Returns the smallest of the sizes of some sources: `size` on the source, inside it and `within` a distance
-/// of it (default 0), growing by `growth` (default 0.3) per unit length beyond.
-///
+/// Makes a size field from a JSON text: the smallest of the sizes of its sources. A source asks for `size`
+/// inside it and up to the distance `within` from it (default 0); beyond, the size grows by `growth` (default
+/// 0.3) per unit length.
 ///     {"size": 2, "sources": [
 ///       {"ball": {"centre": [0, 0, 0], "radius": 1}, "size": 0.1, "growth": 0.2},
 ///       {"box": {"min": [0, 0, 0], "max": [1, 1, 1]}, "size": 0.1},
@@ -53,15 +54,13 @@ SizeField read_size_field(const std::string& path, const Plc& plc,
 ///       {"cylinder": {"from": [0, 0, 0], "to": [0, 0, 2], "radius": 1}, "size": 0.1},
 ///       {"curves": [3, 4], "size": 0.05},
 ///       {"patches": [2], "size": 0.05, "within": 0.5}]}
-///
 /// `size` outside the list holds everywhere; without it only the sources count. Curves and patches are named
 /// by their tags. Throws OptionError, with the place in the text.
 SizeField size_field_from_json(const std::string& text, const Plc& plc,
                                const std::shared_ptr<SizeFieldUse>& use = nullptr);
 
-/// Interpolates linearly in the tets of a background mesh; outside of it returns the value of its nearest
-/// point.
-/// Throws OptionError unless there is one positive value per point.
+/// Makes a size field that interpolates linearly in the tets of a background mesh; outside of it the value of
+/// its nearest point counts. Throws OptionError unless there is one positive value per point.
 SizeField size_field_on_mesh(const TetMesh& mesh, const std::vector<double>& values);
 
 }  // namespace collarmesh

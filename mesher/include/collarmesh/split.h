@@ -13,8 +13,8 @@ namespace collarmesh {
 /// How a solver joins the two sides of a split patch.
 enum class Interaction { free, tie, contact };
 
-/// Numbers of the two sides of a split patch, whose nodes coincide: the side behind its triangles and the one
-/// in front.
+/// Numbers of the two sides of a split patch, whose nodes coincide: minus is behind its triangles, plus in
+/// front of them.
 struct Sides {
   Tag minus = 0, plus = 0;
 };
@@ -34,8 +34,9 @@ struct Interfaces {
 
 struct SplitOptions {
   std::vector<std::string> patches = {};        ///< names or numbers of internal patches
-  bool keep_apart = false;                      ///< all patches between two regions
-  Interaction interaction = Interaction::free;  ///< for formats that can express it
+  bool keep_apart = false;                      ///< split all patches between two regions
+  Interaction interaction = Interaction::free;  ///< the condition between the sides, for formats that can
+                                                ///< express it
   bool cohesive = false;                        ///< make prisms of zero thickness between the sides
 
   bool any() const { return keep_apart || !patches.empty(); }
@@ -46,15 +47,15 @@ struct SplitReport {
   struct Patch {
     Tag tag = 0;             ///< tag before the cut
     std::string name;        ///< name before the cut; "patch_7" if it had none
-    Sides sides;             ///< 0, 0 if no triangle could be opened
+    Sides sides;             ///< both 0 if no triangle could be opened
     std::size_t faces = 0;   ///< triangles on each side
-    double area = 0;         ///< area of the opened triangles, absolute, straight
-    double largest = 0;      ///< area of the largest one
-    Point where;             ///< the middle of the largest one
-    std::size_t closed = 0;  ///< triangles left as they are: all their corners are on the front
+    double area = 0;         ///< area of the opened triangles, taken as straight, absolute
+    double largest = 0;      ///< area of the largest opened triangle
+    Point where;             ///< the middle of that triangle
+    std::size_t closed = 0;  ///< triangles that stay closed, because all their corners are on the front
     Point closed_at;         ///< the middle of such a triangle
   };
-  std::vector<Patch> patches;      ///< by tag
+  std::vector<Patch> patches;      ///< sorted by tag
   std::size_t split_nodes = 0;     ///< nodes that have copies now
   std::size_t junction_nodes = 0;  ///< split nodes with two or more copies
   std::size_t new_nodes = 0;       ///< number of copies
@@ -65,16 +66,15 @@ struct SplitReport {
 /// Throws OptionError, with the known names, if an internal patch to be split does not exist.
 void require_known_patches(const SplitOptions& options, const Plc& plc);
 
-/// Gives the tets on both sides of internal patches nodes of their own. At a node the split triangles divide
-/// the tets into sectors; each sector gets its own node; the first sector keeps the old one. So fronts of
-/// cracks stay closed, mouths on the boundary open, and junctions have a node for each sector. The same holds
-/// for mid-edge nodes. Triangles with all their corners on a front cannot open and stay as they are.
-///
+/// Gives the tets on both sides of internal patches separate nodes. The split triangles at a node divide its
+/// tets into sectors. The first sector keeps the node; each other sector gets a copy. So cracks stay closed
+/// along their fronts, open at mouths on the boundary, and have a node for each sector at junctions. The same
+/// holds for mid-edge nodes. Triangles with all their corners on a front cannot open and stay as they are.
 /// Each side becomes a boundary: the one behind the triangles (at interfaces, the side of the region with the
-/// smaller index) keeps their tag, unless other triangles have it, too; the one in front gets a new tag. They
-/// are named as the patch with `_minus` and `_plus`. New nodes follow all others; tets keep their order;
-/// copies of faces and edges follow all others. Throws OptionError as `require_known_patches` does. Cost:
-/// linear, and n log n in the tets at split triangles.
+/// smaller index) keeps their tag, unless other triangles have it, too; the one in front gets a new tag.
+/// Their names are the patch's name with `_minus` and `_plus`. New nodes follow all others; tets keep their
+/// order; copies of faces and edges follow all others. Throws OptionError as `require_known_patches` does.
+/// Cost: linear, and n log n in the tets at split triangles.
 SplitReport split(TetMesh& mesh, const SplitOptions& options);
 
 }  // namespace collarmesh

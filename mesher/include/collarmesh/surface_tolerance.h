@@ -10,13 +10,13 @@
 
 namespace collarmesh {
 
-/// The largest distance of a mesh from the smooth patches and curves of a complex, by place. Lengths are
-/// absolute. Copies share their data.
+/// The largest distance that a mesh may have from the smooth patches and curves of a complex; it may depend
+/// on the place. Lengths are absolute. Copies share their data.
 class SurfaceTolerance {
  public:
   /// Makes a tolerance that is the same everywhere.
   explicit SurfaceTolerance(double distance) : largest_(distance) {}
-  /// Makes a tolerance by triangle of the complex; none of them exceeds `largest`.
+  /// Makes a tolerance from one value for each triangle of the complex; none of them exceeds `largest`.
   SurfaceTolerance(const Plc& plc, std::vector<double> triangles, double largest);
 
   /// Returns whether the tolerance depends on the place.
@@ -25,7 +25,7 @@ class SurfaceTolerance {
   double at_triangle(Index triangle) const {
     return share_ * (varies() ? places_->triangles[triangle] : largest_);
   }
-  /// Returns the tolerance at a point of the complex: the smallest of its triangles.
+  /// Returns the tolerance at a point of the complex: the smallest one of the triangles there.
   double at_point(Index point) const { return share_ * (varies() ? places_->points[point] : largest_); }
   /// Returns the tolerance of the segment between two neighbouring points of a curve.
   double at_segment(Index a, Index b) const { return std::min(at_point(a), at_point(b)); }
@@ -45,7 +45,7 @@ class SurfaceTolerance {
     scaled.share_ *= share;
     return scaled;
   }
-  /// Returns this tolerance for a complex with some of the patches of `whole`, in this order, and all
+  /// Returns this tolerance for a complex that has some of the patches of `whole`, in this order, and all its
   /// points.
   SurfaceTolerance of_patches(const Plc& whole, std::span<const Index> patches) const;
 
@@ -60,13 +60,13 @@ class SurfaceTolerance {
 
 /// Returns the tolerance of a run without a given distance: a tenth of the target edge length (`size`, 0: its
 /// default), at most 1/200 of the diagonal, at most a share of the thickness of the material on either side,
-/// which keeps its volume, and at most a share of the width of gaps and holes. Opposite sides of a wall that
-/// bend the same way lose and gain the same volume, so they may be farther off than the sides of a rod, which
-/// all lose volume. With elements of second order the triangles between corners may be farther off, as the
-/// elements follow the surface. Cost: near linear in the triangles.
+/// so that its volume is kept, and at most a share of the width of gaps and holes. Opposite sides of a wall
+/// that bend the same way lose and gain the same volume, so their tolerance is larger than that of a rod,
+/// whose sides all lose volume. With elements of second order the tolerance of the triangles between corners
+/// is larger, because the curved elements follow the surface. Cost: near linear in the triangles.
 SurfaceTolerance default_tolerance(const Plc& plc, double size, int order = 1);
 
-/// Returns, by place, the largest tolerance over all sizes and orders.
+/// Returns a tolerance by place: the largest one over all sizes and orders.
 SurfaceTolerance largest_default_tolerance(const Plc& plc);
 
 /// Returns the smooth patches whose triangles are farther than a quarter of the tolerance from the surfaces

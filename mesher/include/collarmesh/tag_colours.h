@@ -7,7 +7,7 @@
 
 namespace collarmesh {
 
-/// 0xRRGGBB, as screens use it (sRGB).
+/// A colour 0xRRGGBB in the sRGB space.
 using Colour = std::uint32_t;
 
 /// Colours that a CAD file gives to the tags of patches and regions.

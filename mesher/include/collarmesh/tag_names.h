@@ -10,11 +10,11 @@
 
 namespace collarmesh {
 
-/// The names of tags from a file or user, by dimension: 0 vertices, 1 curves, 2 patches, 3 regions. The name
-/// of other tags is their number.
+/// The names of tags from a file or user, by dimension: 0 vertices, 1 curves, 2 patches, 3 regions. Tags
+/// without a name are called by their number.
 class TagNames {
  public:
-  /// Returns the name of a tag, null if it has none.
+  /// Returns the name of a tag, or null if it has none.
   const std::string* find(std::size_t dimension, Tag tag) const {
     const auto found = names_[dimension].find(tag);
     return found == names_[dimension].end() ? nullptr : &found->second;

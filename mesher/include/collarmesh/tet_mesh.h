@@ -27,10 +27,10 @@ enum class TriangleElements {
 /// a solver's set-up needs to refer to the input: regions, tagged boundary and interface triangles, tagged
 /// curve edges. Every array of a group (tets, faces, edges, points) has the same length.
 struct TetMesh {
-  /// The feature of the complex a mesh vertex lies on: the one of lowest dimension.
+  /// The feature of the complex that a mesh vertex lies on: the one of lowest dimension.
   struct VertexFeature {
     std::uint8_t dimension = 3;  ///< 0 vertex, 1 curve, 2 patch, 3 none (inside a region)
-    Index feature = none;        ///< index of it in the complex; none when unknown (read from a file)
+    Index feature = none;        ///< its index in the complex; none when unknown (read from a file)
   };
 
   std::vector<Point> points;
@@ -44,7 +44,7 @@ struct TetMesh {
   /// 1: a thin tet, which may exceed the radius-edge bound (see `coarsen`), else 0; empty: not known.
   std::vector<std::uint8_t> tet_thin;
   std::vector<Tag> tet_crease;  ///< tag of the collar's crease, a curve or vertex; 0 outside collars
-  /// The rank of its partition, from 0 (see `partition`); empty: not partitioned.
+  /// Rank of the partition of each tet, from 0 (see `partition`); empty: not partitioned.
   std::vector<Index> tet_partition;
 
   /// Boundary, interface and internal-facet triangles; the normal (b-a) x (c-a) points from
@@ -69,7 +69,7 @@ struct TetMesh {
   LayerCells layers;  ///< cells of boundary layers that are no tets
 
   GroupNames group_names = GroupNames::complex;
-  TagNames names;  ///< names to write in place of those labels
+  TagNames names;  ///< names to write for the tags
   TriangleElements triangle_elements = TriangleElements::shell;
 
   /// A rigid motion: p goes to (dot(rows[0], p), dot(rows[1], p), dot(rows[2], p)) + shift.
@@ -90,7 +90,7 @@ struct TetMesh {
     /// on an axis of rotation is its own image.
     std::vector<std::array<Index, 2>> nodes;
   };
-  std::vector<PeriodicFaces> periodic;  ///< empty: none
+  std::vector<PeriodicFaces> periodic;  ///< pairs of groups of periodic patches; empty: none
 
   int order() const {
     const bool second = tets.empty() ? !tet_mid_nodes.empty() || !face_mid_nodes.empty() ||
@@ -103,12 +103,11 @@ struct TetMesh {
   /// Returns whether the mesh has curve edges alone.
   bool is_curves() const { return tets.empty() && faces.empty() && !edges.empty(); }
 
-  /// A ball of a collar: stars and books fill the union of the balls.
+  /// A ball around a point of a crease. Stars and books fill the union of these balls.
   struct CollarBall {
     Index point = none;  ///< its centre, on a crease
-    double radius = 0;   ///< absolute
-    /// The place of that point when the ball was placed; since then the point may have moved onto exact
-    /// geometry.
+    double radius = 0;   ///< its radius, absolute
+    /// Position of that point when the ball was placed; projection may have moved the point since.
     Point centre;
   };
   std::vector<CollarBall> collar_balls;  ///< empty when unknown (read from a file)
@@ -116,18 +115,18 @@ struct TetMesh {
 
 /// Shape measures of one tetrahedron.
 struct TetQuality {
-  double volume;        ///< signed
+  double volume;        ///< signed volume
   double radius_edge;   ///< circumradius / shortest edge; infinite for a flat one
   double min_dihedral;  ///< degrees
   double max_dihedral;  ///< degrees
 };
-/// Measures a tet at any scale: squares and products of lengths may exceed a double's range.
+/// Measures a tet of any scale, even if squares and products of its lengths exceed a double's range.
 TetQuality measure(const Point& a, const Point& b, const Point& c, const Point& d);
-/// Returns the largest angle of a tetrahedron's faces, degrees, at any scale.
+/// Returns the largest angle of a tetrahedron's faces in degrees, for a tet of any scale.
 double largest_face_angle(const Point& a, const Point& b, const Point& c, const Point& d);
 
-/// Returns the median length of the edges of the tets, each edge counted once; 0 without tets.
-/// Cost: linear, about 45 bytes per tet for a while.
+/// Returns the median length of the edges of the tets, each edge counted once; 0 without tets. Cost: linear;
+/// temporarily about 45 bytes per tet.
 double median_edge(const TetMesh& mesh);
 
 }  // namespace collarmesh

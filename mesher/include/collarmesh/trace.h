@@ -13,18 +13,18 @@ namespace collarmesh {
 enum class BallReason : std::uint8_t {
   unknown,
   subsegment,          ///< protects a piece of a curve that must not be split
-  up_front,            ///< a collar's: all of them are placed before the first vertex
-  vertex_inserted,     ///< a collar's: its crease vertex was inserted
-  vertex_isolated,     ///< a collar's: the cell of its crease vertex meets no other feature
-  curve_isolated,      ///< a collar's: the cells along its crease curve meet no other feature
-  curve_would_divide,  ///< a collar's: otherwise a subsegment of its crease curve would be split
-  curve_left           ///< a collar's: its crease curve had no balls yet when all other work was done
+  up_front,            ///< a collar ball, placed before the first vertex like all others of its run
+  vertex_inserted,     ///< a collar ball: its crease vertex was inserted
+  vertex_isolated,     ///< a collar ball: the cell of its crease vertex meets no other feature
+  curve_isolated,      ///< a collar ball: the cells along its crease curve meet no other feature
+  curve_would_divide,  ///< a collar ball: a subsegment of its crease curve would have been split otherwise
+  curve_left           ///< a collar ball: its crease curve had no balls yet when all other work was done
 };
 
 /// The state of a run at one moment.
 struct TraceStep {
   enum class State : std::uint8_t {
-    outside,  ///< of all regions
+    outside,  ///< outside all regions
     region,
     ripped,  ///< inside a collar; removed when the collar is stitched
     star,
@@ -47,8 +47,8 @@ struct TraceStep {
   };
 
   std::string stage;                    ///< box, refine, rip, stitch, coarsen, improve, project
-  std::string detail;                   ///< for people; may be empty
-  std::vector<Point> points;            ///< vertices, and ends of segments that are no vertices yet
+  std::string detail;                   ///< a line for display; may be empty
+  std::vector<Point> points;            ///< vertices, and ends of segments that are not vertices yet
   std::vector<std::uint8_t> dimension;  ///< dimension of the feature that each point lies on; 3: none
   std::vector<std::array<Index, 4>> tets;
   std::vector<Index> region;  ///< region of each tet, 0 outside

@@ -7,12 +7,12 @@
 
 Options have the names of the command line with `_` for `-`. Lengths are absolute, in the unit of the input
 (millimetres for CAD files), unless they are said to be relative to the diagonal of the bounding box; angles are
-degrees. What is left out, or None, has the command line's default.
+degrees. Options that are left out, or None, have the command line's default.
 
-Errors: every fault of the input is an `Error`: OptionError for options that are out of range or contradict each
-other and for arrays of the wrong shape or kind, ReadError and WriteError for files, ComplexError for surfaces that
-are no valid complex and cannot be repaired, BudgetError when vertices, memory or time are spent, CancelledError when
-`progress` cancels. Ctrl-C is KeyboardInterrupt, within a second in every stage.
+Errors: every fault of the input raises a subclass of `Error`. OptionError: options that are out of range or contradict
+each other, arrays of the wrong shape or kind. ReadError and WriteError: files. ComplexError: surfaces that are no valid
+complex and cannot be repaired. BudgetError: vertices, memory or time are spent. CancelledError: `progress` cancelled.
+Ctrl-C raises KeyboardInterrupt within a second, in every stage.
 """
 
 import os
@@ -77,15 +77,15 @@ def convert(
     ghost_cells: bool = False,
     **options: Any,
 ) -> None:
-    """Convert surfaces, complexes and meshes into each other; a surface into a mesh by meshing it.
+    """Convert surfaces, complexes and meshes into each other. If the output is a mesh, a surface is meshed.
 
-    source: a surface as in `collarmesh.mesh`, a list of surfaces, which become one, or a mesh.
+    source: a surface as in `collarmesh.mesh`, a list of surfaces, which are joined, or a mesh.
     output: the file to write.
-    format, input_format: extensions in place of the files' own.
-    partitions: divide the tetrahedra among so many ranks. ghost_cells: as in `Mesh.write`.
+    format, input_format: extensions that replace the files' own.
+    partitions: number of ranks to divide the tetrahedra among. ghost_cells: as in `Mesh.write`.
     options: those of `collarmesh.mesh`.
 
-    Raises `Error`; OptionError also where the output has no place for partitions or ghost cells.
+    Raises `Error`; OptionError also if the output format cannot store partitions or ghost cells.
     """
     target, kind, from_kind = os.fspath(output), format or "", input_format or ""
     extension = kind or os.path.splitext(target)[1].lower()
@@ -103,7 +103,7 @@ def convert(
             divided = found if partitions is None else found.partitioned(partitions)
             divided.write(target, kind, ghost_cells=ghost_cells)
             return
-        by_tag = numpy.argsort(found.face_tag, kind="stable")  # for formats that number patches
+        by_tag = numpy.argsort(found.face_tag, kind="stable")  # sorted for formats that number patches
         source = (found.points, found.faces[by_tag], found.face_tag[by_tag])
     surfaces: Sequence[Any] = source if isinstance(source, list) else [source]
     if to_surface:

@@ -7,7 +7,7 @@ import sys
 
 
 def program() -> str:
-    """The program that came with the package, else the one on the PATH."""
+    """Returns the program that came with the package, else the one on the PATH."""
     own = pathlib.Path(__file__).resolve().parent / "bin" / "collarmesh"
     if own.exists():
         return str(own)

@@ -1,4 +1,4 @@
-"""The compiled part; use the functions of `collarmesh`."""
+"""The compiled part. Call the functions of `collarmesh` instead."""
 
 from typing import Any, Callable, Dict, List, Optional, Tuple
 

@@ -1,4 +1,4 @@
-"""Meshes and tags of dolfinx, from version 0.5 on."""
+"""Makes meshes and tags of dolfinx, version 0.5 or later."""
 
 import types
 from typing import Any, Tuple
@@ -21,7 +21,7 @@ def mesh_and_tags(
     element = _element(order)
     try:
         mesh = create(comm, tets[0][here], points[here], element)
-    except TypeError:  # from 0.10 on
+    except TypeError:  # in version 0.10 and later
         mesh = create(comm, tets[0][here], element, points[here])
     return mesh, _tags(mesh, 3, *(part[here] for part in tets)), _tags(mesh, 2, *(part[here] for part in faces))
 
@@ -31,7 +31,7 @@ def _element(order: int) -> Any:
 
     try:
         from basix.ufl import element
-    except ImportError:  # before 0.7
+    except ImportError:  # before version 0.7
         return ufl.Mesh(ufl.VectorElement("Lagrange", ufl.Cell("tetrahedron", geometric_dimension=3), order))
     return ufl.Mesh(element("Lagrange", "tetrahedron", order, shape=(3,)))
 
@@ -44,7 +44,7 @@ def _tags(mesh: Any, dimension: int, cells: Array, tags: Array) -> Any:
     mesh.topology.create_connectivity(dimension, 3)
     values = tags.astype(numpy.int32)
     distribute, of = dolfinx.io.distribute_entity_data, mesh
-    if not isinstance(distribute, types.FunctionType):  # before 0.9: a compiled function
+    if not isinstance(distribute, types.FunctionType):  # before version 0.9 it is a compiled function
         of = getattr(mesh, "_cpp_object", None) or mesh._mesh
     entities, local = distribute(of, dimension, numpy.ascontiguousarray(cells), values)
     if hasattr(dolfinx.graph, "adjacencylist"):

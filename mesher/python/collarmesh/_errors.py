@@ -1,4 +1,4 @@
-"""Sizes for the next mesh from the errors of a solution on this one."""
+"""Target edge lengths for the next mesh, from the errors of a solution on this one."""
 
 from typing import Optional
 
@@ -8,8 +8,7 @@ from ._core import OptionError
 from ._inputs import Array, ArrayLike, one_for_each
 from ._mesh import Mesh
 
-# The mean volume of the tetrahedra of a mesh that was made for a target edge length, as a share of the
-# length's cube.
+# The mean volume of the tetrahedra in a mesh with a target edge length, relative to the cube of that length.
 _VOLUME_PER_CUBE = 0.125
 
 
@@ -20,7 +19,7 @@ def _volumes(mesh: Mesh) -> Array:
 
 
 def _at_points(mesh: Mesh, weights: Array, values: Array) -> Array:
-    """The weighted mean of the values of the tetrahedra around each point; 0 at points without one."""
+    """Returns the weighted mean of the values of the tetrahedra around each point; 0 at points without one."""
     sums = numpy.zeros((len(mesh.points), values.shape[1]))
     total = numpy.zeros(len(mesh.points))
     for corner in mesh.tets.T:
@@ -31,8 +30,8 @@ def _at_points(mesh: Mesh, weights: Array, values: Array) -> Array:
 
 
 def estimated_errors(mesh: Mesh, values: ArrayLike) -> Array:
-    """An estimate of the error of a solution that is linear in each tetrahedron: how far its gradient is from the mean of the
-    gradients around (Zienkiewicz and Zhu 1987), as the root of the integral of the square over the tetrahedron.
+    """Estimate the error of a solution that is linear in each tetrahedron (Zienkiewicz and Zhu 1987): the L2 norm over each
+    tetrahedron of the difference between the solution's gradient and the mean of the gradients around.
 
     values: (n,) or (n, k), the solution at the points of the mesh, such as a temperature or displacements.
 
@@ -48,7 +47,7 @@ def estimated_errors(mesh: Mesh, values: ArrayLike) -> Array:
     volumes = _volumes(mesh)
     recovered = _at_points(mesh, volumes, gradients)[mesh.tets]
     off = recovered - gradients[:, None]
-    # The exact integral of the square of a function that is linear between the corners.
+    # Uses the exact integral of the square of a function that is linear between the corners.
     squares = (off**2).sum(axis=(1, 2)) + (off.sum(axis=1) ** 2).sum(axis=1)
     errors: Array = numpy.sqrt(volumes * squares / 20)
     return errors
@@ -64,14 +63,14 @@ def sizes_from_errors(
     finest: float = 0.25,
     coarsest: float = 2.0,
 ) -> Array:
-    """Target edge lengths for a next mesh on which all tetrahedra have the same error: the fewest tetrahedra for an error, and
-    the least error for a number of them.
+    """Return target edge lengths for the next mesh such that all its tetrahedra have the same error. This takes the fewest
+    tetrahedra for a given error, and makes the least error for a given number of tetrahedra.
 
-    errors: (m,), of each tetrahedron, such as indicators of a solver or `estimated_errors`: roots of sums of squares, which
-        add up in squares. For indicators that are squares already, give their roots.
-    elements: the number of tetrahedra to aim at; or error: the root of the sum of the squares of all errors to aim at.
-    order: of the elements of the solution, by which its error falls with the lengths.
-    finest, coarsest: the next lengths over those of this mesh, at least and at most.
+    errors: (m,), the error of each tetrahedron, from `estimated_errors` or a solver's indicators: norms, whose squares add up.
+        If indicators are squares already, pass their square roots.
+    elements: the number of tetrahedra to aim for; or error: the total error to aim for, the root of the sum of squares.
+    order: order of the solution's elements, which determines how fast its error falls with the lengths.
+    finest, coarsest: least and greatest ratio of the next lengths to those of this mesh.
 
     Returns (n,), a length for each point of the mesh, for `Mesh.adapt` and for `size_field=(mesh, lengths)`. Raises OptionError
     for wrong shapes and values.
@@ -85,14 +84,15 @@ def sizes_from_errors(
         raise OptionError(f"finest must be above 0 and at most 1, coarsest at least 1, not {finest!r} and {coarsest!r}")
     volumes = _volumes(mesh)
     lengths = numpy.cbrt(volumes / _VOLUME_PER_CUBE)
-    power = order + 1.5  # the error of one tetrahedron falls with this power of its length
+    power = order + 1.5  # the error of one tetrahedron is proportional to this power of its edge length
     known = numpy.maximum(given, 1e-12 * given.max() if given.max() > 0 else 1)
 
     def factors(goal: float) -> Array:
         return numpy.clip((goal / known) ** (1 / power), finest, coarsest)
 
     def excess(goal: float) -> float:
-        """Returns the excess of tetrahedra, or the lack of error; it falls as each one may have more error."""
+        """Returns the excess of tetrahedra, or the lack of error. It falls as each tetrahedron may have more
+        error."""
         factor = factors(goal)
         if elements is not None:
             return float((factor**-3.0).sum() - elements)
@@ -105,7 +105,7 @@ def sizes_from_errors(
         low, high = (middle, high) if excess(middle) > 0 else (low, middle)
     wanted = lengths * factors(numpy.sqrt(low * high))
     at_points = numpy.exp(_at_points(mesh, volumes, numpy.log(wanted)[:, None])[:, 0])
-    # The mean at the points evens out lengths, which changes how many tetrahedra they make.
+    # Averaging at the points evens out lengths, which changes the number of tetrahedra.
     made = (volumes / at_points[mesh.tets].mean(axis=1) ** 3).sum()
     sizes: Array = at_points * numpy.cbrt(made / (volumes / wanted**3).sum())
     return sizes

@@ -5,7 +5,7 @@ from typing import Any, Dict, List, Mapping, Optional, Tuple
 
 from ._types import MeshFigures
 
-_SHOWN = 10  # sentences of a list
+_SHOWN = 10  # number of sentences shown of a list
 
 
 def table_of(

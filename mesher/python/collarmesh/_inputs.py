@@ -28,7 +28,7 @@ SizeField = Union[
 
 
 def reals(values: ArrayLike, what: str, columns: int) -> Array:
-    """An array of shape (n, columns), float64."""
+    """Returns an array of shape (n, columns), float64."""
     array = numpy.asarray(values)
     if array.size == 0:
         return numpy.empty((0, columns))
@@ -40,7 +40,8 @@ def reals(values: ArrayLike, what: str, columns: int) -> Array:
 
 
 def integers(values: ArrayLike, what: str, columns: Optional[int] = None) -> Array:
-    """An array of shape (n, columns), or (n,) without columns; int64. Numbers with a fraction are no integers."""
+    """Returns an array of int64, of shape (n, columns), or (n,) without columns. Numbers with a fraction are
+    not accepted."""
     array = numpy.asarray(values)
     shape = "(n,)" if columns is None else f"(n, {columns})"
     if array.size == 0:
@@ -62,7 +63,7 @@ def one_for_each(values: Array, count: int, what: str, of: str) -> Array:
 
 
 def _polygons(facet: Any) -> List[Sequence[int]]:
-    """A facet is one polygon, or several polygons in one plane."""
+    """Returns the polygons of a facet, which is one polygon or several polygons in one plane."""
     several = len(facet) > 0 and hasattr(facet[0], "__len__")
     return list(facet) if several else [facet]
 
@@ -71,16 +72,16 @@ class Complex:
     """A piecewise-linear complex: facets that bound regions, with holes and facets inside.
 
     points: (n, 3), any unit of length.
-    facets: a sequence. A facet is a polygon, a sequence of three or more rows of `points`, in either
-        orientation; or a sequence of such polygons in one plane, where a polygon of two corners is a segment
-        inside of the facet and one of one corner a point inside of it.
-    facet_tags: (f,), integers by which the faces of the mesh are found again; default: facets are numbered.
-    facet_holes: by row of `facets`, points in the plane of the facet in the holes that are cut out of it.
+    facets: a sequence of facets. A facet is a polygon, given by three or more rows of `points` in either
+        orientation; or a sequence of polygons in one plane. In such a sequence a polygon with two corners is a
+        segment inside the facet, and one with one corner is a point inside it.
+    facet_tags: (f,), integers that the faces of the mesh get as tags; default: facets are numbered.
+    facet_holes: by row of `facets`, a point in each hole that is cut out of the facet, in the facet's plane.
     segments: (s, 2), rows of `points`: edges that the mesh must have; segment_tags: (s,).
     holes: (h, 3), a point in each region that stays empty.
-    regions: a sequence of (point, tag) or (point, tag, size): names the region around the point, where size is
-        the target edge length there.
-    names: names of facet tags, {3: "inlet"}. name: of the complex, in messages.
+    regions: a sequence of (point, tag) or (point, tag, size): gives the region around the point this tag, and
+        this target edge length.
+    names: names of facet tags, {3: "inlet"}. name: the complex's name in messages.
 
     Raises OptionError for wrong shapes and for indices that are no integers or out of range.
     """
@@ -178,14 +179,15 @@ def inputs(given: Sequence[Input]) -> List[Any]:
 def sampled_sizes(
     function: Callable[[Array, Array, Array], ArrayLike], low: ArrayLike, high: ArrayLike, spacing: float
 ) -> Tuple[Array, Array, Array]:
-    """A size field for `collarmesh.mesh` of a function that takes arrays: it is called once, and is linear in between.
-    A callable of one place, which is called millions of times, takes much longer.
+    """Make a size field for `collarmesh.mesh` from a function that takes arrays. The function is called once, for all
+    samples; sizes between samples are interpolated linearly. This is much faster than a callable of one place, which
+    would be called millions of times.
 
-    function: of x, y, z, arrays of shape (n,); gives lengths, an array of that shape or one number.
-    low, high: (3,), corners of the box in which it is sampled; outside of it the nearest point of the box counts.
-    spacing: between the samples, absolute, at most.
+    function: takes x, y, z, arrays of shape (n,); returns lengths, an array of that shape or one number.
+    low, high: (3,), corners of the sampled box; a place outside gets the size of the nearest point of the box.
+    spacing: largest distance between samples, absolute.
 
-    Raises OptionError for a function that gives no positive length somewhere, with the place.
+    Raises OptionError, with the place, if the function returns a length that is not positive.
     """
     corners = reals(numpy.array([low, high]), "low and high", 3)
     extent = corners[1] - corners[0]
@@ -206,7 +208,7 @@ def sampled_sizes(
     numbers = numpy.arange(len(points)).reshape(counts)
     cell = numbers[:-1, :-1, :-1].reshape(-1, 1)
     step = (counts[1] * counts[2], counts[2], 1)
-    paths = [(0, 1, 2), (1, 2, 0), (2, 0, 1), (0, 2, 1), (2, 1, 0), (1, 0, 2)]  # along the axes, six per cell
+    paths = [(0, 1, 2), (1, 2, 0), (2, 0, 1), (0, 2, 1), (2, 1, 0), (1, 0, 2)]  # six tetrahedra
     tets = []
     for number, path in enumerate(paths):
         ends = numpy.cumsum([0, *(step[axis] for axis in path)])
@@ -226,8 +228,8 @@ def takes_arrays(function: Callable[..., Any]) -> bool:
 
 
 def _on_points(tets: Array, values: Array, count: int) -> Array:
-    """Returns at each point the smallest value of the tetrahedra around it. Points without a tetrahedron get the
-    smallest of all."""
+    """Returns at each point the smallest value of the tetrahedra around it; the smallest of all values at points
+    without a tetrahedron."""
     found = numpy.full(count, values.min() if len(values) else 0.0)
     found[tets.ravel()] = numpy.inf
     numpy.minimum.at(found, tets.ravel(), numpy.repeat(values, tets.shape[1]))
@@ -235,7 +237,7 @@ def _on_points(tets: Array, values: Array, count: int) -> Array:
 
 
 def _size_field(field: SizeField) -> Any:
-    """A path, a dict, a callable, or the arrays of a mesh with values on its points."""
+    """Converts a size field: a path, a dict, a callable, or the arrays of a mesh with values on its points."""
     if isinstance(field, (str, os.PathLike)):
         return os.fspath(field)
     if callable(field) or isinstance(field, Mapping):
@@ -261,7 +263,7 @@ def _size_field(field: SizeField) -> Any:
 
 
 def given(options: Mapping[str, Any]) -> Dict[str, Any]:
-    """Converts options for the compiled part, without those that are None."""
+    """Converts options for the compiled part, leaving out those that are None."""
     found = {name: value for name, value in options.items() if value is not None}
     if "names" in found:
         names = found["names"]
@@ -276,7 +278,7 @@ def given(options: Mapping[str, Any]) -> Dict[str, Any]:
 
 
 def sized(options: Mapping[str, Any]) -> Dict[str, Any]:
-    """The options of `remesh` with the mesh read, and with a size that is no number as a size field."""
+    """Converts the options of `remesh`: reads the mesh, and turns a size that is not a number into a size field."""
     found = dict(options)
     if isinstance(found["mesh"], (str, os.PathLike)):
         from ._functions import read
@@ -292,7 +294,7 @@ def sized(options: Mapping[str, Any]) -> Dict[str, Any]:
 
 
 def triangles(soup: Dict[str, Any]) -> Surface:
-    """A soup of triangles, with polygons of four and more corners cut into fans."""
+    """Returns the triangles of a soup; polygons of four and more corners are cut into fans."""
     corners: List[Tuple[int, int, int]] = []
     tags: List[int] = []
     begin = 0

@@ -32,13 +32,13 @@ _ARRAYS = {
     "feature_dimension": (numpy.uint8, 1),
     "feature": (numpy.int64, 1),
 }
-# The places of our mid-edge nodes in meshio's and VTK's cells of second order: corners, then ab, bc, ca, ad,
+# The positions of mid-edge nodes in cells of second order of meshio and VTK: corners, then ab, bc, ca, ad,
 # bd, cd.
 _MESHIO_CELLS = {1: ("tetra", "triangle", "line"), 2: ("tetra10", "triangle6", "line3")}
 _VTK_CELLS = {1: 10, 2: 24}
 
 
-# The same nodes in the order of dolfinx.
+# The positions of these nodes in the order of dolfinx.
 _DOLFINX_TETS = {1: [0, 1, 2, 3], 2: [0, 1, 2, 3, 9, 8, 5, 7, 6, 4]}
 _DOLFINX_TRIANGLES = {1: [0, 1, 2], 2: [0, 1, 2, 4, 5, 3]}
 # The triangles of a tetrahedron as seen from outside, with their mid-edge nodes.
@@ -46,13 +46,13 @@ _SIDES = [[1, 2, 3, 5, 9, 8], [0, 3, 2, 7, 9, 6], [0, 1, 3, 4, 8, 7], [0, 2, 1, 
 
 
 def _cells_with_nodes(cells: ArrayLike, what: str, columns: Tuple[int, int]) -> Array:
-    """Cells of first or second order, by the number of columns."""
+    """Converts cells of first or second order; the number of columns decides."""
     array = numpy.asarray(cells)
     return integers(array, what, columns[1] if array.ndim == 2 and array.shape[1] == columns[1] else columns[0])
 
 
 def _sides_between_tags(tets: Array, tags: Array) -> Tuple[Array, Array]:
-    """The boundary of the tets with each tag, and a tag for each pair of tags that lie beside each other."""
+    """Returns the boundary of the tets with each tag, and a tag for each pair of tags that are neighbours."""
     if len(tets) == 0:
         return tets[:, :3], tags
     columns = [side[: 3 if tets.shape[1] == 4 else 6] for side in _SIDES]
@@ -65,38 +65,37 @@ def _sides_between_tags(tets: Array, tags: Array) -> Tuple[Array, Array]:
     other = numpy.where(twice[first], tag[numpy.minimum(first + 1, len(order) - 1)], 0)
     kept = ~twice[first] | (other != tag[first])
     pairs = numpy.sort(numpy.column_stack([tag[first], other]), axis=1)[kept]
-    pairs = numpy.column_stack([pairs, twice[first][kept]])  # 0 may be a tag, too
+    pairs = numpy.column_stack([pairs, twice[first][kept]])  # 0 is a valid tag
     numbers = numpy.unique(pairs, axis=0, return_inverse=True)[1].reshape(-1) + 1
     return sides[order[first[kept]]], numbers.astype(numpy.int64)
 
 
 class Mesh:
-    """A tetrahedral mesh. Its arrays are not to be written to; indices are int64, rows of `points`.
+    """A tetrahedral mesh. Its arrays are read-only; indices are int64 and refer to rows of `points`.
 
-    `collarmesh.mesh` and `collarmesh.read` make one; `Mesh(points, tets, tags)` makes one of arrays, to check, convert
-    or write the mesh of another program.
+    `collarmesh.mesh` and `collarmesh.read` make meshes. `Mesh(points, tets, tags)` makes one from arrays, to check,
+    convert or write the mesh of another program.
 
     points: (n, 3), float64, in the unit of the input.
     tets: (m, 4), positive volume.
-    tet_region: (m,), numbers of regions, from 1; tet_tag: (m,), the tags of these.
-    tet_collar: (m,), 0 outside of collars, 1 star, 2 book; tet_crease: (m,), the tag of its crease there.
-    tet_thin: (m,), 1 for thin tetrahedra, which exceed radius_edge; (0,) where that is not known.
-    tet_partition: (m,), the rank that each tetrahedron is given to, from 0; (0,) where the mesh is not
-        partitioned.
+    tet_region: (m,), numbers of regions, from 1; tet_tag: (m,), tags of these regions.
+    tet_collar: (m,), 0 outside of collars, 1 star, 2 book; tet_crease: (m,), the tag of the collar's crease.
+    tet_thin: (m,), 1 for thin tetrahedra, which exceed radius_edge; (0,) if unknown.
+    tet_partition: (m,), the rank of each tetrahedron, from 0; (0,) if the mesh is not partitioned.
     faces: (k, 3), triangles on boundaries, interfaces and internal facets.
-    face_regions: (k, 2), regions behind and before the triangle; 0: none.
-    face_tag: (k,), tags of the surfaces' triangles, or numbers of patches where these had none.
-    face_patch: (k,), rows of the complex's patches; -1: not known.
+    face_regions: (k, 2), regions behind and in front of the triangle; 0: none.
+    face_tag: (k,), tags of the surfaces' triangles or, if these had none, numbers of patches.
+    face_patch: (k,), indices of the complex's patches; -1: unknown.
     edges: (j, 2), edges on feature curves; edge_tag, edge_curve: (j,).
-    tet_mid_nodes (m, 6), face_mid_nodes (k, 3), edge_mid_nodes (j,): nodes amid the edges ab, bc, ca, ad, bd, cd;
+    tet_mid_nodes (m, 6), face_mid_nodes (k, 3), edge_mid_nodes (j,): mid-edge nodes of ab, bc, ca, ad, bd, cd;
         empty for first order.
     feature_dimension, feature: (n,), the vertex (0), curve (1) or patch (2) that a point is on; 3, -1: none.
     names: names of tags by dimension, {2: {3: "inlet"}} for patch 3; 1 curves, 3 regions. Solids of STEP files have
-        those of their products.
-    colours: of a mesh made of a STEP file, in the same way: {2: {3: "#ff0000"}}.
-    periodic: for each pair of `periodic=` a dict: "first" and "second", tags of patches; "rotation" (3, 3) and "shift"
-        (3,), which take a point p of the first to rotation @ p + shift; "nodes" (k, 2), each node of the first with
-        its image, nodes amid edges included.
+        the names of their products.
+    colours: colours of tags, likewise, of a mesh made from a STEP file: {2: {3: "#ff0000"}}.
+    periodic: a dict for each pair of `periodic=`: "first" and "second", tags of patches; "rotation" (3, 3) and "shift"
+        (3,), which take a point p of the first group to rotation @ p + shift; "nodes" (k, 2), each node of the first
+        group with its image, mid-edge nodes included.
     """
 
     points: Array
@@ -135,13 +134,13 @@ class Mesh:
         edge_tags: Optional[ArrayLike] = None,
         names: Optional[Mapping[int, Mapping[int, str]]] = None,
     ) -> None:
-        """A mesh of arrays. Rows of cells are rows of `points`, with those of second order behind the corners, amid
-        the edges ab, bc, ca, ad, bd, cd.
+        """Make a mesh from arrays. Cells refer to rows of `points`. Cells of second order have their mid-edge nodes
+        after the corners, in the order ab, bc, ca, ad, bd, cd.
 
-        points: (n, 3). tets: (m, 4) or (m, 10), turned to positive volume where most are negative. tags: (m,),
-            integers, by which regions are numbered; default 1.
+        points: (n, 3). tets: (m, 4) or (m, 10), reversed if most volumes are negative. tags: (m,), integers; each
+            tag makes a region; default 1.
         faces: (k, 3) or (k, 6), triangles on boundaries and interfaces; face_tags: (k,). Default: the boundary of
-            the tetrahedra with each tag, and a tag for each pair of tags that lie beside each other.
+            the tetrahedra with each tag, and a tag for each pair of tags that are neighbours.
         edges: (j, 2) or (j, 3), edges on curves; edge_tags: (j,).
         names: names of tags by dimension, {2: {3: "inlet"}}.
 
@@ -184,7 +183,7 @@ class Mesh:
         return {**self._arrays(), "check": self._check, "colours": self.colours, **self._said}
 
     def __setstate__(self, state: Dict[str, Any]) -> None:
-        arrays = {"tet_partition": numpy.empty(0, dtype=numpy.int64), **state}  # missing in earlier versions
+        arrays = {"tet_partition": numpy.empty(0, dtype=numpy.int64), **state}  # pickles of earlier versions lack it
         for name in _ARRAYS:
             array = arrays[name]
             array.setflags(write=False)  # pickle makes arrays writable
@@ -237,7 +236,7 @@ class Mesh:
 
     @property
     def warnings(self) -> List[str]:
-        """Parts of the input that have no effect or contradict others: sentences."""
+        """Parts of the input that have no effect or contradict other parts: sentences."""
         return list(self._said["warnings"])
 
     @property
@@ -265,9 +264,9 @@ class Mesh:
         return f"{kinds[dimension]}{tag}"
 
     def adapt(self, size: Any = None, **options: Any) -> "Mesh":
-        """The mesh with other edge lengths, finer and coarser, and better tetrahedra: `collarmesh.remesh` of it.
+        """Return a mesh with other edge lengths, finer or coarser, and better tetrahedra, by `collarmesh.remesh`.
 
-        size: a length; lengths for each point or each tetrahedron, as `sizes_from_errors` gives them; or a size
+        size: a length; lengths for each point or each tetrahedron, as `sizes_from_errors` returns them; or a size
             field, as in `collarmesh.mesh`. options: those of `collarmesh.remesh`.
         """
         from ._functions import remesh
@@ -275,10 +274,10 @@ class Mesh:
         return remesh(self, size, **options)
 
     def partitioned(self, partitions: int) -> "Mesh":
-        """The same mesh with its tetrahedra divided among so many ranks, evenly and with few shared faces.
+        """Return this mesh with its tetrahedra divided evenly among ranks, with few shared faces.
 
-        partitions: 1 to the number of tetrahedra. Raises OptionError for others, and where Scotch, which
-        divides them, is not there.
+        partitions: number of ranks, 1 to the number of tetrahedra. Raises OptionError for other numbers, and if the
+        library Scotch, which divides them, is missing.
         """
         whole = isinstance(partitions, (int, numpy.integer)) and not isinstance(partitions, bool)
         if not whole or not 1 <= partitions <= len(self.tets):
@@ -292,9 +291,9 @@ class Mesh:
         """Write a file.
 
         path: its extension gives the format (.vtu, .msh, .inp ...), unless `format` does (".vtu").
-        scale: coordinates are multiplied by this, 0.001 for metres of millimetres.
-        ghost_cells: with each partition the tetrahedra of others that share a vertex with it; .msh, .pvtu.
-        Raises WriteError, also for ghost cells in other formats; OptionError for those of a mesh that is not
+        scale: factor of the coordinates, 0.001 to convert millimetres to metres.
+        ghost_cells: write with each partition the tetrahedra of others that share a vertex with it; .msh, .pvtu.
+        Raises WriteError, also for ghost cells in other formats; OptionError for ghost cells of a mesh that is not
         partitioned.
         """
         arrays = self._arrays()
@@ -308,13 +307,13 @@ class Mesh:
         return _core.measures(self._arrays())
 
     def interpolate(self, values: ArrayLike, points: ArrayLike, outside: str = "nan") -> Array:
-        """A field of this mesh at other points: linear in tetrahedra, quadratic in those of second order.
+        """Interpolate a field of this mesh at other points: linearly in tetrahedra of first order, quadratically in
+        those of second order.
 
-        values: (n,) or (n, k), a row for each of `points` of the mesh; or a row for each tetrahedron, which holds in
-            all of it.
-        points: (p, 3), where it is asked for: the points of another mesh.
-        outside: "nan", or "nearest": what points outside of the mesh get; the latter is the value of the nearest point
-            of the mesh, and needs values on points.
+        values: (n,) or (n, k), a row for each point of the mesh; or a row for each tetrahedron, constant in it.
+        points: (p, 3), the places, such as the points of another mesh.
+        outside: the result at points outside of the mesh: "nan", or "nearest" for the value at the nearest point of
+            the mesh, which needs values on points.
 
         Returns (p,) or (p, k). Raises OptionError for wrong shapes.
         """
@@ -341,7 +340,7 @@ class Mesh:
         return result
 
     def _weights(self, shares: Array) -> Array:
-        """Returns the weights of a tetrahedron's nodes at places with these shares of its corners."""
+        """Returns the weights of a tetrahedron's nodes at places with these barycentric coordinates."""
         if self.order == 1:
             return shares
         amid = [4 * shares[:, i] * shares[:, j] for i, j in ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))]
@@ -356,8 +355,8 @@ class Mesh:
         return numpy.hstack([nodes, amid.reshape(len(nodes), -1)])
 
     def to_meshio(self) -> Any:
-        """A meshio.Mesh of tetrahedra, triangles and lines, with the data "tag" and "region" and a cell set for
-        each name. Raises ImportError without meshio."""
+        """Return a meshio.Mesh of tetrahedra, triangles and lines, with the data "tag" and "region" and a cell set
+        for each name. Raises ImportError without meshio."""
         import meshio
 
         tet, triangle, line = _MESHIO_CELLS[self.order]
@@ -375,11 +374,11 @@ class Mesh:
         return meshio.Mesh(self.points, cells, cell_data={"tag": tags, "region": regions}, cell_sets=sets)
 
     def to_dolfinx(self, comm: Any = None) -> Tuple[Any, Any, Any]:
-        """A mesh of dolfinx, of the order of this one, and its tags: (mesh, cell_tags, facet_tags), with `tet_tag` and
+        """Return a dolfinx mesh of the same order, and its tags: (mesh, cell_tags, facet_tags), from `tet_tag` and
         `face_tag`.
 
-        comm: of mpi4py, COMM_WORLD by default. The first rank's mesh is divided among all; that of the others is not
-        looked at. Raises ImportError without dolfinx.
+        comm: a communicator of mpi4py, COMM_WORLD by default. The first rank's mesh is divided among all ranks; the
+        meshes of other ranks are ignored. Raises ImportError without dolfinx.
         """
         from ._dolfinx import mesh_and_tags
 
@@ -388,7 +387,7 @@ class Mesh:
         return mesh_and_tags(comm, self.points, self.order, (tets, self.tet_tag), (faces, self.face_tag))
 
     def to_pyvista(self) -> Any:
-        """A pyvista.UnstructuredGrid of the tetrahedra with the data "tag", "region", "collar".
+        """Return a pyvista.UnstructuredGrid of the tetrahedra with the data "tag", "region", "collar".
 
         Raises ImportError without pyvista.
         """
@@ -401,11 +400,11 @@ class Mesh:
         return grid
 
     def plot(self, axes: Any = None, *, labels: bool = True, curves: bool = False) -> Any:
-        """Draw the boundary with matplotlib, in the colours of the STEP file or with one for each tag; on `axes` of
-        three dimensions, or new ones, which are returned. Raises ImportError without matplotlib.
+        """Draw the boundary with matplotlib, in the colours of the STEP file or with one colour for each tag. Draws on
+        `axes` of three dimensions, or on new ones, and returns them. Raises ImportError without matplotlib.
 
-        labels: the numbers of faces, or their names.
-        curves: the numbers of edges, too.
+        labels: show the names or numbers of faces.
+        curves: show those of edges, too.
         """
         import matplotlib.colors
         import matplotlib.pyplot
@@ -429,7 +428,7 @@ class Mesh:
         return axes
 
     def _label(self, axes: Any, dimension: int, centres: Array, tags: Array) -> None:
-        """Write what each tag is called at the middle one of its triangles or edges."""
+        """Writes the name of each tag at the middle one of its triangles or edges."""
         for tag in numpy.unique(tags):
             here = centres[tags == tag]
             middle = here[numpy.linalg.norm(here - here.mean(axis=0), axis=1).argmin()]
@@ -438,7 +437,7 @@ class Mesh:
                       zorder=1e6, bbox={"boxstyle": "round,pad=0.15", "facecolor": "w", "edgecolor": "none", "alpha": 0.7})
 
     def _repr_html_(self) -> str:
-        """HTML for notebooks: the certificate and the figures of the mesh."""
+        """Return HTML for notebooks: the certificate and figures of the mesh."""
         return table_of(self.passed if self._check else None, self.findings, self.repairs, self.info()["mesh"],
                         self._check or {})
 

@@ -10,7 +10,7 @@ Told = Callable[[str, float], Optional[bool]]
 
 @contextlib.contextmanager
 def watching(progress: Union[bool, Told, None]) -> Iterator[Optional[Told]]:
-    """Returns the callable for the compiled part; with True a bar, which ends its line at the end."""
+    """Returns the callable for the compiled part; for True, a bar that ends its line when it is complete."""
     if progress is not True:
         yield progress or None
         return

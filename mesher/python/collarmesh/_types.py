@@ -6,11 +6,11 @@ from ._inputs import Array
 
 
 class PeriodicFaces(TypedDict):
-    """Two groups of patches; the mesh of the second is that of the first, moved.
+    """Two groups of patches. The mesh of the second is that of the first, moved.
 
     first, second: tags of patches.
     rotation, shift: (3, 3) and (3,); the motion takes a point p of the first to rotation @ p + shift.
-    nodes: (k, 2), rows of `points`: a node of the first and its image, nodes amid edges included.
+    nodes: (k, 2), rows of `points`: a node of the first group and its image, mid-edge nodes included.
     """
 
     first: Array

@@ -8,7 +8,7 @@
 #include "collarmesh/tag_colours.h"
 #include "collarmesh/tet_mesh.h"
 
-/// Converts arrays of numpy to and from the library's types. The Python side has checked their shapes and
+/// Conversion of numpy arrays to and from the library's types. The Python side has checked their shapes and
 /// kinds.
 namespace collarmesh::python {
 
@@ -18,14 +18,14 @@ namespace collarmesh::python {
 PolygonSoup soup_of(const pybind11::dict& arrays);
 /// Returns a dict of dimension to a dict of tag to "#rrggbb".
 pybind11::dict colours_of(const TagColours& colours);
-/// Returns the facets as triangles and polygons, with the same keys.
+/// Returns the facets of a soup as triangles and polygons, with the same keys.
 pybind11::dict arrays_of(const PolygonSoup& soup);
 
-/// Makes a mesh from a dict. Keys: the arrays of TetMesh by their names, feature_dimension and feature for
-/// those of points, `names`, a dict of dimension to a dict of tag to name, and `cad_names`.
+/// Makes a mesh from a dict. Keys: the names of TetMesh's arrays; feature_dimension and feature for the
+/// features of points; `names`, a dict of dimension to a dict of tag to name; and `cad_names`.
 TetMesh tet_mesh_of(const pybind11::dict& arrays);
 pybind11::dict arrays_of(TetMesh mesh);
-/// Returns the tet, the shares of its corners and the nearest point of each place; -1 for none.
+/// Returns the tet, the barycentric coordinates and the nearest point of each place; -1 for none.
 pybind11::tuple arrays_of(const std::vector<MeshPlace>& places);
 /// Returns `TetMesh::tet_partition` alone.
 pybind11::array partition_array(const TetMesh& mesh);

@@ -35,7 +35,7 @@ namespace collarmesh::python {
 
 namespace {
 
-/// The input to mesh: paths and surfaces of arrays, in their order.
+/// The input to be meshed: paths and surfaces given as arrays, in their order.
 struct Inputs {
   std::vector<std::string> paths;
   std::vector<PolygonSoup> soups;
@@ -52,7 +52,7 @@ Inputs inputs_of(const py::list& given) {
   return inputs;
 }
 
-/// A complex and the input it came from, which must stay alive because other data refer to it.
+/// A complex and the input that it came from, which must stay alive because other data refer to it.
 struct Complex {
   std::optional<files::ComplexInput> input;
   Plc plc;
@@ -87,7 +87,7 @@ py::object parsed(const nlohmann::ordered_json& json) {
   return py::module_::import("json").attr("loads")(json.dump());
 }
 
-/// The data that a call owns while its work runs, and its results afterwards.
+/// The data that a call owns while its work runs, and its results.
 struct MeshCall {
   Inputs inputs;
   Options options;
@@ -121,7 +121,7 @@ class InputSource : public ComplexSource {
 void mesh(MeshCall& call, Watch& watch) {
   call.input.emplace(read(call.inputs, call.options, watch));
   PipelineOptions options = call.options;
-  options.mesh.time_limit = 0;  // the watch limits the whole call
+  options.mesh.time_limit = 0;  // run_watched limits the time of the whole call
   InputSource source(call.options, *call.input);
   call.run = run_pipeline(source, options, watch.execution());
   MeshResult& result = call.run.result;
@@ -158,7 +158,7 @@ struct RemeshCall {
 void remesh(RemeshCall& call, Watch& watch) {
   watch.begin_stage("complex");
   PipelineOptions options = call.options;
-  options.mesh.time_limit = 0;  // the watch limits the whole call
+  options.mesh.time_limit = 0;  // run_watched limits the time of the whole call
   const auto adapt = [&](const Plc& plc, PipelineOptions& adapted) {
     if (SizeField field = size_field_for(plc, call.options)) adapted.mesh.size_field = std::move(field);
   };
@@ -279,7 +279,8 @@ struct ConvertCall {
   std::string told;
 };
 
-/// Joins surfaces into one file as they are. Returns as text what was welded, merged and dropped.
+/// Joins surfaces into one file without repairing them. Returns a text on what was welded, merged and
+/// dropped.
 std::string convert_surfaces(const py::list& inputs, const std::string& output, const py::dict& options) {
   const auto call = std::make_shared<ConvertCall>();
   call->inputs = inputs_of(inputs);
@@ -328,14 +329,14 @@ py::array partition_mesh(const py::dict& arrays, unsigned partitions) {
   return partition_array(*mesh);
 }
 
-/// Fills in data that other programs do not provide.
+/// Fills in data that meshes of other programs lack.
 py::dict complete(const py::dict& arrays) {
   TetMesh mesh = tet_mesh_of(arrays);
   io::complete_mesh("the mesh", mesh);
   return arrays_of(std::move(mesh));
 }
 
-/// Returns (tet or -1, shares of its corners, nearest point or -1), by point.
+/// Returns (tet or -1, barycentric coordinates, nearest point or -1) for each point.
 py::tuple locate_points(const py::dict& arrays, const py::dict& places) {
   const auto mesh = std::make_shared<TetMesh>(tet_mesh_of(arrays));
   const auto points = std::make_shared<std::vector<Point>>(soup_of(places).points);

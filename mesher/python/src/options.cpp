@@ -54,7 +54,7 @@ void take(const Option& option, const py::handle& given, Options& options) {
   option.set(options, value);
 }
 
-/// Keeps a Python object, and releases it while holding the interpreter's lock.
+/// Keeps a Python object and, when it is no longer used, releases it with the interpreter's lock held.
 std::shared_ptr<py::object> kept(const py::object& object) {
   return {new py::object(object), [](py::object* held) {
             const py::gil_scoped_acquire acquire;
@@ -68,7 +68,7 @@ std::shared_ptr<py::object> kept(const py::object& object) {
                   p.x, p.y, p.z));
 }
 
-/// Wraps a callable of a place; calls it while holding the interpreter's lock.
+/// Wraps a callable of a place; holds the interpreter's lock during calls.
 SizeField field_of(const py::object& callable) {
   return [function = kept(callable)](const Point& p) {
     const py::gil_scoped_acquire acquire;
@@ -103,7 +103,7 @@ SizesAt sizes_of_arrays(const py::object& callable) {
   };
 }
 
-/// Returns whether it takes one argument, the places, instead of x, y and z.
+/// Returns whether a callable takes one argument, the places, instead of x, y and z.
 bool takes_arrays(const py::object& callable) {
   return py::module_::import("collarmesh._inputs").attr("takes_arrays")(callable).cast<bool>();
 }

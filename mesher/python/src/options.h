@@ -10,16 +10,15 @@
 
 namespace collarmesh::python {
 
-/// Options by the command line's names, with `_` for `-`; entries of a dict replace the defaults. `names` may
-/// be JSON, too.
+/// Options by their names on the command line, with `_` for `-`. Entries of a dict replace the defaults.
+/// `names` may be JSON, too.
 struct Options : RunOptions {
   std::string size_field_json;              ///< empty: none
   SizesAt sizes_at;                         ///< a size field that takes arrays of places; empty: none
-  std::string input_format, output_format;  ///< with their dot; empty: by extension
+  std::string input_format, output_format;  ///< extensions with their dot; empty: the files' own
 };
 
-/// Returns the size field for this complex: of a file, of a description or of arrays; empty if none of them
-/// is given.
+/// Returns the size field for this complex: from a file, a description or arrays; empty if none is given.
 SizeField size_field_for(const Plc& plc, const Options& options);
 
 /// Reads options from a dict. Throws OptionError for values of the wrong type or out of range.

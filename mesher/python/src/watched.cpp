@@ -15,7 +15,7 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto between_looks = 30ms;     // interval of checking signals
+constexpr auto between_looks = 30ms;     // interval at which signals are checked
 constexpr auto until_abandoned = 700ms;  // time to wait after a request to stop
 constexpr auto until_interpreter_ends = 10s;
 
@@ -66,7 +66,7 @@ void run_watched(std::function<void(Watch&)> work, const py::object& progress, d
     } catch (...) {
       failure = std::current_exception();
     }
-    work = nullptr;  // its data is destroyed before the end is reported
+    work = nullptr;  // destroys its data before the end is reported
     const std::lock_guard lock(watch->mutex_);
     watch->failure_ = failure;
     watch->done_ = true;
@@ -137,7 +137,7 @@ void run_watched(std::function<void(Watch&)> work, const py::object& progress, d
                     time_limit, stage));
   if (reason == Reason::callback) throw Cancelled(fmt::format("the run was stopped at {}", stage));
   if (failure) std::rethrow_exception(failure);
-  if (!progress.is_none() && told < 1) {  // no stage knows that it is the last one
+  if (!progress.is_none() && told < 1) {  // no stage reports 1, because none knows that it is the last one
     const py::gil_scoped_acquire acquire;
     progress(stage, 1.0);
   }

@@ -16,21 +16,21 @@
 
 namespace collarmesh::python {
 
-/// The work ended on request.
+/// Thrown if the work ended on request.
 struct Cancelled : Error {
   using Error::Error;
 };
 
-/// The budget of vertices, memory or time is spent.
+/// Thrown if the budget of vertices, memory or time is spent.
 struct BudgetSpent : Error {
   using Error::Error;
 };
 
 /// The data that the working thread shares with its caller. It outlives both: an interrupted call may leave
-/// work behind that does not check the flag soon enough.
+/// work that does not check the flag soon enough.
 class Watch {
  public:
-  /// For the work: sends reports to the calling thread, which asks Python.
+  /// Returns the execution for the work. It sends reports to the calling thread, which asks Python.
   Execution execution();
   /// Throws Cancelled if the work must end.
   void stop_if_asked() const;
@@ -50,21 +50,21 @@ class Watch {
   std::atomic<bool> cancel_{false};
   std::mutex mutex_;  // guards the following members
   std::condition_variable changed_;
-  std::vector<News> news_;  // since the caller last looked: the last report of each phase, so that none is
+  std::vector<News> news_;  // the last report of each phase since the caller last looked, so that none is
                             // missed
   std::string stage_ = "start";
   bool done_ = false;
   std::exception_ptr failure_;
 };
 
-/// Does the work in a thread of its own. Meanwhile it checks signals, so that Ctrl-C raises KeyboardInterrupt
-/// within a second, and calls `progress`, None or a callable, with new reports: an exception from it ends the
-/// work, and False cancels it. The last call reports 1. The time limit, in seconds, ends the work, too; 0:
+/// Does the work in a thread of its own. Meanwhile checks signals, so that Ctrl-C raises KeyboardInterrupt
+/// within a second, and calls `progress`, None or a callable, with new reports. An exception from it ends the
+/// work, and False cancels it. The last call reports 1. The time limit in seconds ends the work, too; 0:
 /// none. Rethrows exceptions of the work. The work must own all data that it uses. Throws BudgetSpent,
-/// Cancelled, and what Python raised.
+/// Cancelled, and exceptions of Python.
 void run_watched(std::function<void(Watch&)> work, const pybind11::object& progress, double time_limit);
 
-/// Waits a while for work that was left behind. Call it at the end of the interpreter.
+/// Waits a short time for work that was left running. Call it at the end of the interpreter.
 void wait_for_abandoned();
 
 }  // namespace collarmesh::python

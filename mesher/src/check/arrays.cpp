@@ -50,7 +50,7 @@ void check_corners(const std::vector<std::array<Index, n>>& entities, const TetM
   }
 }
 
-// `optional`: none stands for an unknown one.
+// Finds values outside [first, end). If `optional`, `none` is allowed: it means unknown.
 void check_range(const std::vector<Index>& values, std::size_t first, std::size_t end, bool optional,
                  const char* of, const char* value, Findings& findings) {
   for (Index i = 0; i < values.size(); ++i)
@@ -105,7 +105,7 @@ void check_features(const TetMesh& mesh, const Plc& plc, Findings& findings) {
   }
 }
 
-// Equal coordinates have equal hashes: zeros of both signs are one.
+// Returns a hash that is equal for equal coordinates: zeros of both signs have the same hash.
 std::size_t hash_of(const Point& p) {
   std::uint64_t hash = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {

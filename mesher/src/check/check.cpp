@@ -75,7 +75,7 @@ void take_measures(CheckReport& report, CheckReport&& part) {
   report.measures = std::move(part.measures);
 }
 
-// Independent groups of guarantees are checked in parallel, each with a report of its own.
+// Checks independent groups of guarantees in parallel, each with its own report.
 void judge(Subject subject, CheckReport& report, Findings& findings, const Execution& execution) {
   report.faces = subject.mesh.faces.size();
   report.edges = subject.mesh.edges.size();

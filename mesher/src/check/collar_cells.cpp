@@ -1,5 +1,5 @@
-// Finds the tets that are judged as cells of collars. A mark in a file does not suffice; it takes a crease of
-// the complex.
+// Finds the tets that are judged as cells of collars. A mark in a file does not suffice: the tet must also
+// lie at a crease of the complex.
 #include <algorithm>
 
 #include "check/subject.h"
@@ -34,8 +34,8 @@ class CreaseCorners {
     std::sort(edges_.begin(), edges_.end());
   }
 
-  /// Returns 1 for a star, 2 for a book, 0 for neither: each vertex on a crease is the centre of a ball,
-  /// whose cells have no other corner there but a neighbour on the crease.
+  /// Returns 1 for a star, 2 for a book, 0 for neither. Each vertex on a crease is the centre of a ball.
+  /// Corners of its cells are on no crease, except that vertex and a neighbour on its crease.
   std::uint8_t kind_in_balls(const std::array<Index, 4>& tet) const {
     std::array<Index, 4> corners;
     const auto end =
@@ -44,7 +44,8 @@ class CreaseCorners {
     if (end - corners.begin() != 2) return 0;
     return is_edge(corners[0], corners[1]) ? 2 : 0;
   }
-  /// Returns the same for a coarsened mesh, where all cells that touch a crease are its collar.
+  /// Returns the kind of a tet as above for a coarsened mesh, where all cells that touch a crease belong to
+  /// its collar.
   std::uint8_t kind_of_touching(const std::array<Index, 4>& tet) const {
     if (std::none_of(tet.begin(), tet.end(), [&](Index p) { return on_crease_[p]; })) return 0;
     for (unsigned i = 0; i < 4; ++i)
@@ -59,7 +60,7 @@ class CreaseCorners {
   }
 
   std::vector<bool> on_crease_;              // by mesh point
-  std::vector<std::array<Index, 2>> edges_;  // on crease curves, sorted
+  std::vector<std::array<Index, 2>> edges_;  // edges on crease curves, sorted
 };
 
 bool any_of(const std::vector<std::uint8_t>& marks) {
@@ -94,7 +95,7 @@ void find_collar_cells(Subject& subject, Findings& findings) {
   const TetMesh& mesh = subject.mesh;
   const bool marked = any_of(mesh.tet_collar);
   subject.collar.assign(mesh.tets.size(), 0);
-  if (!marked && !mesh.features.empty() && !any_of(mesh.tet_thin)) return;  // the mesh knows of none
+  if (!marked && !mesh.features.empty() && !any_of(mesh.tet_thin)) return;  // the mesh has no collars
   const CreaseCorners creases(subject);
   subject.coarsened = is_coarsened(mesh, creases);
   for (Index t = 0; t < mesh.tets.size(); ++t) {

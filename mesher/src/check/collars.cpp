@@ -11,7 +11,7 @@ namespace collarmesh::checks {
 namespace {
 
 constexpr double gap_per_radius = 3;  // paper, Procedure 4
-constexpr double slack = 1 - 1e-9;    // of distances, relative
+constexpr double slack = 1 - 1e-9;    // relative tolerance of distances
 
 double to_triangle(const Point& p, const std::array<Point, 3>& t) {
   return std::sqrt(squared_distance_to_triangle(p, t[0], t[1], t[2]));
@@ -44,15 +44,15 @@ class CollarCheck {
     std::array<Index, 3> points;
   };
 
-  // The place of the ball before projection, because distances are those of the complex.
+  // Returns the place of the ball before projection: distances refer to the complex.
   const Point& centre(Index ball) const { return balls_[ball].centre; }
   double radius(Index ball) const { return balls_[ball].radius; }
   const TetMesh::VertexFeature& feature_of(Index ball) const {
     return subject_.mesh.features[balls_[ball].point];
   }
 
-  // A vertex of the complex stays where it is; a point on a curve moves onto exact geometry, which is within
-  // the distance tolerance.
+  // Checks where the centres are. A vertex of the complex stays where it is; a point on a curve may move onto
+  // exact geometry, within the distance tolerance.
   void check_centres() {
     for (Index b = 0; b < balls_.size(); ++b) {
       const Point& now = subject_.point(balls_[b].point);
@@ -131,7 +131,8 @@ class CollarCheck {
         At{centre(ball)}, radius(ball), gap, kinds[element.dimension], element.feature);
   }
 
-  // A vertex's ball and the balls on its curves belong to one crease, as do the balls on one curve.
+  // Returns whether two balls belong to one crease, as a vertex's ball and the balls on its curves do, and
+  // all balls on one curve.
   bool of_one_crease(Index a, Index b) const {
     const auto &f = feature_of(a), &g = feature_of(b);
     if (f.dimension == 1 && g.dimension == 1) return f.feature == g.feature;
@@ -152,7 +153,7 @@ class CollarCheck {
         At{centre(a)}, radius(a), At{centre(b)}, radius(b));
   }
 
-  // Finds consecutive balls, which an edge on their crease joins.
+  // Finds consecutive balls: their centres are joined by an edge on their crease.
   void check_circles() {
     for (const auto& [p, q] : subject_.mesh.edges) {
       const Index a = ball_at_[p], b = ball_at_[q];
@@ -185,7 +186,8 @@ class CollarCheck {
         At{centre(a)}, radius(a), At{centre(b)}, radius(b), what);
   }
 
-  // A star has its ball's centre, a book those of two consecutive ones.
+  // Checks that the corners of a star include the centre of its ball, and those of a book the centres of two
+  // consecutive balls.
   void check_cells() {
     const TetMesh& mesh = subject_.mesh;
     for (Index t = 0; t < mesh.tets.size(); ++t) {

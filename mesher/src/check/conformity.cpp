@@ -19,7 +19,8 @@ class ConformityCheck {
  public:
   ConformityCheck(const Subject& subject, Findings& findings) : subject_(subject), findings_(findings) {}
 
-  /// Most triangles are a side of two tets in one region, one on either side, and no listed face.
+  /// Returns whether a triangle needs no closer look: it is a side of two tets of one region, one on either
+  /// side, and is no listed face. Most triangles are like this.
   static bool is_plain(const Subject& subject, std::span<const TriangleUse> uses) {
     return uses.size() == 2 && !uses[1].listed() && uses[0].odd != uses[1].odd &&
            subject.mesh.tet_region[uses[0].cell] == subject.mesh.tet_region[uses[1].cell];
@@ -37,7 +38,7 @@ class ConformityCheck {
   }
 
  private:
-  // Sides of the same tet given twice count once.
+  // Collects the tets at a triangle; a side of the same tet that is given twice counts once.
   void collect_sides(std::span<const TriangleUse> sides) {
     sides_.clear();
     for (const TriangleUse& use : sides) {
@@ -46,7 +47,7 @@ class ConformityCheck {
       });
       if (twin == sides_.end())
         sides_.push_back(use);
-      else if (opposite(use) > corners_[2])  // once, not for each of its four sides
+      else if (opposite(use) > corners_[2])  // each tet once, not for each of its four sides
         report_twins(twin->cell, use.cell);
     }
   }
@@ -95,8 +96,8 @@ class ConformityCheck {
           sides_[1].cell, region(sides_[1]));
   }
 
-  // The normal of a tet's side points out of the tet, so the tet on a face's first side has the same
-  // orientation.
+  // Checks the regions of a listed face. The normal of a tet's side points out of the tet, so the tet behind
+  // the face has the face's orientation.
   void check_regions(const TriangleUse& listed) {
     std::array<Index, 2> regions{0, 0};
     for (const TriangleUse& side : sides_) regions[side.odd == listed.odd ? 0 : 1] = region(side);
@@ -150,7 +151,7 @@ void add_edges(const std::array<Index, 3>& face, Index region, int direction,
 
 }  // namespace
 
-// All threads scan the vertices; triangles that need a closer look are judged in their order.
+// Scans the vertices with all threads, then judges triangles that need a closer look in their order.
 void check_conformity(const Subject& subject, CheckReport& report, Findings& findings) {
   const TetMesh& mesh = subject.mesh;
   struct NotPlain {
@@ -197,8 +198,8 @@ void check_conformity(const Subject& subject, CheckReport& report, Findings& fin
   }
 }
 
-// The faces of a region, turned outward, have no boundary: every edge is passed as often one way as
-// the other.
+// Checks that the faces of a region, turned outwards, have no boundary: every edge is passed equally often in
+// both directions.
 void check_watertight(const Subject& subject, Findings& findings) {
   const TetMesh& mesh = subject.mesh;
   std::vector<BoundaryEdge> edges;

@@ -78,9 +78,10 @@ bool is_straight(const CurvedTet& p) {
   return true;
 }
 
-// With Bezier points c_ij (c_ii the corners, c_ij = 2 m_ij - (p_i + p_j) / 2 of an edge) the derivative along
-// edge 0k is the linear function 2 sum_i l_i d_ik, d_ik = c_ik - c_i0. The determinant of three is a
-// cubic, its blossom the mean over the ways to give three points to three linear functions.
+// Returns the Jacobian determinant as a cubic polynomial. With Bezier points c_ij (c_ii the corners, c_ij = 2
+// m_ij - (p_i + p_j) / 2 for an edge), the derivative along edge 0k is the linear function 2 sum_i l_i d_ik,
+// d_ik = c_ik - c_i0. The determinant of three such derivatives is a cubic. Its blossom is the mean over the
+// ways to assign three points to three linear functions.
 Cubic jacobian(const CurvedTet& p, double& error) {
   std::array<std::array<Point, 4>, 4> bezier;
   for (std::size_t i = 0; i < 4; ++i) bezier[i][i] = p[i];
@@ -107,8 +108,9 @@ Cubic jacobian(const CurvedTet& p, double& error) {
           sum += determinant(d[0][u], d[1][v], d[2][w]);
         cubic.at(i, j, k) = 8.0 / 6 * sum;
       }
-  // A difference of Bezier points is off by at most 10 e of the largest coordinate, a determinant by three
-  // such times the square of the longest difference and its own rounding.
+  // Rounding: a difference of Bezier points is off by at most 10 e times the largest coordinate. A
+  // determinant is off by at most three such errors times the square of the longest difference, plus its own
+  // rounding.
   error = 8 * epsilon * longest * longest * (60 * largest + 20 * longest);
   return cubic;
 }
@@ -129,7 +131,8 @@ bool jacobian_exceeds(const CurvedTet& nodes, double least) {
   open[0].cubic = jacobian(nodes, error);
   for (std::size_t k = 0; k < 4; ++k) open[0].corners[k][k] = 1;
   const double bound = least * std::max(0.0, six_volume(nodes[0], nodes[1], nodes[2], nodes[3])) + error;
-  constexpr std::size_t most_parts = 20000;  // a polynomial that touches the bound inside: never decided
+  constexpr std::size_t most_parts = 20000;  // limit for polynomials that touch the bound inside the tet,
+                                             // which bisection never decides
   for (std::size_t parts = 0; !open.empty(); ++parts) {
     const Part part = open.back();
     open.pop_back();

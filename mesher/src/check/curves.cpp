@@ -64,7 +64,8 @@ class CurveCheck {
                   curve_.tag, what, At{where});
   }
 
-  // Puts the points of the edges into chain_, in order. Returns false, with findings, if they form no chain.
+  // Puts the points of the edges into chain_, in order. Returns false, with findings, if the edges form no
+  // chain.
   bool find_chain() {
     std::vector<std::array<Index, 2>> ends;  // point, edge
     for (const Index e : edges_)
@@ -115,7 +116,8 @@ class CurveCheck {
     return good;
   }
 
-  // Returns the curve from the first point of the chain on; turns the chain into the curve's direction.
+  // Returns the curve as a polyline that starts at the first point of the chain. Turns the chain into the
+  // curve's direction.
   Polyline make_polyline() {
     std::vector<Point> points;
     for (const Index i : curve_.points) points.push_back(subject_.plc.points[i]);
@@ -133,7 +135,8 @@ class CurveCheck {
     for (std::size_t i = 1; i < chain_.size(); ++i) {
       const Point &a = subject_.point(chain_[i - 1]), &b = subject_.point(chain_[i]);
       const bool last = i + 1 == chain_.size();
-      // An arc that stays close to its chord is not much longer than it.
+      // The next point is searched on this part only: an arc that stays close to its chord is not much longer
+      // than the chord.
       const double reach = std::fmin(polyline.length(), arc + 3 * distance(a, b) + 4 * allowed_);
       const Polyline::Nearest here =
           last ? Polyline::Nearest{polyline.length(), distance(b, polyline.points().back())}

@@ -10,13 +10,14 @@ namespace collarmesh::checks {
 
 namespace {
 
-/// Replaces values of the complex by exact ones where these are known.
+/// Replaces values of the complex by exact ones where those are known.
 void take_exact(const std::vector<double>& exact, std::vector<double>& values) {
   for (std::size_t i = 0; i < std::min(exact.size(), values.size()); ++i)
     if (std::isfinite(exact[i])) values[i] = exact[i];
 }
 
-/// Returns the lengths of the straight sides of the faces, or of the edges, each once.
+/// Returns the lengths of the sides of all faces (dimension 2) or of all edges (dimension 1), taken as
+/// straight, each side once.
 std::vector<double> lengths_of_sides(const TetMesh& mesh, int dimension) {
   std::vector<double> lengths;
   const auto add = [&](Index a, Index b) { lengths.push_back(distance(mesh.points[a], mesh.points[b])); };

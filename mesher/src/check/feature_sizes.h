@@ -9,7 +9,7 @@ namespace collarmesh::checks {
 /// Returns the nodes of a face of a mesh of second order.
 CurvedTriangle curved_face(const TetMesh& mesh, Index face);
 
-/// Return the length of an edge and the area of a face of a mesh, curved as they are.
+/// Return the length of an edge and the area of a face of a mesh, curved if the mesh is of second order.
 double length_of_edge(const TetMesh& mesh, Index edge);
 double area_of_face(const TetMesh& mesh, Index face);
 
@@ -17,15 +17,16 @@ double area_of_face(const TetMesh& mesh, Index face);
 /// in.
 ShapeMeasures feature_sizes(const Subject& subject);
 
-/// Returns the sizes of the complex, those of the exact geometry where they are known.
+/// Returns the sizes of the features of the complex; replaces them by those of the exact geometry where these
+/// are known.
 ShapeMeasures input_sizes(const Subject& subject);
 
-/// Puts into the report the sizes of the features up to a dimension, 1 or 2, in the complex and in a mesh
-/// that has no tets, and the median length of the edges of this mesh.
+/// Fills in the report for a mesh without tets: the sizes of the features up to a dimension (1 or 2), in the
+/// complex and in the mesh, and the median length of the mesh's edges.
 void measure_without_tets(const Subject& subject, int dimension, CheckReport& report);
 
-/// Finds patches, curves and vertices of the complex that a mesh without tets, of dimension 1 or 2, does not
-/// have.
+/// Finds patches, curves and vertices of the complex that are missing in a mesh without tets, of dimension 1
+/// or 2.
 void check_present(const Subject& subject, int dimension, Findings& findings);
 
 }  // namespace collarmesh::checks

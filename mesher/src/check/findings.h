@@ -13,7 +13,7 @@
 
 namespace collarmesh::checks {
 
-/// A point in a message.
+/// A point as messages print it.
 struct At {
   Point point;
 };
@@ -33,7 +33,7 @@ class Findings {
         {std::string(guarantee), fmt::format(message, std::forward<Arguments>(arguments)...), ids, where});
   }
 
-  /// Adds the findings of a part that was judged on its own.
+  /// Adds the findings of a separate report, which another part of the check filled in.
   void take(CheckReport& part);
 
   /// Returns the number of findings so far, including those not listed.

@@ -25,8 +25,8 @@ void check_listed_once(const Subject& subject, Findings& findings) {
   }
 }
 
-/// The tangent of an edge of second order is linear in its parameter: its component along the chord is
-/// positive everywhere if it is at both ends.
+/// Checks edges of second order. The tangent is linear in the edge's parameter, so its component along the
+/// chord is positive everywhere if it is positive at both ends.
 void check_edge_jacobians(const Subject& subject, Findings& findings) {
   const TetMesh& mesh = subject.mesh;
   if (mesh.order() == 1) return;
@@ -45,7 +45,7 @@ void check_edge_jacobians(const Subject& subject, Findings& findings) {
 void judge_lines(const TetMesh& mesh, const Plc& given, const CheckOptions& options, CheckReport& report) {
   Findings findings(report, options.findings_per_guarantee);
   if (!check_arrays(mesh, findings)) return;
-  Plc plc = given;  // regions and patches play no part
+  Plc plc = given;  // regions and patches do not matter here
   for (Plc::Patch& patch : plc.patches) patch.regions = {0, 0};
   CheckOptions own = options;
   own.bounds.tolerance = tolerance_of_any_size(given, options.bounds);

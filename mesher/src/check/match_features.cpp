@@ -15,7 +15,7 @@ namespace collarmesh::checks {
 
 namespace {
 
-// The features of one kind with one tag, for measuring distances.
+// The features of one kind with one tag, as triangles for measuring distances.
 struct TaggedFeatures {
   std::vector<DistanceTree::Triangle> triangles;
   std::vector<Index> feature;  // by triangle
@@ -29,7 +29,7 @@ class NearestFeature {
     features.triangles.push_back(triangle);
     features.feature.push_back(feature);
   }
-  /// Returns the nearest feature with this tag, none if there is no such feature.
+  /// Returns the nearest feature with this tag, or none if there is no such feature.
   Index find(Tag tag, const Point& p) {
     const auto found = by_tag_.find(tag);
     if (found == by_tag_.end()) return none;
@@ -49,7 +49,7 @@ class PointSearch {
     std::sort(order_.begin(), order_.end(), [&](Index a, Index b) { return less(points_[a], points_[b]); });
   }
 
-  /// Returns the point nearest to p within the tolerance, none if there is no such point.
+  /// Returns the point nearest to p within the tolerance, or none if there is no such point.
   Index find(const Point& p, double tolerance) const {
     const auto exact = std::lower_bound(order_.begin(), order_.end(), p,
                                         [&](Index i, const Point& q) { return less(points_[i], q); });
@@ -81,7 +81,7 @@ class Ballot {
   void vote(Index piece, Index feature, double weight) {
     if (feature != none) votes_.push_back({piece, feature, weight});
   }
-  /// By piece, none without a vote.
+  /// Returns the feature with most votes for each piece; none for a piece without votes.
   std::vector<Index> count(std::size_t pieces) {
     std::stable_sort(votes_.begin(), votes_.end(), [](const Vote& a, const Vote& b) {
       return a.piece != b.piece ? a.piece < b.piece : a.feature < b.feature;
@@ -109,7 +109,7 @@ class Ballot {
   std::vector<Vote> votes_;
 };
 
-// Joins edges of one tag that meet in a point without other features.
+// Joins edges of one tag that meet in a point where no other feature ends.
 DisjointSets edge_pieces(const TetMesh& mesh, const std::vector<Index>& vertex_point) {
   std::vector<std::array<Index, 2>> ends;  // point, edge
   for (Index e = 0; e < mesh.edges.size(); ++e)
@@ -127,7 +127,7 @@ DisjointSets edge_pieces(const TetMesh& mesh, const std::vector<Index>& vertex_p
   return pieces;
 }
 
-// Joins faces of one tag (if tags count) between the same regions that share an edge on no curve.
+// Joins faces between the same regions (and of one tag, if `by_tag`) that share an edge on no curve.
 DisjointSets face_pieces(const TetMesh& mesh, bool by_tag) {
   struct Side {
     std::array<Index, 2> ends;

@@ -26,14 +26,14 @@ struct Vector3 {
   }
 };
 
-// An angle in [0, pi] as a direction in the upper half plane.
+// An angle in [0, pi], stored as a direction in the upper half plane.
 template <class Real>
 struct Direction {
   Real x, y;
 
   bool less_than(const Direction& other) const {
     const Real turn = x * other.y - y * other.x;
-    return turn > 0 || (turn == 0 && x > 0 && other.x < 0);  // the latter: 0 and pi
+    return turn > 0 || (turn == 0 && x > 0 && other.x < 0);  // the second case: 0 and pi
   }
   double degrees() const { return static_cast<double>(std::atan2(y, x)) * 180 / std::numbers::pi; }
 };
@@ -41,11 +41,11 @@ struct Direction {
 template <class Real>
 struct Measures {
   TetQuality quality;
-  Real conditioning;  ///< |determinant| / longest edge cubed: rounding is amplified by its inverse
+  Real conditioning;  ///< |determinant| / longest edge cubed; rounding errors grow with its inverse
 };
 
-// Returns the exponent of the power of two to divide the tet by, so that eighth powers of lengths are in
-// range: 0 for almost all tets.
+// Returns the exponent of the power of two by which the tet has to be divided so that eighth powers of
+// lengths stay in range: 0 for almost all tets.
 int exponent_of_size(const Point& a, const Point& b, const Point& c, const Point& d) {
   double largest = 0;
   for (const Point& p : {b, c, d})
@@ -66,7 +66,7 @@ Measures<Real> measure_as(const Point& a, const Point& b, const Point& c, const 
              l_bd = dot(bd, bd), l_cd = dot(cd, cd);
   const auto [shortest, longest] = std::minmax({l_ab, l_ac, l_ad, l_bc, l_bd, l_cd});
 
-  // Normals of the faces opposite each corner, all outward (or all inward if the tet is inverted).
+  // Normals of the faces opposite the corners, all outwards (or all inwards if the tet is inverted).
   const V n_a = cross(bc, bd), n_b = cross(ad, ac), n_c = cross(ab, ad), n_d = cross(ac, ab);
   const Real determinant = -dot(n_d, ad);
   const Real size = std::abs(determinant);
@@ -79,7 +79,7 @@ Measures<Real> measure_as(const Point& a, const Point& b, const Point& c, const 
       size > 0 ? static_cast<double>(std::sqrt(dot(numerator, numerator) / shortest) / (2 * size))
                : std::numeric_limits<double>::infinity();
 
-  // Two normals n, m with a common edge e: -n.m = |n||m| cos, |n x m| = |e| |det| = |n||m| sin.
+  // For two normals n, m with a common edge e: -n.m = |n||m| cos, |n x m| = |e| |det| = |n||m| sin.
   const std::array<Direction<Real>, 6> angles{{{-dot(n_c, n_d), std::sqrt(l_ab) * size},
                                                {-dot(n_b, n_d), std::sqrt(l_ac) * size},
                                                {-dot(n_b, n_c), std::sqrt(l_ad) * size},
@@ -109,8 +109,8 @@ Direction<Real> largest_angle(const Vector3<Real>& ab, const Vector3<Real>& ac, 
 
 }  // namespace
 
-// Rounding errors of volume, radius and angles grow with longest^3 / determinant: flat tets are
-// measured with more digits.
+// Measures in double precision first. Rounding errors of volume, radius and angles grow with longest^3 /
+// determinant, so flat tets are measured with more digits.
 TetQuality measure(const Point& a, const Point& b, const Point& c, const Point& d) {
   const Measures<double> measures = measure_as<double>(a, b, c, d);
   if (measures.conditioning > 1e-4) return measures.quality;

@@ -18,7 +18,9 @@ double median_edge(const TetMesh& mesh) {
     std::vector<double> lengths;
   };
   tbb::enumerable_thread_specific<Found> of_threads;
-  if (tbb::this_task_arena::max_concurrency() > 1) static_cast<void>(usable_threads());  // keeps TBB to them
+  if (tbb::this_task_arena::max_concurrency() > 1)
+    static_cast<void>(usable_threads());  // limits TBB to the
+                                          // usable threads
   for_each_vertex_with_cells(mesh, [&](std::size_t vertex, std::span<const Index> cells) {
     auto& [at_vertex, lengths] = of_threads.local();
     at_vertex.find(mesh, static_cast<Index>(vertex), cells);

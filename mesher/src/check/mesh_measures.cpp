@@ -15,7 +15,8 @@ std::size_t bin_of(double value, double width) {
                                                        : MeshMeasures::bins - 1;
 }
 
-/// Among the most extreme, in their order; equal ones by number.
+/// Inserts a tet into the list of the most extreme ones, if it belongs there; equal angles stay in the order
+/// of the tets.
 template <class IsWorse>
 void insert(const MeshMeasures::Extreme& extreme, std::vector<MeshMeasures::Extreme>& worst,
             const IsWorse& is_worse) {

@@ -4,7 +4,7 @@
 
 namespace collarmesh::checks {
 
-/// Sign of six_volume(a, b, c, d), exactly.
+/// Returns the sign of six_volume(a, b, c, d) by exact arithmetic.
 int exact_orientation(const Point& a, const Point& b, const Point& c, const Point& d);
 
 }  // namespace collarmesh::checks

@@ -1,4 +1,4 @@
-// Features of the complex that lie outside all regions: the mesh does not have them.
+// Features of the complex outside all regions, which the mesh does not have.
 #include <fmt/format.h>
 
 #include <algorithm>

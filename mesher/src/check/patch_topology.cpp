@@ -74,8 +74,8 @@ class TopologyCheck {
     }
   }
 
-  // Checks that an edge has as many faces as the complex has triangles there if it lies on a curve of the
-  // patch, else two, which pass it in opposite directions.
+  // Checks the faces at an edge. If the edge lies on a curve of the patch, it must have as many faces as the
+  // complex has triangles there; otherwise two, which pass the edge in opposite directions.
   void check_edge(std::size_t first, std::size_t last) {
     const PatchEdge& side = sides_[first];
     const Index curve = uses_.curve_of(side.ends);
@@ -128,7 +128,8 @@ class TopologyCheck {
     }
   }
 
-  // The corners of faces that are connected around their point form fans: union-find over the corners.
+  // Returns the fan of a face's corner: corners of faces that are connected around their point form one fan
+  // (union-find over the corners).
   Index fan(Index corner) {
     while (fans_[corner] != corner) corner = fans_[corner] = fans_[fans_[corner]];
     return corner;

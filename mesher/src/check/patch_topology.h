@@ -9,10 +9,11 @@ namespace collarmesh::checks {
 
 /// A side of a face of one patch.
 struct PatchEdge {
-  std::array<Index, 2> ends;  ///< sorted
-  Index place;                ///< of the face in the patch's list of faces
+  std::array<Index, 2> ends;  ///< its ends, sorted
+  Index place;                ///< index of the face in the patch's list of faces
   Index face;
-  bool ascending;  ///< runs from the smaller to the larger point, with the face turned as its patch
+  bool ascending;  ///< the edge runs from the smaller to the larger point when the face is turned as its
+                   ///< patch
 
   friend bool operator<(const PatchEdge& a, const PatchEdge& b) {
     const auto i = edge_key(a.ends[0], a.ends[1]), j = edge_key(b.ends[0], b.ends[1]);
@@ -20,14 +21,14 @@ struct PatchEdge {
   }
 };
 
-/// How the curves cut the patches: by the complex, and by the edges of the mesh.
+/// The sides of patches at curves: in the complex, and among the edges of the mesh.
 class CurveUses {
  public:
   explicit CurveUses(const Subject& subject);
 
   /// Returns the number of triangles of the patch at each place of the curve in the complex.
   std::size_t triangles_at(Index curve, Index patch) const;
-  /// Returns the curve of a mesh edge (sorted points), none if it is on none.
+  /// Returns the curve of a mesh edge (sorted points), or none.
   Index curve_of(const std::array<Index, 2>& edge) const;
   /// Returns the mesh edges of a curve.
   const Grouping& edges() const { return edges_by_curve_; }
@@ -39,20 +40,20 @@ class CurveUses {
     friend bool operator<(const CurveEdge& a, const CurveEdge& b) { return a.ends < b.ends; }
   };
   const Plc& plc_;
-  // Sorted points, patch: one for each triangle side where a curve may begin.
+  // Sorted points and a patch, for each triangle side that may lie on a curve.
   std::vector<std::array<Index, 3>> complex_edges_;
   std::vector<CurveEdge> mesh_edges_;
   Grouping edges_by_curve_;
 };
 
-/// Is the face turned against its patch (its regions are the patch's in reverse)?
+/// Returns whether the face is turned against its patch: its regions are the patch's in reverse.
 inline bool reversed(const Subject& subject, Index face) {
   const auto& given = subject.mesh.face_regions[face];
   const auto& own = subject.plc.patches[subject.match.face_patch[face]].regions;
   return own[0] != own[1] && given[0] == own[1] && given[1] == own[0];
 }
 
-/// The faces of a patch form a surface that is turned one way and ends at the patch's curves.
+/// Checks that the faces of a patch form a surface, oriented alike, that ends at the patch's curves.
 void check_patch_topology(const Subject& subject, Index patch, const std::vector<Index>& faces,
                           const CurveUses& uses, Findings& findings);
 

@@ -75,12 +75,12 @@ class PatchCheck {
     return points;
   }
 
-  // Signed, as seen along the plane's normal.
+  // Returns the signed area of a triangle as seen along the plane's normal.
   double area_in_plane(const Point& a, const Point& b, const Point& c) const {
     return 0.5 * dot(cross(b - a, c - a), patch_.normal);
   }
 
-  // An internal facet may be turned either way.
+  // Compares the area of the faces with the patch's. An internal facet may be turned either way.
   void check_area() {
     std::vector<double> areas;
     for (const Index f : faces_) {
@@ -98,7 +98,7 @@ class PatchCheck {
     compare_area(static_cast<double>(found));
   }
 
-  // False when it is turned.
+  // Returns false, with a finding, if the face is turned against the plane.
   bool check_fold(Index face, double signed_area) {
     const auto [a, b, c] = corners(face);
     const double longest = std::max({distance(a, b), distance(b, c), distance(c, a)});
@@ -112,14 +112,13 @@ class PatchCheck {
     return false;
   }
 
-  // Both areas are those of the projections along the plane's normal, with signs (a turned face has a
-  // finding of its own, so here it counts as if it were not turned). Such an area depends on the border
-  // alone: it is half the sum of dot(normal, cross(a, b)) over its edges ab, to which each inner edge adds
-  // nothing, as its two sides run against each other. How the triangles of a patch that is planar up to a
-  // tolerance are tilted, or folded where they are narrower than that, is no part of it. (The triangles' own
-  // areas are: tilted by an angle t they exceed their projection by t^2 / 2, relatively, needles by
-  // anything.) So the areas differ where the border does: by its length times how far it may move, and by
-  // rounding.
+  // Compares areas projected along the plane's normal, with signs. (A turned face has a finding of its own,
+  // so its area counts as positive here.) A projected area depends on the border alone: it is half the sum of
+  // dot(normal, cross(a, b)) over all edges ab, and the two sides of each inner edge cancel. So it does not
+  // matter that triangles of a patch that is planar only up to a tolerance are tilted, or folded if they are
+  // narrower than the tolerance. (The sum of unprojected areas would not do: tilting by an angle t increases
+  // it by about t^2 / 2, and that of needles by any factor.) Both areas may therefore differ by the length of
+  // the border times the distance that it may move, and by rounding.
   void compare_area(double found) {
     long double sum = 0;
     for (Index i = 0; i < patch_.triangle_count; ++i) {
@@ -155,7 +154,7 @@ class PatchCheck {
                [&](const PatchDistance::Sample& sample, bool on_face) { measure(sample, on_face); });
   }
 
-  /// Distances below this change neither the maximum nor the verdict.
+  /// Returns a distance that needs no measuring: smaller ones change neither the maximum nor the verdict.
   double enough() const { return std::fmin(report_.max_surface_distance, least_allowed_); }
 
   void measure(const PatchDistance::Sample& sample, bool on_face) {

@@ -36,14 +36,14 @@ Ends sorted(Ends ends) {
 
 bool is_translation(const TetMesh::Motion& motion) { return motion.rows == TetMesh::Motion().rows; }
 
-/// How far rounding alone takes an image from its node, at a distance r from the origin (the largest of a
-/// node, an image or the shift), with u = 2^-53. Let p, q be a node and its image, R and s the motion.
+/// Bounds the distance that rounding alone causes between an image and its node, at a distance r from the
+/// origin (the largest of a node, an image or the shift), with u = 2^-53. Let p, q be a node and its image, R
+/// and s the motion.
 /// - Evaluating R p + s: three products and two sums for each row, |error| <= 3 u |R| |p| elementwise, at
-/// most
-///   3 sqrt(3) u r in norm as the rows have length 1; then the last sum, u r. Together e = (1 + 3 sqrt(3)) u
-///   r (terms in u^2 are below the last digits of this). With R the identity all but the last sum are exact.
-/// - A corner of a cell of three pairs is the image of a node that is an image of a node that is one; judged
-///   by one pair, the two ways to it differ by the evaluations along both, at most six with this check's own.
+///   most 3 sqrt(3) u r in norm as the rows have length 1; then the last sum, u r. Together e = (1 + 3
+///   sqrt(3)) u r (terms in u^2 are negligible). If R is the identity, only the last sum is rounded.
+/// - In a cell of three pairs, two sequences of maps lead to a corner. Judged by one pair, they differ by the
+///   evaluations along both, at most six including those of this check.
 /// - A mid-edge node is the middle of two nodes: one sum on either side, u r each.
 /// - Corners that the input gives stay where they are: a translation from the middle of one box to that of
 ///   the other rounds three sums, u r each.
@@ -53,13 +53,13 @@ double rounding_of(const TetMesh::Motion& motion, double r) {
   return (evaluations * evaluation + others) * unit_roundoff * r;
 }
 
-/// One pair of groups.
+/// Checks one pair of groups.
 class PeriodicCheck {
  public:
   PeriodicCheck(const TetMesh& mesh, std::size_t number, Findings& findings)
       : mesh_(mesh), pair_(mesh.periodic[number]), number_(number + 1), findings_(findings) {}
 
-  /// Returns the map, if it can be used.
+  /// Returns the map from nodes to images, if it can be used.
   std::optional<Map> run() {
     check_motion();
     if (!read_map()) return std::nullopt;
@@ -79,7 +79,7 @@ class PeriodicCheck {
 
   void check_motion() {
     const auto& [x, y, z] = pair_.motion.rows;
-    // Sines and cosines, and products of them, are rounded a few times each.
+    // Sines and cosines, and their products, are rounded a few times each.
     constexpr double allowed = 32 * unit_roundoff;
     const double off = std::max({std::fabs(dot(x, x) - 1), std::fabs(dot(y, y) - 1), std::fabs(dot(z, z) - 1),
                                  std::fabs(dot(x, y)), std::fabs(dot(y, z)), std::fabs(dot(z, x))});
@@ -167,7 +167,7 @@ class PeriodicCheck {
                       image, At{at(image)}, gap, node, At{at(node)}, number_, allowed);
   }
 
-  /// Of a node: none for one without an image, which is told already.
+  /// Returns the image of a node, or none if it has none: check_nodes has reported that.
   Index image_of(Index node) const {
     const auto found = map_.find(node);
     return found == map_.end() ? none : found->second;
@@ -203,8 +203,8 @@ class PeriodicCheck {
                       At{at(corners[0])}, number_);
   }
 
-  /// Does face g run through these images of the corners of face f the other way round, mid-edge nodes
-  /// included?
+  /// Returns whether face g runs through these images of the corners of face f in reverse order, mid-edge
+  /// nodes included.
   bool are_turned(Index f, const Corners& images, Index g) const {
     const Corners& corners = mesh_.faces[g];
     const auto start =
@@ -226,7 +226,7 @@ class PeriodicCheck {
     return sides;
   }
 
-  /// Edges on curves that are sides of these, by their ends.
+  /// Returns the edges on curves that are among these sides, by their ends.
   std::map<Ends, Index> edges_among(const std::set<Ends>& sides) const {
     std::map<Ends, Index> edges;
     for (Index e = 0; e < mesh_.edges.size(); ++e)
@@ -261,14 +261,14 @@ class PeriodicCheck {
 
   const TetMesh& mesh_;
   const TetMesh::PeriodicFaces& pair_;
-  std::size_t number_;  // from 1, in messages
+  std::size_t number_;  // number in messages, from 1
   Findings& findings_;
   Map map_;
   std::vector<Index> first_faces_;
   std::map<Corners, Index> second_faces_;  // by sorted corners
 };
 
-/// Do two motions lead to one place in either order, at this point?
+/// Returns whether two motions, applied to this point in either order, lead to one place.
 bool commute(const TetMesh::Motion& f, const TetMesh::Motion& g, const Point& p) {
   const Point one = g(f(p)), other = f(g(p));
   const double r =
@@ -276,8 +276,8 @@ bool commute(const TetMesh::Motion& f, const TetMesh::Motion& g, const Point& p)
   return distance(one, other) <= rounding_of(f, r) + rounding_of(g, r);
 }
 
-/// At edges of a cell a node has images by two pairs, and these have images by the other pair. Where the
-/// motions commute, both are one node.
+/// Checks edges of a cell, where a node has images by two pairs and each image has an image by the other
+/// pair. If the motions commute there, both must be the same node.
 void check_corners(const TetMesh& mesh, const std::vector<std::optional<Map>>& maps, Findings& findings) {
   for (std::size_t i = 0; i < maps.size(); ++i)
     for (std::size_t j = i + 1; j < maps.size(); ++j) {

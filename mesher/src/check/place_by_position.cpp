@@ -1,4 +1,5 @@
-// Finds labels by position for a mesh from a file that has none, or labels unknown to the complex.
+// Finds labels by position for a mesh from a file without labels, or with labels that the complex does not
+// have.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,7 +29,7 @@ bool are_known(const std::vector<Tag>& tags, const Features& features) {
   return 2 * static_cast<std::size_t>(count) >= tags.size();
 }
 
-// Returns whether the tags say more than that the entity lies on some feature.
+// Returns whether the tags tell features apart, instead of only saying that an entity lies on some feature.
 template <class Features>
 bool tell_apart(const Features& features) {
   return std::any_of(features.begin(), features.end(),
@@ -39,7 +40,7 @@ bool tell_apart(const Features& features) {
 struct Side {
   Triangle corners;  // sorted
   Index tet;         // none: a listed face
-  Index place;       // the corner opposite, or the face
+  Index place;       // number of the opposite corner, or of the face
 
   friend bool operator<(const Side& a, const Side& b) {
     return a.corners != b.corners ? a.corners < b.corners : a.tet < b.tet;
@@ -55,7 +56,7 @@ class InnerPatches {
         near_(subject.mesh.points.size(), -1) {}
 
   enum class Kind { planar, any };
-  /// Returns whether the triangle lies on one of this kind.
+  /// Returns whether the triangle lies on patches of this kind.
   bool hold(const Triangle& corners, Kind kind) {
     if (numbers_.empty()) return false;
     if (!std::all_of(corners.begin(), corners.end(), [&](Index p) { return is_near(p); })) return false;
@@ -64,7 +65,7 @@ class InnerPatches {
     return distance <= subject_.patch_allowance[patch] &&
            (kind == Kind::any || subject_.plc.patches[patch].planar);
   }
-  /// Returns the normal there, of any length.
+  /// Returns the patch's normal at the triangle, of any length.
   Vector normal(const Triangle& corners) const {
     const Plc::Triangle& t =
         subject_.plc.triangles[numbers_[triangles_.nearest(subject_.centroid(corners)).triangle]];
@@ -95,12 +96,13 @@ class InnerPatches {
   }
 
   const Subject& subject_;
-  std::vector<Index> numbers_;  // of the complex's triangles
+  std::vector<Index> numbers_;  // numbers of the complex's triangles
   DistanceTree triangles_;
-  std::vector<std::int8_t> near_;  // by mesh point: is it on one of them? -1: not asked yet
+  std::vector<std::int8_t> near_;  // by mesh point: 1 if it is on one of these patches, 0 if not, -1 if not
+                                   // computed yet
 };
 
-// The pieces of all curves, segments as flat triangles, and where on them they begin.
+// The segments of all curves as flat triangles, with their positions on the curves.
 struct CurveSegments {
   explicit CurveSegments(const Plc& plc) : lengths(plc.curves.size(), 0) {
     for (Index c = 0; c < plc.curves.size(); ++c) {
@@ -121,8 +123,8 @@ struct CurveSegments {
   std::vector<double> lengths;  // by curve
 };
 
-// Returns whether most of a sample of faces and edges lie on the patches and curves of their tags. It matters
-// if tags are only numbers, which another order of the facets changes.
+// Decides whether tags that are only numbers fit: whether most faces and edges of a sample lie on the patches
+// and curves of their tags. Such numbers change with the order of the facets.
 class Numbers {
  public:
   explicit Numbers(const Subject& subject) : subject_(subject) {}
@@ -201,8 +203,8 @@ class Placement {
   }
 
  private:
-  // Returns listed edges on no curve without a tag that requires one: other programs list the edges along
-  // which they divide faces. Empty if there are none.
+  // Returns the listed edges that lie on no curve and have no tag that requires one: other programs list the
+  // edges along which they divide faces. Empty if there are none.
   std::vector<bool> stray_edges() const {
     const TetMesh& mesh = subject_.mesh;
     const bool told = !plc_.numbered_curves && tell_apart(plc_.curves);
@@ -252,7 +254,8 @@ class Placement {
     keep(mesh_.edge_mid_nodes);
   }
 
-  // Formats with room for one number have the region in place of its tag.
+  // Returns whether the tet has a region of the complex. Its tag may be the region's number, because some
+  // formats have room for one number only.
   bool has_region(Index tet) const {
     const Index region = subject_.mesh.tet_region[tet];
     const Tag tag = subject_.mesh.tet_tag[tet];
@@ -270,7 +273,7 @@ class Placement {
     std::sort(sides_.begin(), sides_.end());
   }
 
-  /// Calls visit(sides of tets, how many, listed face or none) for each triangle of points.
+  /// Calls visit(sides of tets, their number, listed face or none) for each triangle of points.
   template <class Visit>
   void for_each_triangle(const Visit& visit) const {
     for (std::size_t i = 0, j = 0; i < sides_.size(); i = j) {
@@ -285,7 +288,7 @@ class Placement {
     return side_corners(subject_.mesh.tets[tet], opposite);
   }
 
-  // Places each connected part by its largest tet.
+  // Finds the region of each connected part by the place of its largest tet.
   void place_tets() {
     const TetMesh& mesh = subject_.mesh;
     DisjointSets parts(mesh.tets.size());
@@ -389,7 +392,7 @@ class Placement {
     friend bool operator<(const PlaceOnCurve& a, const PlaceOnCurve& b) { return a.arc < b.arc; }
   };
 
-  // Makes edges between consecutive points on a curve that an edge of a tet joins.
+  // Makes edges of the edges of tets between consecutive points on a curve.
   void make_edges() {
     report_.notes.emplace_back(
         mesh_.edges.empty() ? "The mesh lists no edges: those on curves were found by position."
@@ -441,7 +444,7 @@ class Placement {
     return chains;
   }
 
-  // Returns the points that may be on curves: those of faces, or all if a curve is on no patch.
+  // Returns the points that may be on curves: points of faces, or all points if a curve is on no patch.
   std::vector<Index> candidates() const {
     std::vector<bool> is_candidate(
         mesh_.points.size(),
@@ -488,7 +491,7 @@ std::optional<TetMesh> place_by_position(const Subject& subject, CheckReport& re
   if (subject.mesh.features.empty()) return Placement(subject, report, findings).run();
   const Numbers numbers(subject);
   if (numbers.fit_faces() && numbers.fit_edges()) return std::nullopt;
-  TetMesh unplaced = subject.mesh;  // of a complex that was numbered in another order
+  TetMesh unplaced = subject.mesh;  // the labels of a complex with another numbering are dropped
   unplaced.features.clear();
   std::fill(unplaced.face_patch.begin(), unplaced.face_patch.end(), none);
   std::fill(unplaced.edge_curve.begin(), unplaced.edge_curve.end(), none);

@@ -6,17 +6,17 @@
 
 namespace collarmesh::checks {
 
-/// Distance from p to the segment ab, and where along it (0 to 1) the nearest point lies.
+/// Distance from p to the segment ab, and the position of the nearest point along it (0 to 1).
 struct NearestOnSegment {
   double distance, parameter;
 };
 NearestOnSegment nearest_on_segment(const Point& p, const Point& a, const Point& b);
 
-/// A chain of segments with positions measured by arc length from its start. A closed one repeats
-/// its first point at the end.
+/// A chain of segments. Positions on it are arc lengths from its start. A closed one repeats its first point
+/// at the end.
 class Polyline {
  public:
-  /// Precondition: at least two points.
+  /// Makes a polyline from at least two points.
   explicit Polyline(std::vector<Point> points);
 
   double length() const { return arc_.back(); }
@@ -32,7 +32,7 @@ class Polyline {
 
   Point at(double arc) const;
 
-  /// The corners strictly between two positions: [first, last).
+  /// The corners strictly between two positions: indices [first, last).
   struct Range {
     std::size_t first, last;
   };
@@ -45,7 +45,7 @@ class Polyline {
   std::size_t segment_at(double arc) const;
 
   std::vector<Point> points_;
-  std::vector<double> arc_;  // by point
+  std::vector<double> arc_;  // arc length at each point
 };
 
 }  // namespace collarmesh::checks

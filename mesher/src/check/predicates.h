@@ -8,32 +8,33 @@
 #include "collarmesh/curved_tet.h"
 #include "collarmesh/geometry.h"
 
-/// The guarantees of single tets and nodes: predicates over what they look at, wherever the mesh is. `check`
-/// uses them for a whole mesh, each rank of many for its part of one.
+/// Predicates for the guarantees of single tets and nodes. They take the coordinates themselves, so they work
+/// wherever the mesh is stored: `check` uses them for a whole mesh, each MPI rank for its part.
 namespace collarmesh::checks {
 
-/// What findings call an entity: "Tet 5", or "Tet" on one rank of many, where numbers say nothing.
+/// The name of an entity in findings: "Tet 5", or only "Tet" on one of many ranks, where numbers would
+/// mislead.
 struct Named {
   std::string_view kind;
   Index id = none;
 };
 
-/// The feature that a node is to lie on.
+/// The feature that a node should lie on.
 struct NamedFeature {
   std::string_view kind;  ///< "curve" or "patch"
   Index id;
   Tag tag;
 };
 
-/// Finds a tet without positive volume, by exact arithmetic; `volume` is for the message. Returns whether it
-/// is positive.
+/// Adds a finding if a tet has no positive volume, by exact arithmetic; `volume` is for the message. Returns
+/// whether it is positive.
 bool check_orientation(const Named& tet, const std::array<Point, 4>& corners, double volume,
                        Findings& findings);
 
-/// Finds a tet of second order whose Jacobian determinant is not positive everywhere in it.
+/// Adds a finding if the Jacobian determinant of a tet of second order is not positive everywhere.
 void check_jacobian(const Named& tet, const CurvedTet& nodes, Tag tag, Findings& findings);
 
-/// Finds a node that is farther away from its feature than is allowed.
+/// Adds a finding if a node is farther away from its feature than is allowed.
 void check_off_feature(std::string_view guarantee, const Named& node, const Point& at, double distance,
                        double allowed, const NamedFeature& feature, Findings& findings);
 

@@ -32,13 +32,13 @@ enum class Crossing { none, inside, at_border };
 
 struct Meeting {
   Crossing crossing;
-  bool in_front;  // the way begins on the side that the normal points to
+  bool in_front;  // the segment begins on the side that the normal points to
 };
 
-// The ways in which the segment from p, which is not on the triangle, to q meets it.
+// Returns how the segment from p, which is not on the triangle, to q meets the triangle.
 Meeting meet(const Point& p, const Point& q, const Corners& t) {
   const int from = exact_orientation(t[0], t[1], t[2], p), to = exact_orientation(t[0], t[1], t[2], q);
-  if (from == 0 && to == 0) return {Crossing::at_border, false};  // within its plane
+  if (from == 0 && to == 0) return {Crossing::at_border, false};  // the segment lies in the triangle's plane
   if (from == to || from == 0) return {Crossing::none, false};
   bool on_border = to == 0, left = false, right = false;
   for (unsigned i = 0; i < 3; ++i) {
@@ -67,8 +67,8 @@ const RegionLocator::Trees& RegionLocator::trees() const {
   return *trees_;
 }
 
-// Returns the region on p's side of the first triangle on the way from p through `target` to twice its
-// distance; none if the way meets a border.
+// Follows the ray from p through `target` to twice the target's distance. Returns the region on p's side of
+// the first triangle that it meets; none if it meets the border of a triangle.
 Index RegionLocator::region_on_the_way(const Point& p, const Point& target) const {
   const Point beyond = target + (target - p);
   double first = INFINITY;

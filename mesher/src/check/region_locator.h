@@ -12,14 +12,14 @@ namespace collarmesh::checks {
 /// Tells which region of a complex a point lies in. Several threads may ask at once.
 class RegionLocator {
  public:
-  /// Kept by reference.
+  /// Keeps a reference to the complex.
   explicit RegionLocator(const Plc& plc) : plc_(plc) {}
 
-  /// 0 outside of all. Precondition: the point is not on a patch. Looks from the point to places on the
-  /// nearest triangle, and at the side from which the first triangle on the way is seen: by exact
-  /// arithmetic, and again towards another place, then another triangle, when a way meets the border of a
-  /// triangle or lies in a plane of one. Cost: the first
-  /// time O(n log n) for n triangles, then like that of the nearest triangle, logarithmic for most points.
+  /// Returns the region of a point, 0 outside of all. Precondition: the point is not on a patch. Follows a
+  /// ray from the point to a place on the nearest triangle, and returns the region on this side of the first
+  /// triangle on the ray, by exact arithmetic. If the ray meets the border of a triangle or lies in the plane
+  /// of one, tries another place, then another triangle. Cost: O(n log n) for n triangles the first time,
+  /// then that of finding the nearest triangle: logarithmic for most points.
   Index region_at(const Point& p) const;
 
  private:

@@ -1,4 +1,4 @@
-// Checks region volumes of the mesh against those that the complex's triangles enclose.
+// Checks the volumes of the mesh's regions against those that the complex's triangles enclose.
 #include <cmath>
 #include <vector>
 
@@ -6,8 +6,8 @@
 
 namespace collarmesh::checks {
 
-// A surface moved by no more than d encloses a volume changed by no more than d times its area, to
-// first order.
+// Returns the expected volumes. If a surface moves by at most d, the volume changes by at most d times the
+// surface's area, to first order.
 RegionVolumes expected_volumes(const Subject& subject) {
   const Plc& plc = subject.plc;
   RegionVolumes volumes{collarmesh::measures_of(plc).volumes, std::vector<double>(plc.regions.size(), 0)};

@@ -70,7 +70,7 @@ void check_shared(const Subject& subject, Findings& findings) {
                  At{subject.midpoint(first.edge)}, name_of_cell(second.dimension), second.cell, second.node,
                  second.edge[0], second.edge[1], what);
   };
-  // Tets come first, so that findings name cells that differ from them.
+  // Sorts tets first, so that findings name the cells that differ from them.
   const auto before = [](const MidNode& a, const MidNode& b) {
     return a.dimension != b.dimension ? a.dimension > b.dimension : a.cell < b.cell;
   };

@@ -1,4 +1,4 @@
-// Volumes, areas and lengths of the mesh beside those of the input.
+// Compares volumes, areas and lengths of the mesh with those of the input.
 #include <cmath>
 #include <string>
 
@@ -15,7 +15,8 @@ double volume_below_face(const TetMesh& mesh, const Point& apex, Index face) {
                            : volume_below(apex, curved_face(mesh, face));
 }
 
-/// A point of the shell in the complex: seen from afar a small volume would cancel.
+/// Returns a point of the shell in the complex. With an apex far away, small volumes would be lost in
+/// cancellation.
 Point point_of(const Plc& plc, const Shell& shell) {
   return plc.points[plc.triangles[plc.patches[shell.patches[0]].first_triangle].points[0]];
 }
@@ -36,7 +37,7 @@ std::vector<double> enclosed_by(const std::vector<Shell>& shells, const Subject&
   return volumes;
 }
 
-/// Judges a volume beside that of the input.
+/// Compares a volume with the input's; adds a finding or a warning.
 void judge_volume(const Subject& subject, const std::string& what, double made, double input,
                   const Point& where, Index id, CheckReport& report, Findings& findings) {
   constexpr double warned_of = 0.02;

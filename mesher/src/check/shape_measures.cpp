@@ -12,13 +12,15 @@ namespace collarmesh {
 
 namespace {
 
-/// The derivative of x along a barycentric direction, by the weights of the nodes: 4 lambda - 1 for a corner,
-/// 4 times the other end's lambda for a mid-edge node.
+/// Returns the derivative of x along a barycentric direction. The weight of a corner is 4 lambda - 1; that of
+/// a mid-edge node, 4 times the lambda of the edge's other end.
 template <std::size_t corners, std::size_t nodes>
 std::array<Vector, corners> derivatives(const std::array<Point, nodes>& x,
                                         const std::array<std::array<unsigned, 2>, nodes - corners>& edges,
                                         const std::array<double, corners>& lambda) {
-  const auto from_first = [&](std::size_t node) { return x[node] - x[0]; };  // for small shapes far from 0
+  const auto from_first = [&](std::size_t node) { return x[node] - x[0]; };  // relative to the first node,
+                                                                             // for accuracy of small shapes
+                                                                             // far from 0
   std::array<Vector, corners> d{};
   for (std::size_t i = 0; i < corners; ++i) d[i] = (4 * lambda[i] - 1) * from_first(i);
   for (std::size_t e = 0; e < edges.size(); ++e) {
@@ -46,8 +48,8 @@ double triangle_area(const Plc& plc, const Plc::Triangle& t) {
   return 0.5 * norm(cross(plc.points[b] - plc.points[a], plc.points[c] - plc.points[a]));
 }
 
-/// The volume that oriented triangles enclose, seen from one of their corners: from afar a tiny one would
-/// cancel.
+/// The volume that oriented triangles enclose, computed with one of their corners as apex: with an apex far
+/// away, a tiny volume would be lost in cancellation.
 class Enclosed {
  public:
   void add(const Point& a, const Point& b, const Point& c, bool is_outward) {
@@ -102,11 +104,11 @@ double polyline_length(const Plc& plc, const Plc::Curve& curve) {
   return length;
 }
 
-/// Sides of patches that bound the same region and meet in a curve have one representative. The side of a
-/// patch has twice its index, plus one in front of it.
+/// Joins sides of patches that bound the same region and meet in a curve. The number of a patch's side is
+/// twice the patch's index, plus one for the side in front.
 DisjointSets connected_sides(const Plc& plc) {
   DisjointSets sides(2 * plc.patches.size());
-  std::map<Index, Index> first_side;  // at a curve, by region
+  std::map<Index, Index> first_side;  // at one curve, by region
   for (const Plc::Curve& curve : plc.curves) {
     first_side.clear();
     for (const Index p : curve.patches)
@@ -152,8 +154,8 @@ ShapeMeasures measures_of(const Plc& plc) {
   return measures;
 }
 
-// The determinant is a cubic polynomial: the rule with five points is exact (Keast, Moderate-degree
-// tetrahedral quadrature formulas, 1986).
+// Computes the integral of the determinant, a cubic polynomial, by the rule with five points, which is exact
+// for it (Keast, Moderate-degree tetrahedral quadrature formulas, 1986).
 double volume(const CurvedTet& nodes) {
   double sum = -0.8 * six_jacobian(nodes, {0.25, 0.25, 0.25, 0.25});
   for (unsigned i = 0; i < 4; ++i) {
@@ -164,7 +166,8 @@ double volume(const CurvedTet& nodes) {
   return sum / 6;
 }
 
-// Six points (Dunavant, High degree efficient symmetrical Gaussian quadrature rules for the triangle, 1985).
+// Uses six points (Dunavant, High degree efficient symmetrical Gaussian quadrature rules for the triangle,
+// 1985).
 double area(const CurvedTriangle& nodes) {
   double sum = 0;
   for (const auto& [weight, twice] :

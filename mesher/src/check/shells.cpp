@@ -1,5 +1,5 @@
-// The certificate of a mesh of triangles alone: what holds for the faces of a mesh of tets holds here, too,
-// and the triangles are the elements.
+// The certificate of a mesh of triangles alone. The guarantees for faces of a mesh of tets hold here, too; in
+// addition, the triangles are judged as elements.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -37,7 +37,7 @@ Angles angles_of(const Subject& subject, Index face) {
   return angles;
 }
 
-/// The edges of curves, and the vertices of the complex, in the mesh.
+/// The edges of curves and the vertices of the complex, as found in the mesh.
 class GivenCorners {
  public:
   explicit GivenCorners(const Subject& subject) : is_vertex_(subject.mesh.points.size(), false) {
@@ -50,7 +50,7 @@ class GivenCorners {
   bool is_edge(Index a, Index b) const {
     return std::binary_search(edges_.begin(), edges_.end(), edge_key(a, b));
   }
-  /// Does the corner lie on a vertex of the complex, between two curves?
+  /// Returns whether the corner lies on a vertex of the complex, between two curves.
   bool is_corner(const std::array<Index, 3>& face, unsigned i) const {
     return is_vertex_[face[i]] && is_edge(face[i], face[(i + 1) % 3]) && is_edge(face[i], face[(i + 2) % 3]);
   }
@@ -80,7 +80,8 @@ void check_angles(const Subject& subject, CheckReport& report, Findings& finding
     for (unsigned i = 0; i < 3; ++i)
       if (given.is_corner(face, i)) least = std::min(least, angles.at[i] / 2);
     const double largest =
-        least < least_triangle_angle ? 180 - 3 * least : largest_triangle_angle;  // as the sum is 180
+        least < least_triangle_angle ? 180 - 3 * least : largest_triangle_angle;  // because the sum of the
+                                                                                  // angles is 180
     if (angles.least() >= least && angles.largest() <= largest) {
       ++measures.at_sharp_corners;
       continue;
@@ -95,7 +96,7 @@ void check_angles(const Subject& subject, CheckReport& report, Findings& finding
   report.triangles = measures;
 }
 
-/// Edges are sides of faces, listed once.
+/// Checks that listed edges are sides of faces, each listed once.
 void check_edges(const Subject& subject, Findings& findings) {
   std::vector<std::uint64_t> sides;
   for (const auto& f : subject.mesh.faces)
@@ -117,7 +118,7 @@ void check_edges(const Subject& subject, Findings& findings) {
   }
 }
 
-/// Faces of solids look outwards. `plc` knows the regions.
+/// Checks that faces of solids point outwards. `plc` has the regions.
 void check_outward(const Subject& subject, const Plc& plc, Findings& findings) {
   const Grouping by_patch(subject.match.face_patch, plc.patches.size());
   for (Index p = 0; p < plc.patches.size(); ++p) {
@@ -147,7 +148,7 @@ void check_outward(const Subject& subject, const Plc& plc, Findings& findings) {
   }
 }
 
-/// The normal of a curved triangle, times the Jacobian, at parameters (s, t).
+/// Returns the normal of a curved triangle at parameters (s, t); its length is the Jacobian.
 Vector jacobian_at(const CurvedTriangle& n, double s, double t) {
   const double r = 1 - s - t;
   const Vector ds =
@@ -157,8 +158,9 @@ Vector jacobian_at(const CurvedTriangle& n, double s, double t) {
   return cross(ds, dt);
 }
 
-/// The component along the normal of the straight triangle is a polynomial of degree 2; its coefficients in
-/// Bernstein's basis bound it from below. They follow from its values at the corners and middles of sides.
+/// Returns whether the Jacobian is positive everywhere. The normal's component along the normal of the
+/// straight triangle is a polynomial of degree 2; its coefficients in Bernstein's basis bound it from below.
+/// They follow from its values at the corners and at the middles of the sides.
 bool jacobian_is_positive(const CurvedTriangle& n) {
   const Vector normal = cross(n[1] - n[0], n[2] - n[0]);
   const auto value = [&](double s, double t) { return dot(jacobian_at(n, s, t), normal); };
@@ -184,7 +186,7 @@ void check_triangle_jacobians(const Subject& subject, Findings& findings) {
   }
 }
 
-/// Regions play no part in how faces lie on patches.
+/// Removes the regions: here they must not influence how faces are compared with patches.
 void forget_regions(TetMesh& mesh, Plc& plc) {
   for (Plc::Patch& patch : plc.patches) patch.regions = {0, 0};
   mesh.face_regions.assign(mesh.faces.size(), {0, 0});
@@ -197,7 +199,7 @@ void judge_shells(const TetMesh& given, const Plc& given_plc, const CheckOptions
   TetMesh mesh = given;
   Plc plc = given_plc;
   forget_regions(mesh, plc);
-  // The tolerance depends on the regions.
+  // Compute the tolerance before the regions are gone: it depends on them.
   CheckOptions own = options;
   own.bounds.tolerance = tolerance_of_any_size(given_plc, options.bounds);
   Subject subject = make_subject(mesh, plc, own);

@@ -20,14 +20,14 @@ namespace {
 
 using Corners = std::array<Index, 3>;
 
-constexpr double rounding = 1e-10;  // relative, of sums in another order
+constexpr double rounding = 1e-10;  // relative tolerance of sums that are added in another order
 
 Corners sorted(Corners corners) {
   std::sort(corners.begin(), corners.end());
   return corners;
 }
 
-/// The smallest node at the place of each node.
+/// Returns for each node the smallest node at the same place.
 std::vector<Index> places_of(const std::vector<Point>& points) {
   std::vector<Index> order(points.size()), places(points.size());
   std::iota(order.begin(), order.end(), Index{0});
@@ -39,7 +39,7 @@ std::vector<Index> places_of(const std::vector<Point>& points) {
   return places;
 }
 
-/// A side of a tet with its corners by place and by number.
+/// A side of a tet; its corners by place and by number.
 struct Side {
   Corners place, corners;
   Index tet = none;
@@ -71,7 +71,7 @@ class SplitCheck {
   }
   const Point& at(Index node) const { return mesh_.points[node]; }
 
-  /// The sides of tets at nodes that share their place, those at one place one after the other.
+  /// Finds the sides of tets at nodes that share their place, sorted by place.
   void find_sides() {
     for (Index t = 0; t < mesh_.tets.size(); ++t) {
       if (std::none_of(mesh_.tets[t].begin(), mesh_.tets[t].end(), [&](Index v) { return shared_[v]; }))
@@ -130,7 +130,7 @@ class SplitCheck {
     }
   }
 
-  /// Do two faces of different sides look against each other, mid-edge nodes included?
+  /// Returns whether two faces of different sides have opposite orientations, mid-edge nodes included.
   bool are_opposite(Index f, Index g) const {
     if (other_side_.at(mesh_.face_tag[f]) != mesh_.face_tag[g]) return false;
     const Corners &a = mesh_.faces[f], &b = mesh_.faces[g];
@@ -145,7 +145,8 @@ class SplitCheck {
     return false;
   }
 
-  /// A node with a split triangle between its tets would hold the two sides together.
+  /// Checks that the tets at each node are connected without crossing split triangles: otherwise the node
+  /// would hold two sides together.
   void check_sectors() {
     struct AtNode {
       Index node, tet;
@@ -185,12 +186,12 @@ class SplitCheck {
   const TetMesh& mesh_;
   Findings& findings_;
   std::vector<Index> places_;
-  std::vector<bool> shared_;  // nodes with another one at their place
+  std::vector<bool> shared_;  // nodes that share their place with another node
   std::map<Tag, Tag> other_side_;
   std::vector<Side> sides_;
 };
 
-/// The faces with one of these tags, or of neither side of a split patch.
+/// Returns the areas of patches, by index, leaving out faces with some tags.
 std::map<Index, double> areas_of(const TetMesh& mesh, const std::set<Tag>& left_out) {
   std::map<Index, double> areas;
   for (Index f = 0; f < mesh.faces.size(); ++f) {

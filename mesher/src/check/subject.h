@@ -15,15 +15,15 @@
 #include "tolerance/forced_edges.h"
 #include "tolerance/narrow_places.h"
 
-/// The certificate: one file per group of guarantees, each a function that adds findings. Nothing
-/// here knows how the mesh was made.
+/// The certificate. Each group of guarantees has a file of its own with functions that add findings. No part
+/// of it knows how the mesh was made.
 namespace collarmesh::checks {
 
 /// The features of the complex that the entities of the mesh belong to.
 struct FeatureMatch {
   std::vector<Index> face_patch;    ///< by face of the mesh, none if it has no patch
   std::vector<Index> edge_curve;    ///< by edge of the mesh, none if it has no curve
-  std::vector<Index> vertex_point;  ///< by vertex of the complex: its mesh point, none if there is none
+  std::vector<Index> vertex_point;  ///< by vertex of the complex: its mesh point, or none
 };
 
 /// The mesh under test, its complex, and the measures to judge by.
@@ -32,13 +32,16 @@ struct Subject {
   const Plc& plc;
   CheckOptions options;
   SurfaceTolerance tolerance;
-  double rounding = 0;  ///< absolute: how far rounding may move a point off a straight line or a plane
-  /// Absolute: how far the mesh may be from each; from smooth patches, at most (see `tolerance`).
+  double rounding = 0;  ///< distance by which rounding may move a point off a straight line or a plane,
+                        ///< absolute
+  /// Allowed distance of the mesh from each curve and patch, absolute; for smooth patches the largest one
+  /// (`tolerance` depends on the place).
   std::vector<double> curve_allowance, patch_allowance;
   std::shared_ptr<const RegionLocator> regions;
   FeatureMatch match;
-  std::vector<std::uint8_t> collar;  ///< by tet, as TetMesh::tet_collar: what the complex excuses
-  bool coarsened = false;            ///< cells of collars keep the bounds of other tets, too, and may be thin
+  std::vector<std::uint8_t> collar;  ///< by tet, as TetMesh::tet_collar: cells that the complex's creases
+                                     ///< allow as collars
+  bool coarsened = false;            ///< cells of collars keep the bounds of other tets and may be thin, too
 
   const Point& point(Index i) const { return mesh.points[i]; }
   Point centroid(const std::array<Index, 3>& f) const {
@@ -49,9 +52,9 @@ struct Subject {
 };
 
 /// The tets that may exceed the radius-edge bound if their angles are bounded: dihedral angles from below,
-/// and dihedral and face angles by 150 degrees. These are the marked tets, or any tets of a file without
-/// marks. Where features meet at less than twice the lower bound, the bound is half the angle between them.
-/// Where a tet has an edge that the input forces to be short, it is half the angle that this leaves.
+/// and dihedral and face angles by 150 degrees. Only marked tets may, or any tet if a file has no marks. If
+/// features meet at less than twice the lower bound, half the angle between them is enough. If the input
+/// forces an edge of the tet to be short, half the angle that this edge leaves is enough.
 class ThinCells {
  public:
   static constexpr double largest_angle = 150;  ///< degrees
@@ -60,13 +63,14 @@ class ThinCells {
   explicit ThinCells(const Subject& subject);
 
   bool claimed(Index tet) const;
-  /// May a tet be thin here?
+  /// Returns whether a tet may be thin here.
   bool has_place(Index tet) const;
-  /// Degrees.
+  /// Returns the lower bound on its dihedral angles, degrees.
   double smallest_angle(Index tet) const;
-  /// `face_angle`: the largest of its faces.
+  /// Returns whether its angles are within their bounds; `face_angle` is the largest angle of its faces,
+  /// degrees.
   bool are_bounded(const TetQuality& quality, double face_angle, Index tet) const;
-  /// Are its angles that small only because it has a forced edge? Precondition: they are bounded.
+  /// Returns whether its angles are this small only because of a forced edge. Precondition: they are bounded.
   bool is_forced(const TetQuality& quality, Index tet) const;
 
  private:
@@ -78,12 +82,12 @@ class ThinCells {
   double smallest_;
   const std::vector<std::uint8_t>& marks_;
   bool all_;
-  std::vector<double> at_point_;        // empty where nothing meets that sharply
-  std::optional<ForcedEdges> forced_;   // none where no tet may be thin
-  std::optional<NarrowPlaces> narrow_;  // none unless thin tets have to be there
+  std::vector<double> at_point_;        // smaller bounds at sharp creases; empty without such creases
+  std::optional<ForcedEdges> forced_;   // none if no tet may be thin
+  std::optional<NarrowPlaces> narrow_;  // none if thin tets may be anywhere
 };
 
-/// Items in groups by a key below `groups`; items whose key is none are left out.
+/// Items in groups by a key below `groups`; leaves out items whose key is none.
 class Grouping {
  public:
   Grouping(const std::vector<Index>& keys, std::size_t groups) : first_(groups + 1, 0) {
@@ -108,8 +112,8 @@ inline std::array<Index, 2> sorted(Index a, Index b) { return {std::min(a, b), s
 
 inline double area(const Point& a, const Point& b, const Point& c) { return 0.5 * norm(cross(b - a, c - a)); }
 
-/// Makes the subject without what `judge` finds: matches of features, collars. Keeps the first two by
-/// reference.
+/// Makes the subject without matches of features and collars, which `judge` finds. Keeps references to the
+/// mesh and the complex.
 Subject make_subject(const TetMesh& mesh, const Plc& plc, const CheckOptions& options);
 
 /// Checks that arrays have equal lengths and corners are in range. If false, no other check can run.
@@ -118,11 +122,11 @@ bool check_arrays(const TetMesh& mesh, Findings& findings);
 /// Checks that points are finite, distinct and used by tets. Returns false if one is not finite.
 bool check_points(const Subject& subject, Findings& findings);
 
-/// Finds missing labels of a mesh from a file by position: regions of tets whose region and tag are not the
-/// complex's, each connected part (up to listed faces and planar patches) by its largest tet; and, if most
-/// tags of faces or edges are unknown to the complex or missing, faces and edges anew from the tets and the
-/// complex. The result has the complex's labels; a note says which were found. Returns none if nothing is
-/// missing, or if tets lie outside, which is a finding. Precondition: check_arrays and
+/// Finds missing labels of a mesh from a file by position. If a tet's region and tag are not the complex's,
+/// finds the region of each connected part (bounded by listed faces and planar patches) from its largest tet.
+/// If most tags of faces or edges are missing or unknown to the complex, makes new faces and edges from the
+/// tets and the complex. The result has the complex's labels; a note says which were found. Returns nothing
+/// if no label is missing, or if tets lie outside, which is a finding. Precondition: check_arrays and
 /// check_points hold. Cost: O(n log n).
 std::optional<TetMesh> place_by_position(const Subject& subject, CheckReport& report, Findings& findings);
 
@@ -133,39 +137,39 @@ bool check_labels(const TetMesh& mesh, const Plc& plc, Findings& findings);
 /// Precondition: subject.collar is filled in.
 void check_tets(const Subject& subject, CheckReport& report, Findings& findings);
 
-/// Counts the tets all of whose corners are corners of listed faces. They are findings if each tet needs a
-/// node inside of a region.
+/// Counts the tets whose corners are all corners of listed faces. They are findings if each tet needs a node
+/// inside a region.
 void check_interior_nodes(const Subject& subject, CheckReport& report, Findings& findings);
 
-/// Checks tets against each other and against the listed faces. It visits each edge once, so it also finds
-/// their median length.
+/// Checks tets against each other and against the listed faces. Visits each edge once, so it also finds their
+/// median length.
 void check_conformity(const Subject& subject, CheckReport& report, Findings& findings);
 
 void check_watertight(const Subject& subject, Findings& findings);
 
-/// The volumes that the complex encloses, by region, and how far the mesh's may be off because its surface
-/// may: to first order by the allowed distance times the area.
+/// The volumes that the complex encloses, by region, and the differences that the mesh's surface allows: to
+/// first order, the allowed distance times the area.
 struct RegionVolumes {
   std::vector<double> enclosed, allowed;
 };
 RegionVolumes expected_volumes(const Subject& subject);
 
-/// Precondition: report.region_volumes is filled in.
+/// Checks region volumes. Precondition: report.region_volumes is filled in.
 void check_region_volumes(const Subject& subject, const CheckReport& report, Findings& findings);
 
-/// Volumes, areas and lengths of the mesh and of the input. The volumes differ by 5% at most, with curved
-/// elements by 1%, unless a distance was asked for.
-/// Preconditions: subject.match and report.region_volumes are filled in.
+/// Compares volumes, areas and lengths of the mesh with those of the input. Volumes may differ by 5%, with
+/// curved elements by 1%, unless the bounds ask for a distance. Preconditions: subject.match and
+/// report.region_volumes are filled in.
 void check_shape_kept(const Subject& subject, CheckReport& report, Findings& findings);
 
 /// Compares the thickness of walls and the width of gaps at smooth patches with those of the complex, along
-/// rays: in the mean of a patch they differ by half at most, unless a distance was
-/// asked for. Precondition: subject.match is filled in. Cost: near linear, at most 4000 rays a patch.
+/// rays. Averaged over a patch they may differ by half, unless the bounds ask for a distance. Precondition:
+/// subject.match is filled in. Cost: near linear, at most 4000 rays per patch.
 void check_thickness_kept(const Subject& subject, CheckReport& report, Findings& findings);
 
-/// Computes the allowed distance from straight curves and planar patches: a few times their own deviation
-/// from straight or planar, because vertices are extrapolated from others, but at most the complex's planar
-/// tolerance; from others the distance tolerance; in each case plus rounding.
+/// Compute the allowed distances. For straight curves and planar patches: a few times their own deviation
+/// from straight or planar, because vertices are extrapolated, but at most the complex's planar tolerance.
+/// For other features: the distance tolerance. Rounding is added to all.
 std::vector<double> curve_allowances(const Subject& subject);
 std::vector<double> patch_allowances(const Subject& subject);
 
@@ -175,20 +179,21 @@ FeatureMatch match_features(const TetMesh& mesh, const Plc& plc, double rounding
 /// Finds the vertices of the complex in the mesh, by index or position.
 std::vector<Index> match_vertices(const TetMesh& mesh, const Plc& plc, double rounding);
 
-/// The patches of the faces that name none: by position, and by tag if the tags are the complex'.
+/// Returns the patches of faces that name none: by position and, if the tags are the complex's, by tag.
 std::vector<Index> match_faces(const TetMesh& mesh, const Plc& plc, bool by_tag);
 
-/// Precondition of these: subject.match is filled in, of the first its vertices alone.
+/// Precondition of these functions: subject.match is filled in; check_vertices_present needs only its
+/// vertices.
 void check_vertices_present(const Subject& subject, Findings& findings);
 void check_vertices(const Subject& subject, Findings& findings);
 void check_listed_edges(const Subject& subject, Findings& findings);
 void check_curves(const Subject& subject, CheckReport& report, Findings& findings);
 void check_patches(const Subject& subject, CheckReport& report, Findings& findings);
 
-/// Finds the cells of collars: stars have one corner on a crease of the complex, books two that an edge on it
-/// joins. If the mesh marks cells, only marked ones count; a mark elsewhere is a finding. Where others at a
-/// crease are marked or tets are thin, the mesh was coarsened: all cells that touch a crease are its collar.
-/// Precondition: subject.match is filled in.
+/// Finds the cells of collars: stars have one corner on a crease of the complex; books have two, joined by an
+/// edge on it. If the mesh marks cells, only marked ones count; a mark elsewhere is a finding. If other tets
+/// at a crease are marked, or tets are thin, the mesh was coarsened: then all cells that touch a crease are
+/// its collar. Precondition: subject.match is filled in.
 void find_collar_cells(Subject& subject, Findings& findings);
 
 /// Checks the balls of the collars against the features of the mesh and against each other (paper,
@@ -201,13 +206,13 @@ void take_mid_nodes_of_tets(TetMesh& mesh);
 /// Checks mid-edge nodes and the sign of the Jacobian. Does nothing for a mesh of first order.
 void check_second_order(const Subject& subject, CheckReport& report, Findings& findings);
 
-/// Returns whether a feature lies outside all regions, so that it is not in the mesh.
+/// Return whether a feature lies outside all regions and therefore is not in the mesh.
 bool curve_is_outside(const Subject& subject, Index curve);
 bool vertex_is_outside(const Subject& subject, Index vertex);
 bool patch_is_outside(const Subject& subject, Index patch);
 
-/// Warns of curves and vertices that are on no patch and lie outside all regions; the complex warns of
-/// patches.
+/// Warns of curves and vertices that are on no patch and lie outside all regions. The builder of the complex
+/// warns of such patches.
 void warn_of_features_outside(const Subject& subject, CheckReport& report);
 
 }  // namespace collarmesh::checks

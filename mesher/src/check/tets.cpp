@@ -10,8 +10,9 @@ namespace collarmesh::checks {
 
 namespace {
 
-constexpr double slack = 1 + 1e-9;  // of the bounds on shape, relative
-// Tets that a thread measures at once, and before findings and sums are made of them (in 4 MB).
+constexpr double slack = 1 + 1e-9;  // relative tolerance of the bounds on shape
+// Number of tets that a thread measures at once, and number of tets measured before findings and sums are
+// made of them (4 MB).
 constexpr std::size_t measured_at_once = 4096, in_a_batch = 1 << 17;
 
 struct Corners {
@@ -79,7 +80,7 @@ void check_shape(Index tet, const Corners& p, const TetQuality& quality, const S
 void check_region_tag(Index tet, const Corners& p, const Subject& subject, Findings& findings) {
   const Index region = subject.mesh.tet_region[tet];
   const Tag tag = subject.mesh.tet_tag[tet], expected = subject.plc.regions[region].tag;
-  // Some formats have room for the region alone and it is read as the tag too.
+  // Some formats store only the region, which is then read as the tag, too.
   const bool unknown = subject.mesh.features.empty() && tag == static_cast<Tag>(region);
   if (tag != expected && !unknown)
     findings.add(guarantee::region_tag, p.centre(), {tet},

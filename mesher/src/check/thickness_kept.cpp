@@ -1,5 +1,5 @@
-// Thickness of walls and width of gaps in the mesh beside those of the complex: a thin place of a large
-// region may vanish while the region keeps its volume.
+// Compares thickness of walls and width of gaps in the mesh with those of the complex: a thin place of a
+// large region may vanish although the region keeps its volume.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -41,11 +41,11 @@ struct Faces {
 
 /// Sums over rays from a side of a patch, weighted by areas.
 struct Thicknesses {
-  double area = 0;       // where rays were sent from
-  double area_with = 0;  // of that, where something faces
+  double area = 0;       // area from which rays were sent
+  double area_with = 0;  // part of that area whose rays meet an opposite surface
   double input = 0, mesh = 0;
   Point where;            // the ray that differs most
-  double farthest = 0;    // by this
+  double farthest = 0;    // its difference
   Index opposite = none;  // the patch where that ray ends
 };
 
@@ -69,12 +69,14 @@ class ThicknessKept {
   }
 
  private:
-  static constexpr double allowed = 0.5;       // share that may be lost or gained
-  static constexpr double least_facing = 0.9;  // else surfaces end at each other, or bend away
-  // Of a patch, which is a side of a wall: on less of it another patch comes near where both meet in a wedge,
-  // say, as a thread's run-out does the plane that cuts it, and what is thin runs to nothing there.
+  static constexpr double allowed = 0.5;       // share of the thickness that may be lost or gained
+  static constexpr double least_facing = 0.9;  // cosine between opposite surfaces; below it they meet at an
+                                               // edge or bend away
+  // Share of a patch that must face another patch for both to count as sides of a wall. On a smaller share
+  // the patches meet in a wedge, as a thread's run-out meets the plane that cuts it, where thickness runs to
+  // zero.
   static constexpr double least_part = 0.01;
-  static constexpr Index most_rays = 2000;  // of a patch
+  static constexpr Index most_rays = 2000;  // maximum number for each patch and side
 
   Thicknesses along(Index patch, unsigned side) const {
     const Plc::Patch& of = subject_.plc.patches[patch];
@@ -110,14 +112,15 @@ class ThicknessKept {
   }
 
   /// Returns the distance along a ray from where it enters the region through faces of one patch to where it
-  /// leaves it through faces of another one, nearest to where it should; NaN: it meets none.
+  /// leaves the region through faces of another one, nearest to where the complex has them. NaN if it meets
+  /// none.
   double between(const Thickness::Ray& ray, double distance, Index patch, Index other, Index region,
                  Thickness::Crossings& crossings) const {
     const TetMesh& mesh = subject_.mesh;
     const Index root = hierarchy_.root();
     hierarchy_.crossings(ray.from - distance * ray.way, ray.from + 2 * distance * ray.way, {&root, 1},
                          crossings);
-    double entered = INFINITY, left = INFINITY;  // off the places in the complex
+    double entered = INFINITY, left = INFINITY;  // relative to the places in the complex
     for (const auto& [triangle, direction] : crossings) {
       const Index face = faces_.face[triangle], of = subject_.match.face_patch[face];
       const auto& regions = mesh.face_regions[face];

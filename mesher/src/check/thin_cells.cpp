@@ -1,5 +1,5 @@
 // Finds the tets that may exceed the radius-edge bound because their angles are bounded instead, and the
-// bounds.
+// bounds on these angles.
 #include <algorithm>
 
 #include "check/subject.h"
@@ -9,12 +9,13 @@ namespace collarmesh::checks {
 
 namespace {
 
-constexpr double slack = 1e-9;  // relative
+constexpr double slack = 1e-9;  // relative tolerance
 // Two sides of a patch face opposite ways if the cosine between the mesh's normals is below this: within some
 // 25 degrees of opposite.
 constexpr double least_cosine_of_sides = -0.9;
 
-// By point, the one of lowest dimension that the mesh shows it to be on.
+// Returns for each point the feature of lowest dimension that the mesh's faces, edges and vertices place it
+// on.
 std::vector<TetMesh::VertexFeature> features_of(const Subject& subject) {
   std::vector<TetMesh::VertexFeature> features(subject.mesh.points.size());
   for (Index f = 0; f < subject.mesh.faces.size(); ++f)

@@ -5,7 +5,7 @@ namespace collarmesh::checks {
 
 namespace {
 
-// For each mesh point the feature of one dimension that lists it, if there is just one.
+// For each mesh point, the feature of one dimension that lists it, if there is exactly one.
 class FeatureOfPoint {
  public:
   explicit FeatureOfPoint(std::size_t points) : feature_(points, none), several_(points, false) {}
@@ -56,7 +56,7 @@ void check_vertices(const Subject& subject, Findings& findings) {
   }
   for (Index p = 0; p < mesh.points.size(); ++p) {
     const auto [dimension, feature] = mesh.features[p];
-    if (dimension < 3 && feature == none) continue;  // unknown
+    if (dimension < 3 && feature == none) continue;  // the mesh does not know the feature
     const bool holds = dimension == 0    ? vertices.only(p, feature)
                        : vertices.any(p) ? false
                        : dimension == 1  ? curves.only(p, feature)

@@ -33,10 +33,11 @@ constexpr unsigned plain_passes = 4, repair_passes = 6, rounds = 12;
 // Most repair steps per collapse. A step rarely fixes two tets, so repair gives up when more tets are poor
 // than steps remain.
 constexpr unsigned most_repairs = 24;
-// Vertices whose shortest edge is below this share of its target are worth repairs, most of which fail.
+// Vertices whose shortest edge is below this share of its target length get collapses with repairs, most of
+// which fail.
 constexpr double repaired_below = 0.65;
-// Vertices inside regions are tried if their shortest edge is below this share. After refinement half of them
-// have one of 0.75 to 0.8, and hardly any of these can be collapsed.
+// Vertices inside regions are tried if their shortest edge is below this share of its target length. After
+// refinement half of these vertices have a shortest edge of 0.75 to 0.8, which can hardly ever be collapsed.
 constexpr double asked_inside_below = 0.75;
 constexpr unsigned most_sweeps = 8;
 // A pass that removes a smaller share of the tets ends its round. After such a round, if improvement before
@@ -46,10 +47,11 @@ constexpr std::size_t steps_between_reports = 4096;
 // If more vertices have changed than this, looking at all tets costs less than finding the tets at the
 // vertices.
 constexpr std::size_t tets_per_logged_change = 24;
-// The number of items for which changes are proposed at once, or their share: few of all, so that proposals
-// rarely meet, but several for each thread.
+// The number of items for which changes are proposed at once is limited in two ways: absolutely, and to one
+// in so many items, so that proposals rarely meet but each thread has several.
 constexpr std::size_t most_proposals = 256, items_per_proposal = 256, proposals_per_thread = 4;
-// The number of rows that items of one rank lie in, or its share of them.
+// The number of rows that items of one rank are cut into: at most this many, with at least so many items
+// each.
 constexpr std::size_t most_rows = 256, items_per_row = 16;
 constexpr double ranks_of_lengths = 64;  // ranks for each unit of squared relative length
 
@@ -116,9 +118,9 @@ class Coarsening {
     workpiece_.prepare();
     for (unsigned pass = 0; pass < plain_passes && !report_.cancelled; ++pass)
       if (!contract_all(false)) break;
-    // Improvement makes room for more collapses, so between the passes of a round it would have all vertices
-    // tried again. Repairs reach beyond the tets at a vertex, so in the end vertices where nothing has
-    // changed are tried, too.
+    // Improvement makes room for more collapses: without this flag it would have all vertices tried again
+    // between the passes of a round. Repairs reach beyond the tets at a vertex, so in the end vertices where
+    // nothing has changed are tried, too.
     bool ask_all = false;
     for (unsigned round = 0; round < rounds && !report_.cancelled; ++round) {
       const bool settled = improve_all();
@@ -166,7 +168,7 @@ class Coarsening {
   }
 
   struct Candidate {
-    int rank;  // by its shortest edge
+    int rank;  // rank of the length of its shortest edge
     Index vertex;
     bool worth_repairs;
   };
@@ -321,7 +323,7 @@ class Coarsening {
     std::size_t count = 0;
     Index worst = none;
   };
-  // Returns the tets that a trial made or changed and that must not stay.
+  // Returns the tets that a trial made or changed and whose quality is below the floor.
   ToMend tets_to_mend(double floor) const {
     ToMend found;
     double least = INFINITY;
@@ -348,7 +350,7 @@ class Coarsening {
   bool improve_once() {
     rule_.set_mode(Mode::final);
     struct Poor {
-      int rank;  // by its quality
+      int rank;  // rank of its quality
       Index tet;
       double quality;
     };
@@ -399,8 +401,8 @@ class Coarsening {
     return std::any_of(v.begin(), v.end(), [&](Index w) { return changes_.at_vertex[w] >= when; });
   }
 
-  // Collects the items that `look(tet, found)` adds to `found`: for all tets at which a vertex has changed at
-  // this time or later, once each in any order, and for others if these are many.
+  // Collects the items that `look(tet, found)` adds to `found`. Calls it once, in any order, for each tet
+  // with a vertex that has changed since the given time; if these are many, for other tets, too.
   template <class Found, class Look>
   std::vector<Found> found_at_changed(std::uint32_t since, const Look& look) const {
     const std::optional<std::vector<Index>> vertices = few_changed(since);
@@ -424,7 +426,7 @@ class Coarsening {
     return all;
   }
 
-  // Returns the least corner that has changed since.
+  // Returns the smallest corner that has changed since.
   Index first_changed(Index tet, std::uint32_t since) const {
     Index first = none;
     for (const Index v : complex()[tet].corners)
@@ -455,7 +457,7 @@ class Coarsening {
   const std::vector<Index>& apply(Change change) {
     tets_ -= change.replacement.old.size();
     tets_ += change.replacement.created.size();
-    // A corner of a removed tet may be in none of the new ones.
+    // A corner of a removed tet may be in none of the new tets.
     for (const Index t : change.replacement.old) {
       const auto& v = complex()[t].corners;
       touched_vertices_.insert(touched_vertices_.end(), v.begin(), v.end());
@@ -476,7 +478,7 @@ class Coarsening {
     touched_vertices_.clear();
   }
 
-  // Keeps the changes.
+  // Keeps the changes of a trial.
   void settle() {
     ++changes_.now;
     if (log_.size() > complex().size() / tets_per_logged_change) {
@@ -498,7 +500,7 @@ class Coarsening {
     log_.push_back({changes_.now, vertex});
   }
 
-  // Marks cells again, because the cells of collars have changed.
+  // Marks cells again, because coarsening has changed the cells of collars.
   void finish() {
     workpiece_.complex.forget_balls();
     report_.tets_after = tets_;
@@ -511,7 +513,7 @@ class Coarsening {
   CellBounds cells_;
   CoarseningRule rule_;
   Changes changes_;
-  Proposer proposer_;  // of the thread that applies changes
+  Proposer proposer_;  // for the thread that applies changes
   tbb::enumerable_thread_specific<Proposer> proposers_;
   const Execution& execution_;
   std::size_t tets_ = 0;

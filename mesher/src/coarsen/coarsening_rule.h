@@ -9,8 +9,9 @@ namespace collarmesh::coarsening {
 
 using improvement::Corners;
 
-/// The rule of coarsening. A tet of quality 1 or more is thin; its quality tells how far its angles are
-/// within or beyond these bounds. A tet with an angle above the largest is worse than any tet without one.
+/// The rule of coarsening. A tet of quality 1 or more keeps the bounds on thin tets; its quality tells how
+/// far its angles are within or beyond these bounds. A tet with an angle above the largest one allowed is
+/// worse than any tet without.
 class CoarseningRule final : public improvement::AngleRule {
  public:
   enum class Mode {
@@ -19,10 +20,11 @@ class CoarseningRule final : public improvement::AngleRule {
     force   ///< new tets only need a volume; quality ignores the last sentence above
   };
 
-  /// No operation makes an edge longer than this times the target length, unless the old edge was longer.
+  /// No operation makes an edge longer than this factor times the target length, unless the old edge was
+  /// longer.
   static constexpr double longest_new = 1.5;
 
-  /// `thin`, `cells` and `sizes`, by vertex, are kept by reference.
+  /// Keeps references to `thin`, `cells` and `sizes` (by vertex).
   CoarseningRule(const improvement::ThinShape& thin, const improvement::CellBounds& cells, double radius_edge,
                  std::span<const double> sizes)
       : thin_(thin), cells_(cells), bound_(radius_edge), sizes_(sizes) {}
@@ -48,7 +50,7 @@ class CoarseningRule final : public improvement::AngleRule {
     return squared_length <= squared_before ||
            squared_length <= longest_new * longest_new * squared_target(a, b);
   }
-  // Each move makes coarsening try the collapses around it again.
+  // A move must gain this much, because each move makes coarsening try the collapses around it again.
   double least_gain() const override { return 0.02; }
   unsigned step_lengths() const override { return 2; }
   bool dissolves_collars() const override { return true; }

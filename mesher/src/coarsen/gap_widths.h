@@ -9,7 +9,7 @@ namespace collarmesh::coarsening {
 /// does: along the normal, among triangles turned towards it.
 class GapWidths {
  public:
-  /// Keeps the complex by reference.
+  /// Keeps a reference to the complex.
   explicit GapWidths(const Plc& plc) : plc_(plc), facing_(plc) {}
 
   /// Returns the distance from a point on a patch; `widest` when there is nothing nearer.

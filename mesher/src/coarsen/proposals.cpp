@@ -56,7 +56,7 @@ void Proposer::contractions(Index vertex, bool repairs, VertexProposal& found) {
   if (targets_.empty()) return;
   rule_.set_mode(Mode::final);
   if (!operations_.begin_contractions(vertex, star_)) return;
-  // On features the link condition looks at the tets at the other end, too.
+  // On features the link condition also depends on the tets at the other end.
   const bool looks_beyond = complex().mesh().features[vertex].dimension < 3;
   for (const Index onto : targets_) {
     if (looks_beyond) found.read.push_back(onto);
@@ -82,7 +82,7 @@ Change Proposer::improvement_of(Index tet, Mode mode) {
     if (change.quality >= improved_below) break;
   }
   for (unsigned i = 0; i < 4 && change.kind == Change::Kind::none; ++i) {
-    // Whether a move helps depends only on the tets at the vertex, and each of these tets may propose it.
+    // Whether a move helps depends only on the tets at the vertex; each of them would propose it again.
     if (mode == Mode::final && stays(corners[i])) continue;
     operations_.move_vertex(corners[i], change);
     if (mode == Mode::final && change.kind == Change::Kind::none) stayed_[corners[i]] = changes_.now;
@@ -120,8 +120,9 @@ void Proposer::find_neighbours(Index vertex) {
   std::sort(neighbours_.begin(), neighbours_.end());
 }
 
-// Returns whether the edges that a collapse makes have allowed lengths: none longer than wanted, unless it
-// replaces one as long, and none shorter than all edges around. The farthest neighbours rule out most.
+// Returns whether the edges that a collapse makes have allowed lengths: none is longer than allowed, unless
+// it replaces an edge as long, and at least one edge around is shorter. The farthest neighbours rule out most
+// collapses.
 bool Proposer::lengths_fit(Index onto) const {
   return std::all_of(neighbours_.rbegin(), neighbours_.rend(), [&](const Neighbour& n) {
     if (n.vertex == onto) return true;
@@ -131,7 +132,7 @@ bool Proposer::lengths_fit(Index onto) const {
   });
 }
 
-// Returns whether a tet at the current vertex joins them.
+// Returns whether a tet at the current vertex joins a and b.
 bool Proposer::are_joined_here(Index a, Index b) const {
   return std::any_of(star_.begin(), star_.end(), [&](Index t) {
     return contains(complex()[t].corners, a) && contains(complex()[t].corners, b);

@@ -11,8 +11,8 @@ namespace collarmesh::coarsening {
 
 /// The collapses of one vertex that the lengths of edges allow in the current mesh.
 struct VertexProposal {
-  improvement::Change change;  ///< the collapse onto the nearest neighbour, by size, that shapes allow, too;
-                               ///< or none
+  improvement::Change change;  ///< a collapse that shapes allow, too, onto the nearest possible neighbour; or
+                               ///< none
   std::vector<improvement::Change> to_repair;  ///< collapses onto each neighbour that leave tets to improve
   double floor = 0;                            ///< repairs may make no tet worse than this
   /// The proposal depends on the tets at the vertex and at these vertices. Empty inside regions, where the
@@ -31,14 +31,14 @@ class Proposer {
  public:
   using Mode = CoarseningRule::Mode;
 
-  /// Keeps all but the number by reference; `thin`, `cells` and `sizes` are the rule's.
+  /// Keeps references to all but the number; `thin`, `cells` and `sizes` belong to the rule.
   Proposer(const improvement::Workpiece& workpiece, const improvement::ThinShape& thin,
            const improvement::CellBounds& cells, double radius_edge, std::span<const double> sizes,
            const Changes& changes);
   Proposer(const Proposer&) = delete;
   Proposer& operator=(const Proposer&) = delete;
 
-  /// Finds collapses of a vertex; also those that need repairs, if there is no other.
+  /// Finds collapses of a vertex; if there is none, and `repairs` is set, collapses that need repairs.
   void contractions(Index vertex, bool repairs, VertexProposal& found);
   /// Returns a change that makes a tet better: the removal of an edge (the longest one that makes it good
   /// enough, or else the best one), or a move of a corner.
@@ -77,7 +77,8 @@ class Proposer {
   double squared_shortest_ = 0;        // squared length of its shortest edge
   std::vector<std::uint32_t> stamps_;  // by vertex
   std::uint32_t stamp_ = 0;
-  std::vector<std::uint32_t> stayed_;  // by vertex: when no move of it was an improvement; 0: not tried yet
+  std::vector<std::uint32_t> stayed_;  // by vertex: the time when no move of it was an improvement; 0: not
+                                       // tried yet
 };
 
 /// Tets below this quality are improved between the passes, until they are above it.

@@ -12,7 +12,7 @@ namespace collarmesh::coarsening {
 
 namespace {
 
-// How fast edges of meshes with a radius-edge ratio of at most 2 grow in practice.
+// Growth per unit length of edges in meshes with a radius-edge ratio of at most 2, as observed.
 constexpr double natural_growth = 0.7;
 // Growth of sizes between the faces of a gap, as in the refinement.
 constexpr double growth_in_gaps = 0.25;
@@ -39,7 +39,7 @@ class TargetSizes {
  private:
   void see(Index vertex, double size) { sizes_[vertex] = std::min(sizes_[vertex], size); }
 
-  // Finds the region of each vertex: all tets at a vertex inside are in one region.
+  // Finds the region of each vertex. All tets at a vertex inside a region are in that region.
   void see_regions() {
     std::vector<Index> region_of(mesh_.points.size(), none);
     for (Index t = 0; t < mesh_.tets.size(); ++t)
@@ -135,7 +135,7 @@ class TargetSizes {
     }
   }
 
-  // Finds the neighbours of each vertex, several times where tets share an edge.
+  // Finds the neighbours of each vertex; lists a neighbour once for each tet at the common edge.
   void find_neighbours() {
     first_neighbour_.assign(mesh_.points.size() + 1, 0);
     for (const auto& tet : mesh_.tets)

@@ -8,10 +8,10 @@
 
 namespace collarmesh::coarsening {
 
-/// Returns the target edge length at every vertex of a refined mesh, absolute: that of its feature or region,
-/// with curvature, gaps and the size field, as in the refinement. Away from small sizes it grows by the
-/// gradation per unit length, or, without one, by as much as a bounded radius-edge ratio allows. Cost: near
-/// linear.
+/// Returns the target edge length at every vertex of a refined mesh, absolute: the length of its feature or
+/// region, reduced by curvature, gaps and the size field, as in the refinement. Away from small sizes it
+/// grows by the gradation per unit length; without a gradation, by as much as a bounded radius-edge ratio
+/// allows. Cost: near linear.
 std::vector<double> target_sizes(const TetMesh& mesh, const Plc& plc, const MeshOptions& options);
 
 }  // namespace collarmesh::coarsening

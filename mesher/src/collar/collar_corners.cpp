@@ -6,7 +6,8 @@ namespace collarmesh {
 
 namespace {
 
-// Points this close, in radii, are the same: a circle that crosses the edge between two triangles gives two.
+// Points closer than this, relative to the radius, are the same: a circle that crosses the edge between two
+// triangles gives two points.
 constexpr double same_point = 1e-6;
 constexpr int most_projections = 40;
 
@@ -34,7 +35,7 @@ std::vector<Point> CollarCorners::crossings(Index patch, const Circle& circle) c
   features_.visit_box({2, patch}, box, [&](Index element) {
     const auto t = features_.corners(element);
     const Vector n = cross(t[1] - t[0], t[2] - t[0]);
-    // n . (centre + radius (cos s u + sin s v) - t0) = 0
+    // Solves n . (centre + radius (cos s u + sin s v) - t0) = 0.
     const double a = circle.radius * dot(n, u), b = circle.radius * dot(n, v),
                  c = dot(n, t[0] - circle.centre);
     const double amplitude = std::hypot(a, b);

@@ -21,19 +21,20 @@ constexpr double radius_per_gap = 1.0 / 3;
 constexpr double gap_per_size = 4;
 // Radii are shrunk by a random share of up to this, so that spheres are in general position.
 constexpr double largest_shrinkage = 0.02;
-// Radii change along a curve by at most this share of the way, because a third of a distance does. Where
-// flatness limits radii, they change far less, so that they are even along rims of one curvature.
+// Radii change along a curve by at most this share of the distance: a ball's radius is at most a third of a
+// distance, which changes by at most the way along the curve. Where flatness limits radii they change far
+// less, so that they are even along rims of constant curvature.
 constexpr double radius_slope = 1.0 / 3;
 constexpr double flat_radius_slope = 0.05;
-constexpr double sample_step = 0.5;  // in radii
+constexpr double sample_step = 0.5;  // distance of samples, in radii
 // Consecutive centres are at most this many radii apart. The circle of two balls is then seen from both
 // centres under less than 90 degrees, d^2 <= r1^2 + r2^2, even after shrinking.
 constexpr double step_per_radius = 1.2;
-// Equal steps that together make more than 1.2 radii are at least this long.
+// Equal steps whose sum exceeds 1.2 radii are at least this long, in radii.
 constexpr double least_step_per_radius = step_per_radius / 2;
 
-// Lowers values that exceed a neighbour's by more than the slope, in both directions; goes around twice if
-// the curve is closed.
+// Lowers values until none exceeds a neighbour's by more than the slope allows, in both directions; goes
+// around twice if the curve is closed.
 void limit_slope(const std::vector<double>& parameters, double slope, bool closed,
                  std::vector<double>& values) {
   const std::size_t n = values.size();
@@ -48,7 +49,7 @@ void limit_slope(const std::vector<double>& parameters, double slope, bool close
   }
 }
 
-// Interpolates linearly between samples; `xs` are in order.
+// Interpolates linearly between samples at increasing positions `xs`.
 double interpolated(const std::vector<double>& xs, const std::vector<double>& ys, double x) {
   const auto after = static_cast<std::size_t>(std::upper_bound(xs.begin() + 1, xs.end() - 1, x) - xs.begin());
   const double width = xs[after] - xs[after - 1];
@@ -141,7 +142,7 @@ CollarPlacement::Profile CollarPlacement::make_profile(Index curve, double from,
     if (s >= to) break;
     require_room(flat.back(), paths_.point(curve, s));
     s = std::min(to, s + sample_step * flat.back());
-    // Two samples per radius, and balls 1.2 radii apart.
+    // There are two samples per radius, and balls are 1.2 radii apart.
     if (stopped(profile.parameters.size() / 3)) return {};
   }
   limit_slope(profile.parameters, radius_slope, closed, profile.radii);
@@ -166,8 +167,8 @@ double CollarPlacement::Profile::step(double parameter) const {
   return interpolated(parameters, steps, parameter);
 }
 
-// Returns places from the first sample to the last, with the vertices among them; between these, at equal
-// numbers of radii.
+// Returns places from the first sample to the last: all vertices, and between them places that are equally
+// far apart, measured in radii.
 std::vector<PlaceOnCurve> CollarPlacement::centres(Index curve, const Profile& profile,
                                                    std::span<const PlaceOnCurve> vertices) const {
   const double total = profile.steps.back();

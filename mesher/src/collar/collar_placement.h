@@ -10,10 +10,10 @@
 namespace collarmesh {
 
 /// Places the balls of a collar system and the corner points on their circles. Throws PlcError where a ball
-/// would be CollarOptions::too_small.
+/// would be too small (CollarOptions::too_small).
 class CollarPlacement {
  public:
-  /// Keeps all by reference. `system` knows its creases, `gap` the largest allowed balls there.
+  /// Keeps references to all arguments. `system` has the creases, `gap` the largest allowed balls there.
   CollarPlacement(const Plc& plc, std::span<const Point> points, GapSize& gap, const CollarOptions& options,
                   CollarSystem& system);
   /// Places balls on all creases. Returns false if it was stopped.
@@ -26,10 +26,11 @@ class CollarPlacement {
   void place_on_curve(Index curve, std::span<const PlaceOnCurve> vertices = {});
 
  private:
-  /// The radii that balls along a curve may have: at samples, from one parameter to another.
+  /// The radii that balls along a curve may have, at samples along the curve.
   struct Profile {
     std::vector<double> parameters, radii;
-    std::vector<double> steps;  ///< how many radii from the first sample to each: the integral of 1 / radius
+    std::vector<double> steps;  ///< number of radii from the first sample to each sample: the integral of 1 /
+                                ///< radius
     double radius(double at) const;
     double parameter(double step) const;
     double step(double parameter) const;

@@ -43,9 +43,9 @@ struct CornerPoint {
 
 /// The bounds on the size of balls.
 struct CollarOptions {
-  /// Returns an upper bound on the radius of a ball at a place on this vertex or curve.
+  /// Returns an upper bound on the radius of a ball at a place on a vertex or curve.
   std::function<double(const Feature&, const Point&)> size;
-  /// Allowed distance from smooth curves and patches of the cells that replace them inside a ball.
+  /// Distance that the cells inside a ball may have from the smooth curves and patches that they replace.
   SurfaceTolerance tolerance{0};
   std::uint64_t seed = 0;
   /// Called from time to time with a lower bound on the final number of balls; if it returns true, the system
@@ -63,18 +63,18 @@ struct CollarOptions {
 class CollarSystem {
  public:
   CollarSystem() = default;
-  /// Makes a system without balls for these creases; CollarPlacement places them. Keeps the complex and its
-  /// points by reference.
+  /// Makes a system without balls for these creases; CollarPlacement places them. Keeps references to the
+  /// complex and its points.
   CollarSystem(const Plc& plc, std::span<const Point> points, std::span<const Crease> creases);
   /// Places balls on all creases: radius a third of the gap size, never more than the size allows, shrunk by
-  /// up to 2% (seeded) so that spheres are generic. On smooth curves and patches they are small enough that
-  /// the cells inside a ball stay within the distance. Throws PlcError where a ball would be smaller than the
-  /// smallest radius. Cost: O((n + b) log n) for n elements of the complex and b balls.
+  /// up to 2% (seeded) so that spheres are in general position. On smooth curves and patches the balls are so
+  /// small that the cells inside them stay within the distance. Throws PlcError where a ball would be smaller
+  /// than the smallest radius. Cost: O((n + b) log n) for n elements of the complex and b balls.
   CollarSystem(const Plc& plc, std::span<const Point> points, std::span<const Crease> creases,
                const CollarOptions& options);
 
   bool empty() const { return balls_.empty(); }
-  /// Returns the complex of the balls. Precondition: it has creases.
+  /// Returns the hierarchy of the features around which the balls lie. Precondition: the complex has creases.
   const FeatureHierarchy& features() const { return *features_; }
   const std::vector<CollarBall>& balls() const { return balls_; }
   const std::vector<CollarLink>& links() const { return links_; }
@@ -85,9 +85,10 @@ class CollarSystem {
     return std::binary_search(crease_vertices_.begin(), crease_vertices_.end(), vertex);
   }
   bool is_crease_curve(Index curve) const { return !crease_curve_.empty() && crease_curve_[curve]; }
-  /// Returns the ball at a crease vertex; none if it has none yet, and at other vertices.
+  /// Returns the ball at a crease vertex; none if there is no ball yet or the vertex is not a crease's.
   Index ball_at_vertex(Index vertex) const { return vertex_ball_.empty() ? none : vertex_ball_[vertex]; }
-  /// Declares that no more balls will come: builds a tree over all of them, whatever crease they are on.
+  /// Declares that no more balls will come, and builds one tree over all of them, regardless of their
+  /// creases.
   void complete();
   bool consecutive(Index a, Index b) const { return consecutive_.count(edge_key(a, b)) > 0; }
 
@@ -105,7 +106,7 @@ class CollarSystem {
  private:
   struct Node {
     CentredBox box;
-    Index left, right;  // in a leaf left == none, and right is its ball
+    Index left, right;  // in a leaf `left` is none and `right` is its ball
   };
   /// An item that a tree is built over.
   struct Item {
@@ -120,12 +121,13 @@ class CollarSystem {
   /// Builds a tree over creases. The trees over their balls are attached at its leaves, so that there is one
   /// tree although balls are added later.
   void plant(const Plc& plc, std::span<const Point> points);
-  /// Lets queries find the balls added since the last call, all of which are on this vertex or curve.
+  /// Adds the balls since the last call to the tree that queries use; all of them are on this vertex or
+  /// curve.
   void index_balls(const Feature& crease);
-  /// Builds a tree over all balls from this one on. Returns its root.
+  /// Builds a tree over all balls from number `first` on. Returns its root.
   Index build_over_balls(Index first, Box& box);
-  /// Builds a tree over items, the numbers of which start here. Adds their boxes to the box. Returns its
-  /// root.
+  /// Builds a tree over items. Their numbers begin at the start of `order`'s items. Adds their boxes to the
+  /// box. Returns the root.
   Index build(std::span<Index> order, std::span<const Item> items, Index first, Box& box);
   Index leaf_of(const Feature& crease) const {
     return leaves_[crease.index + (crease.dimension == 1 ? vertex_ball_.size() : 0)];
@@ -140,10 +142,9 @@ class CollarSystem {
   std::vector<bool> crease_curve_;
   std::vector<Index> vertex_ball_;
   std::vector<Index> crease_vertices_;             // sorted
-  std::unordered_set<std::uint64_t> consecutive_;  // pairs
+  std::unordered_set<std::uint64_t> consecutive_;  // keys of pairs of consecutive balls
   std::vector<Branch> branches_;  // by node: the first ones form a tree over creases; empty when complete
-  std::vector<Index> leaves_;     // leaves of that tree, by vertex, then by curve; none where there is no
-                                  // crease
+  std::vector<Index> leaves_;     // leaves of that tree, by vertex, then by curve; none without a crease
   Index indexed_ = 0;             // number of balls in the tree
   LargeVector<Node> nodes_;
 

@@ -14,14 +14,15 @@ struct Sheet {
   Vector direction;
 };
 
-/// The triangles at creases.
+/// The triangles at creases, from which the directions of sheets follow.
 class CreaseSheets {
  public:
-  /// Keeps `points` by reference. Knows only the given vertices and curves.
+  /// Keeps a reference to `points`. Covers only the given vertices and curves.
   CreaseSheets(const Plc& plc, std::span<const Point> points, std::span<const Index> vertices,
                const std::vector<bool>& is_crease_curve);
 
-  /// Returns the sheets at a segment of a crease curve, given by its two points: orthogonal to it.
+  /// Returns the sheets at a segment of a crease curve, given by its two points; their directions are
+  /// orthogonal to the segment.
   std::vector<Sheet> at_segment(const std::array<Index, 2>& ends) const;
   /// Returns the sheets at a crease vertex: towards places on the opposite side of each triangle of smooth
   /// patches there.

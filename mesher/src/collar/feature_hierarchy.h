@@ -16,15 +16,15 @@ struct Feature {
   friend bool operator==(const Feature&, const Feature&) = default;
 };
 
-/// Bounding-volume hierarchy over the features of a complex and, below each feature, over its triangles, its
-/// segments or its point. A query that leaves out features, or asks for one alone, never visits the elements
-/// of the others, so its cost is logarithmic however finely a feature is tessellated.
+/// Bounding-volume hierarchy over the features of a complex. Below each feature is a hierarchy over its
+/// triangles, its segments or its point. A query that leaves out features, or that asks for one alone, never
+/// visits the elements of the others, so its cost is logarithmic however finely a feature is tessellated.
 class FeatureHierarchy {
  public:
-  /// Keeps both by reference; `points` are those of the complex, possibly in another frame.
+  /// Keeps references to both; `points` are the complex's, possibly in another frame.
   FeatureHierarchy(const Plc& plc, std::span<const Point> points);
 
-  /// A triangle, or a segment or point as a degenerate one.
+  /// A triangle; segments and points are degenerate triangles.
   using Element = std::array<Index, 3>;
   /// Returns the number of an element within its feature: a curve's segment or a patch's triangle.
   Index number(Index element) const { return element - first_element_[feature_of_[element]]; }
@@ -34,13 +34,13 @@ class FeatureHierarchy {
   }
   const Element& element(Index index) const { return elements_[index]; }
 
-  /// Returns the distance from p to the nearest feature that `counts` accepts, if below `bound` (else
-  /// `bound`).
+  /// Returns the distance from p to the nearest feature that `counts` accepts, or `bound` if no such feature
+  /// is nearer.
   template <class Counts>
   double distance_to_features(const Point& p, double bound, const Counts& counts) const;
 
-  /// Returns the distance from p to the nearest element of the feature that `counts` accepts, if below
-  /// `bound` (else `bound`, and `nearest` is none).
+  /// Returns the distance from p to the nearest element of the feature that `counts` accepts; if none is
+  /// nearer than `bound`, returns `bound`, and `nearest` is none.
   template <class Counts>
   double distance_within(Feature feature, const Point& p, double bound, Index& nearest,
                          const Counts& counts) const;
@@ -48,14 +48,14 @@ class FeatureHierarchy {
   /// Returns the point of the feature nearest to p.
   Point nearest_point(Feature feature, const Point& p) const;
 
-  /// Calls visit(element) for the elements of the feature whose box meets this one.
+  /// Calls visit(element) for the elements of the feature whose boxes meet `box`.
   template <class Visit>
   void visit_box(Feature feature, const Box& box, const Visit& visit) const;
 
  private:
   struct Node {
     Box box;
-    Index left = none, right = none;  // in a leaf left == none, and right is its element or feature
+    Index left = none, right = none;  // in a leaf `left` is none and `right` is its element or feature
   };
 
   Index number_of(Feature feature) const { return first_feature_[feature.dimension] + feature.index; }
@@ -66,7 +66,7 @@ class FeatureHierarchy {
   void descend(Index root, const Point& p, double& squared_bound, const Leaf& leaf) const;
 
   std::span<const Point> points_;
-  std::array<Index, 3> first_feature_{};  // by dimension: number of the first feature among all
+  std::array<Index, 3> first_feature_{};  // by dimension: number of the first feature among all features
   std::vector<Feature> features_;
   std::vector<Element> elements_;     // by feature
   std::vector<Index> feature_of_;     // by element

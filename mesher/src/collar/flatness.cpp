@@ -9,21 +9,21 @@ namespace collarmesh {
 
 namespace {
 
-// The share of the distance tolerance that chords as long as a radius may use up, and the share of the
-// radius: a polyline may turn by 30 degrees in one point.
+// Chords as long as a radius may use up this share of the distance tolerance, and this share of the radius: a
+// polyline may turn by 30 degrees at one point.
 constexpr double deviation_per_distance = 0.5;
 constexpr double deviation_per_radius = 0.14;
-// A ball on a closed curve, or a loop, covers at most this share of it.
+// A ball on a closed curve or a loop covers at most this share of its length.
 constexpr double radius_per_length = 1.0 / 8;
-// Another piece of a feature counts like a feature that does not contain the centre: radii are a third of the
-// distance to it. A point of a curve is on another piece if it is this much farther away along the curve than
-// through space.
+// Another piece of a feature counts like a feature that does not contain the centre: radii are at most a
+// third of the distance to it. A point of a curve is on another piece if its distance along the curve exceeds
+// that through space by this many radii.
 constexpr double pieces_per_radius = 3;
 constexpr double detour = 1.5;
-// The positions at which chords are compared with the feature.
+// Positions along a chord at which it is compared with the feature.
 constexpr std::array<double, 3> chord_shares{0.25, 0.5, 0.75};
-constexpr std::size_t most_spokes = 16;  // spokes of a patch in a ball
-constexpr double rounding = 1e-6;        // of lengths, relative to the ball
+constexpr std::size_t most_spokes = 16;  // most spokes that are compared with a patch in a ball
+constexpr double rounding = 1e-6;        // tolerance of lengths, relative to the ball's radius
 constexpr int most_steps = 60;
 
 }  // namespace
@@ -38,8 +38,8 @@ bool Flatness::matters_on(Index curve) const {
                                     [&](Index patch) { return !plc_.patches[patch].planar; });
 }
 
-// Returns the largest radius with an allowed deviation, which grows with the square of the radius on a smooth
-// feature, and linearly at a bend.
+// Returns the largest radius with an allowed deviation. On a smooth feature the deviation grows with the
+// square of the radius, at a bend linearly.
 template <class Deviation>
 double Flatness::shrunk(double radius, double tolerance, const Deviation& deviation) {
   for (int step = 0; step < most_steps; ++step) {
@@ -78,8 +78,8 @@ double Flatness::off_spoke(Index patch, const Point& centre, const Point& end) c
   return largest;
 }
 
-// Returns the same for edges to points where the patch meets the sphere: at most `most_spokes` points at
-// which sides of its triangles leave the ball.
+// Returns the distance of the patch from the edges to points where it meets the sphere: at most `most_spokes`
+// points at which sides of its triangles leave the ball.
 double Flatness::off_arc(Index patch, const Point& centre, double radius) const {
   Box box;
   box.add(centre - radius * Vector{1, 1, 1});
@@ -101,7 +101,7 @@ double Flatness::off_arc(Index patch, const Point& centre, double radius) const 
   return largest;
 }
 
-// Returns the distance to pieces of the curve other than the one through the point, up to `reach`.
+// Returns the distance to pieces of the curve other than the one through the given position, up to `reach`.
 double Flatness::other_arcs(Index curve, double parameter, double reach) const {
   const Point p = paths_.point(curve, parameter);
   const double length = paths_.length(curve);
@@ -116,8 +116,8 @@ double Flatness::other_arcs(Index curve, double parameter, double reach) const {
   });
 }
 
-// Returns the distance to triangles of the patch that are not connected inside the ball B(centre, reach) to
-// those with the given points (the same point twice at a vertex), up to `reach`.
+// Returns the distance, up to `reach`, to triangles of the patch that are not connected, inside the ball
+// B(centre, reach), to those with the given points (the same point twice at a vertex).
 double Flatness::other_sheets(Index patch, const Point& centre, double reach,
                               const std::array<Index, 2>& points) const {
   struct Side {

@@ -8,16 +8,16 @@
 namespace collarmesh {
 
 /// Limits the radius of a ball at a crease so that straight edges and flat triangles can replace the curved
-/// features inside it. Inside the ball the features leave their chords by no more than the distance
+/// features inside it. Inside the ball the features deviate from their chords by no more than the distance
 /// tolerance; the ball meets its curve in one arc and each smooth patch in one piece; its radius is at most a
 /// third of the distance to their other pieces.
 class Flatness {
  public:
-  /// Keeps all by reference.
+  /// Keeps references to all arguments.
   Flatness(const Plc& plc, const FeatureHierarchy& features, const CurvePaths& paths,
            const CreaseSheets& sheets, SurfaceTolerance tolerance);
 
-  /// Returns whether anything curved passes through the curve.
+  /// Returns whether the curve or a patch at it is curved.
   bool matters_on(Index curve) const;
   /// Returns the largest allowed radius, up to `radius`.
   double radius_on_curve(Index curve, double parameter, double radius) const;

@@ -14,8 +14,8 @@ void for_each_edge(std::span<const Point> points, Triangles triangles, const Vis
     for (unsigned i = 0; i < 3; ++i) visit(points[t[(i + 1) % 3]] - points[t[i]]);
 }
 
-/// Returns the main direction of edges: across a unit vector, or of all edges across zero. Starts with the
-/// longest edge and moves towards the directions of the others with each step.
+/// Returns the main direction of the edges; if `across` is not zero, of their parts orthogonal to this unit
+/// vector. Starts with the longest edge and moves towards the directions of the others with each step.
 Vector main_direction(std::span<const Point> points, Triangles triangles, const Vector& across) {
   constexpr unsigned steps = 3;
   const auto part_of = [&](const Vector& edge) { return edge - dot(edge, across) * across; };
@@ -48,7 +48,7 @@ double area_of_boxes(std::span<const Point> points, Triangles triangles, const B
 }  // namespace
 
 BoxFrame::BoxFrame(std::span<const Point> points, Triangles triangles) {
-  constexpr double worthwhile = 1. / 8;  // share of the area
+  constexpr double worthwhile = 1. / 8;  // share of the area that boxes must save
   constexpr double roundings = 32;
   BoxFrame turned;
   Box bounds;

@@ -8,8 +8,8 @@
 namespace collarmesh {
 
 /// Axes along which the boxes of triangles are small: the coordinate axes, or, if most triangles are long and
-/// parallel to none of these, the axes of the triangles. Otherwise millions of boxes of parallel needles
-/// would meet.
+/// parallel to none of these, the axes of the triangles. With the coordinate axes, millions of boxes of
+/// parallel needles would overlap.
 class BoxFrame {
  public:
   /// Makes a frame of the coordinate axes.

@@ -46,7 +46,7 @@ Index BoxTree::build(std::span<const SpatialKey> keys, Index first) {
 }
 
 bool BoxTree::may_meet(const Box& box, const Point& p, const Point& q) {
-  // Tests the separating axes of a box and a segment, with room for rounding.
+  // Tests the separating axes of a box and a segment, with a margin for rounding.
   const Point centre = box.centre(), half = 0.5 * (box.max - box.min);
   const Vector d = 0.5 * (q - p), m = 0.5 * (p + q) - centre;
   const Vector ad{std::fabs(d.x), std::fabs(d.y), std::fabs(d.z)};

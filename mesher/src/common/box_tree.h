@@ -40,7 +40,7 @@ class BoxTree {
  private:
   struct Node {
     Box box;
-    Index first, count;  // items, or count 0: the children are the next node and `first`
+    Index first, count;  // its items; count 0: the children are the next node and the node `first`
     Index group;         // group of all its items, none if they differ
   };
   static constexpr Index leaf_size = 4;
@@ -104,7 +104,7 @@ class BoxTree {
     }
   }
 
-  // In the order of the leaves:
+  // Items in the order of the leaves, and their groups and boxes:
   std::vector<Index> items_;
   std::vector<Box> boxes_;
   std::vector<Index> groups_;

@@ -8,7 +8,7 @@
 
 namespace collarmesh {
 
-/// The cells of a mesh (tets, faces or edges) that have each vertex as a corner.
+/// Lists, for each vertex of a mesh, the cells (tets, faces or edges) that have it as a corner.
 class CellsAtVertices {
  public:
   CellsAtVertices() = default;

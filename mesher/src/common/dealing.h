@@ -5,8 +5,8 @@
 
 namespace collarmesh {
 
-/// Sizes for dealing items to ranges of groups first, chunk by chunk, so that the remaining work fits a
-/// processor's cache.
+/// Sizes for sorting items by group in two steps: chunks of items are first dealt to ranges of groups, so
+/// that the remaining work fits a processor's cache.
 struct Dealing {
   std::size_t chunk;   ///< items dealt by one thread
   std::size_t range;   ///< groups that are sorted at once

@@ -76,7 +76,7 @@ DistanceTree::Nearest DistanceTree::nearest(const Point& p, double enough, Index
     Index node;
     double squared;
   };
-  std::array<Waiting, most_spatial_levels + 1> stack;  // one of two children waits on every level
+  std::array<Waiting, most_spatial_levels + 1> stack;  // on every level, one of two children waits
   std::size_t size = 0;
   stack[size++] = {0, squared_distance_to(0, p)};
   const double squared_enough = enough * enough;

@@ -20,7 +20,7 @@ class DistanceTree {
 
   struct Nearest {
     double distance;
-    Index triangle;  ///< as numbered in the constructor; none if there are no triangles
+    Index triangle;  ///< number given by the constructor's order; none if there are no triangles
   };
   /// Finds the triangle nearest to p. Ends early once one as near as `enough` is found. A `hint`, a triangle
   /// that is probably near, makes it faster.

@@ -31,7 +31,7 @@ Point nearest_point_on_triangle(const Point& p, const Point& a, const Point& b, 
   Point best = nearest_point_on_segment(p, a, b);
   for (const Point& q : {nearest_point_on_segment(p, b, c), nearest_point_on_segment(p, c, a)})
     if (squared_distance(p, q) < squared_distance(p, best)) best = q;
-  // The normal of a needle is noise, so the distance to its border also bounds the result from above.
+  // The normal of a needle is inaccurate, so the distance to its border bounds the result from above.
   return inside && squared_distance(p, foot) < squared_distance(p, best) ? foot : best;
 }
 
@@ -43,8 +43,8 @@ double squared_distance_to_segment(const Point& p, const Point& a, const Point& 
   return squared_distance(p, nearest_point_on_segment(p, a, b));
 }
 
-// Most points are far from the triangle's plane, or above or below the triangle. For all others the nearest
-// point is on a side that they lie beyond.
+// Most points are far from the triangle's plane, or above or below the triangle. For all other points the
+// nearest one lies on a side that they are beyond.
 bool is_within(double squared_bound, const Point& p, const Point& a, const Point& b, const Point& c) {
   const Vector u = b - a, w = c - a, n = cross(u, w);
   const double nn = squared_norm(n), longest = std::max(squared_norm(u), squared_norm(w));

@@ -12,8 +12,8 @@ namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double infinite = std::numeric_limits<double>::infinity();
-// A place on a curve in several planes is moved to one after the other, at most this often; the planes hardly
-// differ, or meet in the curve.
+// A place on a curve in several planes is moved to one plane after the other, in at most this many rounds;
+// the planes hardly differ, or meet in the curve.
 constexpr int most_turns = 20;
 // Points are pulled back to this share of the tolerance, so that rounding cannot leave them outside.
 constexpr double inside = 0.99;
@@ -80,7 +80,7 @@ std::optional<Point> FlatFeatures::keep(unsigned dimension, Index feature, Point
   return std::nullopt;
 }
 
-// Puts a place on the line of a straight curve. Returns whether it was too far off.
+// Moves a place to the line of a straight curve. Returns whether it was too far off.
 bool FlatFeatures::put_on_curve(Index curve, Point& p) const {
   if (curve_room_[curve] == infinite) return false;
   const Point q = nearest_on_chain(plc_.points, plc_.curves[curve].points, p);

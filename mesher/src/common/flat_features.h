@@ -8,22 +8,23 @@
 
 namespace collarmesh {
 
-/// Keeps straight curves and planar patches flat when their nodes move onto exact geometry, which may leave
-/// the line or plane by the tolerance of the shape, or by more than the tessellation's points do.
+/// Keeps straight curves and planar patches flat when their nodes move onto exact geometry. The geometry may
+/// deviate from the line or plane by the tolerance of the shape, or by more than the tessellation's points
+/// do.
 class FlatFeatures {
  public:
-  /// Keeps the complex by reference. Cost: linear in the triangles.
+  /// Keeps a reference to the complex. Cost: linear in the triangles.
   explicit FlatFeatures(const Plc& plc);
 
   /// Returns the exact geometry restricted to straight curves and planar patches. It moves a place back
   /// towards a plane if it is off by more than the certificate permits (min(4 d, planar tolerance) plus
-  /// rounding, where d is the distance of the complex's own points), or towards a straight curve if it is off
-  /// by more than half of that. Half, because the edges between nodes must also be near the curve's own
-  /// points, which are up to 2 d off the chords. Gives no point if no such place is near. Keeps this and
-  /// `exact` by reference.
+  /// rounding, where d is the distance of the complex's own points from the plane). For a straight curve the
+  /// limit is half of that, because the edges between nodes must also be near the curve's own points, which
+  /// are up to 2 d off the chords. Returns no point if no such place is near. Keeps references to this object
+  /// and to `exact`.
   ExactGeometry limit(const ExactGeometry& exact) const;
 
-  /// Returns the same for one place on the exact geometry of a curve (dimension 1) or patch (2).
+  /// Applies this restriction to one place on the exact geometry of a curve (dimension 1) or patch (2).
   std::optional<Point> keep(unsigned dimension, Index feature, Point place) const;
 
  private:
@@ -31,7 +32,7 @@ class FlatFeatures {
   bool put_on_plane(Index patch, Point& p) const;
 
   const Plc& plc_;
-  std::vector<double> curve_room_, patch_room_;  // absolute; infinite where nothing is flat
+  std::vector<double> curve_room_, patch_room_;  // absolute; infinite for features that are not flat
 };
 
 }  // namespace collarmesh

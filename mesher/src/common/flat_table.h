@@ -11,9 +11,10 @@ namespace collarmesh {
 /// Returns a number whose lower 32 bits depend on all bits of the key.
 inline std::uint64_t spread(std::uint64_t key) { return key * 0x9e3779b97f4a7c15U >> 32U; }
 
-/// Finds an item in a flat hash table: the slots hold numbers of items, or none, and an item is in the first
-/// slot from its hash on that was free. Returns its slot, or the free one where it belongs. `is_it(number)`
-/// compares. Preconditions: the slots are a power of two, and some are free.
+/// Finds an item in a flat hash table: the slots hold numbers of items, or none, and an item is in the slot
+/// of its hash or, if that was taken, in the next free one. Returns its slot, or the free slot where it
+/// belongs. `is_it(number)` compares items. Preconditions: the number of slots is a power of two, and some
+/// are free.
 template <class IsIt>
 Index& find_slot(std::span<Index> slots, std::uint64_t hash, const IsIt& is_it) {
   const std::size_t last = slots.size() - 1;

@@ -27,10 +27,10 @@ void for_each_group(std::size_t groups, std::size_t count, const Visit& visit, c
     for (std::size_t i = c * chunk; i < std::min((c + 1) * chunk, count); ++i) visit(i, give);
   };
   struct Dealt {
-    std::uint32_t group;  // in its range
+    std::uint32_t group;  // within its range
     Item item;
   };
-  std::vector<std::size_t> next(chunks * ranges, 0);  // where a chunk's next item of a range goes
+  std::vector<std::size_t> next(chunks * ranges, 0);  // slot for a chunk's next item of a range
   parallel_for(
       chunks,
       [&](std::size_t c) {
@@ -62,7 +62,9 @@ void for_each_group(std::size_t groups, std::size_t count, const Visit& visit, c
         for (const Dealt& d : all) ++end[d.group + 1];
         for (std::size_t g = 1; g <= range; ++g) end[g] += end[g - 1];
         std::vector<Item> items(all.size());
-        for (const Dealt& d : all) items[end[d.group]++] = d.item;  // afterwards end[g] is where group g ends
+        for (const Dealt& d : all)
+          items[end[d.group]++] = d.item;  // at the end, end[g] is the end of group
+                                           // g
         std::size_t begin = 0;
         for (std::size_t g = 0; g < range && begin < items.size(); begin = end[g++])
           if (end[g] > begin) use(r * range + g, std::span(items).subspan(begin, end[g] - begin));

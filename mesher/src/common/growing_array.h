@@ -9,8 +9,8 @@
 
 namespace collarmesh {
 
-/// A vector of plain data that grows in place where it can: large blocks are remapped by the system instead
-/// of being copied, so growth never holds two copies in memory.
+/// A vector of plain data that grows in place where possible: the system remaps large blocks instead of
+/// copying them, so growth never holds two copies in memory.
 template <class T>
 class GrowingArray {
   static_assert(std::is_trivially_copyable_v<T>);

@@ -10,7 +10,7 @@
 
 namespace collarmesh {
 
-/// A set of numbers below `none`; small sets, which are most frequent, allocate no memory.
+/// A set of numbers below `none`. Most sets are small, and small ones allocate no memory.
 class IndexSet {
  public:
   IndexSet() { few_.fill(none); }

@@ -14,8 +14,8 @@
 
 namespace collarmesh {
 
-/// Large pages make random access to large arrays cheaper, because fewer addresses need a walk through page
-/// tables that are not in the cache.
+/// Large pages make random access to large arrays cheaper: fewer addresses need a walk through page tables
+/// that are not in the cache.
 inline constexpr std::size_t large_page = std::size_t{2} << 20U;
 inline constexpr std::size_t least_bytes_in_large_pages = large_page / 2;
 
@@ -31,7 +31,7 @@ inline void prefer_large_pages([[maybe_unused]] void* block, [[maybe_unused]] st
 #endif
 }
 
-// ThreadSanitizer does not see mremap, so it would report races where the stack of a thread was before.
+// ThreadSanitizer does not see mremap, so it would report false races where a thread's stack was before.
 #if defined(__linux__) && !defined(__SANITIZE_THREAD__)
 #define COLLARMESH_REMAPS 1
 #else
@@ -47,8 +47,8 @@ inline bool grows_in_place([[maybe_unused]] std::size_t bytes) {
 #endif
 }
 
-/// Resizes `block`, null at first, to this many bytes, and keeps as many of its bytes as fit.
-/// Large blocks are remapped by the system instead of being copied. Throws std::bad_alloc.
+/// Resizes `block` (initially null) to this many bytes, and keeps as many of its bytes as fit. Large blocks
+/// are remapped by the system instead of being copied. Throws std::bad_alloc.
 inline void* resized_block(void* block, [[maybe_unused]] std::size_t bytes, std::size_t new_bytes) {
 #if COLLARMESH_REMAPS
   const auto pages = [](std::size_t size) { return (size + large_page - 1) / large_page * large_page; };
@@ -95,7 +95,7 @@ void resize_in_large_pages(std::vector<T>& values, std::size_t count) {
   values.resize(count);
 }
 
-/// Gives large blocks large pages.
+/// An allocator that puts large blocks on large pages.
 template <class T>
 struct LargePageAllocator {
   using value_type = T;

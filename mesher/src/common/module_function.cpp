@@ -6,7 +6,7 @@
 namespace collarmesh {
 
 void* module_function(const char* module, const char* function, std::string& reason) {
-  // Searches along the run path. Never closes the module: HDF5 has functions that run at the end of the
+  // Searches along the run path. Never closes the module: HDF5 registers functions that run at the end of the
   // program.
   void* const loaded = dlopen(module, RTLD_NOW | RTLD_LOCAL);
   void* const found = loaded == nullptr ? nullptr : dlsym(loaded, function);

@@ -20,7 +20,7 @@ std::vector<Index> order_by_group(std::size_t groups, std::size_t count, const G
   const Dealing dealing(groups, count);
   const std::size_t chunk = dealing.chunk, range = dealing.range, chunks = dealing.chunks,
                     ranges = dealing.ranges;
-  std::vector<Index> next(chunks * ranges, 0);  // where a chunk's next item of a range goes
+  std::vector<Index> next(chunks * ranges, 0);  // slot for a chunk's next item of a range
   std::vector<Index> first(ranges + 1, 0);
   parallel_for_ranges(
       count, chunk,

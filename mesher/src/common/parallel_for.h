@@ -22,8 +22,8 @@ void parallel_for(std::size_t count, const Work& work,
                   const recorded_costs::Place& place = {__builtin_FILE(), __builtin_LINE()}) {
   if (recorded_costs::on) return recorded_costs::run(count, work, place);
 #ifdef __SANITIZE_THREAD__
-  // ThreadSanitizer cannot see how TBB's library, which is not built with it, orders the work of threads.
-  // This many threads exist on any machine.
+  // ThreadSanitizer cannot see how TBB synchronizes threads, because TBB's library is not instrumented; so
+  // these builds use plain threads, a number that exists on any machine.
   constexpr int threads = 8;
   std::atomic<std::size_t> next{0};
   const auto take_turns = [&] {
@@ -37,8 +37,8 @@ void parallel_for(std::size_t count, const Work& work,
 #endif
 }
 
-/// Calls `work(first, last)` for all numbers below `count`, in ranges of this length and a shorter one at the
-/// end.
+/// Calls `work(first, last)` for consecutive ranges of all numbers below `count`. Ranges have this length;
+/// the last one may be shorter.
 template <class Work>
 void parallel_for_ranges(std::size_t count, std::size_t length, const Work& work,
                          const recorded_costs::Place& place = {__builtin_FILE(), __builtin_LINE()}) {

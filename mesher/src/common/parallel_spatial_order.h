@@ -4,7 +4,7 @@
 
 namespace collarmesh {
 
-/// Does the same as spatial_order, with the threads of the caller's arena.
+/// Orders points like spatial_order, with the threads of the caller's arena.
 std::vector<SpatialKey> spatial_order_by_all_threads(std::span<const Point> points);
 
 }  // namespace collarmesh

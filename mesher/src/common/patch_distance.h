@@ -17,19 +17,20 @@
 
 namespace collarmesh {
 
-/// Measures by samples how far a smooth patch and the mesh's faces on it are from each other. The certificate
-/// and the stages that keep to the tolerance use the same samples.
+/// Measures by samples the distance between a smooth patch and the mesh's faces on it. The certificate and
+/// the stages that keep the tolerance use the same samples.
 class PatchDistance {
  public:
-  /// A sample of one side, with the nearest place on the other side.
+  /// A sample point on one side, with the nearest place on the other side.
   struct Sample {
     const Point& place;
-    Index face;        ///< face that it lies on, or the nearest one
-    double distance;   ///< exact where it is above `enough`
+    Index face;        ///< face that the sample lies on, or the nearest one
+    double distance;   ///< exact if above `enough`, else an upper bound
     double tolerance;  ///< tolerance at the sample
   };
 
-  /// Keeps all by reference except the contents of spans. `patch_points` as in PatchPoints.
+  /// Keeps references to all arguments except spans, whose contents it copies. `patch_points` as in
+  /// PatchPoints.
   PatchDistance(const TetMesh& mesh, const Plc& plc, const SurfaceTolerance& tolerance, Index patch,
                 std::span<const Index> faces, std::span<const Index> patch_points)
       : mesh_(mesh),
@@ -39,16 +40,17 @@ class PatchDistance {
         faces_(faces),
         patch_points_(patch_points) {}
 
-  /// Visits the corners and centres of the faces, two points on each of their sides, and the corners and
-  /// centres of the patch's triangles. `enough` returns the distance above which the exact one is wanted.
+  /// Visits the samples: the corners and centres of the faces, two points on each of their sides, and the
+  /// corners and centres of the patch's triangles. `enough` returns the distance above which exact distances
+  /// are needed.
   void visit(const auto& enough, const auto& look) const {
     visit_faces(enough, look);
     visit_patch(enough, look);
   }
 
  private:
-  // The sides and corners (sides with equal ends) of faces seen so far; a cache, in which new ones replace
-  // old ones.
+  // A cache of the sides and corners (sides with equal ends) of faces seen so far. New entries replace old
+  // ones.
   class SeenSides {
    public:
     explicit SeenSides(std::size_t faces) : places_(std::bit_ceil(2 * faces + 1), {none, none}) {}

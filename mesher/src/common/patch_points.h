@@ -9,12 +9,12 @@
 
 namespace collarmesh {
 
-/// The points of each patch's triangles: its tessellation.
+/// The points of each patch's triangles.
 class PatchPoints {
  public:
   /// Finds the points. Cost: O(n log n).
   explicit PatchPoints(const Plc& plc) {
-    std::vector<Index> seen_by(plc.points.size(), none);  // the last patch that had the point
+    std::vector<Index> seen_by(plc.points.size(), none);  // by point: the last patch that had it
     for (Index patch = 0; patch < plc.patches.size(); ++patch) {
       const std::size_t first = points_.size();
       const Plc::Patch& p = plc.patches[patch];
@@ -26,7 +26,7 @@ class PatchPoints {
     }
   }
 
-  /// Returns the points of a patch, sorted, each of them once.
+  /// Returns the points of a patch, sorted, without duplicates.
   std::span<const Index> operator[](Index patch) const {
     return std::span(points_).subspan(first_[patch], first_[patch + 1] - first_[patch]);
   }

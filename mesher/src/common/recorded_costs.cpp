@@ -26,7 +26,7 @@ double now() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-/// Returns the time when the last piece is done if each worker takes the next one once it is free.
+/// Returns the time at which the last piece is done if each worker takes the next piece once it is free.
 double makespan(const std::vector<double>& costs, std::size_t count) {
   std::priority_queue<double, std::vector<double>, std::greater<>> free_at;
   double end = 0;
@@ -42,7 +42,7 @@ double makespan(const std::vector<double>& costs, std::size_t count) {
   return end;
 }
 
-/// A parallel part under way.
+/// A parallel part that is running.
 struct Part {
   std::vector<double> pieces;  // costs
   double inner = 0;            // cost of the parallel parts inside the current piece
@@ -62,7 +62,7 @@ class Record {
   Record(const Record&) = delete;
   Record& operator=(const Record&) = delete;
 
-  // A process that only started another one for the work records nothing.
+  // A process that starts another one for the work records nothing.
   ~Record() {
     if (parts_ > 0) write();
   }
@@ -144,7 +144,7 @@ class Record {
   std::string path_, stage_ = "start";
   std::thread::id thread_ = std::this_thread::get_id();
   std::size_t parts_ = 0;  // parts since the table was written
-  double last_;            // when the current serial part began
+  double last_;            // time at which the current serial part began
   std::vector<std::unique_ptr<Part>> under_way_;
   std::map<std::pair<std::string, std::string>, Sum> sums_;
 };

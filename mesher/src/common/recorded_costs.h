@@ -6,10 +6,10 @@
 
 namespace collarmesh {
 
-/// Records the costs of everything between and inside parallel parts, for developers: it shows on a machine
-/// with few cores how much more threads would gain. With COLLARMESH_RECORD_COSTS=FILE in the environment the
-/// program runs on one thread, but divides the work for as many as `--threads` says (COLLARMESH_CORES allows
-/// more than there are). At the end of the program FILE gets a table (bench/schedule.py): CPU seconds by
+/// Records the costs of everything between and inside parallel parts, for developers: a machine with few
+/// cores then shows the gain by more threads. With COLLARMESH_RECORD_COSTS=FILE in the environment the
+/// program runs on one thread, but divides the work as for `--threads` threads (COLLARMESH_CORES allows more
+/// than the machine has). At the end of the program FILE gets a table (bench/schedule.py): CPU seconds by
 /// stage and place.
 namespace recorded_costs {
 
@@ -28,7 +28,7 @@ void run(std::size_t count, const std::function<void(std::size_t)>& work, const 
 /// Begins a stage: later costs belong to it.
 void begin_stage(std::string_view stage);
 
-/// Writes the table. The end of the program writes it, too, unless the process ends without cleaning up.
+/// Writes the table. The end of the program writes it as well, unless the process ends without cleaning up.
 void write();
 
 }  // namespace recorded_costs

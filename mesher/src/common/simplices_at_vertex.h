@@ -17,9 +17,9 @@
 namespace collarmesh {
 
 /// Calls `use(vertex, cells)` for the vertices of a mesh, from several threads at once and in no particular
-/// order. `cells` are first the tets that have the vertex and a corner with a larger number, then the listed
-/// faces of which it is the smallest corner, each in their order; faces are numbered after all tets.
-/// Precondition: corners are points of the mesh. Cost: linear; 24 bytes per tet.
+/// order. `cells` are the tets that have the vertex and a corner with a larger number, then the listed faces
+/// whose smallest corner it is, both in their order; faces are numbered after all tets. Precondition: corners
+/// are points of the mesh. Cost: linear; 24 bytes per tet.
 template <class Use>
 void for_each_vertex_with_cells(const TetMesh& mesh, const Use& use) {
   const std::size_t tets = mesh.tets.size();
@@ -50,7 +50,7 @@ class EdgesAtVertex {
           if (v > vertex) number_of(v);
   }
 
-  /// Returns the other ends, each once.
+  /// Returns the other ends of the edges, each once.
   std::span<const Index> ends() const { return ends_; }
 
  protected:
@@ -96,8 +96,8 @@ class FittingTetsAtVertex : public EdgesAtVertex {
     fit_ &= take_counts();
   }
 
-  /// Returns whether every triangle of which the vertex is the smallest corner is a side of two tets, one on
-  /// either side, in one region, and no listed face. Also false if that was not checked: with more than 32
+  /// Returns whether every triangle whose smallest corner is the vertex is a side of two tets of one region,
+  /// one on either side, and no listed face. Returns false without a check if the vertex has more than 32
   /// edges.
   bool fit() const { return fit_; }
 
@@ -138,7 +138,7 @@ struct TriangleUse {
 
   std::uint64_t larger_corners;  ///< the middle corner above 32 bits, and the largest corner
   Index cell;                    ///< the tet, or the face
-  std::uint8_t corner;           ///< the tet's corner opposite the side; or listed_face
+  std::uint8_t corner;           ///< the tet's corner opposite the side, or listed_face
   bool odd;  ///< whether the order from smallest to largest is an odd permutation of counterclockwise, as
              ///< seen from outside the tet or from where the face's normal points
 
@@ -160,7 +160,7 @@ inline std::pair<Index, TriangleUse> triangle_use(std::array<Index, 3> c, Index 
   return {c[0], {std::uint64_t{c[1]} << 32U | c[2], cell, corner, odd}};
 }
 
-/// The triangles of which a vertex is the smallest corner, each with the tets and listed faces that use it.
+/// The triangles whose smallest corner is a vertex, each with the tets and listed faces that use it.
 class TrianglesAtVertex {
  public:
   /// Finds the triangles. `cells` as from `for_each_vertex_with_cells`. Precondition: no tet has a corner

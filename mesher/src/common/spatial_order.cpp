@@ -16,7 +16,7 @@ namespace {
 
 constexpr double cells_per_axis = 1 << 21;
 
-// Returns the lower 21 bits of n with two zeros before each.
+// Returns the lower 21 bits of n with two zero bits before each.
 std::uint64_t spread_bits(std::uint64_t n) {
   n = (n | n << 32) & 0x001f00000000ffff;
   n = (n | n << 16) & 0x001f0000ff0000ff;
@@ -52,7 +52,7 @@ void sort_by_places(std::span<SpatialKey> keys, std::span<const Point> points) {
   }
 }
 
-// Returns the number of cells per unit of length along an axis. Nothing for one point, or an extent that
+// Returns the number of cells per unit of length along an axis; nothing for one point, or for an extent that
 // cannot be divided into cells.
 std::optional<double> scale_of(const Box& bounds) {
   const Vector sides = bounds.max - bounds.min;

@@ -8,8 +8,8 @@
 
 namespace collarmesh {
 
-/// An item and its place along a Z-shaped curve through the cells of an octree (Morton 1966): items near
-/// along the curve are near in space.
+/// An item and its place along a Z-shaped curve through the cells of an octree (Morton 1966): items close to
+/// each other along the curve are close in space.
 struct SpatialKey {
   std::uint64_t place;
   Index item;
@@ -23,7 +23,7 @@ std::vector<SpatialKey> spatial_order(std::span<const Point> points);
 
 /// Returns the item at which a hierarchy over ordered items splits them: the first one in the upper half of
 /// the smallest octree cell that holds them all, or the middle one if all are at one place. Precondition:
-/// there are at least two.
+/// there are at least two items.
 std::size_t spatial_split(std::span<const SpatialKey> keys);
 
 /// The maximum depth of a hierarchy made of such splits.

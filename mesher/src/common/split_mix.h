@@ -8,7 +8,7 @@ namespace collarmesh {
 /// a step, and its mixed bits are the next number.
 inline constexpr std::uint64_t split_mix_step = 0x9e3779b97f4a7c15ULL;
 
-/// Spreads every bit over all others; may be used as a hash.
+/// Mixes the bits, so that each depends on all others; may be used as a hash.
 inline std::uint64_t mixed(std::uint64_t z) {
   z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9ULL;
   z = (z ^ (z >> 27U)) * 0x94d049bb133111ebULL;

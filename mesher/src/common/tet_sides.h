@@ -7,11 +7,12 @@
 
 namespace collarmesh {
 
-/// Positions of the corners opposite each corner of a tet, counterclockwise as seen from outside.
+/// For each corner of a tet, the positions of the three opposite corners, counterclockwise as seen from
+/// outside.
 inline constexpr std::array<std::array<std::uint8_t, 3>, 4> opposite_places{
     {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
 
-/// Returns the position of a corner in a tet.
+/// Returns the position of a corner in a tet, 0 to 3.
 inline unsigned place_of(Index corner, const std::array<Index, 4>& tet) {
   return (tet[1] == corner ? 1U : 0U) + (tet[2] == corner ? 2U : 0U) + (tet[3] == corner ? 3U : 0U);
 }

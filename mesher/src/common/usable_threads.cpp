@@ -28,13 +28,13 @@ int count_threads(int most) {
   try {
     while (static_cast<int>(threads.size()) + 1 < most) threads.emplace_back([&counted] { counted.wait(); });
   } catch (const std::system_error&) {
-    // The system allows no more threads.
+    // The system allows no more threads than these.
   }
   counted.count_down();
   return static_cast<int>(threads.size()) + 1;
 }
 
-/// Returns whether TBB could create its threads, which it does when there is work.
+/// Returns whether TBB could create its threads; it creates them when there is work.
 bool tbb_has_its_threads(int threads) {
   constexpr std::size_t pieces = 256;
   try {

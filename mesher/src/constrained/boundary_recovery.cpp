@@ -14,10 +14,10 @@ namespace collarmesh::constrained {
 
 namespace {
 
-// Before an edge is removed, edges around it may be removed first, at most this deep.
+// Before an edge is removed, edges around it may be removed first, recursively to this depth.
 constexpr unsigned most_depth = 2;
 constexpr std::size_t most_rings = 1000;  // rings triangulated before edges around are removed first
-// Points added: at most this many times the points of the complex, and some.
+// Limit of added points: `most_times` times the number of points of the complex, plus `some`.
 constexpr std::size_t most_times = 20, some = 1000;
 
 bool same_sign(int a, int b, int c) { return (a >= 0 && b >= 0 && c >= 0) || (a <= 0 && b <= 0 && c <= 0); }
@@ -31,7 +31,7 @@ bool crosses(const Tetrahedra& mesh, Index from, Index to, const std::array<Inde
                    mesh.orientation(from, to, c, a));
 }
 
-/// Faces that a missing edge passes through.
+/// The obstacles to a missing edge: faces that it passes through.
 class InTheWayOfEdge final : public Obstacles {
  public:
   InTheWayOfEdge(const Tetrahedra& mesh, Index a, Index b) : mesh_(mesh), a_(a), b_(b) {}
@@ -48,7 +48,7 @@ class InTheWayOfEdge final : public Obstacles {
   Index a_, b_;
 };
 
-/// Edges that pass through a missing triangle.
+/// The obstacles to a missing triangle: edges that pass through it.
 class InTheWayOfFacet final : public Obstacles {
  public:
   InTheWayOfFacet(const Tetrahedra& mesh, const std::array<Index, 3>& corners)
@@ -66,15 +66,16 @@ class InTheWayOfFacet final : public Obstacles {
   std::array<Index, 3> corners_;
 };
 
-// Radians; a little more than half a circle, so that edges are not turned back again and again.
+// Limit on the sum of two angles, radians: a little more than half a circle, so that edges are not flipped
+// back and forth.
 constexpr double straight_angle = 3.1415926536 + 1e-6;
 
 double angle(const Point& a, const Point& at, const Point& b) {
   return std::atan2(norm(cross(a - at, b - at)), dot(a - at, b - at));
 }
 
-/// Returns whether the line cd separates a from b; all lie in one plane. Exact, in the projection along the
-/// axis nearest to the normal; if all lie in a line there, in the next projection.
+/// Returns whether the line cd separates a from b, all in one plane. Exact: decides in the projection along
+/// the axis nearest to the normal, or in the next projection if that one maps all points to a line.
 bool parts(const Point& c, const Point& d, const Point& a, const Point& b) {
   const Vector normal = cross(d - c, a - c);
   std::array<unsigned, 3> axes{0, 1, 2};
@@ -90,7 +91,7 @@ bool parts(const Point& c, const Point& d, const Point& a, const Point& b) {
   return false;
 }
 
-/// Returns the place where the line ab meets the plane pqr, as a share of the way from a to b.
+/// Returns the place where the line ab meets the plane pqr, as a share of the distance from a to b.
 double share_to_plane(const Point& a, const Point& b, const Point& p, const Point& q, const Point& r) {
   const double from = std::fabs(six_volume(p, q, r, a)), to = std::fabs(six_volume(p, q, r, b));
   return from + to > 0 ? from / (from + to) : 0.5;
@@ -186,7 +187,7 @@ void BoundaryRecovery::divide_required(Index a, Index b, Index x) {
   for (const Index f : edge.facets)
     for (const Index end : {a, b}) {
       std::array<Index, 3> corners = facets_[f].corners;
-      if (std::ranges::find(corners, x) != corners.end()) continue;  // nothing of it is left there
+      if (std::ranges::find(corners, x) != corners.end()) continue;  // this half of the facet is degenerate
       std::ranges::replace(corners, end, x);
       add_facet(corners, facets_[f].patch);
     }
@@ -220,7 +221,7 @@ bool BoundaryRecovery::reduce(const std::function<std::optional<int>()>& change)
   return false;
 }
 
-/// Makes an edge one of the mesh. Edges that need more than others of their kind come later.
+/// Makes an edge one of the mesh. Edges that need more changes than other edges wait until those are done.
 void BoundaryRecovery::recover_edge(const EdgeToDo& edge) {
   const auto [a, b, depth] = edge;
   const InTheWayOfEdge obstacles(mesh_, a, b);
@@ -249,7 +250,7 @@ void BoundaryRecovery::recover_edge(const EdgeToDo& edge) {
   }
 }
 
-/// Finds the faces that the inside of ab meets. Returns a vertex that lies on it; none if there is none.
+/// Finds the faces that the interior of ab meets. Returns a vertex that lies on ab, or none.
 Index BoundaryRecovery::find_crossed(Index a, Index b, std::vector<CrossedFace>& crossed) const {
   crossed.clear();
   const InTheWayOfEdge obstacles(mesh_, a, b);
@@ -291,7 +292,7 @@ Index BoundaryRecovery::find_crossed(Index a, Index b, std::vector<CrossedFace>&
   return none;
 }
 
-/// Changes the mesh at faces that are crossed; returns whether it did.
+/// Changes the mesh at the crossed faces. Returns whether it changed anything.
 bool BoundaryRecovery::clear_edge(const std::vector<CrossedFace>& crossed, const Obstacles& obstacles,
                                   unsigned depth) {
   bool changed = false;
@@ -324,7 +325,7 @@ Index BoundaryRecovery::divide_at_crossing(Index a, Index b, std::vector<Crossed
   return none;
 }
 
-/// Adds a point inside a tetrahedron in the way, so that other tetrahedra can be made there.
+/// Adds a point inside a tetrahedron that the edge crosses, so that the mesh can be changed there.
 bool BoundaryRecovery::add_room(const std::vector<CrossedFace>& crossed) {
   for (const CrossedFace& c : crossed) {
     Point sum;
@@ -358,7 +359,7 @@ void BoundaryRecovery::recover_facet(Index facet) {
   }
 }
 
-/// Finds the edges through a triangle, beginning beside its first edge.
+/// Finds the edges that pass through a triangle, beginning beside its first edge.
 std::vector<BoundaryRecovery::Ends> BoundaryRecovery::find_piercing(const Facet& facet,
                                                                     const Obstacles& obstacles) const {
   std::vector<Ends> found;
@@ -382,7 +383,7 @@ std::vector<BoundaryRecovery::Ends> BoundaryRecovery::find_piercing(const Facet&
   return found;
 }
 
-/// Replaces a triangle by three at a point where an edge passes through it.
+/// Divides a triangle into three at a point where an edge passes through it.
 void BoundaryRecovery::divide_facet(Index facet, const std::vector<Ends>& piercing) {
   const Facet f = facets_[facet];
   const auto& [a, b, c] = f.corners;

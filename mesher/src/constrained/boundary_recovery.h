@@ -14,26 +14,24 @@
 
 namespace collarmesh::constrained {
 
-/// A triangle that the mesh has as one of its faces at the end.
+/// A triangle that has to become a face of the mesh.
 struct Facet {
   std::array<Index, 3> corners;
   Index patch;
   bool alive = true;  ///< false: divided into other facets, which replace it
 };
 
-/// Makes the edges and triangles of a complex edges and faces of a mesh: by local changes of the tetrahedra
-/// that obstruct them, each of which leaves fewer obstacles, and, if no change does, by inserting a point at
-/// a crossing.
-///
-/// Edges come first. Features do not cross, so only edges through its inside can obstruct a triangle whose
-/// own edges exist. Each change or point leaves fewer obstacles, so this ends.
+/// Changes a mesh until it has the edges and triangles of a complex: by local changes of the tetrahedra that
+/// obstruct them and, if no change helps, by inserting a point at a crossing.
+/// Edges come first. Features do not cross, so a triangle whose edges exist can only be obstructed by edges
+/// that pass through its interior. Each change or point leaves fewer obstacles, so the process ends.
 class BoundaryRecovery {
  public:
   /// Keeps both by reference. Precondition: the mesh's first points are those of the complex.
   BoundaryRecovery(Tetrahedra& mesh, const Plc& plc);
 
-  /// Recovers all features. Returns false if `go_on` did. Throws PlcError, with the place, where rounded
-  /// points make recovery impossible.
+  /// Recovers all features. Returns false if `go_on` returned false. Throws PlcError, with the place, if
+  /// rounded points make recovery impossible.
   bool run(const std::function<bool()>& go_on);
 
   const std::vector<Facet>& facets() const { return facets_; }
@@ -57,7 +55,7 @@ class BoundaryRecovery {
     double place;                 // position on the edge, from 0 at the first end to 1 at the other
   };
   using Ends = std::array<Index, 2>;
-  /// An edge that is still missing, and how many times in a row other edges are removed for it.
+  /// An edge that is still missing, and the depth to which other edges are removed for it.
   struct EdgeToDo {
     Index a, b;
     unsigned depth;
@@ -88,7 +86,7 @@ class BoundaryRecovery {
   std::vector<Facet> facets_;
   std::deque<EdgeToDo> edges_to_do_;
   std::deque<Index> facets_to_do_;
-  std::unordered_set<std::uint64_t> turned_;  // edges flipped where nothing else helped
+  std::unordered_set<std::uint64_t> turned_;  // edges flipped because nothing else helped
   std::size_t added_ = 0, most_added_;
 };
 

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t steps_between_reports = 1024;
 
-/// The mesh's regions: tetrahedra that are connected without passing through a facet are in one region.
+/// The regions of the tetrahedra: tetrahedra that are connected without crossing a facet are in one region.
 class Labels {
  public:
   Labels(const Tetrahedra& mesh, const std::vector<Facet>& facets, const Plc& plc)
@@ -128,7 +128,7 @@ class Extraction {
     for (const Index v : corners) made_.features[v] = {2, facet.patch};
   }
 
-  /// Adds the edges on curves of tetrahedra that are kept: curves outside all regions have none.
+  /// Adds the edges on curves. A curve outside all regions has none, because no tetrahedron there is kept.
   void add_edges() {
     std::vector<std::uint64_t> of_tets;
     of_tets.reserve(6 * made_.tets.size());
@@ -143,7 +143,7 @@ class Extraction {
           std::ranges::binary_search(of_tets, edge_key(ends[0], ends[1])))
         edges.push_back({ends[0], ends[1], curve});
     });
-    std::ranges::sort(edges);  // edges come in any order
+    std::ranges::sort(edges);  // edges were found in arbitrary order
     for (const auto& [a, b, curve] : edges) {
       made_.edges.push_back({a, b});
       made_.edge_curve.push_back(curve);

@@ -6,16 +6,16 @@
 
 namespace collarmesh {
 
-/// A mesh whose faces and edges on features are those of a complex, undivided where possible.
+/// A mesh that has the facets and segments of a complex as faces and edges, undivided where possible.
 struct ConstrainedTetrahedra {
   TetMesh mesh;                  ///< empty if the run was cancelled
   std::size_t added_points = 0;  ///< points added because features could not be recovered otherwise
 };
 
 /// Makes tetrahedra from a complex's points, with its facets and segments as faces and edges: the Delaunay
-/// tetrahedra, changed where facets or segments are missing. The complex dictates their shapes and sizes;
-/// their number is about that of its triangles, however near features are to each other. Throws PlcError
-/// where features intersect, or are too near each other for rounded points.
+/// tetrahedra, changed where facets or segments are missing. Their shapes and sizes follow from the complex;
+/// their number is about that of its triangles, however near features are to each other. Throws PlcError if
+/// features intersect, or are so near each other that rounded points cannot separate them.
 ConstrainedTetrahedra constrained_tetrahedra(const Plc& plc, const Execution& execution = {});
 
 }  // namespace collarmesh

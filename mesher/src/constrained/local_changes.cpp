@@ -46,7 +46,7 @@ std::optional<int> LocalChanges::remove_edge(Index a, Index b, unsigned depth, c
   if (const auto gain = triangulate_ring(a, b, ring, obstacles, most)) return gain;
   if (depth == 0 || budget_ == 0) return {};
   int sum = 0;
-  // Removing an edge between an end and the ring may make the ring smaller.
+  // Removing an edge between an end of ab and the ring may make the ring smaller.
   const std::vector<Index> link = ring.link;
   for (const Index p : link)
     for (const Index end : {a, b}) {

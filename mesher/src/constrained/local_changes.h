@@ -12,38 +12,41 @@ namespace collarmesh::constrained {
 class Obstacles {
  public:
   virtual ~Obstacles() = default;
-  /// Returns 1 if this face of the mesh would be in the way, else 0.
+  /// Returns 1 if this face of the mesh would be an obstacle, else 0.
   virtual int face(Index a, Index b, Index c) const = 0;
-  /// Returns 1 if this edge of the mesh would be in the way, else 0.
+  /// Returns 1 if this edge of the mesh would be an obstacle, else 0.
   virtual int edge(Index a, Index b) const = 0;
 };
 
-/// Makes local changes of a few tetrahedra's connections, and insertions. They preserve required edges and
-/// faces that carry a facet.
+/// Makes local changes: reconnects a few tetrahedra, or inserts a point. Required edges and faces that carry
+/// a facet stay.
 class LocalChanges {
  public:
-  /// Keeps both by reference. Required edges are given by their keys.
+  /// Keeps references to both. Required edges are given by their keys.
   LocalChanges(Tetrahedra& mesh, const std::unordered_set<std::uint64_t>& required)
       : mesh_(mesh), required_(required) {}
 
-  /// Each of these returns the increase of the number of obstacles, or nothing if the change is not possible.
+  /// The next two functions return the increase of the number of obstacles, or nothing if the change is not
+  /// possible.
 
   /// Replaces the two tetrahedra at a face by three at the edge that joins the corners beyond it.
   std::optional<int> remove_face(const Tetrahedra::Face& face, const Obstacles& obstacles);
-  /// Triangulates the ring of an edge again, with the fewest obstacles. If no triangulation leaves positive
-  /// tetrahedra and few enough additional obstacles, edges around it are removed first, up to `depth` deep.
+  /// Triangulates the ring of an edge again, with the fewest obstacles. If every triangulation makes a
+  /// tetrahedron without positive volume, or too many more obstacles, removes edges around it first,
+  /// recursively to this depth.
   std::optional<int> remove_edge(Index a, Index b, unsigned depth, const Obstacles& obstacles, int most);
 
-  /// Allows this many rings to be triangulated before other edges are removed first; after that, none.
+  /// Sets the number of rings that may be triangulated before other edges are removed first; after that,
+  /// none.
   void set_budget(std::size_t rings) { budget_ = rings; }
 
-  /// Inserts a point in or near some tetrahedra: replaces them, and as many beside them as necessary, by
+  /// Inserts a point in or near some tetrahedra: replaces these, and as many neighbours as necessary, by
   /// tetrahedra with that point. Returns its number, or none if a required edge or a facet is in the way.
   Index insert(const Point& p, std::vector<Index> cavity);
 
  private:
   static constexpr int any_number = 1 << 20;
-  // Larger rings are not triangulated, and larger cavities not filled.
+  // Limits: larger rings are not triangulated, and larger cavities not filled.
   static constexpr std::size_t largest_ring = 40, largest_cavity = 200;
 
   std::optional<int> triangulate_ring(Index a, Index b, const Tetrahedra::Ring& ring,
@@ -59,7 +62,7 @@ class LocalChanges {
   Tetrahedra& mesh_;
   const std::unordered_set<std::uint64_t>& required_;
   std::size_t budget_ = 0;
-  std::vector<int> least_;          // by i * n + j: least obstacles of the ring's part from i to j
+  std::vector<int> least_;          // by i * n + j: fewest obstacles of the ring's part from i to j
   std::vector<std::size_t> third_;  // the corner of the triangle on ij in that triangulation
 };
 

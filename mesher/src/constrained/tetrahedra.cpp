@@ -12,7 +12,8 @@ namespace collarmesh::constrained {
 
 namespace {
 
-// The box is larger than the points' own box by this share, so that its corners stay out of the way.
+// The box extends beyond the points' bounding box by this share of its size, so that its corners stay out of
+// the way.
 constexpr double box_margin = 1;
 constexpr Index box_corners = 8;
 
@@ -25,7 +26,7 @@ Box box_around(const std::vector<Point>& points) {
   return box;
 }
 
-/// Walks from a cell to one that contains a point, across faces that separate the two.
+/// Walks from a cell to one that contains a point, across faces that separate the cell from the point.
 Index cell_with(const Triangulation& mesh, const Point& p, Index start) {
   Index cell = start, from = none;
   unsigned turn = 0;
@@ -110,7 +111,7 @@ Tetrahedra::Face Tetrahedra::face_of(Index a, Index b, Index c) const {
 bool Tetrahedra::ring(Index tet, Index a, Index b, Ring& ring) const {
   ring.tets.clear();
   ring.link.clear();
-  // Returns the other two corners in the order in which a, b, first, second is positive.
+  // Returns the tetrahedron's other two corners in the order for which (a, b, first, second) is positive.
   const auto ordered = [&](Index t) {
     const Corners& v = corners(t);
     const unsigned i = place_of(a, v);

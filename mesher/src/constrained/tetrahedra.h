@@ -10,27 +10,26 @@
 
 namespace collarmesh::constrained {
 
-/// Tetrahedra that fill a box around some points, with exact decisions, for changes that keep the box filled.
-///
-/// The box's corners are the last eight of the points that it starts with. A face of a tetrahedron may carry
-/// the number of a facet, which it keeps until `set_facet` changes it; no change may remove such a face.
+/// Tetrahedra that fill a box around some points, for changes that keep the box filled. Decisions are exact.
+/// The box's corners are the last eight of the initial points. A face of a tetrahedron may carry the number
+/// of a facet, which it keeps until `set_facet` changes it; no change may remove such a face.
 class Tetrahedra {
  public:
   using Corners = std::array<Index, 4>;
 
-  /// A face as seen from one of its tetrahedra: the one opposite a corner.
+  /// A face as seen from one of its tetrahedra: the face opposite a corner of it.
   struct Face {
     Index tet = none;
     unsigned corner = 0;
   };
 
-  /// The tetrahedra around an edge ab in order: tetrahedron i has the corners a, b, link[i] and link[i + 1];
-  /// the last one has link[0] again.
+  /// The tetrahedra around an edge ab, in order: tetrahedron i has the corners a, b, link[i] and link[i + 1];
+  /// for the last one, link[0] follows.
   struct Ring {
     std::vector<Index> tets, link;
   };
 
-  /// Makes the Delaunay tetrahedra of the points, which are distinct. Cost: near linear.
+  /// Makes the Delaunay tetrahedra of the points, which must be distinct. Cost: near linear.
   explicit Tetrahedra(const std::vector<Point>& points);
 
   std::size_t size() const { return tets_.size(); }
@@ -38,7 +37,7 @@ class Tetrahedra {
   const Point& point(Index vertex) const { return points_[vertex]; }
   bool alive(Index tet) const { return tets_[tet].alive; }
   const Corners& corners(Index tet) const { return tets_[tet].corners; }
-  /// Returns the tetrahedron beyond a face; none at the box.
+  /// Returns the tetrahedron beyond a face; none at the box's surface.
   Index beyond(const Face& face) const { return tets_[face.tet].neighbours[face.corner].tet; }
   Face opposite(const Face& face) const { return tets_[face.tet].neighbours[face.corner]; }
   Index facet(const Face& face) const { return tets_[face.tet].facets[face.corner]; }
@@ -55,17 +54,18 @@ class Tetrahedra {
   void star(Index vertex, std::vector<Index>& tets) const {
     find_star(vertex, tets, [](Index) { return false; });
   }
-  /// Finds the ring of an edge of a tetrahedron; false at the box, where there is no whole ring.
+  /// Finds the ring of an edge of a tetrahedron. Returns false at the box's surface, where the ring is not
+  /// closed.
   bool ring(Index tet, Index a, Index b, Ring& ring) const;
 
-  /// Adds a point, which is no corner yet. Returns its number.
+  /// Adds a point that is not a corner yet. Returns its number.
   Index add_point(const Point& p);
-  /// Removes the last point, which is no corner.
+  /// Removes the last point, which must not be a corner.
   void drop_point() { points_.pop_back(), tet_at_.pop_back(); }
   /// Replaces tetrahedra by others that fill the same space. Their faces on its border stay.
   void replace(std::span<const Index> old, std::span<const Corners> created);
 
-  /// Returns a mark. Changes after it can be undone, the last ones first, until they are kept.
+  /// Returns a mark. Changes after the mark can be undone in reverse order until `keep` is called.
   std::size_t mark() const { return journal_.size(); }
   void undo_to(std::size_t mark);
   /// Makes all changes permanent.
@@ -117,11 +117,11 @@ class Tetrahedra {
 
   std::vector<Point> points_;
   std::vector<Tet> tets_;
-  std::vector<Index> tet_at_;  // by vertex; none: it is no corner
+  std::vector<Index> tet_at_;  // by vertex: a tetrahedron at it; none if it is no corner
   std::vector<Index> free_;
   std::vector<Step> journal_;
   std::vector<Side> sides_;
-  mutable std::vector<std::uint32_t> marks_;  // by tet
+  mutable std::vector<std::uint32_t> marks_;  // marks of visited tets
   mutable std::uint32_t stamp_ = 0;
   mutable std::vector<Index> star_;
 };

@@ -81,10 +81,11 @@ bool Triangulation::in_conflict_exact(Index cell, const Point& p) const {
   return predicates::in_sphere_exact(point(v[0]), point(v[1]), point(v[2]), point(v[3]), p);
 }
 
-// Computes the sphere and its margin. With e = 2^-53, L the longest edge from the first corner and k = 16 e
-// L^3 / |det|, the centre and the radius are off by at most d = k (r + L) + 2 e |c| + 4 e r. |p c|^2 is then
-// right when it differs from r^2 by more than 2 d (r + |pc| + d) + 8 e (r^2 + |pc|^2), which is at most
-// margin * (r^2 + |pc|^2) with the margin below, because r + |pc| is at most sqrt(2) (r^2 + |pc|^2) / r.
+// Computes the sphere and its margin. Let e = 2^-53, L the longest edge from the first corner, and k = 16 e
+// L^3 / |det|. The centre and the radius are off by at most d = k (r + L) + 2 e |c| + 4 e r. The comparison
+// of |p c|^2 with r^2 is right if they differ by more than 2 d (r + |pc| + d) + 8 e (r^2 + |pc|^2). This is
+// at most margin * (r^2 + |pc|^2) with the margin below, because r + |pc| is at most sqrt(2) (r^2 + |pc|^2) /
+// r.
 Triangulation::Sphere Triangulation::circumsphere(const std::array<Index, 4>& corners) const {
   constexpr double e = 0x1p-53;
   const Point& a = point(corners[0]);
@@ -176,8 +177,8 @@ Index Triangulation::conflicting_cell_around(Index vertex, const Point& p) {
   return none;
 }
 
-// Checks the new cells after an insertion: positively oriented around the vertex, linked to their neighbours
-// from both sides, and Delaunay.
+// Checks the new cells after an insertion: they must be positively oriented around the vertex, linked to
+// their neighbours in both directions, and Delaunay.
 [[maybe_unused]] static bool consistent(const Triangulation& mesh, const ConflictZone& zone, Index vertex) {
   for (std::size_t i = 0; i < zone.created.size(); ++i) {
     const Index cell = zone.created[i];
@@ -207,8 +208,8 @@ void Triangulation::replace_zone(ConflictZone& zone, Index vertex, Workspace& wo
   for (std::size_t i = 0; i < zone.vertices.size(); ++i)
     vertices_[zone.vertices[i]].local = static_cast<std::uint32_t>(i);
 
-  // Build the new cells in fresh or recycled slots. The zone's own cells are still read here, so the next
-  // insertion recycles them.
+  // Build the new cells in fresh or recycled slots. The zone's own cells are still needed here, so only the
+  // next insertion recycles them.
   zone.created.clear();
   zone.outer.clear();
   for (const FaceId border : zone.border) {
@@ -380,7 +381,7 @@ Renumbering Triangulation::join(std::vector<Block>& blocks) {
   return renumbering;
 }
 
-// Of cells at the block's border, reads only data that no other block changes.
+// At the block's border, this reads only the data of cells that no other block changes.
 void Triangulation::Block::incident_cells(Index vertex, std::vector<Index>& cells) const {
   cells.assign(1, mesh_->vertices_[vertex].cell);
   IndexSet known;

@@ -20,8 +20,8 @@ inline Index cell_of(FaceId face) { return face >> 2; }
 inline unsigned corner_of(FaceId face) { return face & 3U; }
 inline FaceId face_id(Index cell, unsigned corner) { return 4 * cell + corner; }
 
-/// The cells whose circumspheres contain a point, with their border: insertion of the point replaces them. A
-/// caller keeps one and reuses it, so that insertions allocate nothing after a while.
+/// The cells whose circumspheres contain a point, with their border: insertion of the point replaces them.
+/// Callers reuse one object, so that insertions soon allocate no more memory.
 struct ConflictZone {
   Point point;
   std::vector<Index> cells;
@@ -48,7 +48,7 @@ struct LargestZone {
 struct Renumbering {
   struct Moved {
     Index first, end;  ///< a range of old numbers
-    Index shift;       ///< the new numbers are smaller by this
+    Index shift;       ///< decrease of the numbers in the range
   };
   std::vector<Moved> moved;  ///< ranges, in their order
   Index count;               ///< number of all vertices
@@ -63,24 +63,22 @@ struct Renumbering {
 };
 
 /// Delaunay triangulation of points inside a box, as flat arrays.
-///
-/// The box's eight corners are vertices 0 to 7; everything stays inside, so there are no infinite
-/// cells. A cell is four vertices, positively oriented (`six_volume` > 0), and four neighbours, with
-/// its circumsphere and an error bound beside it. Ties (cospherical points) are not in conflict.
-/// Cells are recycled; `generation` tells whether an id still means the same cell.
-///
+/// The box's eight corners are vertices 0 to 7; everything stays inside, so there are no infinite cells. A
+/// cell is four vertices, positively oriented (`six_volume` > 0), and four neighbours; its circumsphere is
+/// stored with an error bound. Ties (cospherical points) are not in conflict. Cells are recycled;
+/// `generation` tells whether an id still means the same cell.
 /// Several threads may insert at once into blocks of vertices, one block each: see `divide`.
 class Triangulation {
  public:
   class Block;
-  /// The block that each vertex belongs to, by vertex.
+  /// For each vertex, the block that it belongs to.
   using Owners = std::vector<std::uint16_t>;
   static constexpr std::uint16_t no_owner = UINT16_MAX;
 
   explicit Triangulation(const Box& box);
 
   Index vertex_count() const { return static_cast<Index>(vertices_.size()); }
-  /// Returns the number of cells in use and free ones: every id is below it.
+  /// Returns the number of cells, used and free ones. Every cell id is below it.
   Index cell_capacity() const { return static_cast<Index>(cells_.size()); }
   Index cell_count() const { return static_cast<Index>(cells_.size() - workspace_.free_cells.size()); }
 
@@ -122,18 +120,19 @@ class Triangulation {
   /// zone. The zone stays valid until the next insertion.
   void find_conflict_zone(const Point& p, Index start, ConflictZone& zone);
 
-  /// Returns a cell around `vertex` that is in conflict with p; none if there is none. If `vertex` is a
-  /// nearest vertex of p there always is one, unless p is a vertex.
+  /// Returns a cell around `vertex` that is in conflict with p; none if there is none. There always is one if
+  /// `vertex` is a nearest vertex of p, unless p is a vertex itself.
   Index conflicting_cell_around(Index vertex, const Point& p);
 
-  /// Replaces the zone's cells by those that join its border to zone.point. Returns the new vertex; fills
-  /// zone.created and zone.outer.
+  /// Replaces the zone's cells by cells that join the faces of its border to zone.point. Returns the new
+  /// vertex; fills zone.created and zone.outer.
   Index insert(ConflictZone& zone);
 
   /// Divides the triangulation into blocks of vertices, each with room for a number of insertions. Until the
-  /// blocks are joined, callers may only insert into blocks, and read data that no other block changes:
-  /// points; the corners and spheres of cells with a vertex of the reader's own block, and their neighbours
-  /// across faces with such a vertex. `owners` gives the block of each vertex, below `insertions.size()`, or
+  /// blocks are joined, callers may only insert into blocks, and may only read data that no other block
+  /// changes: points; corners and spheres of cells with a vertex of the reader's own block; neighbours of
+  /// these cells across faces with such a vertex. `owners` gives the block of each vertex, below
+  /// `insertions.size()`, or
   /// `no_owner`; it grows with new vertices, and must otherwise not change until the blocks are joined. The
   /// result does not depend on the threads, nor on their timing.
   std::vector<Block> divide(std::span<const Index> insertions, Owners& owners);
@@ -145,7 +144,7 @@ class Triangulation {
   /// Finds the vertices joined to this one by an edge.
   void adjacent_vertices(Index vertex, std::vector<Index>& adjacent);
 
-  /// Returns a fresh stamp for marking vertices, and the marks.
+  /// Returns a fresh stamp for marking vertices, and the array of marks.
   std::uint32_t new_vertex_stamp() { return ++workspace_.vertex_stamp; }
   bool stamp_vertex(Index vertex, std::uint32_t stamp) {
     if (vertices_[vertex].stamp == stamp) return false;
@@ -173,7 +172,7 @@ class Triangulation {
     double margin;  // relative error bound of the conflict test
   };
   struct State {
-    std::uint32_t mark;  // 2 * search: seen, not in conflict; 2 * search + 1: in conflict
+    std::uint32_t mark;  // 2 * search: seen and not in conflict; 2 * search + 1: in conflict
     std::uint32_t generation;
   };
 

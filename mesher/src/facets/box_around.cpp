@@ -21,7 +21,7 @@ Box bounds_of(std::span<const PolygonSoup> soups) {
   return bounds;
 }
 
-// A number that no facet has, if any has one.
+// Returns a tag that no facet has; 0 if no facet has a tag.
 Tag unused_tag(std::span<const PolygonSoup> soups) {
   Tag largest = 0;
   for (const PolygonSoup& soup : soups)

@@ -7,11 +7,11 @@
 
 namespace collarmesh::facets {
 
-/// Returns the soups and, last, the box around them that the options ask for. Points of a soup that has
-/// nothing else are features then.
+/// Returns the soups, followed by the box around them that the options ask for. In a soup of points alone,
+/// the points become features.
 std::vector<PolygonSoup> with_box(std::span<const PolygonSoup> soups, const PlcOptions& options);
 
-/// Returns the options for soups that have their box.
+/// Returns the options for soups that include their box.
 PlcOptions enclosed(PlcOptions options);
 
 }  // namespace collarmesh::facets

@@ -17,8 +17,8 @@ using Edge = std::array<Index, 2>;
 
 Edge edge_key(Index a, Index b) { return a < b ? Edge{a, b} : Edge{b, a}; }
 
-// Collinear triangles that share edges lie on one line: a group. Their edges are cut at every point
-// of the group in between.
+// Groups of collinear triangles: triangles of a group share edges, so they lie on one line. Their edges are
+// cut at every point of the group in between.
 class CollinearGroups {
  public:
   CollinearGroups(const Draft& draft, const std::vector<Index>& flat) : draft_(draft), points_(flat.size()) {
@@ -58,7 +58,7 @@ class CollinearGroups {
   std::vector<std::vector<Index>> points_;  // by group
 };
 
-// Cuts a triangle at the cuts of its sides. Each step fans the apex opposite one cut side.
+// Cuts a triangle at the cuts of its sides. Each step makes a fan from the corner opposite a side with cuts.
 void add_cut(const Corners& triangle, const Origin& origin, const CollinearGroups& groups, Draft& result) {
   std::vector<Corners> stack{triangle};
   while (!stack.empty()) {
@@ -98,8 +98,8 @@ struct Twin {
   }
 };
 
-// Sorts triangles so that those with the same corners follow each other, in their order: a counting sort by
-// the lowest corner, then a sort within each group.
+// Sorts triangles so that those with the same corners follow each other, in their original order: a counting
+// sort by the lowest corner, then a sort within each group.
 std::vector<Twin> sort_by_corners(const Draft& draft) {
   std::vector<Index> next(draft.points.size() + 1, 0);
   for (const Corners& t : draft.triangles) ++next[*std::min_element(t.begin(), t.end()) + 1];
@@ -124,7 +124,8 @@ bool same_orientation(const Corners& a, const Corners& b) {
   return b[(at + 1) % 3] == a[1];
 }
 
-// Removes the marked triangles and renumbers the claims on the others. Returns the number of removed ones.
+// Removes the marked triangles and renumbers the claims on the remaining ones. Returns the number of removed
+// triangles.
 Index compact(Draft& draft, const std::vector<bool>& removed) {
   std::vector<Index> moved(draft.triangles.size());
   Index kept = 0;

@@ -4,16 +4,16 @@
 
 namespace collarmesh::facets {
 
-/// Removes the triangles whose corners lie exactly on one line. Neighbours at such a triangle's long edge
-/// are cut at the corner in between, so the surface keeps the same points and stays closed.
+/// Removes the triangles whose corners lie exactly on one line. A neighbour at the long edge of such a
+/// triangle is cut at the corner in between, so the surface keeps the same points and stays closed.
 void remove_collinear_triangles(Draft& draft);
 
-/// Keeps the first of the triangles of one soup with the same corners.
+/// Removes duplicate triangles within each soup, except the first.
 void remove_twins_within_soups(Draft& draft);
 
-/// Keeps the first of the triangles of several soups with the same corners: where two solids touch
-/// they share one interface. The sides that the others took for solid become claims.
-/// Precondition: the triangles of each soup are oriented.
+/// Removes duplicate triangles of different soups, except the first: touching solids then share one
+/// interface. A side on which a removed triangle had its soup's solid becomes a claim. Precondition: the
+/// triangles of each soup are oriented.
 void merge_twins_across_soups(Draft& draft);
 
 }  // namespace collarmesh::facets

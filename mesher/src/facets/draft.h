@@ -11,29 +11,30 @@
 #include "collarmesh/plc.h"
 #include "collarmesh/polygon_soup.h"
 
-/// The complex while `build_plc` makes it: welded points, triangles, explicit segments and points.
-/// Each step of the builder is one file beside this one.
+/// The complex while `build_plc` makes it: welded points, triangles, explicit segments and points. Each step
+/// of the builder has its own file.
 namespace collarmesh::facets {
 
 /// The corners of a triangle. Its side i is the edge from corner i to corner i + 1.
 using Corners = std::array<Index, 3>;
 
-/// Where a triangle comes from.
+/// The origin of a triangle in the input.
 struct Origin {
   Tag tag = 0;
   Index soup = 0;
   Index facet = 0;
-  bool oriented = true;  ///< its orientation says on which side its soup's solid is
+  bool oriented = true;  ///< whether its orientation tells on which side its soup's solid is
 };
 
-/// An edge that the input names as a segment.
+/// An edge that the input gives as a segment.
 struct Segment {
   Index a = 0, b = 0;
   Tag tag = 0;
   Index soup = 0;
 };
 
-/// A soup whose triangle was dropped for its twin takes this side of the twin for solid.
+/// The claim of a soup whose triangle was dropped as a duplicate: its solid is on this side of the remaining
+/// triangle.
 struct Claim {
   Index side = 0;  ///< 2 t behind triangle t, 2 t + 1 in front of it
   Index soup = 0;
@@ -45,7 +46,7 @@ struct Draft {
   std::vector<Corners> triangles;
   std::vector<Origin> origins;  ///< one per triangle
   std::vector<Segment> segments;
-  std::vector<Index> loose_points;  ///< points that the input names as vertices
+  std::vector<Index> loose_points;  ///< points that the input gives as vertices
   std::vector<Claim> claims;
 
   std::vector<std::string> soup_names;
@@ -53,11 +54,11 @@ struct Draft {
   std::vector<bool> soup_gives_features;  ///< PolygonSoup::given_features, by soup
 
   Box bounds;
-  double planar_tolerance = 0;   ///< absolute
-  double largest_deviation = 0;  ///< absolute
+  double planar_tolerance = 0;   ///< absolute distance
+  double largest_deviation = 0;  ///< absolute distance
   Plc::Cleanup cleanup;
 
-  /// How far rounding alone may move points off a plane.
+  /// Returns the distance by which rounding alone may move points off a plane.
   double rounding() const {
     const auto reach = [](const Point& p) {
       return std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
@@ -71,7 +72,7 @@ struct Draft {
   }
 };
 
-/// Half the cross product of two sides.
+/// Returns half the cross product of two sides.
 inline Vector area_vector(const Draft& draft, const Corners& t) {
   return 0.5 * cross(draft.points[t[1]] - draft.points[t[0]], draft.points[t[2]] - draft.points[t[0]]);
 }

@@ -7,7 +7,7 @@ namespace collarmesh::facets {
 
 namespace {
 
-// Sorts by insertion if there are few, as at most points.
+// Sorts pairs; uses insertion sort if there are few of them, as at most points.
 void sort_few(std::span<std::pair<Index, Index>> pairs) {
   constexpr std::size_t few = 16;
   if (pairs.size() > few) {

@@ -33,7 +33,7 @@ int planar_orientation(unsigned axis, const Point& a, const Point& b, const Poin
 }
 
 bool collinear(const Point& a, const Point& b, const Point& c) {
-  // Most triples are far from collinear, which a bound on the rounding errors of the cross product proves.
+  // Most triples are far from collinear; a bound on the rounding errors of the cross product proves that.
   const Vector u = b - a, v = c - a;
   const double bound = 1e-14 * norm(u) * norm(v);
   if (squared_norm(cross(u, v)) > bound * bound) return false;
@@ -54,7 +54,7 @@ bool same_side(const Point& a, const Point& b, const Point& c, const Point& d) {
 
 int compare_crossings(const Point& p, const Point& q, const std::array<Point, 3>& t0,
                       const std::array<Point, 3>& t1) {
-  // The parameter on triangle i is P / (P - Q) with its volumes P and Q towards p and q.
+  // The parameter on triangle i is P / (P - Q), with P and Q the volumes that p and q span with it.
   const Rational p0 = exact_six_volume(t0, p), q0 = exact_six_volume(t0, q);
   const Rational p1 = exact_six_volume(t1, p), q1 = exact_six_volume(t1, q);
   const Rational r0 = p0 / (p0 - q0), r1 = p1 / (p1 - q1);

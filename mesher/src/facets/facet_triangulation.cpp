@@ -12,7 +12,7 @@ namespace collarmesh::facets {
 
 namespace {
 
-// A facet with the draft's point indices.
+// A facet of a soup, in point indices of the draft.
 struct Facet {
   Index soup = 0, number = 0;
   Tag tag = 0;
@@ -24,7 +24,7 @@ struct Facet {
 
 struct Plane {
   Point origin;
-  Vector normal;  // unit
+  Vector normal;  // unit vector
 };
 
 // Returns twice the area vector of a polygon.
@@ -37,7 +37,7 @@ Vector area_vector(const std::vector<Point>& points, const std::vector<Index>& l
 
 class FacetTriangulator {
  public:
-  /// With `bent`, facets that are not planar polygons are approximated instead of being faults.
+  /// With `bent`, approximates facets that are not planar polygons; without, reports them as faults.
   FacetTriangulator(Draft& draft, Faults& faults, BentFacets* bent)
       : draft_(draft), faults_(faults), bent_(bent) {}
 
@@ -149,8 +149,8 @@ class FacetTriangulator {
     if (bent_->where.size() < most_places) bent_->where.push_back(where);
   }
 
-  // Makes a fan of triangles from the first corner of each loop, whatever its shape, which matches the facets
-  // around it.
+  // Makes a fan of triangles from the first corner of each loop, whatever its shape: the fan uses the same
+  // edges as the facets around it.
   void fan(const Facet& facet) {
     for (const auto& loop : facet.loops)
       for (std::size_t i = 1; i + 1 < loop.size(); ++i) {
@@ -160,7 +160,7 @@ class FacetTriangulator {
       }
   }
 
-  // Handles the most frequent polygon quickly.
+  // Cuts convex quadrangles, the most frequent polygons, without a triangulation.
   bool cut_convex_quadrangle(const Facet& facet) {
     if (facet.loops.size() > 1 || facet.loops[0].size() != 4 || !facet.segments.empty() ||
         !facet.points.empty() || !facet.holes.empty())
@@ -205,7 +205,7 @@ class FacetTriangulator {
                                     corners_.begin());
   }
 
-  // `info` is true for faces outside the facet.
+  // Marks the faces outside the facet by their `info`.
   void mark_outside(const Facet& facet, PlaneTriangulation& mesh) {
     for (const auto face : mesh.all_face_handles()) face->info() = false;
     flood(mesh.infinite_face());
@@ -239,7 +239,7 @@ class FacetTriangulator {
       if (!counterclockwise) std::swap(t[1], t[2]);
       draft_.add_triangle(t, {facet.tag, facet.soup, facet.number});
     }
-    // An edge with the facet on both sides is a segment that the input names.
+    // A constrained edge with the facet on both sides is a segment that the input gives.
     for (const auto& [face, i] : mesh.finite_edges()) {
       if (!face->is_constrained(i) || face->info() || face->neighbor(i)->info()) continue;
       draft_.segments.push_back(
@@ -250,7 +250,7 @@ class FacetTriangulator {
   Draft& draft_;
   Faults& faults_;
   BentFacets* bent_;
-  unsigned axis_ = 0;  // the coordinate that is dropped
+  unsigned axis_ = 0;  // the coordinate that projection drops
   std::vector<Index> corners_;
   std::vector<PlaneTriangulation::Vertex_handle> handles_;  // by position in corners_
 };
@@ -262,7 +262,7 @@ class FacetHoles {
     std::stable_sort(holes_.begin(), holes_.end(),
                      [](const auto& a, const auto& b) { return a.facet < b.facet; });
   }
-  /// Returns the hole points of a facet; call it for one facet after the other.
+  /// Returns the hole points of a facet. Call it with increasing facets.
   std::vector<Point> take(Index facet) {
     std::vector<Point> points;
     for (; next_ < holes_.size() && holes_[next_].facet <= facet; ++next_)
@@ -275,7 +275,8 @@ class FacetHoles {
   std::size_t next_ = 0;
 };
 
-// A polygon with the draft's indices, without repeated corners, filed by its size.
+// Adds a polygon, in indices of the draft and without repeated corners, to the facet: as a loop, a segment or
+// a point.
 void add_polygon(std::span<const Index> polygon, const std::vector<Index>& merged, Facet& facet) {
   std::vector<Index> loop;
   for (const Index corner : polygon)

@@ -9,19 +9,19 @@
 
 namespace collarmesh::facets {
 
-/// The faults found so far: keeps the first ones of each kind and counts all.
+/// The faults found so far. Keeps the first ones of each kind and counts all.
 class Faults {
  public:
   void add(PlcFault::Kind kind, std::string message, std::vector<Index> points, const Point& where);
 
   bool empty() const { return faults_.empty(); }
-  /// Is another fault of this kind only counted?
+  /// Returns whether further faults of this kind are counted but not kept.
   bool full(PlcFault::Kind kind) const { return counts_[static_cast<std::size_t>(kind)] >= listed_per_kind; }
 
-  /// The first ones of each kind.
+  /// Returns the kept faults.
   const std::vector<PlcFault>& list() const { return faults_; }
 
-  /// Throws PlcError, if there is any fault.
+  /// Throws PlcError if there is a fault.
   void raise() const;
 
  private:
@@ -32,7 +32,7 @@ class Faults {
   std::array<std::size_t, kinds> counts_{};
 };
 
-/// A point for messages.
+/// Returns a point as text for messages.
 std::string text(const Point& p);
 
 }  // namespace collarmesh::facets

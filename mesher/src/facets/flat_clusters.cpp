@@ -9,12 +9,12 @@ namespace collarmesh::facets {
 
 namespace {
 
-// A triangle lower than this many planar tolerances is a needle.
+// A triangle is a needle if its height is below this many planar tolerances.
 constexpr double needle_height = 10;
-// A triangle lower than this many may lie in a plane that its own normal does not fit.
+// Below a height of this many tolerances, a triangle may belong to a plane that its own normal does not fit.
 constexpr double foldable_height = 2;
-// The plane of a triangle is not trusted beyond this share of its height: even a body smaller than the
-// tolerance has sides.
+// Tolerance of a triangle's plane, relative to the triangle's height, if that is less than the planar
+// tolerance: even a body smaller than the tolerance has sides.
 constexpr double share_of_height = 0.1;
 
 double longest_side(const Draft& draft, Index t) {
@@ -42,8 +42,8 @@ class ClusterFinder {
     }
   }
 
-  // Seeds come in order of decreasing size. Most triangles of a curved surface have no neighbour in their
-  // plane and are skipped.
+  // Grows clusters from seeds, in order of decreasing size. Most triangles of a curved surface have no
+  // neighbour in their plane and are skipped.
   FlatClusters run() {
     std::vector<Index> order;
     for (Index t = 0; t < areas_.size(); ++t) {
@@ -64,7 +64,7 @@ class ClusterFinder {
  private:
   bool precedes(Index a, Index b) const { return areas_[a] != areas_[b] ? areas_[a] > areas_[b] : a < b; }
 
-  // Returns the neighbours' sides on common edges of exactly two triangles.
+  // Visits the sides of neighbours across edges of exactly two triangles.
   template <class Visit>
   void for_each_neighbour(Index t, const Visit& visit) const {
     for (unsigned i = 0; i < 3; ++i) {
@@ -89,13 +89,14 @@ class ClusterFinder {
     }
   }
 
-  // Returns whether the triangle of this side, a neighbour of t in the seed's cluster, belongs to it, too.
+  // Returns whether the triangle of this side, a neighbour of t in the seed's cluster, belongs to the
+  // cluster, too.
   bool joins(Index side, Index t, Index seed) const {
     return same_facet(t, side / 3) || (!divided(t, side / 3) && in_plane(side, seed));
   }
 
-  // Returns whether a given feature lies between two neighbours. A needle along it lies in the planes of both
-  // faces, but the normal that fits it is its own face's.
+  // Returns whether a given feature separates two neighbours. A needle along the feature lies in the planes
+  // of both faces, but only its own face's normal is right for it.
   bool divided(Index s, Index t) const {
     if (border_ == ClusterBorder::none) return false;
     const Origin &a = draft_.origins[s], &b = draft_.origins[t];
@@ -103,13 +104,14 @@ class ClusterFinder {
            (draft_.soup_gives_features[a.soup] || draft_.soup_gives_features[b.soup]);
   }
 
-  // A polygon is one plane, whatever rounding has done to its corners.
+  // Returns whether two triangles are parts of one polygon: these count as coplanar, whatever rounding has
+  // done to the corners.
   bool same_facet(Index s, Index t) const {
     return draft_.origins[s].soup == draft_.origins[t].soup &&
            draft_.origins[s].facet == draft_.origins[t].facet;
   }
 
-  // Returns whether the triangle lies in the plane of the seed and faces the same side.
+  // Returns whether the triangle of this side lies in the plane of the seed and faces the same way.
   bool in_plane(Index side, Index seed) const {
     const Point& p = draft_.points[apex(draft_.triangles, side)];
     if (!point_in_plane(p, seed)) return false;
@@ -131,7 +133,7 @@ class ClusterFinder {
   const EdgeTable& edges_;
   ClusterBorder border_;
   std::vector<double> areas_, heights_;
-  std::vector<bool> grows_;  // as a seed, when no other one was before
+  std::vector<bool> grows_;  // whether a triangle can be a seed
   std::vector<Index> stack_;
   FlatClusters result_;
 };

@@ -7,25 +7,25 @@
 
 namespace collarmesh::facets {
 
-/// Groups of connected triangles whose corners lie in one plane: within the planar tolerance of
-/// that of their largest triangle, exactly if the tolerance is 0. They give needles, whose own
-/// normals are rounding noise, a normal to judge by.
+/// Groups of connected triangles whose corners lie in one plane: within the planar tolerance of the plane of
+/// their largest triangle, or exactly if the tolerance is 0. Needles, whose own normals are rounding noise,
+/// get the normal of their group.
 struct FlatClusters {
-  std::vector<Index> seed;     ///< by triangle: the largest of its cluster
-  std::vector<Vector> normal;  ///< by triangle, unit; of itself, or of its seed if it is a needle
+  std::vector<Index> seed;     ///< by triangle: the largest triangle of its cluster
+  std::vector<Vector> normal;  ///< by triangle: its unit normal; for needles, that of the seed
 };
 
-/// Where a cluster ends besides.
+/// Places where clusters end in addition to leaving their plane.
 enum class ClusterBorder {
-  none,           ///< only where it leaves its plane
+  none,           ///< no other places
   given_features  ///< between facets of different tags in soups that give their features
 };
 
-/// Cost: O(n log n).
+/// Finds the clusters. Cost: O(n log n).
 FlatClusters find_flat_clusters(const Draft& draft, const EdgeTable& edges,
                                 ClusterBorder border = ClusterBorder::none);
 
-/// Unit normal of a triangle of the draft.
+/// Returns the unit normal of a triangle of the draft.
 Vector unit_normal(const Draft& draft, Index triangle);
 
 }  // namespace collarmesh::facets

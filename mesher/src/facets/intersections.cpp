@@ -15,7 +15,7 @@ namespace collarmesh::facets {
 
 namespace {
 
-// The corners of two simplices, common ones first.
+// Two simplices with their corners, common ones first.
 struct Pair {
   Simplex first, second;
   unsigned common = 0;
@@ -59,8 +59,8 @@ class IntersectionFinder {
     return pair;
   }
 
-  // Returns whether they meet in more than their common corners. The first one has at least as many corners,
-  // the second one at most two.
+  // Returns whether they meet outside their common corners. The first simplex has at least as many corners as
+  // the second, which has at most two.
   bool illegal(const Pair& pair) const {
     const auto& f = pair.first.points;
     const auto& s = pair.second.points;
@@ -74,12 +74,12 @@ class IntersectionFinder {
     return segment_illegal(pair);
   }
 
-  // Returns the same for two triangles, the most frequent pairs.
+  // Returns whether two triangles, the most frequent pairs, meet outside their common corners.
   bool triangles_illegal(const Corners& f, const Corners& s) const {
     const auto from = [](const Corners& t, unsigned i) {
       return Corners{t[i % 3], t[(i + 1) % 3], t[(i + 2) % 3]};
     };
-    unsigned common = 0, in_f = 0, in_s = 0;  // the sums of their places
+    unsigned common = 0, in_f = 0, in_s = 0;  // the sums of the positions of common corners
     for (unsigned a = 0; a < 3; ++a)
       for (unsigned b = 0; b < 3; ++b)
         if (f[a] == s[b]) {
@@ -87,7 +87,7 @@ class IntersectionFinder {
           in_f += a;
           in_s += b;
         }
-    // The places of all three corners have the sum 3, which gives the third of two common ones.
+    // All three positions have the sum 3, so two common ones give the third.
     if (common == 2) return folded(from(f, 4 - in_f), from(s, 4 - in_s));
     if (common == 1) return fans_meet(from(f, in_f), from(s, in_s));
     return common == 0 && triangles_meet(f, s);
@@ -112,8 +112,8 @@ class IntersectionFinder {
            same_side(at(f[0]), at(f[1]), at(f[2]), at(s[2]));
   }
 
-  // Triangles with one common corner that meet elsewhere: then the side of one opposite to it meets
-  // the other.
+  // Returns whether two triangles with one common corner meet elsewhere: then the side of one of them that is
+  // opposite to that corner meets the other triangle.
   bool fans_meet(const Corners& f, const Corners& s) const {
     if (apart(f, s, 1) || apart(s, f, 1)) return false;
     return segment_meets_triangle(at(f[1]), at(f[2]), at(s[0]), at(s[1]), at(s[2])) ||
@@ -172,7 +172,7 @@ class IntersectionFinder {
     return fmt::format("facet {} of {}", draft_.origins[i].facet, draft_.soup_names[draft_.origins[i].soup]);
   }
 
-  // Finds a corner of one, not common, that lies on the other.
+  // Finds a corner of one simplex, not common, that lies on the other.
   Index touching_corner(const Pair& pair) const {
     for (unsigned k = pair.common; k < pair.second.size; ++k)
       if (on(pair.second.points[k], pair.first)) return pair.second.points[k];
@@ -186,7 +186,7 @@ class IntersectionFinder {
     return s.size == 2 && point_on_segment(at(p), at(s.points[0]), at(s.points[1]));
   }
 
-  // Rounded, for messages.
+  // Returns the meeting point, rounded, for messages.
   Point meeting_point(const Pair& pair) const {
     if (const auto p = piercing_point(pair.first, pair.second, pair.common)) return *p;
     if (const auto p = piercing_point(pair.second, pair.first, pair.common)) return *p;
@@ -201,7 +201,7 @@ class IntersectionFinder {
     return both.centre();
   }
 
-  // Returns the place where a side of the first one pierces the second, a triangle.
+  // Returns the place where a side of the first simplex pierces the second, a triangle.
   std::optional<Point> piercing_point(const Simplex& first, const Simplex& second, unsigned common) const {
     if (first.size < 2 || second.size < 3) return std::nullopt;
     const auto& s = second.points;

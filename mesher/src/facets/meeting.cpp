@@ -11,8 +11,7 @@ namespace {
 
 using predicates::orientation;
 
-// Returns a coordinate to drop when projecting abc, so that it stays a triangle; 3 if the points are
-// collinear.
+// Returns a coordinate whose removal projects abc to a triangle; 3 if the points are collinear.
 unsigned projection_axis(const Point& a, const Point& b, const Point& c) {
   unsigned axis = 0;
   while (axis < 3 && planar_orientation(axis, a, b, c) == 0) ++axis;

@@ -2,7 +2,7 @@
 
 #include "collarmesh/geometry.h"
 
-/// Do two simplices meet? Closed sets, exact decisions. All corners are distinct points, triangles
+/// Decides exactly whether two simplices, as closed sets, meet. All corners are distinct points; triangles
 /// have an area.
 namespace collarmesh::facets {
 

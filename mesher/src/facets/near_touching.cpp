@@ -20,13 +20,13 @@ namespace collarmesh::facets {
 
 namespace {
 
-// A piece of a feature: its point, a segment or a triangle.
+// A piece of a feature: a point, a segment or a triangle.
 struct Element {
   std::array<Index, 3> points;
   unsigned size;
   unsigned dimension;
   Index feature;
-  std::array<Vector, 2> axes{};  // of a triangle: its normal, and across its longest side, units
+  std::array<Vector, 2> axes{};  // for a triangle: unit vectors along its normal and across its longest side
 };
 
 constexpr double roundings = 32;
@@ -94,7 +94,7 @@ class NearTouchingFinder {
 
   const Point& at(Index p) const { return plc_.points[p]; }
 
-  // Each feature is a group: it touches itself.
+  // Returns the group of each element: its feature, so that elements of one feature are not compared.
   std::vector<Index> features() const {
     const auto vertices = static_cast<Index>(plc_.vertices.size()),
                curves = static_cast<Index>(plc_.curves.size());
@@ -105,8 +105,8 @@ class NearTouchingFinder {
     return groups;
   }
 
-  // Two curves with the same ends touch at these. If they are also near each other along their whole length,
-  // they enclose nothing, like the two long sides of a facet of zero height.
+  // Finds curves with the same ends that are near each other along their whole length. They enclose nothing,
+  // like the two long sides of a facet of zero height.
   void find_slits_between_curves() {
     std::map<std::array<Index, 2>, std::vector<Index>> between;
     for (Index c = 0; c < plc_.curves.size(); ++c) {
@@ -121,7 +121,7 @@ class NearTouchingFinder {
         }
   }
 
-  // Returns the largest distance between two curves, both ways; nothing if it is above the limit.
+  // Returns the largest distance between two curves, in both directions; nothing if it exceeds the limit.
   std::optional<Nearest> largest_distance(Index c, Index d) const {
     Nearest largest{0, at(plc_.curves[c].points.front())};
     for (const auto& [from, to] : {std::pair(c, d), std::pair(d, c)}) {
@@ -144,7 +144,8 @@ class NearTouchingFinder {
                        [&](Index p) { return std::find(b.points.begin(), end, p) != end; });
   }
 
-  // Returns whether b surely keeps its distance from a triangle. Boxes of needles meet by the million.
+  // Returns whether b surely keeps its distance from a triangle. Boxes of needles overlap by the million, so
+  // a quick test pays off.
   bool apart(const Element& a, const Element& b) const {
     return a.size == 3 && std::any_of(a.axes.begin(), a.axes.end(), [&](const Vector& axis) {
              double low = INFINITY, high = -INFINITY, low_of_a = 0, high_of_a = 0;
@@ -162,7 +163,7 @@ class NearTouchingFinder {
            });
   }
 
-  // Returns whether one of two features is part of the other, or they meet in a common one. The first has the
+  // Returns whether one of two features is part of the other, or both meet in a common one. The first has the
   // lower dimension.
   bool related(const Element& a, const Element& b) const {
     if (a.dimension == 0) {
@@ -190,8 +191,8 @@ class NearTouchingFinder {
     if (d < nearest.squared_distance) nearest = {d, 0.5 * (p + q)};
   }
 
-  // Returns the nearest points of two segments (Ericson: Real-Time Collision Detection, section 5.1.9) if
-  // those of their lines are within both; other pairs handle the ends.
+  // Compares the nearest points of the lines of two segments (Ericson: Real-Time Collision Detection, section
+  // 5.1.9), if they lie within both segments; if not, an end is nearest, which other calls handle.
   static void keep_nearer_of_lines(Nearest& nearest, const Point& p, const Point& q, const Point& r,
                                    const Point& s) {
     const Vector u = q - p, v = s - r, w = p - r;
@@ -239,7 +240,8 @@ class NearTouchingFinder {
   }
 
   const Plc& plc_;
-  double limit_, margin_ = 0;  // beyond the margin what is measured is above the limit, too
+  double limit_, margin_ = 0;  // if boxes are farther apart than the margin, so are the elements than the
+                               // limit
   std::vector<Element> elements_;
   std::map<Pair, Nearest> found_;
 };

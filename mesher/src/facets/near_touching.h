@@ -5,8 +5,8 @@
 
 namespace collarmesh::facets {
 
-/// Features without a common one must not come closer than the limit (absolute) to each other: closer
-/// points would have been welded, so whether they touch cannot be told. Adds a fault for each pair.
+/// Adds a fault for each pair of features without a common feature that come closer to each other than the
+/// limit (absolute). Closer points would have been welded, so it is unclear whether the features touch.
 /// Precondition: no two features cross. Cost: as that of finding intersections.
 void find_near_touching(const Plc& plc, double limit, Faults& faults);
 

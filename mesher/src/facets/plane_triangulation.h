@@ -11,9 +11,9 @@ namespace collarmesh::facets {
 
 using PlaneKernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
-/// A constrained Delaunay triangulation between given points of a plane: vertices know their point's index,
-/// faces carry a mark, and constraints that cross each other are an exception. Takes 13 s to compile: few
-/// sources include this.
+/// A constrained Delaunay triangulation between given points of a plane. Vertices know their point's index,
+/// faces carry a mark, and crossing constraints throw an exception. Few sources include this header, because
+/// it takes 13 s to compile.
 using PlaneTriangulation = CGAL::Constrained_Delaunay_triangulation_2<
     PlaneKernel,
     CGAL::Triangulation_data_structure_2<

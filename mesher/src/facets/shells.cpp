@@ -10,8 +10,8 @@ namespace collarmesh::facets {
 
 namespace {
 
-// The triangles around an edge, by increasing angle (right hand about the edge from its smaller to
-// its larger point) from the first one.
+// The triangles around an edge, sorted by angle from the first one: counterclockwise about the edge from its
+// smaller to its larger point (right-hand rule).
 class Fan {
  public:
   Fan(const Draft& draft, const EdgeTable& edges, Index edge)
@@ -27,7 +27,7 @@ class Fan {
  private:
   const Point& apex_point(Index side) const { return draft_.points[apex(draft_.triangles, side)]; }
 
-  // 0 at the reference, 1 up to 180 degrees beyond it, 2 at 180, 3 beyond.
+  // Returns the sector of a point's angle: 0 at the reference, 1 below 180 degrees, 2 at 180, 3 above.
   int sector(const Point& c) const {
     const int o = predicates::orientation(a_, b_, reference_, c);
     if (o != 0) return o > 0 ? 1 : 3;
@@ -47,7 +47,7 @@ class Fan {
   std::vector<Index> sides_;
 };
 
-// Returns the side of the triangle that faces larger angles about the edge.
+// Returns the side of the triangle that faces larger (or smaller) angles about the edge.
 Index side_towards(const Draft& draft, Index side, bool larger) {
   return ascending(draft.triangles, side) == larger ? front_side(side / 3) : back_side(side / 3);
 }
@@ -108,7 +108,7 @@ LineCaster::Meeting LineCaster::meet(Index triangle, const Point& p, const Point
 }
 
 Vector generic_direction(std::size_t attempt) {
-  // Steps by the golden ratio and the square root of two spread over the sphere.
+  // Steps by the golden ratio and by the square root of two distribute directions over the sphere.
   const double n = static_cast<double>(attempt) + 0.2718281828;
   const double z = 1 - 2 * std::fmod(0.6180339887498949 * n, 1.0);
   const double turn = 6.283185307179586 * std::fmod(0.4142135623730951 * n, 1.0);

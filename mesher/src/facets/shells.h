@@ -10,26 +10,26 @@
 
 namespace collarmesh::facets {
 
-/// Joins the triangle sides that see each other around an edge: by exact angle where three or more triangles
-/// meet, around the border where there is one. The sets are the shells of the complex. They are over the
-/// sides 2 t and 2 t + 1, and one more element for the space far outside. Precondition: triangles meet in
-/// common edges and corners only.
+/// Joins the triangle sides that see each other around an edge: by exact angle if three or more triangles
+/// meet, around the border if there is only one. The resulting sets are the shells of the complex. Their
+/// elements are the sides 2 t and 2 t + 1, and one element for the space far outside. Precondition: triangles
+/// meet in common edges and corners only.
 DisjointSets find_shells(const Draft& draft, const EdgeTable& edges);
 
-/// Where straight lines meet the triangles.
+/// Finds where straight lines meet the triangles.
 class LineCaster {
  public:
-  /// Both are kept by reference. The triangles are the first items of the tree, in their order.
+  /// Keeps references to both. The triangles are the first items of the tree, in their order.
   LineCaster(const Draft& draft, const BoxTree& boxes) : draft_(draft), boxes_(boxes) {}
 
   struct Crossing {
     Index triangle;
-    bool forward;  ///< from behind the triangle to its front
+    bool forward;  ///< the line goes from behind the triangle to its front
     Index entry_side() const { return forward ? back_side(triangle) : front_side(triangle); }
     Index exit_side() const { return forward ? front_side(triangle) : back_side(triangle); }
   };
-  /// The triangles between p and q in order from p; nothing if the line meets an edge or corner of
-  /// one, or if p or q lies on one. Exact.
+  /// Returns the triangles between p and q in order from p; nothing if the line meets an edge or corner of a
+  /// triangle, or if p or q lies on one. Exact.
   std::optional<std::vector<Crossing>> cast(const Point& p, const Point& q) const;
 
  private:
@@ -40,7 +40,7 @@ class LineCaster {
   const BoxTree& boxes_;
 };
 
-/// A direction that no input prefers; another one for each attempt.
+/// Returns a direction that is unlikely to be special in any input; a different one for each attempt.
 Vector generic_direction(std::size_t attempt);
 
 }  // namespace collarmesh::facets

@@ -32,7 +32,7 @@ std::vector<Box> boxes_of(const Draft& draft, std::span<const Simplex> simplices
 }
 
 std::vector<Index> facets_of(const Draft& draft, std::span<const Simplex> simplices) {
-  std::vector<Index> first_facet{0};  // of each soup, among all
+  std::vector<Index> first_facet{0};  // for each soup, the number of its first facet among all facets
   for (const Origin& origin : draft.origins) {
     if (origin.soup + 1 >= first_facet.size()) first_facet.resize(origin.soup + 2, 0);
     first_facet[origin.soup + 1] = std::max(first_facet[origin.soup + 1], origin.facet + 1);

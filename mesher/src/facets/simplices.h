@@ -17,22 +17,23 @@ struct Simplex {
   std::span<const Index> corners() const { return {points.data(), size}; }
 };
 
-/// The triangles of a draft, numbered as there, then its segments that are no triangle's side, then its loose
-/// points; and where they are.
+/// The simplices of a draft and their boxes: its triangles, numbered as there, then segments that are no side
+/// of a triangle, then its loose points.
 class Simplices {
  public:
   Simplices(const Draft& draft, const EdgeTable& edges);
 
   std::span<const Simplex> list() const { return list_; }
-  /// The triangles of a facet, which come from one triangulation, are a group; all else is alone.
+  /// Returns the tree of their boxes. The triangles of one facet are a group, as they come from one
+  /// triangulation; every other simplex is a group of its own.
   const BoxTree& boxes() const { return boxes_; }
-  /// To find pairs: the same, along any axes.
+  /// Returns a tree to find pairs with: the same items, possibly along other axes.
   const BoxTree& boxes_for_pairs() const { return turned_ ? *turned_ : boxes_; }
 
  private:
   std::vector<Simplex> list_;
   BoxTree boxes_;
-  std::optional<BoxTree> turned_;  // where boxes along other axes are much smaller
+  std::optional<BoxTree> turned_;  // exists if boxes along other axes are much smaller
 };
 
 }  // namespace collarmesh::facets

@@ -21,7 +21,7 @@ struct UsedPoints {
 
 bool is_finite(const Point& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
-// Marks a corner as used; a fault if there is no such point.
+// Marks a corner as used; adds a fault if there is no such point.
 void use(const PolygonSoup& soup, Index point, const char* what, Index number, std::vector<Index>& used,
          Faults& faults) {
   if (point < used.size()) {
@@ -68,9 +68,9 @@ UsedPoints collect(std::span<const PolygonSoup> soups, PointMap& map, Faults& fa
   return all;
 }
 
-// Coordinates must resolve this many places across the input.
+// Least number of places that coordinates must resolve across the input.
 constexpr double fewest_steps = 4096;
-// Extents between these keep the products of lengths in all decisions within a double's range.
+// Extents between these limits keep the products of lengths in all decisions within a double's range.
 constexpr double smallest_extent = 1e-30, largest_coordinate = 1e30;
 
 void require_range(const Box& box, Faults& faults) {
@@ -98,7 +98,8 @@ void require_range(const Box& box, Faults& faults) {
       {}, box.min);
 }
 
-// The sweep direction, to which no real part is orthogonal, so that few points share a position.
+// Finds pairs of close points by a sweep along a direction to which faces of real parts are hardly ever
+// orthogonal, so that few points share a position.
 DisjointSets find_close(const std::vector<Point>& points, const Box& bounds, double distance_limit) {
   const Vector direction{0.6180339887, 0.5381966011, 0.5731523012};
   const Point centre = bounds.centre();

@@ -25,7 +25,7 @@ void Operations::insert_in_cavity(Index tet, double least, Change& change) {
   }
 }
 
-// Extends the cavity by the tet behind the worst new one as long as that makes the worst one better.
+// Extends the cavity by the tet behind the worst new one, as long as that improves the worst one.
 void Operations::grow_and_insert(std::vector<Index> cavity, double least, Change& change) {
   if (!find_cone_of_cavity(cavity)) return;
   auto [place, quality] = best_place(centre_of_hull(), none, everywhere, -1);
@@ -88,7 +88,7 @@ Point Operations::centre_of_hull() const {
   return first + sum / (3.0 * static_cast<double>(cone_.hull.size()));
 }
 
-// Returns the tet behind the hull face of the worst tet around this apex; none at a face of the mesh.
+// Returns the tet behind the hull face whose tet with this apex is worst; none if that is a face of the mesh.
 Index Operations::beyond_worst_of_hull(const Point& apex) const {
   double worst = INFINITY;
   std::size_t at = 0;

@@ -10,10 +10,10 @@ namespace collarmesh::improvement {
 
 namespace {
 
-// The same value as for thin tets.
+// The same value as in `thin_shape.cpp`.
 constexpr double least_cosine_of_sides = -0.92;
-// Narrow places are narrower than the certificate's by this share, because vertices move afterwards; where
-// they move onto exact geometry, by the reserve, too.
+// Narrow places must be narrower than the certificate's by this factor, because vertices move afterwards. If
+// they will move onto exact geometry, the reserve is subtracted, too.
 constexpr double narrower = 0.98;
 constexpr std::uint8_t star = 1, book = 2;
 constexpr std::size_t tets_at_once = 4096;
@@ -44,7 +44,7 @@ class CreaseEdges {
     std::sort(edges_.begin(), edges_.end());
   }
 
-  /// Returns the tag of one of a tet's edges that lie on creases; null if none does.
+  /// Returns the tag of the crease that one of the tet's edges lies on; null if no edge lies on a crease.
   const Tag* tag_in(const std::array<Index, 4>& corners) const {
     for (unsigned i = 0; i < 4; ++i)
       for (unsigned j = 0; j < i; ++j) {
@@ -59,7 +59,7 @@ class CreaseEdges {
  private:
   static std::array<Index, 2> sorted(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
 
-  std::vector<std::pair<std::array<Index, 2>, Tag>> edges_;  // ends and tag of the curve, sorted
+  std::vector<std::pair<std::array<Index, 2>, Tag>> edges_;  // ends of the edge and tag of the curve, sorted
 };
 
 }  // namespace

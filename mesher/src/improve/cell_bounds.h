@@ -30,22 +30,21 @@ class CreaseCells {
   bool any_ = false;
 };
 
-/// Stands for a vertex that will be inserted on a patch or on a curve of one.
+/// Stands for a vertex that will be inserted on a patch, or on a curve of a patch.
 inline constexpr Index inserted_on_surface = none - 1;
 
 /// The bounds of a coarsened mesh that depend on the place: the largest dihedral angle of cells that touch a
-/// crease, and, if a radius-edge ratio was asked for, the ratio away from creases and narrow places. Other
-/// rules contain the bounds of thin tets and the ratio itself.
+/// crease and, if a radius-edge bound holds away from creases and narrow places, these places. Other rules
+/// contain the bounds of thin tets and the bound itself.
 class CellBounds {
  public:
-  /// A tet that `allow` forbids counts with this share of its quality, so that others in its place are
-  /// better.
+  /// Factor on the quality of a tet that `allow` forbids, so that other tets in its place are better.
   static constexpr double forbidden = 1e-3;
 
   /// Keeps the mesh by reference if each tet needs an interior node.
   CellBounds(const Plc& plc, const TetMesh& mesh, const Bounds& bounds);
 
-  /// Returns whether a tet may be made here. In a default run thin ones always may.
+  /// Returns whether a tet may be made here. With default options thin tets always may.
   bool allow(const Corners& p, const std::array<Index, 4>& corners) const {
     if (lacks_interior_node(corners)) return false;
     if (creases_.touch(corners)) return dihedral_cosines(p).largest_angle >= cosine_;
@@ -62,7 +61,7 @@ class CellBounds {
  private:
   bool on_surface(Index vertex) const {
     if (vertex == inserted_on_surface) return true;
-    if (vertex == none) return false;  // it is inserted inside a region
+    if (vertex == none) return false;  // the vertex will be inserted inside a region
     const auto& [dimension, feature] = mesh_->features[vertex];
     if (dimension >= 2 || feature == none) return dimension < 3;
     return dimension == 1 ? curve_on_surface_[feature] : vertex_on_surface_[feature];
@@ -73,17 +72,17 @@ class CellBounds {
   }
 
   CreaseCells creases_;
-  double cosine_;  // of the largest angle at creases, a signed square
-  bool tight_;     // the largest angle at creases is below that of thin tets
+  double cosine_;  // signed squared cosine of the largest angle at creases
+  bool tight_;     // whether the largest angle at creases is below that of thin tets
   double squared_ratio_;
   std::optional<NarrowPlaces> narrow_;                      // nothing if tets may be thin anywhere
   const TetMesh* mesh_ = nullptr;                           // null unless each tet needs an interior node
-  std::vector<bool> curve_on_surface_, vertex_on_surface_;  // of the complex; empty unless each tet needs an
-                                                            // interior node
+  std::vector<bool> curve_on_surface_, vertex_on_surface_;  // by curve or vertex of the complex; empty unless
+                                                            // each tet needs an interior node
 };
 
-/// Marks the cells that touch a crease as its collar: 2 if they have an edge on it, else 1. A mesh with
-/// collar balls keeps its marks. Then marks thin tets.
+/// Marks the cells that touch a crease as its collar: 2 if they have an edge on it, else 1. In a mesh with
+/// collar balls, existing marks stay. Then marks thin tets.
 void mark_cells(TetMesh& mesh, const Plc& plc, const Bounds& bounds);
 
 }  // namespace collarmesh::improvement

@@ -41,7 +41,7 @@ void CurveSlides::find_all_places() const {
       if (plc_.curves[c].ends[i] != none) ends[i] = point_of[plc_.curves[c].ends[i]];
     if (!vertices[c].empty()) find_places(c, vertices[c], ends);
   }
-  // Only neighbours that are joined by an edge count.
+  // Counts only neighbours on the curve that are joined by an edge.
   std::vector<std::array<Index, 2>> edges;
   for (const auto& e : mesh_.edges) edges.push_back({std::min(e[0], e[1]), std::max(e[0], e[1])});
   std::sort(edges.begin(), edges.end());
@@ -123,7 +123,7 @@ void CurveSlides::skipped(Index vertex) {
   join(after, 0, before);
 }
 
-// Returns whether this vertex comes next on the curve. Precondition: a mesh edge on the curve joins both.
+// Returns whether vertex `next` follows on the curve. Precondition: a mesh edge on the curve joins both.
 bool CurveSlides::follows(Index curve, Index vertex, Index next) const {
   if (mesh_.features[vertex].dimension == 1) return places_[vertex].neighbours[1] == next;
   if (mesh_.features[next].dimension == 1) return places_[next].neighbours[0] == vertex;
@@ -156,7 +156,7 @@ void CurveSlides::divided(Index vertex, const Middle& middle) {
   }
 }
 
-// Returns whether the edge ab fits the part of a curve that starts at `from` and has the length `way`.
+// Returns whether the edge ab fits the part of a curve that starts at `from` and has the arc length `way`.
 bool CurveSlides::edge_fits(Index curve, double from, double way, const Point& a, const Point& b) const {
   const auto& lengths = paths_.lengths(curve);
   const double length = lengths.back();

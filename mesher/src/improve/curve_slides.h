@@ -23,7 +23,7 @@ class CurveSlides {
 
   /// Returns whether this vertex on a curve can move at all.
   bool movable(Index vertex) const;
-  /// Returns the point of its curve at this arc length ahead of the vertex.
+  /// Returns the point of the vertex's curve at this arc length ahead of it.
   Point ahead(Index vertex, double way) const;
   /// Returns whether the vertex may slide by this arc length.
   bool fits(Index vertex, double way) const;
@@ -44,7 +44,8 @@ class CurveSlides {
     std::array<Index, 2> ends{none, none};  ///< ends of the edge, in the order of the curve
     double parameter = 0;
   };
-  /// Returns the middle of this mesh edge, by arc length; nothing where the edge's place is not known.
+  /// Returns the middle of this mesh edge, by arc length; nothing if the edge's place on the curve is
+  /// unknown.
   std::optional<Middle> middle(Index curve, Index a, Index b) const;
   Point place(Index curve, const Middle& middle) const { return paths_.point(curve, middle.parameter); }
   /// Records that a new vertex at its middle divides the edge.
@@ -76,8 +77,8 @@ class CurveSlides {
   SurfaceTolerance tolerance_;
   CurvePaths paths_;
   mutable std::once_flag prepared_;
-  mutable std::vector<Place> places_;        // by vertex that existed then; computed when first asked for
-  std::vector<std::ptrdiff_t> spare_edges_;  // by curve: the number of edges beyond its minimum
+  mutable std::vector<Place> places_;        // by vertex that existed then; computed on first use
+  std::vector<std::ptrdiff_t> spare_edges_;  // by curve: the number of edges above its minimum
   UndoLog<Place> old_places_;
   UndoLog<std::ptrdiff_t> old_spare_edges_;
 };

@@ -13,14 +13,15 @@ constexpr std::array<std::array<unsigned, 2>, 6> edges{{{0, 1}, {0, 2}, {0, 3}, 
 // The lowest quality of tets that first steps may make.
 constexpr double least_quality = 0.02;
 constexpr unsigned most_steps = 30;
-// The number of operations to try before the first detour is taken, and the increase with each one taken.
+// Number of operations that are tried before the first detour is taken, and its increase with each detour
+// taken.
 constexpr std::size_t first_trials = 2000, trials_per_detour = 200;
 constexpr double least_gain = 1e-3, rounding = 1e-9;
 
 bool contains(const auto& range, Index x) { return std::find(range.begin(), range.end(), x) != range.end(); }
 
-// Compares two sorted lists from the worst up: returns whether the first differing entry is larger now. A
-// missing one is good.
+// Compares two sorted lists from the worst entry up. Returns whether the first differing entry is larger in
+// `now`; a missing entry counts as good.
 bool is_better(const std::vector<double>& now, const std::vector<double>& before, double wanted) {
   for (std::size_t i = 0; i < std::max(before.size(), now.size()); ++i) {
     const double was = i < before.size() ? before[i] : wanted, is = i < now.size() ? now[i] : wanted;
@@ -126,7 +127,8 @@ bool Detours::help(Index tet, Effort effort) {
   return true;
 }
 
-// Additional thin tets are worth it only if all others are good afterwards.
+// Returns whether a result is worth it. More thin tets are worth it only if all other tets are good
+// afterwards.
 bool Detours::is_worth_it(const Result& result, Effort effort) const {
   return effort == Effort::last_resort || !result.more_thin || result.worst >= remedies_.wanted();
 }

@@ -10,21 +10,21 @@
 
 namespace collarmesh::improvement {
 
-/// Detours: if no operation improves a tet, one is applied all the same, at the tet or beside it, and its
-/// tets are improved for some steps. The result is kept if it is better than the mesh before,
-/// else undone. Meshes are compared from the worst tet up, so the mesh never returns to an earlier
-/// state.
-///
-/// One thread. Precondition: `Remedies::forget` was called; so a repeated trial has the same result.
+/// Detours: sequences of operations for tets that no single operation improves. An operation is applied all
+/// the same, at the tet or beside it, and its tets are improved for some steps. The result is kept if it is
+/// better than the mesh before, else undone. Meshes are compared from the worst tet up, so the mesh never
+/// returns to an earlier state.
+/// Uses one thread. Precondition: `Remedies::forget` was called, so that a repeated trial has the same
+/// result.
 class Detours {
  public:
   /// Keeps all by reference. Starts no detour after `most_trials` operations, but completes the current tet.
   Detours(Workpiece& workpiece, Remedies& remedies, Operations& operations, std::size_t most_trials);
 
-  /// Takes detours for these tets, and for poor ones that detours leave if the number of vertices may change
-  /// there. Takes the worst first, at each tet itself before beside any, and again after a change at a
-  /// corner, until nothing helps. Returns the number of detours taken. Calls `stopped` between tets.
-  /// Precondition: the workpiece is prepared for trials.
+  /// Takes detours for these tets and, where the number of vertices may change, for poor tets that detours
+  /// leave. Takes the worst tet first; tries operations at the tet itself, then beside it; tries again after
+  /// a change at a corner, until nothing helps. Returns the number of detours taken. Calls `stopped` between
+  /// tets. Precondition: the workpiece is prepared for trials.
   std::size_t take_all(std::vector<Index> tets, const std::function<bool()>& stopped);
 
   /// Returns the number of operations tried so far.
@@ -41,13 +41,13 @@ class Detours {
   /// The result of a trial.
   struct Result {
     bool better = false;
-    bool more_thin = false;  ///< more tets are thin than before
+    bool more_thin = false;  ///< more tets are thin than before the trial
     double worst = 0;        ///< smallest quality of the changed tets, at most the wanted quality
   };
-  /// First steps are tried at the tet itself, then across its faces and edges, then anywhere there even if
-  /// more tets are thin and not all others are good afterwards.
+  /// How far a tet's first steps reach: operations at the tet itself; operations across its faces and edges,
+  /// too; or all of these, accepted even if more tets are thin and not all others are good afterwards.
   enum class Effort : std::uint8_t { at_tet, beside, last_resort };
-  /// By tet: the number of detours that had been taken when it was last tried, plus 1; 0: not tried.
+  /// By tet: the number of detours taken before it was last tried, plus 1; 0: not tried.
   using Asked = std::vector<std::uint32_t>;
 
   bool exhausted() const;
@@ -79,9 +79,9 @@ class Detours {
   // State of the current trial.
   std::uint32_t trial_ = 0;
   std::vector<std::uint32_t> last_trial_of_;  // by tet: the last trial that changed it
-  std::vector<Index> changed_;                // tets, some of them gone again
-  std::vector<double> before_;                // qualities of the tets before the trial, at most the wanted
-                                              // one
+  std::vector<Index> changed_;                // changed tets; some have been removed since
+  std::vector<double> before_;                // qualities of the changed tets before the trial, at most the
+                                              // wanted one
   std::size_t thin_before_ = 0;
   std::vector<Index> to_improve_;
 };

@@ -13,9 +13,9 @@ namespace collarmesh::improvement {
 namespace {
 
 constexpr double much_longer = 1.5;
-constexpr double least = 1e-4;  // the quality of new tets
+constexpr double least = 1e-4;  // the least quality of new tets
 
-/// Returns the longest edge of a tet on a curve, if the tet has much shorter ones; else nothing.
+/// Returns the tet's longest edge on a curve if the tet has much shorter edges, else nothing.
 std::optional<std::array<Index, 2>> edge_to_divide(const TetComplex& complex, Index tet) {
   const auto& v = complex[tet].corners;
   const auto p = complex.corners(tet);

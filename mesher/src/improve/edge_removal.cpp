@@ -80,8 +80,8 @@ void Operations::remove_edge_anyhow(Index tet, unsigned i, unsigned j, double le
   remove_edge_above(tet, i, j, least, change);
 }
 
-// Removes an edge if all new tets are better than `least`; without `least`, better than the worst one at the
-// edge and than `change`.
+// Removes an edge if all new tets are better than `least` or, without `least`, better than the worst tet at
+// the edge and than `change`.
 void Operations::remove_edge_above(Index tet, unsigned i, unsigned j, std::optional<double> least,
                                    Change& change) {
   const Index a = complex_[tet].corners[i], b = complex_[tet].corners[j];
@@ -91,7 +91,7 @@ void Operations::remove_edge_above(Index tet, unsigned i, unsigned j, std::optio
   if (n > largest_ring || (ring_.closed && m < 3)) return;
   // Finds the link vertices at which faces that must be preserved leave the edge.
   std::vector<std::pair<std::size_t, Index>> kept;
-  // If the quality is above that of this tet, it is above that of the worst one at the edge.
+  // A quality above this tet's is above that of the worst tet at the edge.
   const bool known = least || (change.kind != Change::Kind::none && change.quality >= quality(tet));
   double worst = known ? -INFINITY : INFINITY;
   for (std::size_t k = 0; k < n; ++k) {
@@ -101,7 +101,7 @@ void Operations::remove_edge_above(Index tet, unsigned i, unsigned j, std::optio
     for (unsigned corner = 0; corner < 4; ++corner) {
       const Index opposite = t.corners[corner];
       if (opposite == a || opposite == b || t.faces[corner] == none) continue;
-      const bool ahead = opposite == ring_.link[k];  // the face to the next tet
+      const bool ahead = opposite == ring_.link[k];  // it is the face to the next tet
       const std::size_t at = ahead ? (k + 1) % m : k;
       if (kept.empty() ||
           std::none_of(kept.begin(), kept.end(), [&](const auto& x) { return x.first == at; }))
@@ -148,7 +148,7 @@ void Operations::remove_edge_above(Index tet, unsigned i, unsigned j, std::optio
   }
   made.replacement.old = ring_.tets;
   made.kind = kept.empty() ? Change::Kind::edge_removal : Change::Kind::boundary_flip;
-  made.read = std::move(change.read);  // a refusal also depends on the tets that were read
+  made.read = std::move(change.read);  // a refusal depends on the tets that were read, too
   if (kept.empty() || may_turn(made))
     change = std::move(made);
   else
@@ -170,8 +170,8 @@ bool Operations::may_lose(Index tet, Index a, Index b) const {
   return true;
 }
 
-// Returns whether two faces of a patch may become these, which share a new edge. Not if that edge has faces
-// already, as one of them would occur twice.
+// Returns whether two faces of a patch may be replaced by these, which share a new edge. They may not if that
+// edge has faces already, because one of them would then occur twice.
 bool Operations::may_turn(Change& change) {
   const auto& turned = change.replacement.created_faces;
   std::array<Index, 2> shared{none, none};
@@ -184,7 +184,7 @@ bool Operations::may_turn(Change& change) {
   change.read.insert(change.read.end(), star_.begin(), star_.end());
   if (complex_.on_faces(shared[0], shared[1])) return false;
   const Index patch = mesh_.face_patch[turned[0].like];
-  if (plc_.patches[patch].planar) return true;  // the volumes of the tets have decided already
+  if (plc_.patches[patch].planar) return true;  // the volumes of the tets have already decided
   faces_.clear();
   for (const TetComplex::NewFace& face : turned)
     faces_.push_back(

@@ -17,7 +17,8 @@ Numbers larger(const Numbers& a, const Numbers& b) {
 }
 template <class Numbers>
 Numbers signed_squares(const Numbers& product, const Numbers& x, const Numbers& y) {
-  return -(product * x) * ((product < 0 ? -product : product) * y);  // in range at any scale
+  return -(product * x) * ((product < 0 ? -product : product) * y);  // this order keeps products in range at
+                                                                     // any scale
 }
 
 }  // namespace

@@ -9,21 +9,21 @@
 
 namespace collarmesh::improvement {
 
-/// The faces of a hull. Measures the tets on them with an apex, two at a time: gives `extreme_cosines` for
-/// each in half the time. Terms that do not depend on the apex are computed once.
+/// The faces of a hull, for measuring the tets that they make with an apex. Measures two tets at a time, as
+/// `extreme_cosines` does, in half the time. Terms that do not depend on the apex are computed once.
 class HullShapes {
  public:
   static constexpr std::size_t at_once = 2;
 
   void clear() { pairs_.clear(); }
   bool empty() const { return pairs_.empty(); }
-  /// Sets the faces. Each face makes a tet of positive volume with an apex inside. The last face of an odd
-  /// number is repeated.
+  /// Sets the faces. Each face makes a tet of positive volume with an apex inside the hull. If the number of
+  /// faces is odd, the last one is repeated.
   void assign(std::span<const std::array<Index, 3>> faces, const std::vector<Point>& points);
 
   std::size_t pairs() const { return pairs_.size(); }
-  /// Measures the tets on the faces 2 `pair` and 2 `pair` + 1. For a tet without volume only `positive`
-  /// counts.
+  /// Measures the tets on the faces 2 `pair` and 2 `pair` + 1. If a tet has no positive volume, only
+  /// `positive` is valid.
   std::array<ExtremeCosines, at_once> extreme_cosines(std::size_t pair, const Point& apex) const;
 
  private:
@@ -35,8 +35,8 @@ class HullShapes {
     std::array<TwoVectors, 3> corners;
     TwoVectors normal;
     Two inverse_squared_normal;
-    std::array<Two, 3> squared_sides;  ///< of the sides opposite the corners
-    Two least_cosine;                  ///< of the face's angles, squared with its sign
+    std::array<Two, 3> squared_sides;  ///< squared lengths of the sides opposite the corners
+    Two least_cosine;                  ///< signed squared cosine of the face's largest angle
   };
 
   static TwoVectors minus(const TwoVectors& a, const TwoVectors& b);

@@ -22,17 +22,18 @@ namespace collarmesh {
 namespace improvement {
 namespace {
 
-// The number of tets for which changes are proposed at once: few of all, so that proposals rarely meet.
+// Changes are proposed at once for one in this many tets, so few that proposals rarely meet.
 constexpr std::size_t tets_per_proposal = 2000;
 constexpr std::size_t most_proposals = 1024;
 constexpr std::size_t steps_between_reports = 1024;
 constexpr std::size_t tets_at_once = 4096;  // tets in a chunk of one thread
-// The least gain of a move. Tets at walls stay poor however often their vertices move a little, so small
-// gains are not worth it. Small moves may help the few tets that detours work on.
+// The least relative gain of a move. Tets at walls stay poor however often their vertices move a little, so
+// small gains do not pay. In detours, which work on few tets, they may help.
 constexpr double least_gain = 0.02, least_gain_in_detours = 1e-3;
-// Detours are taken if at most `few` and 2% of the tets need them; otherwise the bound is out of reach.
+// Detours are taken if they are needed by at most `few` tets and 2% of all; with more such tets the bound is
+// out of reach.
 constexpr std::size_t few = 50, tets_per_few = 50;
-// The number of operations to try in detours: at most `trials` and one for this many tets.
+// The number of operations to try in detours: `trials`, plus one for this many tets.
 constexpr std::size_t trials = 4000, tets_per_trial = 50;
 
 /// Improves the tets below a quality, worst first. Several threads propose changes for the worst few tets;
@@ -77,7 +78,7 @@ class Improvement {
     Index tet;
     std::uint32_t generation;
 
-    friend bool operator<(const Item& a, const Item& b) {  // the worst on top
+    friend bool operator<(const Item& a, const Item& b) {  // puts the worst tet on top
       return a.quality != b.quality ? a.quality > b.quality : a.tet > b.tet;
     }
   };
@@ -95,8 +96,8 @@ class Improvement {
     find_poor_of(all);
   }
 
-  // Does the same as find_poor_tets if tets have changed only in batches after this one. `poor_` is in the
-  // order of tets.
+  // Finds poor tets, like find_poor_tets, in less time. Precondition: tets have changed only in batches after
+  // this one, and `poor_` is in the order of tets.
   void find_poor_tets_again(std::uint32_t batch) {
     std::vector<Index> asked;
     auto poor = poor_.begin();
@@ -126,7 +127,7 @@ class Improvement {
   bool is_up_to_date(const Item& item) const {
     const auto& tet = complex()[item.tet];
     return tet.alive && tet.generation == item.generation &&
-           remedies_.quality(item.tet) == item.quality;  // otherwise a vertex has moved since
+           remedies_.quality(item.tet) == item.quality;  // if not, a vertex has moved since
   }
 
   void work_off() {
@@ -184,9 +185,9 @@ class Improvement {
     return true;
   }
 
-  // Returns whether everything that the change depends on is as it was when the batch began: the tets that it
-  // replaces or has read, and with them the places of their corners and the mesh's faces, samples and curve
-  // edges there. This suffices because all stars are complete; no change is proposed elsewhere.
+  // Returns whether the tets that the change replaces or has read are as they were when the batch began. The
+  // change depends on nothing else: places of corners, mesh faces, samples and curve edges only change with
+  // the tets there. This relies on complete stars; no change is proposed elsewhere.
   bool is_untouched(const Change& change) const {
     const auto untouched = [&](Index t) { return complex()[t].alive && changed_in_[t] != batch_number_; };
     return std::all_of(change.replacement.old.begin(), change.replacement.old.end(), untouched) &&
@@ -200,7 +201,9 @@ class Improvement {
       case Change::Kind::boundary_flip: ++report_.boundary_flips; break;
       case Change::Kind::move: ++report_.moved_vertices; break;
       case Change::Kind::contraction:
-        if (!workpiece_.curve_can_spare(change)) return;  // another change took the curve's last spare edge
+        if (!workpiece_.curve_can_spare(change))
+          return;  // another change has used the curve's last spare
+                   // edge
         ++report_.contracted_edges;
         break;
       case Change::Kind::insertion:
@@ -225,7 +228,7 @@ class Improvement {
   const Execution& execution_;
   bool move_vertices_;
   unsigned passes_;
-  std::vector<Item> poor_;  // as found by find_poor_tets
+  std::vector<Item> poor_;  // poor tets, as found by find_poor_tets
   std::priority_queue<Item> queue_;
   std::vector<Item> batch_;
   std::vector<Change> proposals_;

@@ -10,8 +10,8 @@ namespace collarmesh::improvement {
 
 namespace {
 
-/// The rule of thin tets, except that a tet without an interior node is worse than any other. It may replace
-/// the cells of collars.
+/// The rule of thin tets, with two differences: a tet without an interior node is worse than any other, and
+/// the cells of collars may be replaced.
 class InteriorRule final : public ShapeRule {
  public:
   InteriorRule(const Workpiece& workpiece, const Bounds& bounds)
@@ -45,8 +45,8 @@ std::vector<Index> tets_to_go(const Workpiece& workpiece, const InteriorRule& ru
   return found;
 }
 
-/// Removes an edge if that leaves tets within the bounds; otherwise makes the change that leaves the best
-/// ones.
+/// Returns the removal of an edge if it leaves tets within the bounds; otherwise the change that leaves the
+/// best tets.
 Change change_for(Operations& operations, const TetComplex& complex, Index tet) {
   constexpr double good = 1;
   const std::array<Index, 4> corners = complex[tet].corners;

@@ -12,8 +12,8 @@
 namespace collarmesh::improvement {
 
 /// The local operations. Each writes its proposal into `change` if it raises the smallest quality in its
-/// cavity above that of `change` and keeps every guarantee; operations named "anyhow" need not raise it. Each
-/// thread has its own.
+/// cavity above that of `change` and keeps every guarantee. Operations named "anyhow" need not raise the
+/// smallest quality. Each thread has its own object.
 class Operations {
  public:
   /// Keeps both by reference.
@@ -27,47 +27,48 @@ class Operations {
         rule_(rule) {}
 
   /// Removes the edge between two corners of a tet by retriangulating its ring as well as possible. An edge
-  /// inside a patch is removed together with its two triangles there, and a sliver that has both of them goes
-  /// to the other side.
+  /// inside a patch is removed together with its two triangles there; a sliver that has both triangles is
+  /// given to the region on the other side.
   void remove_edge(Index tet, unsigned i, unsigned j, Change& change);
-  /// Does the same, however good the tets at the edge are now; all new ones are better than `least`.
+  /// Removes an edge even if the tets at it are better now. All new tets must be better than `least`.
   void remove_edge_anyhow(Index tet, unsigned i, unsigned j, double least, Change& change);
-  /// Removes an edge of a tet and another one beside it by filling the space of all tets at these again.
-  /// Helps where the removal of a single edge leaves inverted tets, as between two prisms of a thin wall.
+  /// Removes an edge of a tet and another edge beside it by filling the space of all tets at both edges
+  /// again. Helps where removing a single edge leaves inverted tets, as between two prisms of a thin wall.
   void reconnect(Index tet, Change& change);
   /// Moves a vertex within its feature to a place where the worst tet around it is better.
   void move_vertex(Index vertex, Change& change);
   /// Inserts a vertex on an edge inside a region or a patch, at the best place, if the tets around it are all
   /// better than `least`.
   void split_edge(Index a, Index b, double least, Change& change);
-  /// Does the same, however good the tets at the edge are now.
+  /// Inserts a vertex on such an edge even if the tets at it are better now.
   void split_edge_anyhow(Index a, Index b, double least, Change& change);
-  /// Inserts a vertex inside a region, replacing a tet or one of its edges and as many tets around as is
+  /// Inserts a vertex inside a region. It replaces a tet or one of its edges, and as many tets around as is
   /// best, if all new tets are better than `least` and than `change`.
   void insert_in_cavity(Index tet, double least, Change& change);
-  /// Inserts a vertex in the middle of an edge, inside a region, in a patch or on a curve, however many tets
-  /// are there, if all new tets are better than `least`.
+  /// Inserts a vertex in the middle of an edge, inside a region, in a patch or on a curve, with any number of
+  /// tets there, if all new tets are better than `least`.
   void divide_edge(Index a, Index b, double least, Change& change);
-  /// Moves a vertex along an edge within its feature onto the other end, so that the tets at the edge vanish.
-  /// No edge becomes longer than the longest one of the cavity.
+  /// Collapses an edge: moves a vertex along it, within the vertex's feature, onto the other end, so that the
+  /// tets at the edge vanish. No edge becomes longer than the longest one of the cavity.
   void contract_edge(Index vertex, Index onto, Change& change);
-  /// Does the same, though edges may become longer than those before.
+  /// Collapses an edge, even if edges become longer than those before.
   void contract_edge_to_any_length(Index vertex, Index onto, Change& change);
 
-  /// Does the same, however good the tets around are now; all new ones are better than `least`.
+  /// Collapses an edge even if the tets around are better now. All new tets must be better than `least`.
   void contract_edge_anyhow(Index vertex, Index onto, double least, Change& change);
 
-  /// Begins queries about collapses of edges at this vertex, whose star is given. Returns false if it has to
-  /// stay.
+  /// Begins queries about collapses of edges at this vertex, whose star is given. Returns false if the vertex
+  /// has to stay.
   bool begin_contractions(Index vertex, std::span<const Index> star);
-  /// Proposes the same collapse more strictly: only if the rule allows all new tets and none is worse than
-  /// `least`, nor, if below `enough`, worse than the worst tet of the cavity.
+  /// Proposes the collapse of the queried vertex onto `onto`, under stricter conditions: the rule allows all
+  /// new tets, none is worse than `least`, and those below `enough` are no worse than the worst tet of the
+  /// cavity.
   void contract_onto(Index onto, double least, double enough, Change& change);
-  /// Returns the quality of the worst tet at the vertex of these queries.
+  /// Returns the quality of the worst tet at the queried vertex.
   double worst_at_vertex() { return worst_at_vertex(vertex_); }
 
  private:
-  /// An operation at an edge with a larger ring hardly ever improves it.
+  /// Largest number of tets around an edge: operations at edges with more hardly ever improve them.
   static constexpr std::size_t largest_ring = 9;
 
   static constexpr std::size_t all_passed = SIZE_MAX;
@@ -77,10 +78,11 @@ class Operations {
   struct Freedom {
     std::array<Vector, 3> directions;
     unsigned count;
-    Index patch;  ///< planar or smooth
+    Index patch;  ///< the patch, planar or smooth, or none
   };
   static constexpr Freedom everywhere{{Vector{1, 0, 0}, Vector{0, 1, 0}, Vector{0, 0, 1}}, 3, none};
-  /// A cavity whose tets and mesh faces are cones that share an apex: a present or a future vertex.
+  /// A cavity seen from an apex, a present or a future vertex: each of its tets and mesh faces joins the apex
+  /// to a part of its border.
   struct Cone {
     std::vector<Index> tets;
     double worst = INFINITY;                 ///< worst quality of the tets; infinite if not known yet
@@ -104,7 +106,7 @@ class Operations {
 
   double new_quality(const std::array<Index, 4>& corners, double above) const;
 
-  // Edge removal
+  // Edge removal:
   void remove_edge_above(Index tet, unsigned i, unsigned j, std::optional<double> least, Change& change);
   double triangulate(Index a, Index b, const Polygon& polygon, bool closed, double above);
   bool edges_allowed(Index vertex, const Point& from, const Point& to) const;
@@ -114,11 +116,11 @@ class Operations {
   bool may_turn(Change& change);
   bool may_lose(Index tet, Index a, Index b) const;
 
-  // Reconnection
+  // Reconnection:
   std::optional<std::vector<std::array<Index, 3>>> hull_of(std::span<const Index> cavity) const;
   void refill(const std::vector<Index>& cavity, Change& change) const;
 
-  // Cones
+  // Cones:
   bool find_cone_of_vertex(Index vertex);
   bool make_cone_of_vertex(Index vertex);
   void grow_and_insert(std::vector<Index> cavity, double least, Change& change);
@@ -174,7 +176,7 @@ class Operations {
   const ShapeRule& rule_;
   TetComplex::Ring ring_;
   Cone cone_;
-  Index vertex_ = none;  // the vertex of the current collapse queries
+  Index vertex_ = none;  // the vertex of the current queries about collapses
   bool ask_surfaces_ = true;
   std::vector<Index> star_;
   std::vector<SmoothSurfaces::Face> faces_;  // faces that would be created

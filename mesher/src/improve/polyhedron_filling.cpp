@@ -9,7 +9,7 @@ namespace {
 using Triangle = std::array<Index, 3>;
 using Tet = std::array<Index, 4>;
 
-// Rotates the triangle so that its smallest corner comes first; the orientation stays.
+// Rotates the triangle's corners so that the smallest one comes first; its orientation stays.
 Triangle begun_with_smallest(Triangle t) {
   std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
   return t;
@@ -60,7 +60,7 @@ class Filling {
     }
   }
 
-  // Moves the front beyond a tet. Returns false if it would have a triangle twice.
+  // Moves the front past a tet. Returns false if a triangle would be in the front twice.
   bool advance(const Tet& tet) {
     for (unsigned corner = 0; corner < 4; ++corner) {
       const Triangle below = begun_with_smallest(face_below(tet, corner));
@@ -79,7 +79,7 @@ class Filling {
   double above_;
   std::size_t steps_left_;
   std::vector<Index> vertices_;
-  std::vector<Triangle> front_;  // the space above these is still to be filled
+  std::vector<Triangle> front_;  // the space above these triangles is still to be filled
   std::vector<Tet> tets_, best_;
 };
 

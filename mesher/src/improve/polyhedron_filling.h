@@ -10,20 +10,20 @@
 
 namespace collarmesh::improvement {
 
-/// Returns the quality of a tet if it is above the second argument; negative if it is not, or if the tet must
-/// not be made, for example because its volume is negative.
+/// Returns the quality of a tet if it is above the second argument. Returns a negative number if it is not,
+/// or if the tet must not be made, for example because its volume is negative.
 using FillingQuality = std::function<double(const std::array<Index, 4>&, double)>;
 
 /// Fills a polyhedron with tets between its vertices, so that the worst is as good as possible (small
-/// polyhedron reconnection: Liu, Chen, Sun 2007). `hull` are its triangles, each oriented so that it makes a
-/// positive tet with a point above it inside. The tets have positive volumes, and all their faces that are
-/// not in the hull cancel; so they cover every point inside once, and none outside. Returns nothing if no
-/// filling with all tets better than `above` is found in `most_steps` steps, each of which tries a tet. Cost:
-/// grows exponentially with the number of vertices, up to that bound.
+/// polyhedron reconnection: Liu, Chen, Sun 2007). `hull` has its triangles, each oriented so that it makes a
+/// positive tet with a point above it inside the polyhedron. The tets have positive volumes, and all their
+/// faces that are not in the hull cancel; so they cover every point inside exactly once, and no point
+/// outside. Returns nothing if no filling with all tets better than `above` is found in `most_steps` steps,
+/// each of which tries a tet. Cost: grows exponentially with the number of vertices, up to that bound.
 std::vector<std::array<Index, 4>> fill_polyhedron(std::span<const std::array<Index, 3>> hull, double above,
                                                   const FillingQuality& quality, std::size_t most_steps);
 
-/// Returns the face opposite a corner, oriented so that it makes a positive tet with it.
+/// Returns the face opposite a corner, oriented so that it makes a positive tet with that corner.
 inline std::array<Index, 3> face_below(const std::array<Index, 4>& tet, unsigned corner) {
   constexpr std::array<std::array<unsigned, 3>, 4> others{{{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}}};
   return {tet[others[corner][0]], tet[others[corner][1]], tet[others[corner][2]]};

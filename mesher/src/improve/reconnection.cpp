@@ -39,7 +39,7 @@ void Operations::reconnect(Index tet, Change& change) {
 }
 
 // Returns the triangles around these tets, oriented towards them; nothing if a face, curve or vertex of the
-// mesh inside would be lost.
+// mesh inside the space would be lost.
 std::optional<std::vector<std::array<Index, 3>>> Operations::hull_of(std::span<const Index> cavity) const {
   std::vector<std::array<Index, 3>> hull;
   for (const Index t : cavity) {
@@ -68,7 +68,8 @@ std::optional<std::vector<std::array<Index, 3>>> Operations::hull_of(std::span<c
   return hull;
 }
 
-// Fills the space of these tets with others, if the worst is better than the worst of them and of `change`.
+// Fills the space of these tets with others, if the worst new tet is better than the worst old one and than
+// `change`.
 void Operations::refill(const std::vector<Index>& cavity, Change& change) const {
   const auto hull = hull_of(cavity);
   if (!hull) return;

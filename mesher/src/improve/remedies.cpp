@@ -46,10 +46,10 @@ Change Remedies::propose(Operations& operations, Index tet) const {
     for (unsigned j = i + 1; j < 4 && !found(); ++j)
       operations.split_edge(corners[i], corners[j], enough * wanted_, change);
   if (found() || !rule_.is_blunt(quality(tet))) return change;
-  // A flat tet, as between the pairs of a wall.
+  // For a flat tet, such as one between the pairs of a wall.
   operations.reconnect(tet, change);
   if (found()) return change;
-  // A longer edge is better than a missed guarantee.
+  // A longer edge is better than a missed guarantee, so any length is allowed here.
   for (const Index v : corners)
     for (const Index w : corners)
       if (v != w) operations.contract_edge_to_any_length(v, w, change);

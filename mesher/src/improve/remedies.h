@@ -8,9 +8,9 @@
 
 namespace collarmesh::improvement {
 
-/// Proposes operations that may improve a poor tet, in the order in which to try them. State: for each vertex
-/// whether moving it is known to be useless. It only reads the mesh; several threads may call it at once,
-/// each with operations of its own.
+/// Proposes operations that may improve a poor tet, in the order in which to try them. Remembers for each
+/// vertex whether moving it is known to be useless. Only reads the mesh; several threads may call it at once,
+/// each with its own operations.
 class Remedies {
  public:
   /// Keeps both by reference.
@@ -26,21 +26,22 @@ class Remedies {
   Change propose(Operations& operations, Index tet) const;
   /// Returns whether the tet counts as thin.
   bool is_thin(Index tet) const { return !thin_above_.holds(complex_.corners(tet)); }
-  /// Returns whether the number of vertices may change at this tet. In a coarsened mesh walls are one element
+  /// Returns whether the number of vertices may change at this tet. Walls of a coarsened mesh are one element
   /// thick, which makes their tets poor, but new vertices would undo coarsening. So the number may change
-  /// only at tets beyond the largest angle of thin ones, and at all tets that are not near a thin one.
+  /// only at tets with an angle above the largest one of thin tets, and at tets that are not near a thin one.
   bool may_change_vertices(Index tet) const;
 
   /// Records that no operation helps this tet until something changes at its vertices.
   void nothing_helps(Index tet) { set_stays(tet, move_vertices_); }
-  /// Records that the tet is new or that a corner of it has moved.
+  /// Records that the tet is new or that one of its corners has moved.
   void changed(Index tet) { set_stays(tet, false); }
   /// Forgets these records, for example because the rule asks for less. Until `nothing_helps` is called,
   /// proposals depend on the mesh alone.
   void forget() { stays_.clear(); }
 
  private:
-  // Whether a move helps depends only on the tets at the vertex, and each of these tets may propose it.
+  // Returns whether the vertex is known to stay. Whether a move helps depends only on the tets at the vertex,
+  // and each of them would propose it.
   bool stays(Index vertex) const { return vertex < stays_.size() && stays_[vertex]; }
   void set_stays(Index tet, bool stays);
 

@@ -168,7 +168,7 @@ std::size_t replace_tets(Workpiece& workpiece, std::span<const UnwantedTet> unwa
   std::size_t gone = 0;
   for (std::size_t i = 0; i < unwanted.size(); ++i) {
     const auto& tet = workpiece.complex[unwanted[i].tet];
-    const bool is_there = tet.alive && sorted(tet.corners) == corners[i];  // otherwise another removal has
+    const bool is_there = tet.alive && sorted(tet.corners) == corners[i];  // if not, another removal has
                                                                            // removed it, too
     if (!is_there || replacing.replace(unwanted[i])) ++gone;
   }

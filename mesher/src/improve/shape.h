@@ -21,8 +21,8 @@ inline double shape_quality(const Corners& p) {
   const std::array<Vector, 4> normals{cross(bc, bd), cross(ad, ac), cross(ab, ad), cross(ac, ab)};
   const double six_volume = -dot(normals[3], ad);
   if (six_volume <= 0) return six_volume < 0 ? -1 : 0;
-  // The edge between corners i and j lies in the faces opposite the other two, k and l; the sine there is 6V
-  // |ij| / (2A_k 2A_l).
+  // Edge ij lies in the faces opposite the other two corners, k and l; the sine there is 6V |ij| / (2A_k
+  // 2A_l).
   double worst = INFINITY;
   const auto see = [&](const Vector& edge, const Vector& k, const Vector& l) {
     double squared_sine = squared_norm(edge) / (squared_norm(k) * squared_norm(l));
@@ -41,7 +41,7 @@ inline double shape_quality(const Corners& p) {
 struct Circumsphere {
   double squared_radius;
   double shortest_squared_edge, longest_squared_edge;
-  double six_volume;  ///< absolute
+  double six_volume;  ///< absolute, input units cubed
 };
 
 inline Circumsphere circumsphere(const Corners& p) {

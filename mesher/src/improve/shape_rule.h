@@ -20,18 +20,19 @@ class ShapeRule {
 
   /// Returns the quality: the larger the better; not positive for a flat or an inverted tet.
   virtual double quality(const Corners& p, const std::array<Index, 4>& corners) const = 0;
-  /// Returns this rule if it depends only on the extreme angles of tets, which can be measured faster in
-  /// pairs; else null.
+  /// Returns this rule if it depends only on the extreme angles of tets (pairs of tets are then measured
+  /// faster), else null.
   virtual const AngleRule* by_angles() const { return nullptr; }
-  /// Returns whether an operation may make this tet, of positive quality.
+  /// Returns whether an operation may make this tet. Precondition: its quality is positive.
   virtual bool allows(const Corners& p, const std::array<Index, 4>& corners, double quality) const = 0;
-  /// Returns whether an operation may make an edge between these vertices in place of one of another length.
+  /// Returns whether an operation may make an edge between these vertices in place of an edge of another
+  /// length.
   virtual bool allows_edge(Index, Index, double /*squared_length*/, double /*squared_before*/) const {
     return true;
   }
   /// Returns the share by which a move of a vertex must raise the quality to be worth it.
   virtual double least_gain() const { return 1e-3; }
-  /// Returns the number of step lengths that a move tries, each half of the last.
+  /// Returns the number of step lengths that a move tries, each half of the one before.
   virtual unsigned step_lengths() const { return 4; }
   /// Returns whether operations may replace cells of collars.
   virtual bool dissolves_collars() const { return false; }
@@ -61,8 +62,8 @@ class RadiusEdgeBound {
   double squared_;
 };
 
-/// The rule of thin tets: a quality of 1 or more means that the tet is thin, in a place where it may be. All
-/// tets may be made.
+/// The rule of thin tets. A quality of 1 or more means that the tet keeps the bounds on thin tets, in a place
+/// where it may be thin. Allows operations to make any tet.
 class ThinRule final : public AngleRule {
  public:
   /// Keeps both by reference.
@@ -83,11 +84,11 @@ class ThinRule final : public AngleRule {
   const CellBounds& bounds_;
 };
 
-/// The rule of improvement: the smallest sine of the dihedral angles, within the bound. Where tets may be
-/// thin, tets with an angle above the largest of thin ones are worse than all others.
+/// The rule of improvement: the smallest sine of the dihedral angles, within the radius-edge bound. Where
+/// tets may be thin, tets with an angle above the largest one of thin tets are worse than all others.
 class SliverRule final : public ShapeRule {
  public:
-  /// Keeps `thin` and `cells` by reference; null: no tet exceeds the bound.
+  /// Keeps references to `thin` and `cells`. If `thin` is null, no tet may exceed the bound.
   explicit SliverRule(double radius_edge, const ThinShape* thin = nullptr, const CellBounds* cells = nullptr)
       : bound_(radius_edge), thin_(thin), cells_(cells) {}
 
@@ -119,8 +120,8 @@ class SliverRule final : public ShapeRule {
   double least_gain() const override { return least_gain_; }
   /// Sets `least_gain` for later operations.
   void set_least_gain(double share) { least_gain_ = share; }
-  /// Returns whether a tet of this quality has an angle above the largest of thin ones, or none above 0.06
-  /// degrees. False where no tet may be thin.
+  /// Returns whether a tet of this quality has an angle above the largest one of thin tets, or none above
+  /// 0.06 degrees. False if no tet may be thin.
   bool is_blunt(double quality) const { return thin_ != nullptr && quality < beyond; }
 
  private:

@@ -10,8 +10,8 @@ namespace collarmesh::improvement {
 
 namespace {
 
-// A face whose normal has at least this cosine with its patch's agrees well enough, however well the old one
-// agreed.
+// A face whose normal has at least this cosine with its patch's normal agrees well enough, even if the old
+// face agreed better.
 constexpr double enough_agreement = 0.8;
 
 double squared_distance_to(const Point& p, const SmoothSurfaces::Triangle& t) {
@@ -60,8 +60,8 @@ SmoothSurfaces::Surface& SmoothSurfaces::surface(Index patch) const {
   return surface;
 }
 
-// Assigns the corners and centres of the patch's triangles to faces that they are near to: mostly the nearest
-// ones, but a face that they lie straight above or below serves, too.
+// Assigns the corners and centres of the patch's triangles to faces near them: usually to the nearest face,
+// but any near face that they lie straight above or below will do.
 void SmoothSurfaces::share_out(Index patch, Surface& surface) const {
   std::vector<Index> faces;
   std::vector<std::array<Index, 3>> corners;
@@ -72,10 +72,10 @@ void SmoothSurfaces::share_out(Index patch, Surface& surface) const {
     }
   if (faces.empty()) return;
   const TriangleHierarchy hierarchy(mesh_.points, std::move(corners));
-  Index nearest = none;  // the next point is often near the same face
+  Index nearest = none;  // try first the face of the last point
   const auto add = [&](const Point& p, double tolerance) {
     const Index hint = std::exchange(nearest, hierarchy.triangle_within(p, tolerance * tolerance, nearest));
-    if (nearest == none) return;  // no samples to keep
+    if (nearest == none) return;  // there are no faces that could keep samples
     const Triangle found = hierarchy.corners(nearest);
     if (nearest != hint || !has_foot(p, found))
       hierarchy.squared_distance_to(p, squared_distance_to(p, found), &nearest);
@@ -104,7 +104,7 @@ SmoothSurfaces::Nearest SmoothSurfaces::nearest(Index patch, const Point& p, dou
   return {nearest_point_on_triangle(p, t[0], t[1], t[2]), normal(t)};
 }
 
-// Returns some triangle of the patch that p is near to; the hint, if p is near it.
+// Returns a triangle of the patch that p is near to: the hint, if p is near it.
 Index SmoothSurfaces::triangle_near(Index patch, const Point& p, Index hint) const {
   const Index first = plc_.patches[patch].first_triangle;
   return triangle_within_tolerance(
@@ -113,8 +113,8 @@ Index SmoothSurfaces::triangle_near(Index patch, const Point& p, Index hint) con
       [](Index) { return true; });
 }
 
-// Tests the ends, the thirds and the middle. The distance to one triangle is convex: when both ends are near
-// it, all points between them are.
+// Tests the ends, the thirds and the middle of an edge. If both ends are near the same triangle, so are all
+// points between them, because the distance to one triangle is convex.
 bool SmoothSurfaces::edge_near(Index patch, const Point& a, const Point& b, Index hint) const {
   const Index near_a = triangle_near(patch, a, hint);
   if (near_a == none) return false;
@@ -125,7 +125,8 @@ bool SmoothSurfaces::edge_near(Index patch, const Point& a, const Point& b, Inde
          triangle_near(patch, (a + 2 * b) / 3, near_b) != none;
 }
 
-// Edges that the old faces have are as near as they were. An edge that two faces share is tested once.
+// Tests the edges of new faces. Edges that the old faces have are as near as before. An edge that two faces
+// share is tested once.
 bool SmoothSurfaces::edges_near(std::span<const Index> old, std::span<const Face> created, std::size_t i,
                                 Index hint) const {
   const auto has_edge = [](const Triangle& t, const Point& a, const Point& b) {
@@ -156,7 +157,7 @@ double SmoothSurfaces::agreement(Index patch, const Triangle& t, Index triangle)
 
 double SmoothSurfaces::worst_agreement(std::span<const Index> faces) const {
   double worst = enough_agreement;
-  Index near = none, patch_of_near = none;  // the next face is often near the same triangle
+  Index near = none, patch_of_near = none;  // try first the triangle of the last face
   for (const Index face : faces) {
     if (!smooth(face)) continue;
     const Triangle t = corners(face);
@@ -171,7 +172,7 @@ double SmoothSurfaces::worst_agreement(std::span<const Index> faces) const {
 bool SmoothSurfaces::fit(std::span<const Index> old, std::span<const Face> created,
                          double& agreement_of_old) const {
   double least = 1;
-  std::vector<Index> near(created.size(), none);  // a triangle near the centre of each
+  std::vector<Index> near(created.size(), none);  // by created face: a triangle near its centre
   const auto is_planar = [&](const Face& face) {
     return face.patch == none || plc_.patches[face.patch].planar;
   };
@@ -186,7 +187,7 @@ bool SmoothSurfaces::fit(std::span<const Index> old, std::span<const Face> creat
     if (std::isnan(agreement_of_old)) agreement_of_old = worst_agreement(old);
     if (least < agreement_of_old) return false;
   }
-  std::size_t last = 0;  // the next point of a patch is often near the same face
+  std::size_t last = 0;  // try first the face of the last point
   for (const Index face : old) {
     if (!smooth(face)) continue;
     const Index patch = mesh_.face_patch[face];
@@ -239,7 +240,7 @@ void SmoothSurfaces::take_samples(std::span<const Index> faces) {
   }
 }
 
-// Gives each sample to the nearest face, or to one that it lies straight above or below, most often that of
+// Gives each sample to the nearest face or to one that it lies straight above or below, usually the face of
 // the last sample.
 void SmoothSurfaces::give_samples(std::span<const Index> faces) {
   first_sample_.resize(mesh_.faces.size(), none);
@@ -264,7 +265,7 @@ void SmoothSurfaces::give_samples(std::span<const Index> faces) {
         nearest = face;
       }
     }
-    assert(nearest != none);  // some face of the patch replaces those that had the samples
+    assert(nearest != none);  // some created face is on the same patch as the faces that had the samples
     if (on_trial_) old_links_.push_back({patch, s, of.next_sample[s]});
     old_first_samples_.note(first_sample_, nearest);
     of.next_sample[s] = first_sample_[nearest];

@@ -17,10 +17,10 @@
 
 namespace collarmesh::improvement {
 
-/// The smooth patches of a complex and the mesh faces on them: decides whether other faces fit them, too. A
-/// patch and its faces are within the tolerance of each other, in samples: centres and edges of the faces are
-/// near the patch, and each sampled point of the patch belongs to a face that it is near to. Several threads
-/// may query it at once.
+/// The smooth patches of a complex and the mesh faces on them. Decides whether other faces fit the patches,
+/// too. A patch and its faces stay within the tolerance of each other, judged by samples: centres and edges
+/// of the faces are near the patch, and each sampled point of the patch belongs to a face near it. Several
+/// threads may query it at once.
 class SmoothSurfaces {
  public:
   using Triangle = std::array<Point, 3>;
@@ -44,21 +44,21 @@ class SmoothSurfaces {
     Triangle corners;
     Index patch;
   };
-  /// Returns whether these can replace the mesh's faces `old`: they must be oriented like the patch at least
-  /// as well as the old ones. Faces on planar patches always fit. Computes the orientation of the old ones if
-  /// it is NaN, for a caller who asks about the same ones again.
+  /// Returns whether the created faces can replace the mesh's faces `old`: the created ones must agree with
+  /// the orientation of the patch at least as well. Faces on planar patches always fit. Computes the
+  /// agreement of the old faces if it is NaN, for callers that ask about the same faces again.
   bool fit(std::span<const Index> old, std::span<const Face> created, double& agreement_of_old) const;
   bool fit(std::span<const Index> old, std::span<const Face> created) const {
     double agreement_of_old = NAN;
     return fit(old, created, agreement_of_old);
   }
-  /// Takes the patches' sampled points from these faces of the mesh; call it before the faces are replaced or
+  /// Takes the patches' sample points from these faces of the mesh. Call it before the faces are replaced or
   /// moved.
   void take_samples(std::span<const Index> faces);
-  /// Gives the points to faces that `fit`; call it afterwards.
+  /// Gives the sample points to faces that `fit`. Call it after the faces were replaced or moved.
   void give_samples(std::span<const Index> faces);
 
-  /// Assigns all points of patches to faces now instead of at the first query.
+  /// Assigns all sample points to faces now instead of at the first query.
   void prepare() const;
   /// Begins a trial: later changes can be undone until `keep`.
   void begin_trial();
@@ -72,7 +72,7 @@ class SmoothSurfaces {
     std::unique_ptr<TriangleHierarchy> triangles;
     std::vector<Point> samples;
     std::vector<Index> next_sample;          // next sample of the same face
-    std::vector<double> squared_tolerances;  // tolerances of the samples, where the tolerance varies
+    std::vector<double> squared_tolerances;  // tolerances of the samples, if the tolerance varies
   };
 
   const TriangleHierarchy& triangles(Index patch) const { return *surface(patch).triangles; }
@@ -95,8 +95,8 @@ class SmoothSurfaces {
   PatchPoints patch_points_;
   SurfaceTolerance tolerance_;
   mutable std::vector<Surface> surfaces_;
-  mutable std::vector<Index> first_sample_;   // by face: its first sample among those of its patch
-  std::vector<std::array<Index, 2>> moving_;  // patch and sample
+  mutable std::vector<Index> first_sample_;   // by face: the first of its samples of its patch
+  std::vector<std::array<Index, 2>> moving_;  // patch and sample of points that no face has yet
   bool on_trial_ = false;
   UndoLog<Index> old_first_samples_;
   struct Link {

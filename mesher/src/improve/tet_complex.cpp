@@ -26,7 +26,7 @@ std::array<Index, 3> sorted(std::array<Index, 3> face) {
   return face;
 }
 
-// Does the same as ==, which calls memcmp.
+// Compares like ==, but without its call of memcmp.
 bool equal(const std::array<Index, 3>& a, const std::array<Index, 3>& b) {
   return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }
@@ -38,11 +38,11 @@ bool has_face(const std::array<Index, 4>& tet, const std::array<Index, 3>& face)
 
 constexpr std::size_t tets_at_once = 8192;  // tets in a chunk of one thread
 
-// Marks of deleted faces and edges, until `store`.
+// Mark deleted faces and edges until `store`.
 constexpr std::array<Index, 3> lost_face{none, none, none};
 constexpr std::array<Index, 2> lost_edge{none, none};
 
-// Drops the cells that are `lost`, and what belongs to them in arrays of the same length.
+// Removes the cells that equal `lost`, and their entries in arrays of the same length.
 template <class Cell, class... Of>
 void drop(const Cell& lost, std::vector<Cell>& cells, std::vector<Of>&... of_cells) {
   std::size_t kept = 0;
@@ -79,8 +79,8 @@ TetComplex::TetComplex(TetMesh& mesh, const KnownNeighbours& neighbours) : mesh_
     curve_edges_.emplace(edge_key(mesh.edges[e][0], mesh.edges[e][1]), e);
 }
 
-// Links neighbours. If some are known, looks only at sides without one, and at those that may be faces of the
-// mesh, between three points of such faces.
+// Links neighbours. If `some_are_known`, looks only at sides without a neighbour and at sides that may be
+// faces of the mesh, because their corners are points of such faces.
 void TetComplex::link(bool some_are_known) {
   std::vector<std::uint8_t> on_faces(some_are_known ? mesh_.points.size() : 0, 0);
   if (some_are_known)
@@ -123,7 +123,8 @@ void TetComplex::link(bool some_are_known) {
                               });
 }
 
-// Finds pinched vertices. Bodies touch in vertices and curves of the complex only.
+// Finds pinched vertices: bodies that touch without sharing a face do so in vertices and curves of the
+// complex only.
 void TetComplex::find_pinched_vertices() {
   const auto corners = found_in_ranges<Index>(tets_.size(), [&](std::size_t t, std::vector<Index>& found) {
     for (const Index v : tets_[t].corners)
@@ -162,7 +163,7 @@ void TetComplex::star(Index vertex, std::vector<Index>& found) const {
 void TetComplex::ring(Index tet, Index a, Index b, Ring& ring) const {
   ring.tets.clear();
   ring.link.clear();
-  // Returns the two other corners of a tet, in the order that makes (a, b, c, d) positive.
+  // Returns the two other corners of a tet, in the order for which (a, b, c, d) is positive.
   const auto others = [&](Index t) {
     const auto& v = tets_[t].corners;
     unsigned ia = 0, ib = 0;
@@ -180,7 +181,7 @@ void TetComplex::ring(Index tet, Index a, Index b, Ring& ring) const {
     const auto& v = tets_[t].corners;
     return tets_[t].neighbours[static_cast<unsigned>(std::find(v.begin(), v.end(), opposite) - v.begin())];
   };
-  // Go back to the first tet at a boundary, if there is one.
+  // At a boundary, go back to the first tet of the ring.
   Index start = tet;
   for (Index t = across(tet, others(tet)[1]); t != none && t != tet; t = across(t, others(t)[1])) start = t;
   if (across(start, others(start)[1]) != none) start = tet;
@@ -292,7 +293,7 @@ std::span<const Index> TetComplex::replace(const Replacement& replacement) {
       open_.pop_back();
     }
   }
-  // The remaining faces of the border have no tet on this side now.
+  // The remaining faces of the border have no tet on this side any more.
   for (const OpenFace& open : open_) {
     if (open.tet == none) continue;
     set_neighbour(open.tet, open.corner, none);
@@ -334,7 +335,7 @@ void TetComplex::make_faces(const Replacement& replacement) {
   }
 }
 
-// Sets, for the tets at a face of the last cavity, its index among the mesh's faces.
+// Sets a face's index among the mesh's faces for the tets of the last cavity at it.
 void TetComplex::set_face(const std::array<Index, 3>& corners, Index face) {
   const auto key = sorted(corners);
   for (const OpenFace& open : open_)
@@ -355,7 +356,7 @@ void TetComplex::join_curve_edges(Index before, Index vertex, Index after) {
   if (on_trial_)
     old_edges_.push_back({true, first->first, second->first, edge_key(before, after), kept, gone,
                           mesh_.edges[kept], mesh_.edges[gone]});
-  // The edge keeps its direction.
+  // The kept edge keeps its direction.
   for (Index& end : mesh_.edges[kept])
     if (end == vertex) end = after;
   mesh_.edges[gone] = lost_edge;
@@ -371,7 +372,7 @@ void TetComplex::divide_curve_edge(Index before, Index vertex, Index after) {
   if (on_trial_)
     old_edges_.push_back(
         {false, edge_key(before, vertex), edge_key(vertex, after), whole, kept, added, ends, {}});
-  // Both edges keep its direction.
+  // Both new edges keep the old edge's direction.
   mesh_.edges[kept] = {ends[0], vertex};
   mesh_.edges.push_back({vertex, ends[1]});
   mesh_.edge_curve.push_back(Index{mesh_.edge_curve[kept]});

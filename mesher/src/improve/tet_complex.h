@@ -39,8 +39,8 @@ class TetComplex {
     std::array<Index, 3> corners;
     Index like;  ///< a face of the mesh whose patch, regions and tag are copied
   };
-  /// Tets that replace others and fill the same cavity, or less of it at a boundary, with the mesh's faces
-  /// inside the cavity or on its border that change.
+  /// Tets that replace others and fill the same cavity, or less of it at a boundary. Includes the changing
+  /// mesh faces inside the cavity or on its border.
   struct Replacement {
     std::vector<Index> old;
     std::vector<NewTet> created;
@@ -48,14 +48,14 @@ class TetComplex {
     std::vector<NewFace> created_faces;
   };
   /// The tets around an edge ab in order: tet i has the corners a, b, link[i], link[i + 1] and positive
-  /// volume. Closed: the last link vertex is followed by the first; open: at a boundary.
+  /// volume. In a closed ring the first link vertex follows the last one; an open ring ends at a boundary.
   struct Ring {
     std::vector<Index> tets, link;
     bool closed;
   };
 
-  /// Keeps the mesh, whose tets are out of date until `store`. `neighbours` is empty or has an entry for each
-  /// tet; neighbours are then searched for only where it has none.
+  /// Keeps a reference to the mesh, whose tets are out of date until `store`. `neighbours` is empty or has an
+  /// entry for each tet; only neighbours that are `none` there are searched for.
   explicit TetComplex(TetMesh& mesh, const KnownNeighbours& neighbours = {});
 
   Index size() const { return static_cast<Index>(tets_.size()); }
@@ -69,8 +69,8 @@ class TetComplex {
 
   /// Returns whether the vertex is a corner of any tet.
   bool in_use(Index vertex) const { return vertex_tet_[vertex] != none; }
-  /// Returns whether some tets at the vertex share only the vertex or edges, as where bodies touch. Its star
-  /// is then incomplete.
+  /// Returns whether the vertex is pinched: some of its tets share no face with the others, as where bodies
+  /// touch. Its star is then incomplete.
   bool pinched(Index vertex) const { return pinched_.contains(vertex); }
   /// Replaces `found` by the tets around a vertex that are connected by faces.
   void star(Index vertex, std::vector<Index>& found) const;
@@ -79,20 +79,20 @@ class TetComplex {
   /// Replaces `ring` by the ring of the edge ab of a tet.
   void ring(Index tet, Index a, Index b, Ring& ring) const;
 
-  /// Adds a vertex on a feature, which is in no tet yet.
+  /// Adds a vertex on a feature; no tet has it yet.
   Index add_vertex(const Point& p, const TetMesh::VertexFeature& feature);
   /// Replaces tets. Returns the new tets' indices, valid until the next call.
   std::span<const Index> replace(const Replacement& replacement);
   /// Returns the mesh faces that the last replacement made.
   std::span<const Index> created_faces() const { return created_faces_; }
-  /// Removes a vertex of a curve between two others: its edges become the one that joins these.
+  /// Removes a vertex of a curve: one edge between `before` and `after` replaces its two edges.
   void join_curve_edges(Index before, Index vertex, Index after);
-  /// Puts a vertex of a curve between two others: the edge that joins these becomes two.
+  /// Inserts a vertex into a curve: two edges replace the edge between `before` and `after`.
   void divide_curve_edge(Index before, Index vertex, Index after);
-  /// Returns which of the mesh's edges on curves joins these vertices. Precondition: on_curve(a, b).
+  /// Returns the mesh edge on a curve that joins these vertices. Precondition: on_curve(a, b).
   Index curve_edge(Index a, Index b) const { return curve_edges_.at(edge_key(a, b)); }
 
-  /// Moves a vertex; the connections of tets and faces stay.
+  /// Moves a vertex; connections of tets and faces stay.
   void move_vertex(Index vertex, const Point& p);
 
   /// Begins a trial: later changes can be undone until `keep`.
@@ -103,13 +103,13 @@ class TetComplex {
   /// Turns the cells in the balls of collars into ordinary tets.
   void forget_balls();
 
-  /// Writes the tets back to the mesh, without removed vertices and faces.
+  /// Writes the tets back to the mesh, leaving out removed vertices and faces.
   void store();
   /// Returns the mesh that `store` would write, and leaves the mesh as it is.
   TetMesh stored() const;
 
  private:
-  /// Makes a complex of a copy of another one's mesh, which can only be stored.
+  /// Makes a complex on a copy of the mesh of another complex. It can only be stored.
   TetComplex(TetMesh& copy, const TetComplex& of)
       : mesh_(copy), tets_(of.tets_), origin_(of.origin_), lost_vertices_(of.lost_vertices_) {}
 
@@ -127,7 +127,7 @@ class TetComplex {
     Tag tag;
     std::array<Index, 2> regions;
   };
-  // Two edges on a curve that became one, or one edge that became two.
+  // Two edges on a curve and the edge that replaces them, or the reverse.
   struct CurveEdges {
     bool joined;
     std::uint64_t first, second, whole;  // edge keys
@@ -151,7 +151,7 @@ class TetComplex {
 
   TetMesh& mesh_;
   LargeVector<Tet> tets_;
-  std::vector<Index> origin_;  // by tet: a tet of the mesh from which it takes its tags
+  std::vector<Index> origin_;  // by tet: the tet of the mesh whose tags it has
   std::vector<Index> vertex_tet_;
   std::unordered_set<Index> pinched_;
   std::vector<std::uint32_t> stamps_;

@@ -9,13 +9,13 @@ namespace {
 
 constexpr double radians = std::numbers::pi / 180;
 
-// A little below the value of the certificate, because normals turn while vertices move.
+// A little below the value of the certificate, because normals turn when vertices move.
 constexpr double least_cosine_of_sides = -0.92;
 
 double sine_above(double degrees) { return std::sin((degrees + 2 * ThinShape::rounding) * radians); }
 
-// Returns true for most tets within the bound, and is much cheaper than `measure`. The relative error of the
-// squared radius is some units of 2^-53 times longest^3 / six times the volume, here below 1e-9, because the
+// Returns true for most tets within the bound, much faster than `measure`. The squared radius has a relative
+// error of some units of 2^-53 times longest^3 / (six times the volume). This is below 1e-9 here, because the
 // radius is at least half the longest edge.
 bool well_within(const Corners& p, double radius_edge) {
   constexpr double margin = 1e-6, least_volume = 1e-4;

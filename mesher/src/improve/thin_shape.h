@@ -15,12 +15,12 @@
 
 namespace collarmesh::improvement {
 
-/// A tet's extreme angles as the squares of their cosines, with the signs of the cosines: like cosines they
-/// decrease as angles grow, but they need no roots.
+/// A tet's extreme angles as squared cosines with the signs of the cosines: like cosines they decrease as
+/// angles grow, but they need no roots.
 struct ExtremeCosines {
-  double smallest_angle;  ///< of the smallest dihedral angle
-  double largest_angle;   ///< of the largest dihedral or face angle
-  bool positive;          ///< the volume is positive
+  double smallest_angle;  ///< signed squared cosine of the smallest dihedral angle
+  double largest_angle;   ///< signed squared cosine of the largest dihedral or face angle
+  bool positive;          ///< whether the volume is positive
 };
 
 inline double signed_square(double x) { return x * std::fabs(x); }
@@ -56,9 +56,9 @@ inline ExtremeCosines dihedral_cosines(const Corners& p) {
   if (!(-dot(n_d, ad) > 0)) return {1, -1, false};
   const double a = 1 / squared_norm(n_a), b = 1 / squared_norm(n_b), c = 1 / squared_norm(n_c),
                d = 1 / squared_norm(n_d);
-  // Outward normals: minus their product is the cosine of the angle between the faces.
+  // The negated product of outward normals is the cosine of the angle between the faces.
   const auto square = [](double product, double x, double y) {
-    return -(product * x) * (std::fabs(product) * y);  // in range at any scale
+    return -(product * x) * (std::fabs(product) * y);  // this order keeps products in range at any scale
   };
   const std::array<double, 6> squares{square(dot(n_c, n_d), c, d), square(dot(n_b, n_d), b, d),
                                       square(dot(n_b, n_c), b, c), square(dot(n_a, n_d), a, d),
@@ -78,8 +78,8 @@ inline ExtremeCosines extreme_cosines(const Corners& p) {
   return cosines;
 }
 
-/// Returns whether all dihedral angles lie between the two with these squared cosines, the second one obtuse,
-/// and face angles are below the second. Has no divisions, and returns false in close cases.
+/// Returns whether all dihedral angles lie between the angles with these two squared cosines, the second one
+/// obtuse, and face angles are below the second one. Has no divisions; returns false in close cases.
 inline bool surely_between(const Corners& p, double squared_cosine, double squared_obtuse_cosine) {
   constexpr double rounding = 1e-9;
   const double sharp = squared_cosine * (1 - rounding), blunt = squared_obtuse_cosine * (1 - rounding);
@@ -87,7 +87,7 @@ inline bool surely_between(const Corners& p, double squared_cosine, double squar
                cd = p[3] - p[2];
   const Vector n_a = cross(bc, bd), n_b = cross(ad, ac), n_c = cross(ab, ad), n_d = cross(ac, ab);
   const double a = squared_norm(n_a), b = squared_norm(n_b), c = squared_norm(n_c), d = squared_norm(n_d);
-  // There are no branches; NaN is within no bound.
+  // Counts violations without branches; NaN violates every bound.
   unsigned beyond = 0;
   const auto require = [&beyond](bool holds) { beyond |= holds ? 0U : 1U; };
   // The negated product of outward normals has the sign of the cosine.
@@ -101,7 +101,7 @@ inline bool surely_between(const Corners& p, double squared_cosine, double squar
   see_edge(n_a, n_d, a * d);
   see_edge(n_a, n_c, a * c);
   see_edge(n_a, n_b, a * b);
-  // A corner of a face, between sides of squared lengths x and y.
+  // Tests a corner of a face, between sides of squared lengths x and y.
   const auto see_corner = [&](double x, double y, double across) {
     const double product = std::min(0.0, x + y - across);
     require(product * product < 4 * blunt * (x * y));
@@ -121,10 +121,10 @@ inline bool surely_between(const Corners& p, double squared_cosine, double squar
   return beyond == 0;
 }
 
-/// Returns the extreme angles of a tet, degrees.
+/// A tet's extreme angles, degrees.
 struct ExtremeAngles {
-  double smallest;  ///< dihedral; negative for a flat or an inverted tet
-  double largest;   ///< dihedral, or of a face
+  double smallest;  ///< smallest dihedral angle; negative for a flat or an inverted tet
+  double largest;   ///< largest dihedral or face angle
 };
 
 inline ExtremeAngles extreme_angles(const Corners& p) {
@@ -136,28 +136,28 @@ inline ExtremeAngles extreme_angles(const Corners& p) {
   return {angle(cosines.smallest_angle), angle(cosines.largest_angle)};
 }
 
-/// The shape of thin tets: dihedral angles are bounded from below and above and face angles from above, as
-/// tightly as thin places permit. Where features meet at less than twice the smallest angle, the lower bound
-/// is half the angle between them. Where the input forces an edge of the tet to be short, the lower bound is
-/// half the angle that the edge leaves.
+/// The bounds on the shape of thin tets: on dihedral angles from below and above, and on face angles from
+/// above, as tight as thin places permit. If features meet at less than twice the smallest angle, the lower
+/// bound is half the angle between them. If the input forces an edge of the tet to be short, the lower bound
+/// is half the angle that the edge leaves.
 class ThinShape {
  public:
   static constexpr double largest_angle = 150;  ///< degrees
-  static constexpr double rounding = 1e-6;      ///< degrees, kept free for other ways to compute an angle
+  static constexpr double rounding = 1e-6;      ///< degrees, a margin for other ways to compute an angle
 
-  /// `smallest_angle` is in degrees; 0: no tet is thin. Vertices are the mesh's current ones. `reserve` is
-  /// the share of the bounds, counted from 0 and from 180 degrees, that is kept free. `forced`: see
+  /// `smallest_angle` is in degrees; 0: no tet is thin. Vertices have their current numbers. `reserve` is the
+  /// share of the bounds, counted from 0 and from 180 degrees, that is kept in reserve. `forced`: see
   /// forced_edges_of. `tets_across`: see Bounds.
   ThinShape(const Plc& plc, const TetMesh& mesh, double smallest_angle, double reserve,
             std::shared_ptr<const ForcedEdges> forced, double tets_across = 1);
 
   bool empty() const { return !(smallest_ > 0); }
   double squared_cosine_of_largest() const { return -cosine_; }
-  /// Returns the sine of the lower bound on the dihedral angles of a tet, with room for rounding.
+  /// Returns the sine of the lower bound on a tet's dihedral angles, with a margin for rounding.
   double smallest_sine(const Corners& p, const std::array<Index, 4>& corners) const {
     return std::min(smallest_sine_at(corners), forced_sine(p, corners));
   }
-  /// Returns whether a tet of positive volume has an angle above the largest of thin ones. `shape` is its
+  /// Returns whether a tet of positive volume has an angle above the largest one of thin tets. `shape` is its
   /// shape_quality, which rules out such dihedral angles for most tets.
   bool is_blunt(const Corners& p, double shape) const {
     return shape > obtuse_weight * least_blunt_ + rounding ? least_cosine_of_faces(p) < cosine_
@@ -180,8 +180,7 @@ class ThinShape {
     return {margin, blunt * inverse_squared_least_blunt_};
   }
   /// Returns the quality of a tet of positive volume; `sine` is its quality by angles alone (shape_quality).
-  /// Where edges are forced, small angles count relative to what the edges permit, so that large angles
-  /// decide.
+  /// At forced edges, small angles count relative to what the edges permit, so that large angles decide.
   double shape_quality_where_forced(const Corners& p, const std::array<Index, 4>& corners,
                                     double sine) const {
     const double forced = sine < largest_forced_sine ? forced_sine(p, corners) : 1;
@@ -217,12 +216,12 @@ class ThinShape {
   }
 
  private:
-  // The sine of 1.7 degrees. Where forced edges permit less, trying for more gains nothing. Where they permit
-  // more, tets are made as if their edges were not forced, but need not be.
+  // The sine of 1.7 degrees. If forced edges permit less, further attempts gain nothing. If they permit more,
+  // operations treat the tet as if its edges were not forced, although the bound is lower.
   static constexpr double deep = 0.03;
   // Largest squared margin that forced edges can give a tet.
   static constexpr double good_enough = 2;
-  // Tets with a larger smallest angle are good anyway.
+  // Tets whose smallest angle has a larger sine need no lower bound.
   static constexpr double largest_forced_sine = 0.35;
 
   double smallest_sine_at(const std::array<Index, 4>& corners) const {
@@ -235,7 +234,8 @@ class ThinShape {
   double forced_sine(const Corners& p, const std::array<Index, 4>& corners) const;
 
   double smallest_, sine_, cosine_, least_blunt_, inverse_squared_least_blunt_;
-  double share_;                        // share of the forced angle to keep, including the reserve
+  double share_;                        // share of the forced angle that tets must keep, including the
+                                        // reserve
   std::vector<double> sine_at_vertex_;  // empty if no crease is that sharp
   std::shared_ptr<const ForcedEdges> forced_;
 };

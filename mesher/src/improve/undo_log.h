@@ -16,11 +16,11 @@ class UndoLog {
     entries_.clear();
   }
   void end() { on_ = false; }
-  /// Call this before the entry changes.
+  /// Records an entry's value. Call this before the entry changes.
   void note(const Values& values, std::size_t i) {
     if (on_ && i < size_) entries_.emplace_back(i, values[i]);
   }
-  /// Restores all entries present at the beginning, drops those added since, and ends.
+  /// Restores all entries that were present at the beginning, removes those added since, and ends the log.
   void undo(Values& values) {
     for (auto entry = entries_.rbegin(); entry != entries_.rend(); ++entry)
       values[entry->first] = entry->second;

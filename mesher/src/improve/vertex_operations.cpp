@@ -11,15 +11,15 @@ namespace collarmesh::improvement {
 
 namespace {
 
-// Vertices move by steps that start from this share of their shortest edge and shrink.
+// The first step of a moving vertex, relative to its shortest edge; steps shrink afterwards.
 constexpr double first_step = 0.4;
 
 bool contains(const auto& range, Index v) { return std::find(range.begin(), range.end(), v) != range.end(); }
 
 }  // namespace
 
-// Finds the tets and the mesh's faces at a vertex; returns false at a collar and where they are not
-// connected.
+// Finds the tets and the mesh's faces at a vertex. Returns false at a collar, and if the tets are not
+// connected by faces.
 bool Operations::find_cone_of_vertex(Index vertex) {
   cone_.clear();
   if (complex_.pinched(vertex) || workpiece_.is_fixed(vertex)) return false;
@@ -46,8 +46,8 @@ bool Operations::make_cone_of_vertex(Index vertex) {
   return true;
 }
 
-// Finds the tets at an edge inside a region or a patch, and the two faces there; returns false where no
-// vertex may be inserted.
+// Finds the tets at an edge inside a region or a patch, and the two faces there. Returns false if no vertex
+// may be inserted.
 bool Operations::find_cone_of_edge(Index a, Index b) {
   if (complex_.on_curve(a, b)) return false;
   const Index at = complex_.tet_at_edge(a, b);
@@ -99,8 +99,8 @@ void Operations::add_to_rim(Index face, Index opposite) {
   cone_.rim_face.push_back(face);
 }
 
-// Calls `passes` for the tet between the apex and each face of the hull, from `first_pair` on and around.
-// Stops at the first that returns false and returns its pair, else `all_passed`.
+// Calls `passes` for the tet between the apex and each face of the hull, two faces at a time, cyclically from
+// `first_pair` on. Stops at the first call that returns false and returns its pair, else `all_passed`.
 template <class Passes>
 std::size_t Operations::for_each_shape(const Point& apex, std::size_t first_pair, const Passes& passes) {
   if (cone_.shapes.empty()) cone_.shapes.assign(cone_.hull, mesh_.points);
@@ -135,7 +135,7 @@ double Operations::worst_at_vertex(Index vertex) {
   return cone_.worst;
 }
 
-// Returns the quality of the worst tet of the cone with an apex; -1 if it is not above `above` or the rule
+// Returns the quality of the worst tet of the cone with an apex; -1 if it is not above `above` or if the rule
 // forbids a tet. Faces that have the apex as a corner do not count.
 double Operations::quality_around(const Point& apex, Index id, double above) {
   const AngleRule* rule = rule_.by_angles();
@@ -153,7 +153,7 @@ double Operations::quality_by_angles(const AngleRule& rule, const Point& apex, I
     return worst > above && may_be_made(apex, corners, quality);
   });
   if (failed == all_passed) return worst;
-  cone_.decisive = failed;  // is likely to fail for the next place, too
+  cone_.decisive = failed;  // this pair is likely to fail for the next place, too
   return -1;
 }
 
@@ -166,7 +166,7 @@ double Operations::quality_by_tets(const Point& apex, Index id, double above) {
     const double quality = rule_.quality(with_apex(apex, corners), corners);
     worst = std::min(worst, quality);
     if (worst > above && may_be_made(apex, corners, quality)) continue;
-    std::swap(cone_.hull[0], cone_.hull[i]);  // is likely to decide for the next place, too
+    std::swap(cone_.hull[0], cone_.hull[i]);  // this face is likely to decide for the next place, too
     std::swap(cone_.hull_tet[0], cone_.hull_tet[i]);
     return -1;
   }
@@ -202,7 +202,7 @@ bool Operations::surfaces_allow(const Point& apex, Index id) {
   return surfaces_.fit(cone_.faces, faces_, cone_.agreement);
 }
 
-// Replaces the tets and faces by cones over hull and rim.
+// Replaces the tets and faces by cones over the hull and the rim.
 void Operations::fill(Index apex, Change& change) const {
   auto& [old, created, old_faces, created_faces] = change.replacement;
   old = cone_.tets;
@@ -274,7 +274,7 @@ std::pair<Point, double> Operations::best_place(const Point& start, Index id, co
   return {place, best};
 }
 
-// Does the same along the curve of a vertex: finds how far to slide it.
+// Searches likewise along the curve of a vertex for the best arc length to slide by.
 std::pair<double, double> Operations::best_way(Index vertex, double best) {
   const auto& points = mesh_.points;
   double shortest = INFINITY;
@@ -315,7 +315,7 @@ void Operations::move_vertex(Index vertex, Change& change) {
       std::tie(place, after) = best_place(p, vertex, *where, cone_.worst);
     }
   };
-  // Most often surface and curve allow the best place.
+  // In most cases surface and curve allow the best place, so ask them only about it.
   ask_surfaces_ = false;
   search();
   ask_surfaces_ = true;
@@ -375,7 +375,7 @@ void Operations::divide_edge(Index a, Index b, double least, Change& change) {
   fill(Change::inserted, change);
 }
 
-// Finds the tets at an edge; returns false where they are not one ring, as where bodies touch.
+// Finds the tets at an edge. Returns false if they do not form one ring, as where bodies touch.
 bool Operations::find_whole_ring(Index a, Index b) {
   const Index from = complex_.pinched(a) ? b : a, to = from == a ? b : a;
   if (complex_.pinched(from)) return false;
@@ -415,7 +415,7 @@ void Operations::contract_edge_anyhow(Index vertex, Index onto, double least, Ch
   contract_edge_above(vertex, onto, least, false, change);
 }
 
-// Collapses an edge if all new tets are better than `least`; without `least`, better than the worst one at
+// Collapses an edge if all new tets are better than `least` or, without `least`, better than the worst tet at
 // the vertex and than `change`.
 void Operations::contract_edge_above(Index vertex, Index onto, std::optional<double> least, bool any_length,
                                      Change& change) {
@@ -431,7 +431,7 @@ void Operations::contract_edge_above(Index vertex, Index onto, std::optional<dou
   change.kind = Change::Kind::contraction;
   change.quality = quality;
   change.vertex = vertex;
-  if (mesh_.features[vertex].dimension < 3) change.read = star_;  // star of the other end
+  if (mesh_.features[vertex].dimension < 3) change.read = star_;  // the star of the other end
   fill(onto, change);
 }
 
@@ -476,13 +476,13 @@ bool Operations::may_contract(Index vertex, Index onto) {
   return shared == 2;
 }
 
-// Checks the link condition: vertices and edges that are joined to both ends of the edge must be joined to
-// the edge, in the mesh and on its faces, else cells would coincide. For a vertex inside a region, positive
+// Checks the link condition, in the mesh and on its faces: vertices and edges that are joined to both ends of
+// the edge must be joined to the edge, otherwise cells would coincide. For a vertex inside a region, positive
 // volumes imply it.
 bool Operations::keeps_topology(Index vertex, Index onto) {
   if (mesh_.features[vertex].dimension == 3) return true;
   if (complex_.pinched(onto)) return false;
-  // The other vertices joined to the vertex, and those joined to the edge.
+  // The other vertices joined to `vertex`, and those joined to the edge.
   IndexSet joined, joined_to_edge;
   for (const auto& face : cone_.hull) {
     const bool at_edge = contains(face, onto);

@@ -21,14 +21,14 @@ struct Change {
   static constexpr Index inserted = none;
 
   Kind kind = Kind::none;
-  double quality = 0;                   ///< of the worst new tet
-  TetComplex::Replacement replacement;  ///< for a move only the faces
+  double quality = 0;                   ///< quality of the worst new tet
+  TetComplex::Replacement replacement;  ///< has only faces if a vertex moves
   std::vector<Index> read;              ///< further tets on which the change, or the refusal, depends
   Index vertex = none;                  ///< the vertex that is moved or removed
-  Point place{};                        ///< of the moved or inserted vertex
+  Point place{};                        ///< new place of the moved or inserted vertex
   double way = 0;                       ///< arc length by which a vertex on a curve slides
   TetMesh::VertexFeature feature;       ///< feature of the inserted vertex
-  /// For a vertex inserted on a curve: the edge that it divides and its arc length.
+  /// For a vertex inserted on a curve: the edge that it divides, and its arc length.
   CurveSlides::Middle middle = {};
 };
 
@@ -50,7 +50,7 @@ class Workpiece {
 
   double quality(Index tet) const;
 
-  /// Returns whether the triangles of this patch stay as they are, as those of periodic faces do.
+  /// Returns whether the triangles of this patch must stay, like those of periodic faces.
   bool keeps(Index patch) const { return !kept_.empty() && patch != none && kept_[patch]; }
 
   /// Fixes these vertices at their places.
@@ -62,19 +62,20 @@ class Workpiece {
   }
   bool is_fixed(Index vertex) const { return vertex < fixed_.size() && fixed_[vertex]; }
 
-  /// Leaves tets unchanged that have all corners among these vertices.
+  /// Leaves tets unchanged if all their corners are among these vertices.
   void leave(std::vector<bool> vertices) { left_ = std::move(vertices); }
   bool leaves(const TetComplex::Tet& tet) const {
     return !left_.empty() &&
            std::ranges::all_of(tet.corners, [&](Index v) { return v < left_.size() && left_[v]; });
   }
 
-  /// Returns whether this collapse is still allowed. Others on the same curve use up its spare edges.
+  /// Returns whether this collapse is still allowed, as other collapses on the same curve use up its spare
+  /// edges.
   bool curve_can_spare(const Change& change) const {
     return complex.mesh().features[change.vertex].dimension != 1 || curves.may_skip(change.vertex);
   }
-  /// Applies a change. Returns the tets that are new or have changed, until the next call. Precondition:
-  /// nothing that the change depends on has changed since it was proposed.
+  /// Applies a change. Returns the new and the changed tets, valid until the next call. Precondition: nothing
+  /// that the change depends on has changed since it was proposed.
   const std::vector<Index>& apply(Change change);
 
   /// Builds the data that is otherwise built on first use; call it before the first trial.
@@ -93,7 +94,7 @@ class Workpiece {
  private:
   static std::vector<bool> patches_to_keep(const Plc& plc, const TetMesh& mesh);
 
-  std::vector<bool> kept_;          // by patch; empty: none is kept
+  std::vector<bool> kept_;          // by patch: whether its triangles stay; empty: none stays
   std::vector<bool> fixed_, left_;  // by vertex; empty or shorter: false
   std::vector<Index> changed_;
 };

@@ -7,8 +7,8 @@
 
 namespace collarmesh {
 
-/// A box given by its centre and half of its sides, widened by more than the rounding of the tests below:
-/// these need fewer operations than with minima and maxima. The tests have no branches, because it is
+/// A box given by its centre and half of its sides, widened by more than the rounding errors of its tests.
+/// These tests need fewer operations than tests of minima and maxima. They have no branches, because it is
 /// unpredictable which comparison fails.
 struct CentredBox {
   Point centre;
@@ -37,7 +37,7 @@ struct CentredBox {
     return std::max(std::max(x, y), z) <= 0;
   }
 
-  /// Returns a lower bound of the squared distance from p; 0 inside.
+  /// Returns a lower bound on the squared distance from p; 0 inside.
   double squared_distance(const Point& p) const {
     const Vector d = p - centre;
     return squared_norm({std::max(std::fabs(d.x) - half.x, 0.0), std::max(std::fabs(d.y) - half.y, 0.0),

@@ -14,16 +14,16 @@ struct PlaceOnCurve {
   Point point;
 };
 
-/// The curves of a complex by arc length. On a closed curve parameters wrap around.
+/// The curves of a complex, parametrized by arc length. On a closed curve parameters wrap around.
 class CurvePaths {
  public:
   /// Keeps both by reference; `points` are those of the complex, possibly in another frame.
   CurvePaths(const Plc& plc, std::span<const Point> points);
 
   double length(Index curve) const { return lengths_[curve].back(); }
-  /// Returns the arc lengths of the polyline's points, with the whole length at the end.
+  /// Returns the arc lengths of the polyline's points; the last entry is the whole length.
   const std::vector<double>& lengths(Index curve) const { return lengths_[curve]; }
-  /// Returns the number of the polyline's segment at a parameter, and the segment's two points.
+  /// Returns the index of the polyline's segment at a parameter, and the segment's two points.
   std::size_t segment(Index curve, double parameter) const;
   std::array<Index, 2> segment_ends(Index curve, std::size_t segment) const;
   Point point(Index curve, double parameter) const;

@@ -22,11 +22,11 @@ class LocationObjects {
   };
 
   const Object& operator[](Index object) const { return objects_[object]; }
-  /// Returns the first object at a mesh vertex, none if it has none; follow `next`.
+  /// Returns the first object at a mesh vertex, or none. `next` leads to the others.
   Index first_at(Index vertex) const { return vertex < first_.size() ? first_[vertex] : none; }
 
   /// Visits all objects at a mesh vertex with their numbers. The visitor may move or remove the object that
-  /// it visits, and no other one.
+  /// it visits, but no other one.
   template <class Visit>
   void visit_at(Index vertex, const Visit& visit) const {
     for (Index o = first_at(vertex), next = none; o != none; o = next) {
@@ -62,7 +62,7 @@ class LocationObjects {
     attach(object, vertex);
   }
 
-  /// Returns the numbers of objects added, moves to other vertices, and visits so far.
+  /// Return the numbers of objects added, of moves to other vertices, and of visits so far.
   std::size_t added() const { return added_; }
   std::size_t moved() const { return moved_; }
   std::size_t looks() const { return looks_; }

@@ -17,16 +17,16 @@
 namespace collarmesh {
 
 /// Segments in one neighbourhood, prepared for tests against many boxes: by separating axes as in
-/// SegmentAgainstBoxes, four segments at a time. Works in single precision relative to the neighbourhood,
-/// with boxes widened by more than the rounding: never misses a box that a segment meets.
+/// SegmentAgainstBoxes, four segments at a time. Works in single precision relative to the neighbourhood.
+/// Boxes are widened by more than the rounding errors, so it never misses a box that a segment meets.
 class SegmentBundle {
  public:
-  /// Bit i: segment i of the part.
+  /// Bit i stands for segment i of a part.
   using Mask = std::uint64_t;
   /// The number of segments that one mask covers.
   static constexpr std::size_t part_size = 64;
 
-  /// Starts a new bundle; the points to come lie in the ball B(centre, radius). Precondition: radius > 0.
+  /// Starts a new bundle. All points must lie in the ball B(centre, radius). Precondition: radius > 0.
   void start(const Point& centre, double radius) {
     centre_ = centre;
     scale_ = 1 / radius;
@@ -65,7 +65,7 @@ class SegmentBundle {
     return ~Mask{0} >> (part_size - count);
   }
 
-  /// Returns the `candidates` that may meet the box.
+  /// Returns which of the `candidates` may meet the box.
   Mask may_meet(const CentredBox& box, std::size_t part, Mask candidates) const {
     std::array<Lanes, 3> c, e;
     const Vector centre = scale_ * (box.centre - centre_);
@@ -84,8 +84,9 @@ class SegmentBundle {
  private:
   static constexpr std::size_t lane_count = 4;
   static constexpr Mask lanes_of_a_group = 15;
-  // A number in single precision is off by 6e-8 of itself: the points, which are at most 1 from the centre,
-  // by as much, and the tests by a few times that, up to the extent of the boxes that the segments meet.
+  // Bound on rounding. Numbers in single precision have a relative error of 6e-8. The points are at most 1
+  // from the centre, so they are off by at most that; the tests are off by a few times that, relative to the
+  // extent of the boxes that the segments meet.
   static constexpr double slack = 4e-6;
   using Lanes [[gnu::vector_size(lane_count * sizeof(float))]] = float;
   using Truths [[gnu::vector_size(lane_count * sizeof(float))]] = std::int32_t;

@@ -11,7 +11,7 @@ namespace collarmesh {
 namespace {
 
 // Returns whether the box lies on one side of the triangle's plane. Conservative: the compared terms are off
-// by some 16 roundings of the sum of products that the slack is a share of.
+// by some 16 roundings of the sum of products, and the slack is a larger share of that sum.
 bool misses_plane(const CentredBox& box, const std::array<Point, 3>& t) {
   const auto sum = [](const Vector& v) { return std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z); };
   const Vector u = t[1] - t[0], v = t[2] - t[0], n = cross(u, v), d = box.centre - t[0];
@@ -32,11 +32,11 @@ int passes(const Point& p, const Point& q, const Point& a, const Point& b) {
   return sign != 0 ? sign : predicates::cross_product_sign_exact(p, q, a, b);
 }
 
-// Returns whether a triangle stands for a segment or point: its last two corners are then the same.
+// Returns whether a triangle stands for a segment or point: its last two corners are equal.
 bool is_segment(const std::array<Point, 3>& t) { return t[1] == t[2]; }
 
-// Returns whether the box misses the triangle. Conservative. Boxes around oblique segments say little: a
-// place among a thousand long ones may be in hundreds of boxes.
+// Returns whether the box misses the triangle. Conservative. Boxes around oblique segments exclude little: a
+// point among a thousand long segments may be in hundreds of boxes.
 bool misses(const CentredBox& box, const std::array<Point, 3>& t) {
   return is_segment(t) ? !SegmentAgainstBoxes(t[0], t[1]).may_meet(box) : misses_plane(box, t);
 }
@@ -85,7 +85,7 @@ Index TriangleHierarchy::build(std::span<const SpatialKey> keys, Index parent, B
   return node;
 }
 
-// Returns the labels of the nodes. Children come after their parents.
+// Returns the common label below each node. Children come after their parents.
 std::vector<Index> TriangleHierarchy::common_labels(std::span<const Index> label_of_triangle) const {
   assert(label_of_triangle.size() == triangles_.size());
   std::vector<Index> labels(nodes_.size());

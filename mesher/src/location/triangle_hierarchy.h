@@ -21,8 +21,8 @@ namespace collarmesh {
 /// while the cell is large, so that neither memory nor queries grow with the input's resolution.
 class TriangleHierarchy {
  public:
-  /// A triangle that a segment crosses; `direction` is +1 when the segment goes from behind the triangle to
-  /// its front (the side its normal points to), else -1.
+  /// A triangle that a segment crosses; `direction` is +1 if the segment goes from behind the triangle to its
+  /// front (the side its normal points to), else -1.
   struct Crossing {
     Index triangle;
     int direction;
@@ -36,7 +36,8 @@ class TriangleHierarchy {
    private:
     friend class TriangleHierarchy;
     struct OfNode {
-      std::uint32_t met = 0, started = 0;  // the last searches that met it, and that started from it
+      std::uint32_t met = 0, started = 0;  // number of the last search that met the node, and of the last one
+                                           // that started from it
     };
     std::vector<OfNode> of_nodes_;
     std::uint32_t search_ = 0;
@@ -57,8 +58,8 @@ class TriangleHierarchy {
 
   /// Replaces `found` by the nodes whose boxes meet the box, each at the coarsest level whose extent does not
   /// exceed `extent`, and by the larger triangles whose planes meet it, too. Precondition: the nodes of
-  /// `from` cover every triangle that meets it. Conservative: a node found may hold no triangle that meets
-  /// the box. Cost: linear in the nodes found plus the levels between them and `from`.
+  /// `from` cover every triangle that meets the box. Conservative: a node found may contain no triangle that
+  /// meets the box. Cost: linear in the nodes found plus the levels between them and `from`.
   void nodes_meeting(const Box& box, double extent, std::span<const Index> from, Marks& marks,
                      std::vector<Index>& found) const;
 
@@ -77,48 +78,47 @@ class TriangleHierarchy {
   void crossings(const SegmentBundle& bundle, std::span<const Index> nodes,
                  std::vector<BundleCrossing>& found) const;
 
-  /// Returns the direction in which the segment pq crosses one triangle; 0 when it does not.
+  /// Returns the direction in which the segment pq crosses one triangle; 0 if it does not cross it.
   int crossing(const Point& p, const Point& q, Index triangle) const;
 
-  /// Returns the squared distance from p to the nearest triangle, if below `bound` (else `bound`, and
-  /// `nearest` is left alone).
+  /// Returns the squared distance from p to the nearest triangle if it is below `bound`. Otherwise returns
+  /// `bound` and leaves `nearest` unchanged.
   double squared_distance_to(const Point& p, double bound = INFINITY, Index* nearest = nullptr) const {
     return squared_distance_to(p, bound, nearest, [](Index) { return true; });
   }
-  /// Returns the same among the triangles that `counts` accepts.
+  /// Returns the squared distance to the nearest triangle that `counts` accepts, likewise.
   template <class Counts>
   double squared_distance_to(const Point& p, double bound, Index* nearest, const Counts& counts) const {
     return squared_distance_to(
         p, bound, nearest, [](Index) { return false; }, counts);
   }
-  /// Returns the same without the triangles below nodes that `skips` accepts.
+  /// Does so without visiting triangles below nodes that `skips` accepts.
   template <class Skips, class Counts>
   double squared_distance_to(const Point& p, double bound, Index* nearest, const Skips& skips,
                              const Counts& counts) const;
 
-  /// Returns some triangle whose squared distance from p is below `bound`: the `hint` if it is one; none if
-  /// there is no such triangle.
+  /// Returns a triangle whose squared distance from p is below `bound` (the `hint` if it is one), or none.
   Index triangle_within(const Point& p, double bound, Index hint = none) const {
     return triangle_within(p, bound, hint, [](Index) { return true; });
   }
-  /// Returns the same among the triangles that `counts` accepts. Precondition: it accepts the hint.
+  /// Returns such a triangle among those that `counts` accepts. Precondition: it accepts the hint.
   template <class Counts>
   Index triangle_within(const Point& p, double bound, Index hint, const Counts& counts) const;
 
-  /// Visits triangles below `nodes`, near ones first, as long as their boxes are nearer to p than the bound,
-  /// which the visitor may lower.
+  /// Visits triangles below `nodes`, near ones first, as long as their boxes are nearer to p than the bound.
+  /// The visitor may lower the bound.
   template <class Visit>
   void visit_near(std::span<const Index> nodes, const Point& p, const double& squared_bound,
                   const Visit& visit) const {
     visit_near(
         nodes, p, squared_bound, [](Index) { return false; }, visit);
   }
-  /// Does the same without the triangles below nodes that `skips` accepts.
+  /// Visits triangles likewise, except those below nodes that `skips` accepts.
   template <class Skips, class Visit>
   void visit_near(std::span<const Index> nodes, const Point& p, const double& squared_bound,
                   const Skips& skips, const Visit& visit) const;
 
-  /// Returns for each node the label that all triangles below it have; none where they differ. Precondition:
+  /// Returns for each node the label that all triangles below it have, or none if they differ. Precondition:
   /// one label per triangle.
   std::vector<Index> common_labels(std::span<const Index> label_of_triangle) const;
 
@@ -129,7 +129,7 @@ class TriangleHierarchy {
     CentredBox box;
     double extent;  // longest side of the box
     Index parent;
-    Index left, right;  // in a leaf left == none, and right is its triangle
+    Index left, right;  // in a leaf `left` is none and `right` is its triangle
   };
 
   /// Builds the tree of these keys and adds its box to `box`. Returns its root.

@@ -13,11 +13,11 @@ class VoronoiWalk {
   /// Keeps the mesh by reference.
   explicit VoronoiWalk(Triangulation& mesh) : mesh_(mesh) {}
 
-  /// Returns the vertex whose cell contains p: goes from `from` to a nearer neighbour as long as there is
+  /// Returns the vertex whose cell contains p. Walks from `from` to a nearer neighbour as long as there is
   /// one.
   Index nearest(const Point& p, Index from);
 
-  /// Visits the vertices whose cells meet B(x, r), and few more, breadth first from the one whose cell
+  /// Visits the vertices whose cells meet B(x, r), and few others, breadth first from the vertex whose cell
   /// contains x. The visitor may make the ball smaller: `squared_radius` is read again for every vertex.
   template <class Visit>
   void visit_ball(const Point& x, Index nearest, const double& squared_radius, const Visit& visit) {
@@ -27,7 +27,7 @@ class VoronoiWalk {
     const double shortest = squared_distance(x, mesh_.point(nearest));
     for (std::size_t i = 0; i < found_.size(); ++i) {
       const Index vertex = found_[i];
-      // The cell lies beyond the bisector plane of its vertex and the vertex nearest to x.
+      // The cell lies beyond the bisector plane between its vertex and the vertex nearest to x.
       const double across = distance(mesh_.point(vertex), mesh_.point(nearest));
       const double beyond =
           i == 0 ? 0 : (squared_distance(x, mesh_.point(vertex)) - shortest) / (2 * across) * (1 - 1e-9);

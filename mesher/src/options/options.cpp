@@ -13,7 +13,7 @@ namespace collarmesh {
 
 namespace {
 
-/// Reads a number that is the whole text.
+/// Reads a number; the text must contain nothing else.
 template <class Number>
 bool read_whole(std::string_view text, Number& number) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -108,7 +108,7 @@ void require(bool holds, const std::string& message) {
   if (!holds) throw OptionError(message);
 }
 
-/// Throws OptionError if an option is given a value other than the profile's.
+/// Throws OptionError if an option has a value other than the one that the profile sets.
 void require_as_profile_sets(const RunOptions& options) {
   const RunOptions set = with_profile(options), defaults;
   for (const Option& option : option_table()) {

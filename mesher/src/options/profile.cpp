@@ -7,7 +7,7 @@ namespace collarmesh {
 namespace {
 
 constexpr double right_angle = 90;
-// Any bound above 2 sqrt 2 is possible (paper, section 1.2).
+// The proofs permit any bound above 2 sqrt 2 (paper, section 1.2).
 constexpr double proved_radius_edge = 2.83;
 
 }  // namespace
@@ -17,7 +17,7 @@ MeshOptions with_profile(MeshOptions options) {
   Bounds& bounds = options.bounds;
   bounds.crease_angle = right_angle;
   bounds.thin_angle = 0;
-  if (!bounds.thin_in_narrow_places_only)  // no ratio was asked for
+  if (!bounds.thin_in_narrow_places_only)  // the options contain no ratio
     bounds.radius_edge = std::max(bounds.radius_edge, proved_radius_edge);
   options.exterior_radius_edge = bounds.radius_edge;
   options.narrow_cells = NarrowCells::bounded;

@@ -22,7 +22,7 @@ constexpr Kind kind_of(bool has_words) {
   return std::is_same_v<T, std::vector<std::string>> ? Kind::texts : Kind::sizes;
 }
 
-/// Accesses a member of a member of RunOptions. A choice has `words`.
+/// Accesses a member of a member of RunOptions. If it is a choice, it has `words`.
 template <bool has_words, auto... members>
 struct At {
   static auto& of(auto& options) { return (options.*....*members); }
@@ -64,14 +64,14 @@ constexpr Option::Place in_mesh = at<&RunOptions::mesh, member>;
 template <auto member>
 constexpr Option::Place in_bounds = at<&RunOptions::mesh, &MeshOptions::bounds, member>;
 
-/// The bound on the radius-edge ratio. Without this option tets may be thin anywhere.
+/// Accesses the bound on the radius-edge ratio. Without this option tets may be thin anywhere.
 constexpr Option::Place asked_ratio{Kind::number, in_bounds<&Bounds::radius_edge>.get,
                                     [](const Option&, RunOptions& options, const OptionValue& value) {
                                       options.mesh.bounds.radius_edge = std::get<double>(value);
                                       options.mesh.bounds.thin_in_narrow_places_only = true;
                                     }};
 
-/// The dimension of the elements. Surfaces need not bound anything.
+/// Accesses the dimension of the elements. Surfaces need not bound anything.
 constexpr Option::Place asked_dimension{Kind::count, at<&RunOptions::dimension>.get,
                                         [](const Option&, RunOptions& options, const OptionValue& value) {
                                           options.dimension =
@@ -504,8 +504,8 @@ std::vector<Option> run_options() {
        .commands = writing | Option::repair}};
 }
 
-/// Adds rows, with the properties that most rows of a group have in common. In a row the option's name is
-/// followed by the name of its value.
+/// Adds rows, with the properties that most rows of a group share. In a row, the option's name is followed by
+/// the name of its value.
 void append(std::vector<Option>& table, std::vector<Option> options, const char* group, unsigned commands) {
   for (Option& option : options) {
     const std::size_t space = std::min(option.name.find(' '), option.name.size());

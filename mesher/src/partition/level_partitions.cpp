@@ -53,7 +53,7 @@ class Levelling {
     enter(tet, to);
   }
 
-  /// Fills empty partitions from the largest ones.
+  /// Fills empty partitions with tets of the largest ones.
   void fill_empty_ones() {
     std::priority_queue<std::pair<std::size_t, Part>> donors;
     std::vector<Part> empty;
@@ -69,7 +69,7 @@ class Levelling {
     }
   }
 
-  /// Makes a partition smaller by one tet.
+  /// Removes one tet from a partition with too many.
   void relieve(Part full) {
     std::unordered_map<Part, Part> before{{full, full}};
     std::queue<Part> reached;
@@ -82,7 +82,7 @@ class Levelling {
             reached.push(part_of(other));
             if (end == full && members(part_of(other)).size() < most_) end = part_of(other);
           }
-    if (end == full) {  // all partitions connected with it are full
+    if (end == full) {  // all partitions that it is connected with are full
       move(cheapest(full, none_), with_room());
       return;
     }
@@ -97,8 +97,8 @@ class Levelling {
     return static_cast<Part>(found - members_.begin());
   }
 
-  /// Returns the tet of one partition that adds the fewest cut faces if moved to another one: a tet beside
-  /// that one, if there is any.
+  /// Returns the tet of partition `from` that adds the fewest cut faces if moved to `to`: a tet beside that
+  /// partition, if there is one.
   Tet cheapest(Part from, Part to) {
     Tet best = members(from).front();
     auto best_cost = std::pair(true, std::numeric_limits<std::ptrdiff_t>::max());

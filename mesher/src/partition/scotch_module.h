@@ -6,15 +6,15 @@
 /// The functions that `partition` calls in the module with Scotch.
 namespace collarmesh {
 
-using GraphIndex = std::int32_t;  // Scotch's own integer, in Debian's library
+using GraphIndex = std::int32_t;  // Scotch's integer type, as in Debian's library
 
-/// The graph of tets that share a face: the neighbours of t are neighbours[starts[t]] to neighbours[starts[t
+/// The graph of tets that share a face. The neighbours of t are neighbours[starts[t]] to neighbours[starts[t
 /// + 1]]; each pair is listed at both tets.
 struct DualGraph {
   std::vector<GraphIndex> starts, neighbours;
 };
 
-/// Gives each tet a partition; returns false where Scotch fails.
+/// Assigns each tet to a partition. Returns false if Scotch fails.
 using ScotchPartition = bool (*)(const DualGraph& graph, unsigned partitions, double imbalance, int seed,
                                  GraphIndex* partition_of);
 

@@ -12,13 +12,13 @@
 
 namespace collarmesh {
 
-/// Calls `found(t, u)` once for each triangle that two tets have in common, in groups by the triangles'
-/// smallest vertices. Cost: linear, 48 bytes per tet for a while.
+/// Calls `found(t, u)` once for each triangle that two tets share, grouped by the triangles' smallest
+/// vertices. Cost: linear; temporarily 48 bytes per tet.
 template <class Found>
 void for_each_shared_face(const TetMesh& mesh, const Found& found) {
   constexpr std::array<std::array<std::size_t, 3>, 4> faces{{{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}}};
   struct Side {
-    Index middle, largest;  // vertices; the smallest one is that of the group
+    Index middle, largest;  // vertices; the smallest one is the group's
     Index tet;
   };
   std::vector<std::size_t> ends(mesh.points.size() + 1, 0);
@@ -31,7 +31,7 @@ void for_each_shared_face(const TetMesh& mesh, const Found& found) {
     for (const auto& face : faces) ++ends[sorted_face(t, face)[0] + 1];
   for (std::size_t v = 1; v < ends.size(); ++v) ends[v] += ends[v - 1];
   std::vector<Side> sides(4 * mesh.tets.size());
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t)  // afterwards ends[v] is where the group of v ends
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)  // at the end, ends[v] is the end of the group of v
     for (const auto& face : faces) {
       const auto [smallest, middle, largest] = sorted_face(t, face);
       sides[ends[smallest]++] = {middle, largest, static_cast<Index>(t)};

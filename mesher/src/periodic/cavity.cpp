@@ -14,8 +14,8 @@ bool contains(const auto& range, Index v) { return std::find(range.begin(), rang
 
 }  // namespace
 
-// Makes the cavity of all tets at a simplex, whose vertices `is_of` accepts: sides that contain the simplex
-// are removed, and faces on them become cones; other sides are the hull.
+// Makes the cavity of all tets at a simplex, whose vertices `is_of` accepts. Sides that contain the simplex
+// are removed, and faces on them become cones; other sides form the hull.
 template <class IsOf>
 Cavity CavityEditor::cavity_of(std::vector<Index> tets, const IsOf& is_of) const {
   Cavity cavity;

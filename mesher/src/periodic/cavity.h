@@ -9,16 +9,16 @@ namespace collarmesh::periodicity {
 
 using improvement::TetComplex;
 
-/// A set of tets to be replaced by tets that all share an apex: a vertex that exists or would be inserted.
-/// Removed faces of the mesh are replaced, too: by cones of the same apex, or by a floor of given faces.
+/// A set of tets that will be replaced by tets with a common apex, an existing or a new vertex. Removed faces
+/// of the mesh are replaced, too: by cones of that apex, or by a floor of given faces.
 struct Cavity {
   struct Side {
-    std::array<Index, 3> corners;  ///< make a positive tet behind an apex inside: {apex, corners}
-    Index like;                    ///< the tet whose region the new one gets
+    std::array<Index, 3> corners;  ///< with an apex inside the cavity, {apex, corners} is a positive tet
+    Index like;                    ///< the tet whose region the new tet gets
   };
   struct Rim {
-    std::array<Index, 2> ends;  ///< make a face behind the apex
-    Index like;                 ///< the face whose patch it gets
+    std::array<Index, 2> ends;  ///< make a new face with the apex behind them
+    Index like;                 ///< the face whose patch the new face gets
   };
   std::vector<Index> tets;
   std::vector<Side> hull;
@@ -39,23 +39,23 @@ class CavityEditor {
   const TetMesh& mesh() const { return mesh_; }
   const Point& at(Index vertex) const { return mesh_.points[vertex]; }
 
-  /// Return the tets at a vertex, at an edge or at a face, with cones of all the mesh's faces there; empty
-  /// where bodies touch only at the place.
+  /// Return the tets at a vertex, edge or face, with cones of all the mesh's faces there; empty if bodies
+  /// touch at that place only.
   Cavity around_vertex(Index vertex) const;
   Cavity around_edge(Index a, Index b) const;
   Cavity around_face(Index face) const;
 
-  /// Returns the quality of the worst tet that the cavity has with this apex, negative if it is below the
-  /// least one. `vertex` is the apex, none if it is new; sides that contain it do not count.
+  /// Returns the quality of the worst tet that the cavity has with this apex; negative if it is below
+  /// `least_quality`. `vertex` is the apex, or none if it is new; sides that contain it do not count.
   double worst(const Cavity& cavity, const Point& apex, Index vertex) const;
   double worst_at(Index vertex) const { return worst(around_vertex(vertex), at(vertex), vertex); }
 
   /// Fills the cavity with tets that share the apex.
   void fill(const Cavity& cavity, Index apex);
-  /// Fills the cavity with a new vertex as the apex, and returns that.
+  /// Fills the cavity with tets at a new vertex, the apex. Returns the vertex.
   Index insert(const Cavity& cavity, const Point& apex, const TetMesh::VertexFeature& feature);
   void move(Index vertex, const Point& to) { complex_.move_vertex(vertex, to); }
-  /// Returns the faces that the last filling made: the floor, then those on the rim.
+  /// Returns the faces that the last filling made: those of the floor, then those on the rim.
   std::span<const Index> created_faces() const { return complex_.created_faces(); }
 
   void divide_curve_edge(Index before, Index vertex, Index after) {

@@ -11,10 +11,11 @@ namespace collarmesh::periodicity {
 
 namespace {
 
-constexpr double near = 0.3;          // share of the edges at a node: if a place is this near, the node is
-                                      // moved there
-constexpr double good_removal = 0.3;  // quality that a removal must leave; otherwise both sides get the node
-constexpr double good_enough = 0.1;   // the quality that a move or a removal must leave
+constexpr double near = 0.3;          // a node this near to a place is moved there; share of the edges at the
+                                      // node
+constexpr double good_removal = 0.3;  // quality that a removal must leave; otherwise the node is kept and
+                                      // inserted on the other side
+constexpr double good_enough = 0.1;   // quality that a move or a removal must leave
 
 /// Follows the edges of one curve.
 Chain follow(std::vector<std::array<Index, 2>> edges, Index start) {
@@ -99,7 +100,7 @@ class ChainEditor {
         nearest = i, least = d;
     const Index a = chain_.nodes[nearest], b = chain_.end(nearest);
     const Cavity cavity = editor_.around_edge(a, b);
-    if (editor_.worst(cavity, place, none) < 0) return;  // the certificate will report the miss
+    if (editor_.worst(cavity, place, none) < 0) return;  // the certificate will report the missing node
     const Index node = editor_.insert(cavity, place, {1, curve_});
     editor_.divide_curve_edge(a, node, b);
     const auto position = static_cast<std::ptrdiff_t>(nearest + 1);
@@ -116,9 +117,9 @@ class ChainEditor {
     }
   }
 
-  // Removes a node by collapsing the edge to the better one of its neighbours.
+  // Removes a node by collapsing one of its edges, to the neighbour that leaves better tets.
   bool remove(std::size_t i) {
-    if (size() < 4) return false;  // the rest of a closed chain is a triangle
+    if (size() < 4) return false;  // the rest of a closed chain would be a triangle
     const Index node = chain_.nodes[i], before = chain_.nodes[(i + size() - 1) % size()],
                 after = chain_.nodes[(i + 1) % size()];
     if (editor_.on_curve(before, after)) return false;

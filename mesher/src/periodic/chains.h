@@ -28,15 +28,16 @@ struct ChainChange {
   std::vector<Point> stuck;  ///< places of nodes that could not be removed
 };
 
-/// Gives the chain of a curve nodes at exactly these places: between its ends, or all if it is closed. Moves
-/// nodes that are near a place, inserts and removes others. Nodes that cannot be removed stay.
+/// Gives the chain of a curve nodes at exactly these places: between its ends, or all nodes if it is closed.
+/// Moves nodes that are near a place, inserts new nodes, and removes the rest. Nodes that cannot be removed
+/// stay.
 ChainChange put_nodes(CavityEditor& editor, Index curve, Chain& chain, std::span<const Point> places);
-/// Does the same, except that all other nodes stay. Adds the nodes at these places to `nodes`.
+/// Adds nodes to the chain at these places; all other nodes stay. Appends the new nodes to `nodes`.
 ChainChange add_nodes(CavityEditor& editor, Index curve, Chain& chain, std::span<const Point> places,
                       std::vector<Index>& nodes);
 
-/// Returns the nodes of `second` that correspond to those of `first` after the motion: in their order, or in
-/// the opposite one. Empty if the numbers differ.
+/// Returns the nodes of `second` that correspond to those of `first` after the motion, in the same or in the
+/// opposite order. Empty if the numbers of nodes differ.
 std::vector<Index> corresponding(const TetMesh& mesh, const Chain& first, const Chain& second,
                                  const Motion& motion);
 

@@ -8,7 +8,7 @@
 namespace collarmesh::periodicity {
 
 namespace {
-constexpr unsigned edges_between = 6;  // between the changed part and the part that stays
+constexpr unsigned edges_between = 6;  // edges between the part that changes and the part that stays
 }
 
 void change_across(TetMesh& mesh, const Plc& plc, const PeriodicOptions& options, double distance,
@@ -19,7 +19,7 @@ void change_across(TetMesh& mesh, const Plc& plc, const PeriodicOptions& options
   images.reserve(pairs.size());
   for (const PatchPair& pair : pairs) images.push_back(find_images(pair, plc, distance));
   Recut recut(mesh, plc, tolerance, pairs, images, moved);
-  // Edges between copies would look as if the input forced them to be short.
+  // With distances of the copied complex, edges between copies would count as forced to be short.
   improvement::Workpiece workpiece(recut.mesh(), recut.complex().plc, recut.complex().tolerance,
                                    edges_per_hole, false);
   workpiece.fix(recut.fixed());

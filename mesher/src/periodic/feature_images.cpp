@@ -14,7 +14,7 @@ namespace collarmesh::periodicity {
 
 namespace {
 
-constexpr double rounding_of_input = 1e-7;  // share of the diagonal: CAD shapes are not more exact
+constexpr double rounding_of_input = 1e-7;  // relative to the diagonal; CAD shapes are not more exact
 
 /// The features of one group, sorted.
 struct Features {
@@ -122,8 +122,8 @@ class Matcher {
     return points;
   }
 
-  /// Returns the distance of two polylines, in both directions; if already their boxes differ, only the
-  /// distance of the boxes.
+  /// Returns the largest distance between two polylines, in both directions; if their boxes already differ,
+  /// only the distance of the boxes.
   Deviation deviation(const std::vector<Point>& a, const std::vector<Point>& b) const {
     Box box_of_a, box_of_b;
     for (const Point& p : a) box_of_a.add(p);
@@ -143,7 +143,7 @@ class Matcher {
     return off;
   }
 
-  /// Matches patches, each identified by its curves and vertices.
+  /// Matches patches by their curves and vertices.
   void match_patches() {
     using Border = std::pair<std::vector<Index>, std::vector<Index>>;
     std::map<Index, Index> image_of_curve(images_.curves.begin(), images_.curves.end());
@@ -194,17 +194,17 @@ FeatureImages find_images(const PatchPair& pair, const Plc& plc, double distance
 
 std::vector<CurveClass> curve_classes(const std::vector<PatchPair>& pairs,
                                       const std::vector<FeatureImages>& images, std::size_t curves) {
-  std::map<Index, std::vector<CurveImage>> images_of;  // with originals, by the inverse motion
+  std::map<Index, std::vector<CurveImage>> images_of;  // includes originals, by the inverse motion
   std::vector<bool> is_image(curves, false), seen(curves, false);
   for (std::size_t k = 0; k < pairs.size(); ++k)
     for (const auto& [curve, image] : images[k].curves) {
-      if (curve == image) continue;  // an axis of rotation
+      if (curve == image) continue;  // the curve is an axis of rotation
       images_of[curve].push_back({image, pairs[k].motion});
       images_of[image].push_back({curve, inverse(pairs[k].motion)});
       is_image[image] = true;
     }
   std::vector<CurveClass> classes;
-  for (const bool of_images : {false, true})  // where pairs form a cycle, each curve is an image
+  for (const bool of_images : {false, true})  // if pairs form a cycle, all curves are images
     for (const auto& [original, direct] : images_of) {
       if (is_image[original] != of_images || seen[original]) continue;
       CurveClass& of = classes.emplace_back(CurveClass{original, {}});

@@ -14,18 +14,18 @@ struct FeatureImages {
   Images vertices, curves, patches;
 };
 
-/// Finds the images. A vertex is at the place of its image except for the rounding of the input; curves that
-/// are not straight are within `distance` of theirs. Throws OptionError if there is none: the message names
-/// the feature, the largest distance and its place. Cost: the product of the numbers of curves of both
-/// groups, for comparing boxes.
+/// Finds the images. A vertex must be at the place of its image except for the rounding of the input; curves
+/// that are not straight must be within `distance` of their images. Throws OptionError if a feature has no
+/// image: the message names the feature, the largest distance and its place. Cost: the product of the numbers
+/// of curves of both groups, for comparing boxes.
 FeatureImages find_images(const PatchPair& pair, const Plc& plc, double distance);
 
-/// A curve, and the motion that takes another one onto it.
+/// A curve, and the motion that takes the original curve onto it.
 struct CurveImage {
   Index curve = none;
   Motion motion;
 };
-/// Curves whose meshes are copies of one curve's mesh.
+/// Curves whose meshes are copies of the mesh of one of them.
 struct CurveClass {
   Index original = none;
   std::vector<CurveImage> images;

@@ -19,7 +19,8 @@ namespace {
 
 // Qualities that edge flips must leave, if possible.
 constexpr double good = 0.15, fair = 0.05;
-constexpr unsigned rounds = 8;  // rounds in which curves get nodes that others of their class could not lose
+constexpr unsigned rounds = 8;  // rounds in which curves get nodes that other curves of their class could not
+                                // lose
 
 struct Periodicity {
   std::vector<PatchPair> pairs;
@@ -44,9 +45,10 @@ std::vector<Point> moved(std::vector<Point> places, const Motion& motion) {
   return places;
 }
 
-/// Adds places, moved, that are not nearer to those before than half of their own spacing.
+/// Adds the moved places of others, except those that are nearer to an existing place than half of their own
+/// spacing.
 void add_places(std::vector<Point>& places, const std::vector<SpacedPlace>& others, const Motion& motion) {
-  constexpr double nearest = 0.5;  // in spacings
+  constexpr double nearest = 0.5;  // relative to the spacing
   std::vector<DistanceTree::Triangle> before;
   before.reserve(places.size());
   for (const Point& place : places) before.push_back({place, place, place});
@@ -178,8 +180,8 @@ class Maker {
     return curve_classes(periodicity_.pairs, periodicity_.images, plc_.curves.size());
   }
 
-  // Makes the curves of a class correspond: nodes that one of the curves cannot lose are added to the others
-  // as well.
+  // Makes the curves of a class correspond. Nodes that one curve cannot lose are added to the other curves as
+  // well.
   void make_curves_alike(const CurveClass& of) {
     std::vector<Point> places = surface_.places_on_curve(mesh_, of.original);
     for (unsigned round = 0; round < rounds; ++round) {
@@ -210,7 +212,8 @@ class Maker {
     for (const auto& [patch, image] : images.patches) make_patch_alike(patch, image, pair.motion);
   }
 
-  // Makes two patches correspond: flips an edge on the side where that leaves better tets.
+  // Makes two patches correspond. If an edge exists on one side only, flips it on the side where that leaves
+  // better tets.
   void make_patch_alike(Index patch, Index image, const Motion& motion) {
     PatchEditor first(editor_, plc_, patch, surface_.faces[patch]);
     PatchEditor second(editor_, plc_, image, surface_.faces[image]);
@@ -236,7 +239,7 @@ class Maker {
     }
   }
 
-  // Returns the edges between the nodes that correspond to theirs.
+  // Translates edges to corresponding nodes; leaves out edges with a node that has none.
   static std::vector<PatchEditor::Edge> named(const std::vector<PatchEditor::Edge>& edges,
                                               const std::map<Index, Index>& node_of) {
     std::vector<PatchEditor::Edge> named;

@@ -6,9 +6,10 @@
 
 namespace collarmesh::periodicity {
 
-/// Adds nodes to a mesh at the places of the nodes that the first group of each pair has in `source`, another
-/// mesh of the same complex, and at the images of these places. Returns them. `targets`: target edge length
-/// at every vertex of the source if it is only refined (see `sparse_nodes`), else empty.
+/// Adds nodes to a mesh for each pair: at the places that the nodes of the first group have in `source`,
+/// another mesh of the same complex, and at the images of these places. Returns the nodes. If the source is
+/// only refined, `targets` has the target edge length at each of its vertices (see `sparse_nodes`), otherwise
+/// it is empty.
 std::vector<Index> add_periodic_nodes(TetMesh& mesh, const TetMesh& source, const Plc& plc,
                                       const PeriodicOptions& options, double distance,
                                       const std::vector<double>& targets);

@@ -12,14 +12,14 @@ inline Motion translation(const Vector& by) {
   return motion;
 }
 
-/// Returns the rotation about the axis through a point with a direction of any length, counterclockwise as
-/// seen against it. Rotations by right angles about coordinate axes have no rounding.
+/// Returns the rotation about the axis through a point. The direction may have any length; the rotation is
+/// counterclockwise as seen against it. Rotations by right angles about coordinate axes have no rounding.
 Motion rotation(const Point& through, const Vector& direction, double degrees);
 
 /// Returns the inverse of a motion.
 Motion inverse(const Motion& motion);
 
-/// Returns the composition: one motion first, then the other.
+/// Returns the composition of two motions: first `first`, then `then`.
 Motion composed(const Motion& first, const Motion& then);
 
 }  // namespace collarmesh::periodicity

@@ -11,11 +11,11 @@ namespace collarmesh::periodicity {
 
 namespace {
 
-// Largest distance of an image from its node, as a share of the diagonal. Vertices of CAD shapes are images
-// of each other only to 1e-7.
+// Largest distance of an image from its node, relative to the diagonal. Vertices of CAD shapes are images of
+// each other only to 1e-7.
 constexpr double apart = 1e-6;
 
-/// The corners of faces with these tags, sorted, and their edges with the mid-edge nodes.
+/// The corners of faces with certain tags, sorted, and the edges of these faces with their mid-edge nodes.
 struct Nodes {
   std::vector<Index> corners;
   std::vector<std::pair<std::uint64_t, Index>> mid_nodes;
@@ -41,7 +41,7 @@ Nodes nodes_of(const TetMesh& mesh, std::span<const Tag> tags, std::size_t& face
   return nodes;
 }
 
-/// Returns the image of each corner, none where there is no node.
+/// Returns the image of each corner; none if no node is there.
 std::vector<Index> images_of(const TetMesh& mesh, const Nodes& first, const Nodes& second,
                              const TetMesh::Motion& motion) {
   std::vector<Box> boxes;

@@ -7,12 +7,13 @@
 
 namespace collarmesh::periodicity {
 
-/// Fills in `PeriodicFaces::nodes` by places, for corners. Precondition: the faces of each pair are images of
-/// each other.
+/// Fills in the corners in `PeriodicFaces::nodes`, by their places. Precondition: the faces of each pair are
+/// images of each other.
 void map_corners(TetMesh& mesh);
 
-/// Adds mid-edge nodes to the map, and moves each node of the second faces exactly onto its image, because
-/// exact geometry may have moved it slightly. Completes the report. Call it when the mesh is finished.
+/// Adds mid-edge nodes to the map. Moves each node of the second faces exactly onto its image's place,
+/// because projection onto exact geometry may have moved it slightly. Completes the report. Call it when the
+/// mesh is finished.
 void finish_map(TetMesh& mesh, PeriodicReport& report);
 
 }  // namespace collarmesh::periodicity

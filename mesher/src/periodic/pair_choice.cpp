@@ -16,7 +16,7 @@ namespace collarmesh::periodicity {
 
 namespace {
 
-constexpr double at_end = 1e-9;  // share of the diagonal: patches this near to the end of the shape are at
+constexpr double at_end = 1e-9;  // relative to the diagonal; patches this near to the end of the shape are at
                                  // the end
 
 constexpr std::string_view grammar =

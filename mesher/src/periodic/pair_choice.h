@@ -9,15 +9,15 @@
 
 namespace collarmesh::periodicity {
 
-/// Two groups of patches of a complex, of which the second must be the image of the first.
+/// Two groups of patches of a complex. The second must be the image of the first.
 struct PatchPair {
   std::string text;                  ///< the pair as the option gives it
   std::vector<Index> first, second;  ///< sorted
-  Motion motion;                     ///< takes the first to the second
+  Motion motion;                     ///< takes the first group to the second
 };
 
-/// Returns the pairs that the options name. Throws OptionError for one that cannot be read, a name that no
-/// patch has, a patch that is not planar, has material on both sides or is in two groups.
+/// Returns the pairs that the options name. Throws OptionError for a pair that cannot be read, a name that no
+/// patch has, and a patch that is not planar, has material on both sides or is in two groups.
 std::vector<PatchPair> choose_pairs(const PeriodicOptions& options, const Plc& plc);
 
 }  // namespace collarmesh::periodicity

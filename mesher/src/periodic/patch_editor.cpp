@@ -12,9 +12,10 @@ namespace collarmesh::periodicity {
 
 namespace {
 
-constexpr double near = 0.25;         // share of the edges at a node: if a place is this near, the node is
-                                      // moved there
-constexpr double good_removal = 0.3;  // quality that a removal must leave; otherwise both sides get the node
+constexpr double near = 0.25;         // a node this near to a place is moved there; share of the edges at the
+                                      // node
+constexpr double good_removal = 0.3;  // quality that a removal must leave; otherwise the node is kept and
+                                      // inserted on the other side
 constexpr double good_enough = 0.1;   // quality that a move or a removal must leave if there may be another
                                       // way
 constexpr double fair = 0.02;         // quality that an edge flip must leave if it is optional
@@ -128,7 +129,7 @@ std::vector<Index> PatchEditor::others() const {
   return others;
 }
 
-// Finds the face at a place: walks there from the last one; searches all faces if a hole is in the way.
+// Finds the face at a place. Walks there from the last face; if a hole is in the way, searches all faces.
 Index PatchEditor::find_face(const Point& place) {
   const auto& faces = editor_.mesh().faces;
   const auto edge_before = [&](Index face) {
@@ -151,7 +152,7 @@ Index PatchEditor::find_face(const Point& place) {
   return none;
 }
 
-// Moves the nearest corner of the face at a place there.
+// Moves the nearest corner of the face at a place to that place.
 Index PatchEditor::move_one_to(const Point& place) {
   const Index face = find_face(place);
   if (face == none) return none;
@@ -174,7 +175,7 @@ Index PatchEditor::move_one_to(const Point& place) {
   return node;
 }
 
-// Inserts a node at a place, in a face or on an edge of it.
+// Inserts a node at a place, in a face or on one of its edges.
 Index PatchEditor::insert(const Point& place) {
   const Index face = find_face(place);
   if (face == none) return none;
@@ -211,8 +212,8 @@ void PatchEditor::remove(Index node) {
   make_delaunay(edges_of_created_faces());
 }
 
-// Returns the place for an apex below `start` that leaves the best tets, and the quality of the worst of
-// them.
+// Finds a place for an apex below `start` that leaves the best tets. Returns the quality of the worst of them
+// and the place.
 std::pair<double, Point> PatchEditor::best_below(const Cavity& cavity, const Point& start) const {
   double size = 0;
   Vector sum{0, 0, 0};
@@ -261,7 +262,7 @@ bool PatchEditor::is_delaunay(Index a, Index b, Index c, Index d) const {
   return sine_r * cosine_s + cosine_r * sine_s >= -tolerance * scale;
 }
 
-// Flips the edge ab: joins the opposite corners of its two faces instead.
+// Flips the edge ab: replaces it by the edge between the opposite corners of its two faces.
 bool PatchEditor::turn(Index a, Index b, double least, bool with_new_vertex) {
   const Index c = opposite(a, b), d = opposite(b, a);
   if (c == none || d == none || side(d, c, a) * side(d, c, b) >= 0) return false;
@@ -311,8 +312,8 @@ std::vector<Point> PatchEditor::places_of_others() const {
   return places;
 }
 
-// Makes an edge by flipping the edges that cross it, one after the other; first those whose faces form a
-// convex quadrilateral (Sloan 1993).
+// Makes an edge by flipping the edges that cross it, first those whose faces form a convex quadrilateral
+// (Sloan 1993).
 bool PatchEditor::make_edge(Index a, Index b, double least, bool must) {
   const std::vector<Edge> all = crossed(a, b);
   std::deque<Edge> edges(all.begin(), all.end());
@@ -331,7 +332,7 @@ bool PatchEditor::make_edge(Index a, Index b, double least, bool must) {
   return has(a, b);
 }
 
-// Returns the edges between a and b, in order; none if a node is in the way.
+// Returns the edges that cross the line from a to b, in order; none if a node is in the way.
 std::vector<PatchEditor::Edge> PatchEditor::crossed(Index a, Index b) const {
   const auto& patches = editor_.mesh().face_patch;
   std::vector<Edge> edges;

@@ -22,18 +22,19 @@ class PatchEditor {
  public:
   using Edge = std::array<Index, 2>;
 
-  /// Keeps the editor by reference. `faces` are the patch's faces in the mesh. Cost: linear in these.
+  /// Keeps a reference to the editor. `faces` are the patch's faces in the mesh. Cost: linear in these faces.
   PatchEditor(CavityEditor& editor, const Plc& plc, Index patch, std::span<const Index> faces);
 
-  /// Gives the inside of the patch nodes at exactly these places. Moves nodes that are near a place, inserts
-  /// others, and removes nodes if that leaves good tets. Returns the node at each place.
+  /// Gives the interior of the patch nodes at exactly these places. Moves nodes that are near a place,
+  /// inserts new nodes, and removes the rest if that leaves good tets. Returns the node at each place.
   std::vector<Index> put_nodes(std::span<const Point> places);
-  /// Returns the places of the other nodes, which could not be removed.
+  /// Returns the places of the nodes that could not be removed.
   std::vector<Point> places_of_others() const;
-  /// Does the same, except that all other nodes stay.
+  /// Adds nodes at these places; all other nodes stay. Returns the node at each place.
   std::vector<Index> add_nodes(std::span<const Point> places);
-  /// Flips edges until these exist, as far as all new tets are better than `least`; both ends are nodes of
-  /// the patch. If they must exist, new vertices below the patch make room. Returns how many are missing.
+  /// Flips edges until the patch has these edges, as long as all new tets are better than `least`. The ends
+  /// must be nodes of the patch. If `must`, inserts vertices below the patch to make room. Returns the number
+  /// of missing edges.
   std::size_t make_edges(std::span<const Edge> edges, double least, bool must);
   /// Returns the edges of the patch, the smaller node of each first.
   std::vector<Edge> edges() const;
@@ -67,7 +68,7 @@ class PatchEditor {
 
   CavityEditor& editor_;
   Index patch_;
-  Vector normal_;    // points out of the region
+  Vector normal_;    // normal, pointing out of the region
   Point viewpoint_;  // a point outside, from which sides are judged
   std::unordered_map<std::uint64_t, std::array<Index, 2>> faces_at_;  // by edge
   std::unordered_map<Index, bool> stays_;                             // nodes inside the patch

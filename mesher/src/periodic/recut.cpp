@@ -30,8 +30,8 @@ struct HashOfTriangle {
 template <class Value>
 using ByTriangle = std::unordered_map<std::array<Index, 3>, Value, HashOfTriangle>;
 
-// Largest number of moved groups, as the number of copies of the complex is 2 to this power. Groups of
-// further pairs stay as they are.
+// Largest number of groups that are moved: the copies of the complex number 2 to this power. Groups of
+// further pairs stay where they are.
 constexpr std::size_t most_moved = 6;
 
 std::vector<Index> keys_of(const std::unordered_map<Index, Index>& map) {
@@ -82,8 +82,8 @@ void Recut::find_seams(const std::vector<PatchPair>& pairs, const std::vector<Fe
   }
 }
 
-// Distances are along edges and across the other seams. So the mesh is cut open in between, where tets need
-// nothing but near other pairs.
+// Chooses the tets to move, by distances along edges and across the other seams. So the new cuts are halfway
+// between the groups; the tets there only matter for pairs nearby.
 void Recut::find_shifts(Moved moved) {
   shifts_.assign(mesh_.tets.size(), 0);
   const double much = moved == Moved::first_half ? 1 : 1.7;
@@ -111,7 +111,7 @@ void Recut::find_shifts(Moved moved) {
   }
 }
 
-// Returns the distances of all vertices from some.
+// Returns the distance of every vertex from the nearest of some vertices.
 std::vector<double> Recut::distances(std::size_t k, const std::vector<Index>& from) const {
   if (neighbours_.empty()) find_neighbours();
   std::vector<double> distances(mesh_.points.size(), std::numeric_limits<double>::infinity());
@@ -157,7 +157,7 @@ void Recut::number_copies() {
   std::sort(copies_.begin(), copies_.end());
   copies_.erase(std::unique(copies_.begin(), copies_.end()), copies_.end());
   for (const Shift shift : std::vector<Shift>(copies_))  // a vertex of a feature on several seams belongs to
-                                                         // copies of fewer shifts
+                                                         // a copy that is moved by fewer pairs
     for (Shift part = shift; part > 0; part = (part - 1) & shift) copies_.push_back(part);
   std::sort(copies_.begin(), copies_.end());
   copies_.erase(std::unique(copies_.begin(), copies_.end()), copies_.end());
@@ -174,7 +174,7 @@ Motion Recut::motion_of(Shift shift) const {
   return motion;
 }
 
-// Returns the place of a vertex on a seam: a vertex moved onto its image becomes that image.
+// Returns the place of a vertex on a seam. A vertex that is moved onto its image becomes that image.
 Recut::Place Recut::on_seam(Place place) const {
   for (std::size_t k = 0; k < seams_.size(); ++k) {
     if ((place.shift >> k & 1U) == 0) continue;
@@ -201,7 +201,7 @@ Index Recut::vertex_at(Place place) {
   return found->second;
 }
 
-// Adds vertices and tets. The regions of tets give their copy.
+// Adds vertices and tets. A tet's region tells which copy it belongs to.
 void Recut::add_vertices() {
   const std::size_t regions = plc_.regions.size();
   for (std::size_t t = 0; t < mesh_.tets.size(); ++t) {
@@ -216,7 +216,7 @@ void Recut::add_vertices() {
   points_ = made_.points;
 }
 
-// Adds faces. Only the seams of the other groups get faces, each where its tets are.
+// Adds faces at the places of their tets. Only the seams of the other groups get faces.
 void Recut::add_faces() {
   ByTriangle<Index> face_at;
   for (Index f = 0; f < mesh_.faces.size(); ++f) face_at.emplace(sorted(mesh_.faces[f]), f);
@@ -245,14 +245,14 @@ void Recut::add_faces() {
         made_.faces.push_back(corners);
         made_.face_patch.push_back(
             patch == none ? none : static_cast<Index>(copy_of_.at(shift) * plc_.patches.size()) + patch);
-        made_.face_tag.push_back(static_cast<Tag>(made_.face_patch.back()));  // for the way back
+        made_.face_tag.push_back(static_cast<Tag>(made_.face_patch.back()));  // for restoring the mesh later
         made_.face_regions.push_back({0, 0});
       }
       made_.face_regions[at->second][behind ? 0 : 1] = made_.tet_region[t];
     }
 }
 
-// Adds edges, each where its tets are.
+// Adds edges at the places of their tets.
 void Recut::add_edges() {
   std::unordered_map<std::uint64_t, Index> edge_at, made_at;
   for (Index e = 0; e < mesh_.edges.size(); ++e)
@@ -278,8 +278,8 @@ void Recut::add_edges() {
     }
 }
 
-// Fixes the vertices of sides without a neighbour, except those of the boundary. Faces there belong to no
-// patch, so they stay.
+// Fixes the vertices of sides without a neighbour at the new cuts. Faces there belong to no patch, so they
+// stay.
 void Recut::fix_cuts() {
   ByTriangle<unsigned> uses, uses_before;
   for (std::size_t t = 0; t < made_.tets.size(); ++t)
@@ -353,7 +353,8 @@ void Recut::note_vertices(const improvement::TetComplex& complex) {
   points_.resize(kept);
 }
 
-// Returns the feature of the original complex from one of the tiled complex, for the tets of a copy.
+// Returns the feature of the original complex for a feature of the tiled complex, as seen from the tets of a
+// copy.
 Index Recut::feature_back(unsigned dimension, Index feature, Shift shift) const {
   if (feature == none) return none;
   const Shift own = copies_[feature / count(dimension)];
@@ -371,7 +372,7 @@ Index Recut::vertex_back(Place place, Shift shift) const {
 
 namespace {
 
-/// Builds a mesh of numbered vertices, each created when it is first used.
+/// Builds a mesh of numbered vertices, which are created on first use.
 class Restored {
  public:
   explicit Restored(const TetMesh& like) {

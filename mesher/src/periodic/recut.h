@@ -17,13 +17,14 @@
 
 namespace collarmesh::periodicity {
 
-/// A periodic mesh cut open elsewhere: the tets beside one group of each pair are moved behind the other
+/// A periodic mesh cut open elsewhere. The tets beside one group of each pair are moved behind the other
 /// group, so that both groups become one patch inside the mesh, with tets on both sides. A change there fits
 /// both sides. The vertices at the new cuts do not move.
 class Recut {
  public:
-  /// What is much nearer to the group is moved, or all that is nearer: the cuts lie elsewhere. Those of two
-  /// pairs may meet the faces of a third one at the same places in two of the three, but not in all.
+  /// Which tets are moved: those much nearer to the first (or second) group than to the other one, or all
+  /// that are nearer to the first. The cuts then lie elsewhere. Cuts of two pairs may meet the faces of a
+  /// third pair at the same places for two of these choices, but not for all three.
   enum class Moved { beside_first, beside_second, first_half };
 
   /// Keeps all by reference except `moved`. Preconditions: the mesh is of first order, and its map contains
@@ -42,19 +43,20 @@ class Recut {
   /// Returns sizes for the recut mesh from sizes for the original mesh.
   SizeField sizes(const SizeField& of_mesh) const;
 
-  /// Removes the numbers of vertices that the complex has lost. Call it before the complex is stored.
+  /// Removes the entries of vertices that the complex has lost. Call it before the complex is stored.
   void note_vertices(const improvement::TetComplex& complex);
-  /// Returns the mesh, cut at the faces of the pairs again, without a map. Precondition: it is stored.
+  /// Returns the mesh, cut at the faces of the pairs again, without a map. Precondition: the complex is
+  /// stored.
   TetMesh back() const;
 
  private:
-  using Shift = std::uint32_t;  // bits by pair: 1 if moved
+  using Shift = std::uint32_t;  // one bit for each pair: 1 if moved
   struct Seam {
     Motion motion;                                          // motion of the moved part
     std::unordered_map<Index, Index> image_of;              // images of vertices on the group beside the
                                                             // moved part
     std::unordered_map<Index, Index> on_other;              // images of keys
-    std::array<std::map<Index, Index>, 3> image, original;  // of features, by dimension
+    std::array<std::map<Index, Index>, 3> image, original;  // images of features, by dimension
   };
   struct Place {
     Index vertex;
@@ -79,10 +81,10 @@ class Recut {
 
   const TetMesh& mesh_;
   const Plc& plc_;
-  mutable std::vector<std::vector<Index>> neighbours_;  // by vertex; empty until first asked for
+  mutable std::vector<std::vector<Index>> neighbours_;  // by vertex; empty until first used
   std::vector<Seam> seams_;
   std::vector<Shift> shifts_;       // by tet
-  std::vector<Shift> copies_;       // shift of each
+  std::vector<Shift> copies_;       // shift of each copy
   std::vector<Motion> motions_;     // by copy
   std::map<Shift, Index> copy_of_;  // by shift
   std::unique_ptr<const TiledComplex> complex_;

@@ -8,8 +8,8 @@
 
 namespace collarmesh::periodicity {
 
-/// Copies of a complex, each moved as a whole, as one complex: feature f of copy k of a complex with n such
-/// features has the number k n + f; likewise regions. Copies do not share features.
+/// Several copies of a complex, each moved rigidly, as one complex. Feature f of copy k has the number k n +
+/// f if the complex has n such features; regions are numbered likewise. Copies do not share features.
 struct TiledComplex {
   TiledComplex(const Plc& plc, const SurfaceTolerance& tolerance, const std::vector<Motion>& copies);
 

@@ -12,7 +12,7 @@ namespace collarmesh::periodicity {
 
 namespace {
 
-constexpr double slope = 0.1;  // increase of the tolerance with the distance from these curves, as beside
+constexpr double slope = 0.1;  // increase of the tolerance per unit of distance from these curves, as beside
                                // wedges
 
 struct Sample {
@@ -26,7 +26,7 @@ std::vector<Sample> samples_on(const Plc& plc, Index curve, const SurfaceToleran
   return samples;
 }
 
-/// Adds the moved samples where the tolerance of the nearest sample of `to` is larger.
+/// Adds the moved samples of `from` where the nearest sample of `to` has a larger tolerance.
 void compare(const std::vector<Sample>& from, const std::vector<Sample>& to, const Motion& motion,
              std::vector<Sample>& smaller) {
   for (const Sample& sample : from) {

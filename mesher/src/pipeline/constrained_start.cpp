@@ -35,7 +35,9 @@ void tetrahedralize(MeshJob& job) {
 void settle(MeshJob& job, Hope hope) {
   constexpr unsigned most_rounds = 4;
   constexpr std::size_t tets_per_poor = 50;
-  if (job.refined_with.bounds.interior_node) return;  // the nodes are there
+  if (job.refined_with.bounds.interior_node)
+    return;  // interior nodes are complete; coarsening would remove
+             // them
   PipelineResult& made = job.made;
   std::size_t least = count_misshapen(job, made.result.mesh);
   if (hope == Hope::good && tets_per_poor * least > made.result.mesh.tets.size()) throw Hopeless();

@@ -4,16 +4,17 @@
 
 namespace collarmesh::pipeline {
 
-/// Thrown where constrained tetrahedra keep poor shapes and other ways are left.
+/// Thrown if constrained tetrahedra keep poor shapes and there are other ways to make a mesh.
 struct Hopeless {};
-/// How much is expected of constrained tetrahedra: anything, or a mesh that keeps every guarantee.
+/// What a start from constrained tetrahedra must yield: any mesh, or one that probably keeps every guarantee.
 enum class Hope { any, good };
 
-/// Makes the constrained tetrahedra of the complex, and brings them to the size. Throws Ended.
+/// Makes the constrained tetrahedra of the complex, and brings their edges to the target lengths. Throws
+/// Ended.
 void tetrahedralize(MeshJob& job);
 
-/// Relaxes, coarsens and improves what is left of them once more, as long as that makes fewer tets miss their
-/// bounds. With good hope only, throws Hopeless where many tets miss these.
+/// Relaxes, coarsens and improves the mesh again, as long as that reduces the number of tets that miss their
+/// bounds. With Hope::good, throws Hopeless if many tets miss them.
 void settle(MeshJob& job, Hope hope);
 
 }  // namespace collarmesh::pipeline

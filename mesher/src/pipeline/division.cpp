@@ -17,7 +17,7 @@ void split_patches(MeshJob& job) {
   job.control.begin("split", 0.98, 1);
   TetMesh& mesh = job.made.result.mesh;
   const checks::SplitMeasures before = checks::measure_before_split(mesh);
-  if (job.exact()) mesh.group_names = GroupNames::cad;  // for the names of the sides
+  if (job.exact()) mesh.group_names = GroupNames::cad;  // so that the sides get such names
   job.made.split = split(mesh, job.options.split);
   checks::check_split(mesh, job.made.split->interfaces.sides, before, job.made.check);
   job.control.stop_if_asked();

@@ -4,11 +4,11 @@
 
 namespace collarmesh::pipeline {
 
-/// Divides the tets of the mesh that is kept among ranks, if the options ask for it.
+/// Divides the tets of the kept mesh among ranks, if the options ask for it.
 void divide(MeshJob& job);
 
-/// Gives the patches to be split nodes of their own on each side, after the mesh was certified as it is
-/// before, and checks that.
+/// Gives both sides of the patches to be split separate nodes, and checks that. The mesh was certified before
+/// the split.
 void split_patches(MeshJob& job);
 
 }  // namespace collarmesh::pipeline

@@ -4,10 +4,10 @@
 
 namespace collarmesh::pipeline {
 
-/// Moves the vertices of a complete mesh onto the exact geometry, where there is some.
+/// Moves the vertices of a complete mesh onto the exact geometry, if there is any.
 void project(MeshJob& job);
 
-/// Makes the cells curved ones if the options ask for the second order.
+/// Adds mid-edge nodes and curves the cells, if the options ask for second order.
 void raise_order(MeshJob& job);
 
 }  // namespace collarmesh::pipeline

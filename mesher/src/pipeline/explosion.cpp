@@ -14,7 +14,7 @@ namespace collarmesh {
 
 namespace {
 
-using Near = std::pair<double, Index>;  // the squared distance and the patch
+using Near = std::pair<double, Index>;  // squared distance and patch
 
 std::vector<Near> nearest_patches(const Plc& plc, const Point& where) {
   std::vector<Near> patches(plc.patches.size());

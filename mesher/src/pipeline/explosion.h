@@ -7,8 +7,8 @@
 
 namespace collarmesh {
 
-/// Says that a refinement came to `most` vertices, the last one at `where`, and which features are near it.
-/// Cost: linear.
+/// Returns a sentence saying that a refinement reached `most` vertices, the last one at `where`, and which
+/// features are near that place. Cost: linear.
 std::string describe_explosion(const Plc& plc, std::size_t most, const Point& where);
 
 }  // namespace collarmesh

@@ -32,7 +32,8 @@ void require_tags(const std::map<Tag, double>& sizes, const Features& features, 
   }
 }
 
-// Throws OptionError for a face that another one stands for, as both are where parts touch.
+// Throws OptionError if a size is given for a patch that was dropped because it lies on a patch of another
+// part.
 void refuse_replaced_patches(const std::map<Tag, double>& sizes, const Plc& plc) {
   for (const auto& [gone, stays] : plc.cleanup.replaced_tags) {
     const auto found = sizes.find(gone);

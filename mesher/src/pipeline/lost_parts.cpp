@@ -12,15 +12,15 @@ namespace collarmesh {
 
 namespace {
 
-constexpr double most_of_a_volume = 0.02;           // may be lost or gained
-constexpr double most_of_all_in_thin_ones = 0.005;  // of the volume
+constexpr double most_of_a_volume = 0.02;           // share that a region may lose or gain
+constexpr double most_of_all_in_thin_ones = 0.005;  // share of the total volume
 
 struct Body {
   double volume = 0, area = 0;
   double thickness() const { return area > 0 ? 2 * volume / area : 0; }
 };
 
-// Returns the bodies of the regions, largest first.
+// Returns volume and area of the regions, largest first.
 std::vector<Body> bodies_of(const Plc& plc) {
   std::vector<Body> bodies(plc.regions.size());
   for (std::size_t r = 1; r < bodies.size(); ++r) bodies[r].volume = std::fabs(plc.regions[r].volume);
@@ -61,7 +61,7 @@ std::string lost_bodies(const Plc& finer, const Plc& coarser, double tolerance) 
   return {};
 }
 
-// Returns whether there is one that was not lost before.
+// Returns a sentence if a tag is in `after` but not in `before`, else nothing.
 std::string lost_beyond(const std::vector<Tag>& before, const std::vector<Tag>& after, const char* what) {
   for (const Tag tag : after)
     if (std::find(before.begin(), before.end(), tag) == before.end())

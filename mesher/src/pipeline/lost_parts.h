@@ -6,9 +6,10 @@
 
 namespace collarmesh {
 
-/// Describes the loss of a coarser repair of the same input compared with a finer one, for messages; empty if
-/// there is none. It counts a region, unless it is small and thinner than the coarser tolerance, more than 2%
-/// of a region's volume, and tagged facets, names and regions of the input, but not numbers of CAD faces.
+/// Describes the parts that a coarser repair loses, compared with a finer one of the same input, for
+/// messages; empty if it loses none. Parts are: regions, except small ones thinner than the coarser
+/// tolerance; more than 2% of a region's volume; tagged facets, names and regions of the input. Numbers of
+/// CAD faces do not count.
 std::string lost_parts(const Plc& finer, const RepairReport& finer_report, const Plc& coarser,
                        const RepairReport& coarser_report);
 

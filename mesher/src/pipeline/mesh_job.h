@@ -9,7 +9,8 @@
 
 namespace collarmesh::pipeline {
 
-/// The mesh that is being made. Each stage reads what those before it left here, and writes `made`.
+/// The data of the mesh that is being made. Each stage reads what earlier stages left here, and writes
+/// `made`.
 struct MeshJob {
   MeshJob(const PipelineOptions& asked_for, const Execution& execution)
       : given(with_profile(asked_for)), start(given.start), control(given, execution, made), budget(given) {}
@@ -23,22 +24,22 @@ struct MeshJob {
   /// Returns whether the refinement ended at the bound on vertices.
   bool hit_bound() const { return budget.hit(made.result, control.out_of_time()); }
 
-  /// Adds a mesh to the trace, if there is to be one.
+  /// Adds the mesh to the trace, if the options ask for a trace.
   void trace(std::string_view stage, const TetMesh& mesh);
 
   const PipelineOptions given;
-  Start start;  ///< of this mesh
+  Start start;  ///< the start of this mesh
   PipelineResult made;
   RunControl control;
   VertexBudget budget;
 
   const Plc* plc = nullptr;
-  PipelineOptions options;  ///< for this complex
-  /// The sizes and bounds of the refinement, of coarsening and of improvement: tighter than those of the
-  /// finished mesh where vertices are to move onto exact geometry.
+  PipelineOptions options;  ///< the options for this complex
+  /// Sizes and bounds of refinement, coarsening and improvement. They are tighter than those of the finished
+  /// mesh if vertices will move onto exact geometry.
   MeshOptions refined_with;
-  TetMesh refined;             ///< as it was before it was coarsened, for periodic faces
-  KnownNeighbours neighbours;  ///< of the mesh as it was refined
+  TetMesh refined;             ///< the mesh before coarsening, for periodic faces
+  KnownNeighbours neighbours;  ///< neighbours in the refined mesh
 };
 
 }  // namespace collarmesh::pipeline

@@ -54,8 +54,8 @@ void MeshMaker::set_up(const Plc& plc, std::uint64_t seed) {
   job_.refined_with = options_of_refinement(job_, narrow_cells_);
 }
 
-/// Returns whether a refinement made many times the tets that are to be left, as thin parts make it do. To
-/// coarsen those away takes far longer than to begin with constrained tetrahedra.
+/// Returns whether a refinement made many times the predicted number of tets, as thin parts cause. Coarsening
+/// such a mesh takes far longer than starting with constrained tetrahedra.
 bool MeshMaker::is_far_too_fine() const {
   constexpr double times = 5, least = 200'000;
   const auto tets = static_cast<double>(job_.made.result.mesh.tets.size());
@@ -64,7 +64,7 @@ bool MeshMaker::is_far_too_fine() const {
          tets > times * prediction::count_tets(prediction::Shape(*job_.plc), job_.options.mesh);
 }
 
-/// Takes the mesh from the constrained tetrahedra in place of the refined one if it keeps every guarantee.
+/// Replaces the refined mesh by one made from the constrained tetrahedra, if that keeps every guarantee.
 bool MeshMaker::replace_refined() {
   KnownNeighbours neighbours = std::move(job_.neighbours);
   const MeshOptions refined_with = job_.refined_with;
@@ -82,7 +82,8 @@ void MeshMaker::make_anyhow(const Plc& plc, const std::string& why) {
   if (!take_constrained(plc, why)) make_or_take_constrained(plc, &why);
 }
 
-/// `why`: the reason for constrained tetrahedra, or null: that of the refinement that fails.
+/// Meshes a complex by refinement; if that hits the bound on vertices, from constrained tetrahedra. `why` is
+/// the reason that a note gives for these; null: the failure of the refinement.
 void MeshMaker::make_or_take_constrained(const Plc& plc, const std::string* why) {
   try {
     return make(plc, job_.given.mesh.seed);
@@ -97,9 +98,9 @@ void MeshMaker::make_or_take_constrained(const Plc& plc, const std::string* why)
   }
 }
 
-/// Takes the mesh from the constrained tetrahedra if it keeps every guarantee.
+/// Uses a mesh made from the constrained tetrahedra if it keeps every guarantee.
 bool MeshMaker::take_constrained(const Plc& plc, const std::string& why) {
-  constexpr std::size_t most_triangles = 12'000;  // else it takes longer than other ways
+  constexpr std::size_t most_triangles = 12'000;  // with more triangles, other ways are faster
   if (plc.triangles.size() > most_triangles || hopeless_ == &plc) return false;
   std::optional<PipelineResult> constrained = from_constrained(plc, why, Hope::good);
   is_constrained_ = constrained && constrained->guarantees_hold();

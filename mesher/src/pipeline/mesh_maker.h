@@ -9,36 +9,37 @@
 
 namespace collarmesh::pipeline {
 
-/// Makes the meshes of one complex after another: with a seed, and in place of a refinement that makes too
-/// much from constrained tetrahedra.
+/// Makes meshes of one complex after another, with a given seed. If a refinement makes far too many tets,
+/// starts from constrained tetrahedra instead.
 class MeshMaker {
  public:
-  /// Keeps the job by reference; `source` makes the complexes; null if there is only one.
+  /// Keeps a reference to the job. `source` makes the complexes; null if there is only one.
   MeshMaker(MeshJob& job, ComplexSource* source) : job_(job), source_(source) {}
 
-  /// Forgets what is known about the complex before.
+  /// Forgets everything about the previous complex.
   void take_new_complex();
 
-  /// Takes a complex through all stages. Throws Ended and PlcError; Hopeless if it starts with constrained
-  /// tetrahedra, only good hope is allowed, and many tets miss their bounds.
+  /// Takes a complex through all stages. Throws Ended and PlcError. Throws Hopeless if it starts from
+  /// constrained tetrahedra that must yield a good mesh (Hope::good), but many tets miss their bounds.
   void make(const Plc& plc, std::uint64_t seed);
 
-  /// Meshes a complex; where the refinement takes far too many vertices, from its constrained tetrahedra.
+  /// Meshes a complex by refinement or, if that takes far too many vertices, from its constrained tetrahedra.
   void make_refined_or_constrained(const Plc& plc);
 
-  /// Meshes a complex where no other way is left: from its constrained tetrahedra if that keeps every
-  /// guarantee; else refined as far as the budgets allow; else from these tetrahedra all the same.
+  /// Meshes a complex when other ways have failed: from its constrained tetrahedra if that keeps every
+  /// guarantee; else by refinement within the budgets; else from constrained tetrahedra even if guarantees
+  /// are missed.
   void make_anyhow(const Plc& plc, const std::string& why);
 
-  /// Meshes a complex from its constrained tetrahedra; nothing where there are none, where others are asked
-  /// for, where the mesh misses more than bounds on shapes, or, with good hope only, where many tets miss
-  /// these. The mesh of the job stays.
+  /// Meshes a complex from its constrained tetrahedra. Returns nothing if there are none, if the options ask
+  /// for another start, if the mesh misses guarantees other than bounds on shapes or, with Hope::good, if
+  /// many tets miss these. The job keeps its mesh.
   std::optional<PipelineResult> from_constrained(const Plc& plc, const std::string& why, Hope hope);
 
-  /// Returns whether a seed may change the mesh that is kept: one of constrained tetrahedra has none.
+  /// Returns whether another seed may change the kept mesh. Constrained tetrahedra do not depend on it.
   bool depends_on_seed() const { return !is_constrained_ && job_.start != Start::constrained; }
 
-  /// Further meshes of this complex keep this share of its surface tolerance of first order.
+  /// Multiplies the surface tolerance of first order by this share for further meshes of this complex.
   void come_nearer(const Plc& plc, double share);
 
   void set_narrow_cells(NarrowCells cells) { narrow_cells_ = cells; }
@@ -56,10 +57,10 @@ class MeshMaker {
   ComplexSource* source_;
   NarrowCells narrow_cells_ = NarrowCells::bounded_if_cheap;
   Hope hope_ = Hope::any;
-  bool is_constrained_ = false;                // the mesh that is kept
-  const Plc* hopeless_ = nullptr;              // this complex's constrained tetrahedra were tried in vain
-  std::optional<SurfaceTolerance> tolerance_;  // of the complex at hand
-  std::optional<SurfaceTolerance> nearer_;     // what a further try keeps where regions lost volume
+  bool is_constrained_ = false;                // whether the kept mesh started from constrained tetrahedra
+  const Plc* hopeless_ = nullptr;              // the complex whose constrained tetrahedra were tried in vain
+  std::optional<SurfaceTolerance> tolerance_;  // tolerance of the current complex
+  std::optional<SurfaceTolerance> nearer_;     // smaller tolerance for another try, after regions lost volume
 };
 
 }  // namespace collarmesh::pipeline

@@ -20,7 +20,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr double farthest = 0.01;  // of a point from what it names, relative to the diagonal
+constexpr double farthest = 0.01;  // distance of a point from the feature that it names, relative to the
+                                   // diagonal
 
 [[noreturn]] void fail(const std::string& place, const std::string& message) {
   throw OptionError(fmt::format("names: {}: {}", place, message));
@@ -35,7 +36,7 @@ Point point_of(const Json& value, const std::string& place) {
   return {at[0].get<double>(), at[1].get<double>(), at[2].get<double>()};
 }
 
-/// Returns the feature nearest to a point, by its triangles; a curve's segments are triangles without an
+/// Finds the feature nearest to a point by the features' triangles; segments of curves are triangles without
 /// area.
 class Nearest {
  public:
@@ -112,7 +113,7 @@ class Namer {
       for (const Index member : members) tag = std::min(tag, features_[member].tag);
       chosen_.push_back({name, tag, std::move(members)});
     }
-    for (const Chosen& each : chosen_) {  // numbers in the text are those before
+    for (const Chosen& each : chosen_) {  // the text refers to the numbers before this change
       for (const Index member : each.members) features_[member].tag = each.tag;
       plc_.names.set(dimension_, each.tag, each.name);
     }
@@ -135,7 +136,8 @@ class Namer {
       fail(place, fmt::format("no {} has the number {}{}", what_, tag, in_place_of(tag)));
   }
 
-  /// Tells the number that is used where parts touch, if the input had this one.
+  /// Returns a hint for messages: the number that replaces this tag where parts touch; empty if the input did
+  /// not have the tag.
   std::string in_place_of(Tag tag) const {
     if (dimension_ != 2) return {};
     for (const auto& [gone, stays] : plc_.cleanup.replaced_tags)

@@ -51,9 +51,9 @@ void divide_curves_at_poor_tets(MeshJob& job, TetMesh& mesh) {
   });
 }
 
-/// Coarsens and improves a periodic mesh while it is cut open at one place and then at others, until all
-/// tets fit; vertices are inserted if asked for. Leaves the best mesh of these. Returns how often its tets
-/// miss their bounds.
+/// Coarsens and improves a periodic mesh while it is cut open, at one place after the other, until all tets
+/// are within their bounds. Inserts vertices if asked to. Keeps the best of these meshes. Returns the number
+/// of violations that remain (`count_misshapen`).
 std::size_t reshape_across(MeshJob& job, TetMesh& mesh, bool insert) {
   using Moved = Recut::Moved;
   TetMesh best;

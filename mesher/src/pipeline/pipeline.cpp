@@ -1,5 +1,5 @@
-// The order of the stages: a complex is built, and meshes of it are tried (`Tries`) until one keeps every
-// guarantee; each goes through the stages of `MeshMaker::make`. The mesh that is kept is divided and split.
+// The order of the stages. Builds a complex and tries meshes of it (`Tries`) until one keeps every guarantee;
+// each mesh goes through the stages of `MeshMaker::make`. The kept mesh is then divided and split.
 #include "collarmesh/pipeline.h"
 
 #include <fmt/format.h>
@@ -32,7 +32,7 @@ class ThreadCounter {
     try {
       thread_ = std::jthread([] { usable_threads(); });
     } catch (const std::system_error&) {
-      // The first user of threads determines it then.
+      // The first user of threads then determines their number.
     }
   }
 
@@ -62,7 +62,7 @@ void require_valid(const PipelineOptions& options) {
   if (options.partitions > 0) require_partitioner();
 }
 
-/// Triangles or lines instead of tets. `input` is a complex or a source of them.
+/// Makes triangles or lines instead of tets. `input` is a complex or a source of complexes.
 template <class Input>
 auto run_shells(Input& input, MeshJob& job) {
   job.control.begin_only_stage();
@@ -75,7 +75,8 @@ auto run_shells(Input& input, MeshJob& job) {
   return made;
 }
 
-/// Makes a mesh by `mesh`, and what is done once, for the mesh that is kept. There is none if it ended early.
+/// Makes a mesh by calling `mesh`, then runs the stages that run once, for the kept mesh. If the run ended
+/// early, there is no mesh.
 template <class Mesh>
 void run_stages(MeshJob& job, const Mesh& mesh) {
   try {

@@ -9,22 +9,23 @@ namespace collarmesh::pipeline {
 
 namespace {
 
-// With exact geometry the bounds must still hold after the vertices moved onto it. So these reserves are
-// kept: twice the triangles' share of the distance and some more, and a little of the ratio and the angles.
+// Factors and reserve for runs with exact geometry: the bounds must still hold after the vertices have moved
+// onto it. The factor on the distance leaves room for twice the triangles' share of it and some more.
 constexpr double distance_left = 0.75, ratio_left = 0.99, angle_reserve = 0.05;
 
-// Refinement ended with this bound in collars on all shapes tried. Coarsening and improvement reach less.
+// Bound on angles in collars with which refinement ended on all shapes tried. Coarsening and improvement
+// reach smaller bounds.
 constexpr double reached_collar_angle = 130;
 
 }  // namespace
 
 MeshOptions options_of_refinement(const MeshJob& job, NarrowCells narrow_cells) {
   MeshOptions options = job.options.mesh;
-  options.time_limit = 0;  // one limit for all stages
+  options.time_limit = 0;  // the control has one limit for all stages
   if (job.options.coarsen) options.narrow_cells = narrow_cells;
   if (!job.exact()) return options;
   options.bounds.tolerance = tolerance_of(*job.plc, options.bounds, 0).scaled(distance_left);
-  if (options.profile == Profile::standard)  // the paper's proofs need its own ratio
+  if (options.profile == Profile::standard)  // the paper's proofs need the given ratio
     options.bounds.radius_edge = std::max(1.0, ratio_left * options.bounds.radius_edge);
   options.bounds.reserve = angle_reserve;
   return options;
@@ -37,7 +38,7 @@ double least_thin_ratio(const MeshJob& job) {
 void refine(MeshJob& job) {
   job.control.begin("refine", 0.06, job.options.coarsen ? 0.6 : 0.7);
   MeshOptions options = job.refined_with;
-  options.bounds.interior_node = false;  // nodes are inserted afterwards
+  options.bounds.interior_node = false;  // a later stage inserts these nodes
   if (job.options.coarsen)
     options.bounds.collar_angle = std::max(options.bounds.collar_angle, reached_collar_angle);
   MeshResult& result = job.made.result = generate(*job.plc, options, job.execution(), job.neighbours,

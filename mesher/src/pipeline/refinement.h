@@ -4,15 +4,15 @@
 
 namespace collarmesh::pipeline {
 
-/// Returns the options of the refinement, with tighter bounds than the mesh keeps where its vertices move
-/// onto exact geometry afterwards. Precondition: the job has its complex and options.
+/// Returns the options of the refinement. Its bounds are tighter than the finished mesh's if vertices will
+/// move onto exact geometry. Precondition: the job has its complex and options.
 MeshOptions options_of_refinement(const MeshJob& job, NarrowCells narrow_cells);
 
-/// Returns the radius-edge ratio of thin tets: just above the bound a tet may be within it once its vertices
-/// have moved onto the exact geometry.
+/// Returns the radius-edge ratio above which tets are marked as thin. With exact geometry it lies above the
+/// bound, because a tet just above the bound may be within it once its vertices have moved.
 double least_thin_ratio(const MeshJob& job);
 
-/// Makes the refined mesh. Throws Ended if it is cancelled or a budget is hit.
+/// Makes the refined mesh. Throws Ended if the run is cancelled or a budget is hit.
 void refine(MeshJob& job);
 
 }  // namespace collarmesh::pipeline

@@ -14,7 +14,7 @@ namespace collarmesh::pipeline {
 
 namespace {
 
-// So much larger the smallest dihedral angles are to be where vertices are to move onto exact geometry.
+// Reserve of the smallest dihedral angle, relative, if vertices will move onto exact geometry.
 constexpr double dihedral_reserve = 0.02;
 
 ImproveOptions options_of_improvement(const MeshJob& job) {
@@ -49,7 +49,7 @@ void coarsen_elements(MeshJob& job, improvement::Workpiece& workpiece) {
   job.trace("coarsen", coarsened);
 }
 
-/// Those that are not needed are coarsened away again.
+/// Inserts interior nodes; coarsening removes those that are not needed.
 void insert_interior_nodes(MeshJob& job) {
   const Bounds& bounds = job.refined_with.bounds;
   if (!bounds.interior_node) return;
@@ -66,7 +66,7 @@ void complete_interior_nodes(MeshJob& job, improvement::Workpiece& workpiece) {
     improvement::complete_interior_nodes(workpiece, job.refined_with.bounds, *job.made.interior_nodes);
 }
 
-/// Where tets still miss their bounds, or nearly so, vertices may come and go.
+/// Improves tets that miss their bounds, or nearly so, with operations that insert and remove vertices.
 void insert_where_poor(MeshJob& job, improvement::Workpiece& workpiece) {
   constexpr double nearly = 1.25;
   if (job.options.improve == 0) return;
@@ -78,7 +78,7 @@ void insert_where_poor(MeshJob& job, improvement::Workpiece& workpiece) {
 
 }  // namespace
 
-// Coarsening and improvement work on one data structure.
+// Uses one data structure for coarsening and improvement.
 void reshape(MeshJob& job) {
   if ((!job.options.coarsen && job.options.improve == 0) || job.made.result.status != MeshStatus::complete) {
     job.neighbours = KnownNeighbours();

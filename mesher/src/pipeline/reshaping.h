@@ -7,15 +7,15 @@
 
 namespace collarmesh::pipeline {
 
-/// Coarsens and improves the mesh of the job, and inserts interior nodes, as far as the options ask for it.
+/// Coarsens and improves the mesh of the job and inserts interior nodes, as the options ask for.
 void reshape(MeshJob& job);
 
 /// Coarsens and improves a mesh of the complex, with the bounds of the job. Fixed vertices stay where they
 /// are.
 void coarsen_and_improve(MeshJob& job, TetMesh& mesh, const std::vector<Index>& fixed);
 
-/// Coarsens and improves what a workpiece holds, by these options, and inserts vertices where tets still miss
-/// their bounds if asked for. Interior nodes are completed.
+/// Coarsens and improves a workpiece's mesh by these options. If asked to, inserts vertices where tets still
+/// miss their bounds. Completes interior nodes.
 void reshape(MeshJob& job, improvement::Workpiece& workpiece, const MeshOptions& options, bool insert);
 
 }  // namespace collarmesh::pipeline

@@ -12,7 +12,7 @@
 
 namespace collarmesh::pipeline {
 
-/// A flag that is set if another one is set or the time is up.
+/// A flag that becomes true when another flag is set or the time is up.
 class RunControl::Deadline {
  public:
   Deadline(double seconds, const Execution& execution)

@@ -12,29 +12,30 @@ namespace collarmesh::pipeline {
 /// Thrown if a stage stops early; `PipelineResult::result` says why.
 struct Ended {};
 
-/// One time limit, one way to cancel and one progress for all stages of a run.
+/// The time limit, the cancelling and the progress that all stages of a run share.
 class RunControl {
  public:
-  /// Keeps the execution and the result by reference. The time starts now.
+  /// Keeps references to the execution and the result. The time starts now.
   RunControl(const PipelineOptions& options, const Execution& execution, PipelineResult& made);
   ~RunControl();
   RunControl(const RunControl&) = delete;
   RunControl& operator=(const RunControl&) = delete;
 
-  /// Returns the execution that stages obey: its progress is a share of the whole.
+  /// Returns the execution for the stages; it scales their progress to shares of the whole run.
   const Execution& execution() const { return inner_; }
 
-  /// Begins a stage, whose progress goes from one fraction of the whole to another. Throws Ended.
+  /// Begins a stage, whose progress goes from one fraction of the whole run to another. Throws Ended.
   void begin(std::string_view stage, double from, double to);
-  /// Reports the progress of the next stage as that of the whole.
+  /// Reports the progress of the only stage as that of the whole run.
   void begin_only_stage() { to_ = 1; }
 
-  /// Runs a stage that ends early, without saying so, when progress says so. Throws Ended.
+  /// Runs a stage that ends early without telling so if its progress function returns false. Throws Ended in
+  /// that case.
   void watch(const std::function<void(const Execution&)>& stage);
 
   /// Throws Ended if the run is cancelled or out of time.
   void stop_if_asked();
-  /// Says in the result why the run ends, and throws Ended.
+  /// Writes the reason into the result and throws Ended.
   [[noreturn]] void stop();
   bool out_of_time() const;
 
@@ -48,7 +49,8 @@ class RunControl {
   Execution inner_;
   std::unique_ptr<Deadline> deadline_;
   std::string_view stage_;
-  double from_ = 0, to_ = 0, fraction_ = 0;  // of the stage in the whole
+  double from_ = 0, to_ = 0, fraction_ = 0;  // fractions of the whole run: begin and end of the stage, and
+                                             // the last one reported
 };
 
 }  // namespace collarmesh::pipeline

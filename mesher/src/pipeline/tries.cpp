@@ -17,7 +17,7 @@ namespace collarmesh::pipeline {
 
 namespace {
 
-/// Throws PlcError unless a coarser repair changes something and loses no part.
+/// Throws PlcError unless a coarser repair changed something and loses no part.
 void require_kept(const SoupPipelineResult& finer, const SoupPipelineResult& coarser) {
   const bool same =
       finer.plc.triangles.size() == coarser.plc.triangles.size() && finer.plc.points == coarser.plc.points;
@@ -73,7 +73,7 @@ void Tries::mesh_repaired(SoupPipelineResult& all) {
   if (has_mesh && made.guarantees_hold()) return;
   if (!built_last) {
     try {
-      build(current, all);  // its source is to know it again
+      build(current, all);  // makes the source know this complex again
     } catch (const PlcError&) {
       if (!has_mesh) throw;
       return;
@@ -101,7 +101,8 @@ void Tries::build(const RepairOptions& repair, SoupPipelineResult& all) {
   maker_.take_new_complex();
 }
 
-/// Meshes a complex within the bound on vertices. Also returns the reason for a missed guarantee.
+/// Meshes a complex within the bound on vertices. Returns the outcome and the reason if a guarantee was
+/// missed.
 std::pair<Tries::End, std::string> Tries::attempt(const Plc& plc, std::exception_ptr& error) {
   try {
     maker_.make(plc, job_.given.mesh.seed);
@@ -128,7 +129,8 @@ std::vector<RepairOptions> Tries::repairs_after(End end, const SoupPipelineResul
   return repairs;
 }
 
-/// The angles in collars are those of creases, which repair leaves as they are.
+/// Returns whether only angles in collars miss their bound. These depend on creases, which repair does not
+/// change.
 bool Tries::misses_collar_angle_only() const {
   return job_.made.result.status == MeshStatus::complete &&
          std::ranges::all_of(job_.made.check.findings, [](const Finding& finding) {
@@ -141,8 +143,8 @@ bool Tries::missed(const char* guarantee) const {
                              [&](const Finding& finding) { return finding.guarantee == guarantee; });
 }
 
-/// Refinement that does not end at one place with the samples of one seed may well end with those of
-/// another. Where regions do not keep their volumes the surface distance shrinks, too.
+/// Tries further seeds: if refinement does not end at some place with the random samples of one seed, it may
+/// end with those of another. If regions do not keep their volumes, also reduces the surface distance.
 void Tries::try_seeds(const Plc& plc) {
   if (!maker_.depends_on_seed()) return;
   PipelineResult& made = job_.made;
@@ -156,8 +158,9 @@ void Tries::try_seeds(const Plc& plc) {
   try_narrow_places_otherwise(plc);
 }
 
-/// Cells that were left in narrow places may keep large angles. Then the ratio is bounded there, too, if
-/// that takes not many times the vertices. Where it was bounded, they are left.
+/// Tries again with the opposite treatment of narrow places. Cells that were left there may keep large
+/// angles, so now their ratio is bounded if that takes not many times the vertices. If it was bounded before,
+/// they are left.
 void Tries::try_narrow_places_otherwise(const Plc& plc) {
   constexpr std::size_t times = 10, more = 100'000;
   if (!job_.given.coarsen || !missed(guarantee::thin_angles)) return;
@@ -179,14 +182,16 @@ void Tries::try_narrow_places_otherwise(const Plc& plc) {
   maker_.set_narrow_cells(NarrowCells::bounded_if_cheap);
 }
 
-/// Returns the share of the surface distance of first order with which regions keep their volumes and thin
-/// places their thickness: the loss is about proportional to the distance.
+/// Returns the factor on the surface distance of first order with which regions should keep their volumes,
+/// and thin places their thickness. The loss is about proportional to the distance.
 double Tries::share_for_volumes() const {
   constexpr double aim = 0.7, least = 0.25;
   const PipelineOptions& given = job_.given;
   const double allowed = volume_allowance(static_cast<int>(given.order));
   double share = 1;
-  if (given.mesh.bounds.distance > 0 || given.mesh.bounds.tolerance) return share;  // as asked for
+  if (given.mesh.bounds.distance > 0 || given.mesh.bounds.tolerance)
+    return share;  // the options give the
+                   // distance
   const ShapeMeasures &input = job_.made.check.of_input, &mesh = job_.made.check.of_mesh;
   const auto keep = [&](double wanted, double found) {
     if (const double off = std::fabs(found - wanted); off > allowed * wanted)
@@ -213,7 +218,7 @@ bool Tries::find_better(bool has_mesh, const Way& way) {
     better = !has_mesh || made.guarantees_hold();
   } catch (const PlcError&) {
     better = false;
-  } catch (const OptionError&) {  // the tags of sizes may be gone
+  } catch (const OptionError&) {  // a tag with a size may not exist in the other complex
     better = false;
   } catch (const Ended&) {
     fails();

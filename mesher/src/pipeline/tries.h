@@ -11,26 +11,26 @@
 
 namespace collarmesh::pipeline {
 
-/// Tries repairs, seeds and bounds in narrow places in turn, until a mesh keeps every guarantee. The mesh
-/// that is best is that of the job.
+/// Tries repairs, seeds and treatments of narrow places one after the other, until a mesh keeps every
+/// guarantee. The job keeps the best mesh.
 class Tries {
  public:
-  /// Keeps the job by reference; `source` is that of the complexes, null if there is one only.
+  /// Keeps a reference to the job. `source` makes the complexes; null if there is only one.
   Tries(MeshJob& job, ComplexSource* source) : job_(job), source_(source), maker_(job, source) {}
 
-  /// Builds the complex, as repaired, and meshes it; `all` gets the complex that was meshed. Throws Ended and
-  /// PlcError.
+  /// Builds the complex, with repairs, and meshes it. `all` gets the complex that was meshed. Throws Ended
+  /// and PlcError.
   void mesh_repaired(SoupPipelineResult& all);
 
-  /// Meshes a complex as it is. Throws Ended and PlcError.
+  /// Meshes a complex without repairs. Throws Ended and PlcError.
   void mesh(const Plc& plc);
 
  private:
   /// The outcome of an attempt at a mesh.
   enum class End {
-    holds,     ///< every guarantee
-    missed,    ///< a guarantee
-    exploded,  ///< it took more vertices than its sizes ask for
+    holds,     ///< every guarantee holds
+    missed,    ///< a guarantee is missed
+    exploded,  ///< the refinement took more vertices than the sizes ask for
     refused    ///< no collar fits between features
   };
 
@@ -43,7 +43,8 @@ class Tries {
   void try_narrow_places_otherwise(const Plc& plc);
   double share_for_volumes() const;
 
-  /// Tries another way. The present result stays unless it is no mesh or the other one keeps every guarantee.
+  /// Tries another way to make a mesh. The present result stays unless it has no mesh or the new one keeps
+  /// every guarantee.
   template <class Way>
   bool find_better(bool has_mesh, const Way& way);
 

@@ -11,17 +11,17 @@ namespace collarmesh {
 
 namespace {
 
-// Coefficients of the bound on the refinement's vertices, before coarsening; real parts need at most a
-// quarter.
+// Coefficients of the bound on the number of vertices that refinement makes before coarsening. Real parts
+// need at most a quarter of it.
 constexpr double always = 20000, by_feature = 160, by_square = 64, by_cube = 160;
-constexpr double sizes_per_diagonal = 20;  // of the default size
+constexpr double sizes_per_diagonal = 20;  // as for the default size
 
-/// Returns the patch's area in squares of the size or, where this is shorter, of a chord that keeps the
+/// Returns the patch's area in squares whose side is the size or, if shorter, a chord that keeps the
 /// tolerance.
 double squares_on(const Plc& plc, const Plc::Patch& patch, double size, const SurfaceTolerance& tolerance) {
   const std::vector<Curvature> curvature =
       patch.planar ? std::vector<Curvature>(patch.triangle_count) : curvatures(plc, patch);
-  constexpr double most_per_square = 1. / 16;  // folds turn very sharply
+  constexpr double most_per_square = 1. / 16;  // limit for folds, where the surface turns very sharply
   double squares = 0;
   for (Index i = 0; i < patch.triangle_count; ++i) {
     const Index t = patch.first_triangle + i;
@@ -35,7 +35,7 @@ double squares_on(const Plc& plc, const Plc::Patch& patch, double size, const Su
   return squares;
 }
 
-// Returns whether the only sizes are a target edge length everywhere and in regions.
+// Returns whether the only sizes are one target edge length everywhere and target lengths of regions.
 bool plain_sizes(const PipelineOptions& options) {
   RunOptions given{options};
   given.mesh.region_size.clear();
@@ -68,8 +68,8 @@ double expected_by_features(const Plc& plc, const MeshOptions& options) {
   return vertices;
 }
 
-// Bounds that are tighter than by default ask for more vertices: near smooth surfaces as many as the distance
-// is smaller.
+// Returns the factor by which tighter bounds than the defaults increase the number of vertices. Near smooth
+// surfaces it is inversely proportional to the distance.
 double by_bounds(const Plc& plc, const MeshOptions& options) {
   constexpr double power = 4, by_vertex_ratio = 4;
   const double distance =

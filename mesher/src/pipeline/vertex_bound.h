@@ -8,13 +8,13 @@
 
 namespace collarmesh {
 
-/// Returns far more vertices than refinement needs for a complex without features much finer than the sizes.
-/// Sheets that part at a hundredth of a degree, needles and folds make millions. It does not
-/// depend on how near features come to each other. Cost: linear; near linear where more is asked for than
-/// target edge lengths everywhere and in regions.
+/// Returns an upper limit far above the number of vertices that refinement needs for a complex without
+/// features much finer than the sizes. (Sheets at a hundredth of a degree, needles and folds make millions of
+/// vertices.) It does not depend on the distances of features. Cost: linear if there are only target edge
+/// lengths everywhere and in regions, else near linear.
 std::size_t most_vertices_expected(const Plc& plc, const PipelineOptions& options);
 
-/// The smallest target edge length that is given as a number, absolute.
+/// Returns the smallest target edge length that is given as a number, absolute.
 double smallest_size(const MeshOptions& options, double diagonal);
 
 }  // namespace collarmesh

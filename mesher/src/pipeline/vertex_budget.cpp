@@ -11,15 +11,16 @@ void VertexBudget::bound(Ways ways) {
   is_known_ = false;
 }
 
-// A budget that was given takes the place of the last one, and of any that is larger.
+// Finds the budget of vertices for a complex. If the options give one, it counts unless the computed one is
+// smaller; when no other ways are left, it always counts.
 void VertexBudget::find(const Plc& plc, const PipelineOptions& options) {
-  // Bodies far thinner than the size take many vertices rightly; so many take ten seconds.
+  // Bodies far thinner than the size really need many vertices. Making this many takes ten seconds.
   constexpr std::size_t times_without_other_ways = 2, least_without_other_ways = 300'000;
   if (is_known_) return;
   const std::size_t given = given_.mesh.max_vertices;
   is_known_ = true;
   most_ = 0;
-  if (given_.mesh.profile == Profile::paper) return;  // it has no sizes to expect vertices of
+  if (given_.mesh.profile == Profile::paper) return;  // its sizes do not tell how many vertices to expect
   if (ways_ == Ways::none && given > 0) return;
   std::size_t most = most_vertices_expected(plc, options);
   if (ways_ == Ways::none) most = std::max(times_without_other_ways * most, least_without_other_ways);

@@ -11,10 +11,10 @@ using namespace facets;
 namespace {
 
 constexpr double degrees = 180 / std::numbers::pi;
-// A sector with a smaller sine counts as a ray.
+// A sector whose angle has a smaller sine counts as a ray.
 constexpr double narrow = 1e-12;
 
-// A sector of a fan, whose rays are start cos(s) + side sin(s).
+// A sector of a fan. Its rays are start cos(s) + side sin(s).
 struct Arc {
   Vector start, side;
   double from, length;  // radians along the fan
@@ -42,7 +42,7 @@ double smallest_angle_along(const Arc& a, double a0, const Arc& b, double b0, do
   const Vector ua = a.at(a0), va = a.at(a0 + std::numbers::pi / 2), ub = b.at(b0),
                vb = b.at(b0 + std::numbers::pi / 2);
   double best = std::fmin(angle_between(ua, ub), angle_between(a.at(a0 + length), b.at(b0 + length)));
-  // Their cosine is constant + p cos 2s + q sin 2s.
+  // The cosine of their angle is constant + p cos 2s + q sin 2s.
   const double p = dot(ua, ub) - dot(va, vb), q = dot(ua, vb) + dot(va, ub);
   const double peak = 0.5 * std::atan2(q, p);
   for (const double s : {peak, peak + std::numbers::pi})
@@ -50,8 +50,8 @@ double smallest_angle_along(const Arc& a, double a0, const Arc& b, double b0, do
   return best;
 }
 
-// Returns the smallest angle between rays that are `apart` along the fan: moves two positions along it, from
-// one border of a sector to the next.
+// Returns the smallest angle between rays that are `apart` (radians) along the fan. Moves two positions along
+// the fan, from one sector border to the next.
 double smallest_angle_apart(const std::vector<Arc>& arcs, double apart, bool closed) {
   const double total = arcs.back().from + arcs.back().length;
   const double last = closed ? total : total - apart;

@@ -9,7 +9,7 @@
 /// Angles between rays and facets at a common point. Directions are unit vectors, angles degrees.
 namespace collarmesh::plc {
 
-/// Returns the angle in [0, 180], accurate near both ends.
+/// Returns the angle between two vectors, in [0, 180], accurate near both ends.
 double angle_between(const Vector& u, const Vector& v);
 
 /// The planar sector between two rays.
@@ -17,17 +17,18 @@ struct Sector {
   Vector u, v;
 };
 double angle_between(const Vector& ray, const Sector& sector);
-/// Returns the smallest angle between rays of the sectors. Precondition: the sectors do not cross.
+/// Returns the smallest angle between a ray of one sector and a ray of the other. Precondition: the sectors
+/// do not cross.
 double angle_between(const Sector& s, const Sector& t);
 
 /// Returns how sharply a fan of sectors (between neighbouring rays in order around a point) folds: the
-/// smallest angle in space between two of its rays that are far apart along the fan. Far means half way round
-/// a closed fan, and 90, 135 or 180 degrees in an open one. 180 for a closed flat fan, the aperture for a
-/// round cone, at least 90 for any open flat one.
+/// smallest angle in space between two of its rays that are far apart along the fan. Far means halfway around
+/// a closed fan, and 90, 135 or 180 degrees in an open one. The result is 180 for a flat closed fan, the
+/// aperture for a round cone, and at least 90 for any flat open fan.
 double fold_angle(std::span<const Vector> rays, bool closed);
 
-/// Returns the points where a smooth patch folds on itself by an angle below 90 degrees (the apex of a cone):
-/// they are vertices. Reads the patches and triangles of `plc` and its planar tolerance; needs no curves.
+/// Returns the points where a smooth patch folds by an angle below 90 degrees (such as the apex of a cone);
+/// they become vertices. Reads the patches and triangles of `plc` and its planar tolerance; needs no curves.
 std::vector<Index> find_folds(std::span<const Point> points, const Plc& plc,
                               std::span<const FeatureSegment> segments);
 

@@ -60,7 +60,7 @@ void require_content(const Draft& draft, Faults& faults) {
                "The input holds no facet with an area; check that these are the right files.", {}, {});
 }
 
-// Reports why the facets enclose no region.
+// Adds a fault that tells why the facets enclose no region.
 void report_nothing_solid(const Draft& draft, std::span<const PolygonSoup> soups, Faults& faults) {
   for (Index s = 0; s < soups.size(); ++s)
     if (!soups[s].hole_points.empty()) {
@@ -113,8 +113,8 @@ void require_region(const Draft& draft, const EdgeTable& edges, const Regions& r
              {a, b}, 0.5 * (pa + pb));
 }
 
-// Adds the patches to the complex, each with its triangles in one range. Reverses a patch with a region in
-// front of it and the outside behind it.
+// Adds the patches to the complex, each with its triangles in one range. Turns a patch around if a region is
+// in front of it and the outside behind it.
 void add_patches(Draft& draft, const Regions& regions, const std::vector<Index>& patch_of, Index patch_count,
                  Plc& plc) {
   std::vector<std::vector<Index>> triangles(patch_count);

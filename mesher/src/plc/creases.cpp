@@ -12,7 +12,7 @@ namespace collarmesh {
 
 namespace {
 
-// An angle this much below the threshold may be rounding (degrees).
+// An angle must be below the threshold by more than rounding (degrees).
 constexpr double angle_rounding = 1e-6;
 
 std::vector<Crease> below(std::vector<Crease> angles, double threshold) {

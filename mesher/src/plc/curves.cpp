@@ -47,7 +47,7 @@ class CurveFinder {
 
  private:
   struct Chain {
-    std::vector<Index> points;  // a loop repeats its first point
+    std::vector<Index> points;  // the first point of a loop is repeated at its end
     Index segment;              // one of its segments
   };
 
@@ -90,7 +90,8 @@ class CurveFinder {
       if (!segments_at(p).empty() && !passes(p)) is_vertex_[p] = true;
   }
 
-  // Finds points where several fans of triangles meet, or a fan and a segment that is not an edge of any.
+  // Finds points where several fans of triangles meet, or a fan meets a segment that is no edge of a
+  // triangle.
   void mark_pinched_points() {
     const auto& triangles = draft_.triangles;
     DisjointSets fans(3 * triangles.size());
@@ -113,7 +114,7 @@ class CurveFinder {
         if (s.edge == none && fan_of[p] != none) is_vertex_[p] = true;
   }
 
-  // Returns whether one curve passes this point.
+  // Returns whether exactly one curve passes this point.
   bool passes(Index point) const {
     const auto at = segments_at(point);
     if (at.size() != 2) return false;
@@ -150,7 +151,8 @@ class CurveFinder {
     chains_.push_back(std::move(chain));
   }
 
-  // Cuts chains at the farthest point if merging neighbour by neighbour has left the straight line.
+  // Cuts a chain at its farthest point if merging neighbour by neighbour made it deviate from a straight
+  // line.
   void cut_bent_chains() {
     std::vector<Chain> pieces;
     for (const Chain& chain : chains_) {
@@ -218,7 +220,8 @@ class CurveFinder {
       for (const Index p : chain.points)
         largest = std::fmax(largest,
                             distance_to_segment(draft_.points[p], draft_.points[first], draft_.points[last]));
-      // Two points that a fold cut off a given curve do not show whether it is straight.
+      // If folds cut a given curve into pieces of two points, a piece does not show whether the curve is
+      // straight.
       const bool cut_off = segments_[chain.segment].given && (is_fold_[first] || is_fold_[last]);
       curve.straight = chain.points.size() == 2 ? !cut_off : largest <= draft_.planar_tolerance;
       if (curve.straight) draft_.largest_deviation = std::max(draft_.largest_deviation, largest);
@@ -240,7 +243,7 @@ class CurveFinder {
   double largest_turn_;
   std::vector<Index> first_, at_;             // segments at each point
   std::vector<Index> first_patch_, patches_;  // patches of each segment
-  std::vector<bool> is_vertex_, is_fold_;     // folds: vertices that the input does not name
+  std::vector<bool> is_vertex_, is_fold_;     // folds are vertices that the input does not give
   std::vector<bool> used_;
   std::vector<Chain> chains_;
   std::vector<Index> vertex_at_;

@@ -8,7 +8,7 @@ using namespace facets;
 
 namespace {
 
-// A fan whose normals all lie within this cosine of the first one is too flat to fold.
+// A fan is too flat to fold if the cosines between all its normals and the first one exceed this.
 constexpr double flat_fan_cosine = 0.866;
 
 std::vector<Corners> corners_of(const std::vector<Plc::Triangle>& triangles) {
@@ -95,7 +95,7 @@ Fan PatchFans::make_fan(Index start) {
   }
   if (!fan.closed) fan.rim.push_back(triangles_[last / 3][(last % 3 + 2) % 3]);
   if (!fan.closed && fan.rim.size() > 2 && fan.rim.front() == fan.rim.back()) {
-    // A segment ends inside the patch: its two sides are one ray.
+    // If a segment ends inside the patch, its two sides are one ray.
     fan.rim.pop_back();
     fan.closed = true;
   }

@@ -10,18 +10,18 @@
 
 namespace collarmesh::plc {
 
-/// The triangles of one patch around a point, between segments.
+/// The triangles of one patch around a point, bounded by segments.
 struct Fan {
   Index patch = none;
   bool closed = false;
   std::vector<Index> rim;    ///< the other ends of the triangles' edges at the point, in order
-  std::vector<Vector> rays;  ///< unit, towards them
+  std::vector<Vector> rays;  ///< unit vectors towards them
 
   std::size_t sector_count() const { return closed ? rim.size() : rim.size() - 1; }
   Sector sector(std::size_t i) const { return {rays[i], rays[(i + 1) % rays.size()]}; }
 };
 
-/// The triangles of patches around their points, cut along the segments.
+/// The triangles of each patch around its points, divided by segments.
 class PatchFans {
  public:
   /// Keeps points and patches by reference. Segments are pairs of points in any order.
@@ -34,11 +34,11 @@ class PatchFans {
 
   /// Returns the fans around a point, of smooth patches only or of all.
   std::vector<Fan> at(Index point, bool smooth_only);
-  /// Returns the same edge's side in the neighbouring triangle of the patch, none at a segment.
+  /// Returns the side of the same edge in the neighbouring triangle of the patch; none at a segment.
   Index across(Index side) const;
 
-  /// Returns how sharply a smooth patch folds in a fan around the point (degrees, see fold_angle); 180 where
-  /// its edges are at most as long as `noise`, because their directions mean nothing.
+  /// Returns how sharply a smooth patch folds in a fan around the point (degrees, see fold_angle); 180 if its
+  /// edges are at most as long as `noise`, because their directions are unreliable.
   double fold(Index point, const Fan& fan, double noise) const;
 
  private:
@@ -53,7 +53,7 @@ class PatchFans {
   facets::EdgeTable edges_;
   std::vector<bool> is_segment_;               // by edge
   std::vector<Index> first_corner_, corners_;  // corners (3 t + i) at each point
-  std::vector<bool> visited_;                  // corners that are in a fan already
+  std::vector<bool> visited_;                  // corners that already are in a fan
 };
 
 }  // namespace collarmesh::plc

@@ -29,7 +29,8 @@ class SegmentTest {
       return true;
     if (clusters_.seed[s] == clusters_.seed[t]) return false;
     const double cosine = dot(clusters_.normal[s], clusters_.normal[t]);
-    // Two sheets folded onto each other need a curve at the fold, because otherwise the surface has no mesh.
+    // Two sheets folded onto each other need a curve at the fold, because no mesh could follow them
+    // otherwise.
     if (draft_.soup_gives_features[draft_.origins[s].soup]) return cosine < 0;
     return every_fold_ || cosine < smallest_cosine_;
   }
@@ -48,7 +49,7 @@ struct Extent {
   double low = INFINITY, high = -INFINITY;
 };
 
-// Returns the corners, most of which occur several times, once each.
+// Returns the corners without duplicates.
 std::vector<Index> corners_of(const Draft& draft, const std::vector<Index>& triangles) {
   std::vector<Index> points;
   points.reserve(3 * triangles.size());
@@ -57,7 +58,7 @@ std::vector<Index> corners_of(const Draft& draft, const std::vector<Index>& tria
   return points;
 }
 
-// Returns the largest distance of the points from a plane, or the first one above the limit.
+// Returns the largest distance of the points from a plane, or the first distance above the limit.
 double deviation_from(const Draft& draft, const std::vector<Index>& points, const Point& origin,
                       const Vector& normal, double limit) {
   double largest = 0;
@@ -105,7 +106,7 @@ Index find_patches(const Draft& draft, const EdgeTable& edges, const std::vector
   for (Index e = 0; e < edges.size(); ++e)
     if (!is_segment[e])
       for (const Index side : edges.sides(e).subspan(1)) patches.unite(edges.sides(e)[0] / 3, side / 3);
-  // A set's representative is its first triangle.
+  // The representative of a set is its first triangle.
   patch_of.resize(draft.triangles.size());
   Index count = 0;
   for (Index t = 0; t < draft.triangles.size(); ++t)
@@ -137,7 +138,7 @@ void fit_plane(Draft& draft, const std::vector<Index>& triangles, Plc::Patch& pa
     return true;
   };
   if (accept(draft.corner(largest, 0), unit_normal(draft, largest)) || norm(mean) == 0) return;
-  // The mean plane is nearer to all triangles than the plane of one of them.
+  // The mean plane is nearer to all triangles than the plane of a single one.
   Extent extent{mean / norm(mean)};
   const Point& base = draft.corner(largest, 0);
   for (const Index p : points) {

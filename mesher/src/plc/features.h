@@ -12,24 +12,24 @@ namespace collarmesh::plc {
 /// A straight piece of a future curve.
 struct FeatureSegment {
   Index a = 0, b = 0;
-  Index edge = none;  ///< in the edge table, none if no triangle has it
+  Index edge = none;  ///< index in the edge table; none if no triangle has it
   Tag tag = 0;
-  bool given = false;  ///< from a soup that gives its features: no angle ends its curve
+  bool given = false;  ///< from a soup with given features: angles do not end its curve
 };
 
-/// Finds the segments: edges that the input names, edges not shared by exactly two triangles, edges between
-/// different tags or soups, and edges where a surface that does not give its features turns by more than the
-/// feature angle (degrees).
+/// Finds the segments: edges that the input gives as segments; edges that are not shared by exactly two
+/// triangles; edges between different tags or soups; and edges where a surface without given features turns
+/// by more than the feature angle (degrees).
 std::vector<FeatureSegment> find_segments(const facets::Draft& draft, const facets::EdgeTable& edges,
                                           const facets::FlatClusters& clusters, double feature_angle);
 
-/// Finds the patch of each triangle: triangles connected across edges that are no segments. Patches are
+/// Finds the patch of each triangle: a patch is connected across edges that are not segments. Patches are
 /// numbered by their first triangle. Returns the number of patches.
 Index find_patches(const facets::Draft& draft, const facets::EdgeTable& edges,
                    const std::vector<FeatureSegment>& segments, std::vector<Index>& patch_of);
 
-/// Fits a plane that contains all points of the patch within the tolerance; then sets planar, normal and
-/// origin. Raises the draft's deviation.
+/// Fits a plane to the points of the patch. If all are within the tolerance of it, sets planar, normal and
+/// origin, and raises the draft's deviation.
 void fit_plane(facets::Draft& draft, const std::vector<Index>& triangles, Plc::Patch& patch);
 
 }  // namespace collarmesh::plc

@@ -12,7 +12,7 @@ using namespace facets;
 
 namespace {
 
-using Border = std::vector<Index>;  // sorted edges
+using Border = std::vector<Index>;  // edges, sorted
 
 class InterfaceFinder {
  public:
@@ -37,7 +37,7 @@ class InterfaceFinder {
   }
 
  private:
-  // The triangles of each cluster with an edge where several soups meet, by seed.
+  // Returns the triangles of each cluster that has an edge where several soups meet, by seed.
   std::map<Index, std::vector<Index>> clusters_on_common_edges() const {
     std::vector<bool> wanted(draft_.triangles.size(), false);
     for (Index e = 0; e < edges_.size(); ++e) {
@@ -51,7 +51,7 @@ class InterfaceFinder {
     return clusters;
   }
 
-  // Returns the edges of exactly one triangle of the cluster.
+  // Returns the edges that exactly one triangle of the cluster has.
   Border border(Index seed, const std::vector<Index>& triangles) const {
     Border result;
     for (const Index t : triangles)

@@ -16,7 +16,7 @@ using namespace facets;
 
 namespace {
 
-/// Facets that are connected by corners.
+/// A set of facets that are connected by corners.
 struct Body {
   Box box;
   Index facets = 0;
@@ -62,7 +62,7 @@ void add_bodies(const PolygonSoup& soup, std::vector<Body>& bodies) {
   });
 }
 
-/// Finds triangles by place: returns whether there is one within or near a box.
+/// Finds triangles by place: tells whether there is one within or near a box.
 class TrianglesByPlace {
  public:
   explicit TrianglesByPlace(const Plc& plc) : plc_(plc), order_(plc.triangles.size()) {
@@ -99,8 +99,8 @@ class TrianglesByPlace {
 std::vector<Plc::Warning> lost_bodies(std::span<const PolygonSoup> soups, const Plc& plc, double distance) {
   constexpr std::size_t listed = 10;
   constexpr Index smallest_closed = 4;       // number of facets
-  constexpr double largest_collapsed = 100;  // multiple of the distance: points of one body may have moved in
-                                             // a chain
+  constexpr double largest_collapsed = 100;  // multiple of the weld distance: points of one body may have
+                                             // merged in a chain
   std::vector<Body> small;
   for (const PolygonSoup& soup : soups) add_bodies(soup, small);
   std::erase_if(small, [&](const Body& body) {
@@ -128,7 +128,7 @@ std::vector<Plc::Warning> lost_bodies(std::span<const PolygonSoup> soups, const 
 }
 
 LostRegions lost_regions(const Plc& before, const Plc& after, double tolerance) {
-  constexpr double most_of_a_volume = 0.02;  // share of a volume that may be lost or gained
+  constexpr double most_of_a_volume = 0.02;  // share of a volume that a region may lose or gain
   std::multiset<double> volumes;
   for (std::size_t r = 1; r < after.regions.size(); ++r) volumes.insert(std::fabs(after.regions[r].volume));
   std::vector<double> areas(before.regions.size(), 0);

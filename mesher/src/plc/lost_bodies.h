@@ -8,19 +8,19 @@
 
 namespace collarmesh::plc {
 
-/// Returns warnings of bodies that are in the soups, but not in the complex made of them: connected facets
-/// all of which welding within `distance` (absolute) or a repair has removed. Bodies without an extent do not
-/// count. Cost: that of sorting the points.
+/// Returns warnings of bodies in the soups that the complex made of them does not have: sets of connected
+/// facets that welding within `distance` (absolute) or a repair has removed completely. Bodies without an
+/// extent do not count. Cost: that of sorting the points.
 std::vector<Plc::Warning> lost_bodies(std::span<const PolygonSoup> soups, const Plc& plc, double distance);
 
-/// Regions whose volume no region of a repaired complex has (within 2%), with a place on each.
+/// Regions whose volume no region of a repaired complex has (within 2%), with a point of each.
 struct LostRegions {
-  std::vector<Point> thin;    ///< no thicker than the tolerance allows
-  double thin_volume = 0;     ///< volume of all thin ones
-  std::vector<Point> others;  ///< now parts of larger regions, or split
+  std::vector<Point> thin;    ///< regions no thicker than the tolerance allows
+  double thin_volume = 0;     ///< volume of all thin regions
+  std::vector<Point> others;  ///< regions that became parts of larger ones, or were split
 };
 
-/// Compares `before` with `after`, a repair of it. A region is thin if its thickness (twice the volume over
+/// Compares `before` with `after`, its repair. A region is thin if its thickness (twice the volume divided by
 /// the area) is at most twice the `tolerance` (absolute). Cost: O(n log n).
 LostRegions lost_regions(const Plc& before, const Plc& after, double tolerance);
 

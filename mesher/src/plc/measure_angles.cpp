@@ -12,14 +12,15 @@ using namespace facets;
 
 namespace {
 
-// Edges shorter and triangles lower than this many planar tolerances have no reliable direction.
+// An edge has no reliable direction if it is shorter than this many planar tolerances; a triangle, if it is
+// lower.
 constexpr double noise = 10;
-// A patch has a vertex at a point where it folds by less than this angle (degrees).
+// A patch has a vertex at a point where it folds to less than this angle (degrees).
 constexpr double folded = 90;
 // An end of a curve at a vertex.
 struct Ray {
   Index curve;
-  Index next;  // the next point of its polyline
+  Index next;  // the curve's next point
   Vector direction;
 };
 
@@ -61,7 +62,7 @@ class AngleFinder {
   }
   double noise_length() const { return noise * plc_.planar_tolerance; }
 
-  // Returns the direction of an end of a curve: that of the polyline's first point that is far enough away.
+  // Returns the direction of a curve's end, towards the first point of its polyline that is far enough away.
   Ray make_ray(Index curve, std::vector<Index> points) const {
     std::size_t far = 1;
     while (far + 1 < points.size() && distance(at(points[0]), at(points[far])) <= noise_length()) ++far;
@@ -97,7 +98,7 @@ class AngleFinder {
 
   Index patch_of(Index side) const { return fans_.patch_of(side); }
 
-  // Returns the unit vector in the facet, orthogonal to the triangle's side.
+  // Returns the unit vector in the triangle's plane that points inwards, orthogonal to its side.
   Vector into_facet(Index side) const {
     const Corners& t = triangles_[side / 3];
     const Vector d = cross(facet_normal(side / 3), at(t[(side % 3 + 1) % 3]) - at(t[side % 3]));
@@ -120,7 +121,7 @@ class AngleFinder {
     return norm(cross(b - a, c - a)) / std::max({distance(a, b), distance(b, c), distance(c, a)});
   }
 
-  // Returns the triangle itself, or the nearest one in its patch that is no needle.
+  // Returns the triangle itself or, if it is a needle, the nearest triangle of its patch that is not.
   Index reliable_triangle(Index triangle) const {
     std::vector<Index> seen{triangle};
     for (std::size_t next = 0; next < seen.size() && seen.size() < 64; ++next) {
@@ -152,7 +153,7 @@ class AngleFinder {
     add(best);
   }
 
-  // Measures the angle between a curve and a facet that does not have it as a side there.
+  // Measures angles between a curve and facets at a vertex, except facets with the curve as a side.
   void measure_segments_and_facets(Index v, const std::vector<Fan>& fans) {
     Crease best = at_vertex(Kind::segment_and_facet, v);
     for (const Ray& ray : rays_[v])
@@ -164,7 +165,7 @@ class AngleFinder {
     add(best);
   }
 
-  // Measures facets without a common segment there.
+  // Measures angles between facets that share no segment at a vertex.
   void measure_facets(Index v, const std::vector<Fan>& fans) {
     Crease best = at_vertex(Kind::facets_in_vertex, v);
     for (std::size_t f = 0; f < fans.size(); ++f)
@@ -217,15 +218,15 @@ class AngleFinder {
 
 namespace {
 
-// Triangles that face within this cosine of one of them are all within 30 degrees of each other: their fan is
-// too flat to fold.
+// If all normals are within this cosine of one of them, the triangles are within 30 degrees of each other:
+// their fan is too flat to fold.
 constexpr double flat_cosine = 0.966;
 
-// Returns points where the triangles of some smooth patch face several ways; all other points are flat.
+// Returns points where the triangles of some smooth patch face different ways; all other points are flat.
 std::vector<Index> points_not_flat(std::span<const Point> points, const Plc& plc) {
   struct First {
-    Index patch = none;  // the last patch that was seen at the point
-    Vector normal;       // normal of its first triangle there
+    Index patch = none;  // the last patch found at the point
+    Vector normal;       // normal of that patch's first triangle there
   };
   std::vector<First> first(points.size());
   std::vector<bool> flat(points.size(), true);

@@ -15,13 +15,13 @@ namespace {
 
 using namespace facets;
 
-/// The polygons of a facet with the merged points.
+/// The polygons of a facet, in numbers of merged points.
 struct MergedFacet {
   Tag tag = 0;
   std::vector<std::vector<Index>> polygons;
 };
 
-/// Finds facets with the same corners, whatever their order.
+/// Finds facets with the same corners in any order.
 class RepeatedFacets {
  public:
   bool add(const MergedFacet& facet) {
@@ -83,7 +83,7 @@ class Merger {
     result_.hole_points.insert(result_.hole_points.end(), soup.hole_points.begin(), soup.hole_points.end());
   }
 
-  /// Adds a facet. Returns its number in the result, none if it was dropped or cut.
+  /// Adds a facet. Returns its number in the result; none if it was dropped or cut.
   Index add_facet(std::size_t s, Index f) {
     const PolygonSoup& soup = soups_[s];
     const MergedFacet facet = merged_facet(s, f);
@@ -148,7 +148,7 @@ class Merger {
     ++report_.cut_facets;
   }
 
-  static constexpr double planar_tolerance = 1e-6;  // the default of PlcOptions
+  static constexpr double planar_tolerance = 1e-6;  // as the default of PlcOptions
 
   std::span<const PolygonSoup> soups_;
   const MergeSoupsOptions& options_;

@@ -29,7 +29,7 @@ class PointPlacer {
     find_largest_sides();
     Index missing = 0;
     std::vector<bool> done(plc_.regions.size(), false);
-    // A region may have several shells; start with the one that has the largest triangle.
+    // A region may have several shells; begin with the one that has the largest triangle.
     for (const Index side : order_of_sides()) {
       const Index region = region_of(side);
       if (region == 0 && encloses_void(side)) {
@@ -65,8 +65,8 @@ class PointPlacer {
     return squared_norm(cross(draft_.corner(triangle, 1) - a, draft_.corner(triangle, 2) - a));
   }
 
-  /// Finds for each shell the side of its largest triangle, and the volume that the shell encloses as seen
-  /// from its space: positive if the space is inside.
+  /// Finds for each shell the side of its largest triangle, and the signed volume that the shell encloses:
+  /// positive if the shell's space is inside.
   void find_largest_sides() {
     const auto count = static_cast<Index>(2 * draft_.triangles.size());
     largest_.assign(count, none);
@@ -95,7 +95,8 @@ class PointPlacer {
 
   bool encloses_void(Index side) { return volume_[shells_.find(side)] > 0; }
 
-  /// Returns the middle of the longest of some lines that leave the triangle on this side.
+  /// Returns the middle of the longest of some lines that start at the triangle on this side; nothing if all
+  /// fail.
   std::optional<Point> point_in(Index side) const {
     constexpr std::size_t attempts = 12;
     const Index t = side / 2;

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t largest_attempt = 1000;
 
-// A sum that keeps the rounding errors (Neumaier 1974).
+// A sum with compensated rounding errors (Neumaier 1974).
 class Sum {
  public:
   void add(double value) {
@@ -35,15 +35,15 @@ class Sum {
 
 // A bounded chamber: one that a component of the surface encloses.
 struct Chamber {
-  Index inner_shell = none;  // of the component that encloses it
+  Index inner_shell = none;  // inner shell of the component that encloses it
   bool complex = false;
-  bool claimed = false;           // a facet has its back towards it
-  bool behind_claimed = false;    // a facet has its front towards it and its back towards a claimed chamber
-  bool beside_outside = false;    // a facet separates it from the chamber around the component
-  Index claiming_surface = none;  // a soup that is a surface and claims it
+  bool claimed = false;           // a facet has this chamber behind it
+  bool behind_claimed = false;    // a facet has this chamber in front of it and a claimed chamber behind it
+  bool beside_outside = false;    // a facet separates it from the chamber around its component
+  Index claiming_surface = none;  // a soup that is a surface and claims this chamber
   Index hole_soup = none;
-  Index owner = none;           // the soup with the largest part of its inner shell
-  Index first_triangle = none;  // of the owner, on that shell
+  Index owner = none;           // the soup that has the largest part of its inner shell
+  Index first_triangle = none;  // the owner's first triangle on that shell
   Index region = none;
 };
 
@@ -76,7 +76,7 @@ class RegionFinder {
   }
 
  private:
-  // The share of a soup in a chamber's inner shell.
+  // The part of a chamber's inner shell that a soup has.
   struct Share {
     double area = 0;
     Index first_triangle = none;
@@ -90,7 +90,7 @@ class RegionFinder {
 
   double reach() const { return 2 * draft_.bounds.diagonal(); }
 
-  // Casts a line through each component to find its outermost shell and the surface that this shell sees.
+  // Casts a line through each component to find its outermost shell, and the surface that this shell faces.
   void nest_components() {
     std::vector<Index> largest(count_, none);
     std::vector<double> area(count_);
@@ -106,7 +106,7 @@ class RegionFinder {
 
   void cast_through(Index component, Index triangle) {
     for (std::size_t attempt = 0; attempt < largest_attempt; ++attempt) {
-      // Weights of the corners, which change with each attempt.
+      // Weights of the triangle's corners; they change with each attempt.
       const Vector w = generic_direction(attempt + 7);
       const double wa = 1 + 0.9 * w.x, wb = 1 + 0.9 * w.y, wc = 1 + 0.9 * w.z;
       const Point at = (wa * draft_.corner(triangle, 0) + wb * draft_.corner(triangle, 1) +
@@ -167,7 +167,8 @@ class RegionFinder {
   // Returns the bounded chamber whose inner shell has this side.
   Index chamber_at(Index side) { return chamber_of_shell_[shells_.find(side)]; }
 
-  // Claims a side: a complex claims both sides of its facets, a surface the sides behind them as solid.
+  // Claims a side for a soup: a complex claims both sides of its facets; a surface claims the sides behind
+  // them as solid.
   void claim(Index side, Index soup) {
     const Index at = chamber_at(side);
     if (at == none) return;
@@ -184,8 +185,8 @@ class RegionFinder {
     chamber.claiming_surface = std::min(chamber.claiming_surface, soup);
   }
 
-  // Finds the owner of each chamber: the soup with the largest share of its shell, the first one among
-  // equals. Neighbours that share facets of a chamber have less of its shell than the file that encloses it.
+  // Finds the owner of each chamber: the soup with the largest part of its shell, the first one among equals.
+  // So a file that encloses a chamber wins against neighbours that share only some of its facets.
   void find_owners() {
     constexpr double clearly_more = 1 + 1e-9;
     double area = 0;
@@ -217,7 +218,7 @@ class RegionFinder {
     }
   }
 
-  // Returns the bounded chamber that contains a point; none outside all.
+  // Returns the bounded chamber that contains a point; none if the point is outside all chambers.
   Index enclosing_chamber(const Point& point, const char* what, Index soup) {
     for (std::size_t attempt = 0; attempt < largest_attempt; ++attempt) {
       const auto crossings = caster_.cast(point, point + reach_to(point) * generic_direction(attempt));
@@ -246,7 +247,8 @@ class RegionFinder {
     return none;
   }
 
-  // Decides from the outside inwards, so that the surroundings of a chamber are decided before it.
+  // Decides which chambers are regions, from the outside inwards, so that the chamber around another one is
+  // decided first.
   void decide() {
     region_of_chamber_.assign(2 * count_ + 1, none);
     region_of_chamber_[chambers_.find(outside_)] = 0;
@@ -267,13 +269,13 @@ class RegionFinder {
     }
   }
 
-  // Returns the chamber around the component that encloses this one.
+  // Returns the chamber that surrounds the component enclosing this chamber.
   Index parent(const Chamber& chamber) {
     return chambers_.find(outer_shell_[components_.find(chamber.inner_shell / 2)]);
   }
 
-  // Returns whether a chamber is a region. A cavity that touches the surface around it is behind that
-  // surface's facets everywhere. A chamber that also has facets to the outside is a body that is inside out,
+  // Returns whether a chamber is a region. A cavity that touches the surface around it lies in front of that
+  // surface's facets everywhere. A chamber that also has facets to the outside is a body turned inside out,
   // as a single body may be.
   static bool is_region(const Chamber& chamber, bool inside_region) {
     const bool filled = chamber.claiming_surface != none && chamber.claiming_surface != chamber.hole_soup;
@@ -319,7 +321,7 @@ class RegionFinder {
     result.warnings = std::move(warnings_);
   }
 
-  // Takes the parameters of region points; the last point of a region counts.
+  // Applies the properties of region points; in each region the last point counts.
   void set_parameters(Regions& result) {
     std::map<Index, const PlacedPoint*> last;
     for (const PlacedPoint& p : region_points_) {

@@ -53,7 +53,7 @@ double GradedSize::at(const Point& p, double largest) const {
     const Node& n = nodes_[node];
     return n.least >= size ? n.least : n.least + n.growth * std::sqrt(squared_distance_to_box(p, n.box));
   };
-  // The stack of halves is as deep as an index has bits.
+  // The stack of the halves that remain is as deep as an index has bits.
   std::array<std::pair<Index, double>, 8 * sizeof(Index) + 2> stack;
   std::size_t top = 0;
   stack[top++] = {0, lowest(0)};

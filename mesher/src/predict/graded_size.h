@@ -7,11 +7,11 @@
 
 namespace collarmesh::prediction {
 
-/// Graded sizes: the edge length at a point is the smallest that any source asks for; each source's length
-/// grows with the distance from it.
+/// Graded sizes: the edge length at a point is the smallest that any source asks for there; the length that a
+/// source asks for grows with the distance from it.
 class GradedSize {
  public:
-  /// A point, segment or triangle (corners may be equal) with its edge length.
+  /// A point, segment or triangle (as three corners, possibly equal) with its edge length.
   struct Source {
     std::array<Point, 3> corners;
     double size;
@@ -29,9 +29,9 @@ class GradedSize {
  private:
   struct Node {
     Box box;
-    double least;        // smallest size below
-    double growth;       // least growth below
-    Index first, count;  // sources; count 0: the children are the next node and `first`
+    double least;        // smallest size of the sources below
+    double growth;       // smallest growth of the sources below
+    Index first, count;  // its sources; count 0: the children are the next node and the node `first`
   };
   static constexpr Index leaf_size = 4;
 

@@ -18,14 +18,14 @@ namespace {
 
 constexpr double sizes_per_diagonal = 20;  // for the default size
 
-// Returns the predicted seconds, which are mostly proportional to the tets before coarsening; fitted
-// (bench/predicted_elements.py).
+// Returns the predicted time in seconds. It is mostly proportional to the number of tets before coarsening;
+// the coefficients are fitted (bench/predicted_elements.py).
 double seconds_for(double refined_tets, unsigned order) {
   constexpr double of_one = 4.6e-6, power = 1.19, of_second_order = 1.3;
   return of_one * std::pow(refined_tets, power) * (order == 2 ? of_second_order : 1);
 }
 
-/// Returns the options with another size; 0: their own.
+/// Returns the options with another size; 0: unchanged.
 PipelineOptions with_size(PipelineOptions options, double size) {
   if (size > 0) options.mesh.size = size;
   return options;
@@ -42,7 +42,7 @@ void require_valid(const PipelineOptions& options, std::span<const double> sizes
   }
 }
 
-/// Predicts for a complex with regions. The options have the size.
+/// Predicts the mesh of a complex with regions. `options` contain the size.
 Prediction predict_one(const prediction::Shape& shape, const PipelineOptions& options, double size) {
   const std::array models{prediction::Model(), prediction::model_of_refinement()};
   std::array<double, 2> tets{};

@@ -9,7 +9,7 @@ namespace collarmesh::prediction {
 
 namespace {
 
-// Cosines as in the measurement of gaps (coarsen/gap_widths.cpp).
+// The same cosines as in the measurement of gaps (coarsen/gap_widths.cpp).
 constexpr double least_facing = 0.5, least_facing_of_neighbours = 0.966;
 
 std::vector<std::array<Index, 3>> triangles_of(const Plc& plc) {
@@ -29,7 +29,7 @@ std::vector<DistanceTree::Triangle> corners_of(const Plc& plc) {
 
 Shape::Shape(const Plc& plc)
     : plc_(plc),
-      radii_(curvature_sizes(plc, 2 * std::numbers::pi)),  // one element for each radian
+      radii_(curvature_sizes(plc, 2 * std::numbers::pi)),  // radii: the sizes for one element per radian
       angles_(solid_angles(plc)),
       surface_(plc.points, triangles_of(plc)),
       tree_(corners_of(plc)),
@@ -81,7 +81,7 @@ double Shape::wall_width(const Point& p, Index triangle, double widest) const {
     if (plc_.patches[patch].regions[side] == 0) continue;
     const Vector way = (side == 0 ? -1 : 1) / norm(normal) * normal;
     const Index root = surface_.root();
-    // Start off the plane of its own triangle, which would cause ties.
+    // Starts off the plane of the triangle, which would cause ties.
     surface_.crossings(p + 1e-6 * widest * way, p + widest * way, {&root, 1}, crossings);
     for (const auto& [other, direction] : crossings) {
       if (other == triangle || patches_meet(patch, plc_.triangles[other].patch)) continue;
@@ -114,7 +114,7 @@ bool Shape::curves_meet(Index curve, Index other) const {
   return std::any_of(a.begin(), a.end(), [&](Index v) { return v != none && (v == b[0] || v == b[1]); });
 }
 
-// Returns whether the patches meet in a curve: then the region between them is a wedge, not a wall.
+// Returns whether the patches meet in a curve: if so, the region between them is a wedge, not a wall.
 bool Shape::patches_meet(Index patch, Index other) const {
   if (patch == other) return false;
   const auto &a = plc_.patches[patch].curves, &b = plc_.patches[other].curves;

@@ -27,7 +27,7 @@ class Shape {
   std::size_t segment_count(Index curve) const;
   std::array<Point, 2> segment(Index curve, std::size_t number) const;
 
-  /// Returns the radius of curvature; infinite where the surface is flat.
+  /// Returns the radius of curvature at a triangle; infinite if the surface is flat there.
   double radius_of_triangle(Index triangle) const { return radii_.triangle[triangle]; }
   double radius_of_segment(Index curve, std::size_t number) const {
     return radii_.curve_segment[curve].empty() ? INFINITY : radii_.curve_segment[curve][number];
@@ -35,11 +35,11 @@ class Shape {
 
   /// Returns the distance from a point on a patch to its curves; infinite if it has none.
   double distance_to_border(const Point& p, Index patch) const;
-  /// Returns the distance from a point on a curve to another curve that runs along it on a common patch, at
-  /// most `widest`.
+  /// Returns the distance from a point on a curve to another curve that runs along it on a common patch, or
+  /// `widest` if that is smaller.
   double strip_width(const Point& p, Index curve, const Vector& along, double widest) const;
-  /// Returns the distance from a point on a triangle across a region to a patch that faces it and does not
-  /// meet it; at most `widest`.
+  /// Returns the distance from a point on a triangle, across a region, to a patch that faces it and does not
+  /// meet its patch; at most `widest`.
   double wall_width(const Point& p, Index triangle, double widest) const;
   double distance_to_surface(const Point& p) const { return tree_.nearest(p).distance; }
   /// Returns the region at a point. Precondition: the point is not on the surface.

@@ -40,13 +40,13 @@ class Wheel {
       const Index a = t[i], b = t[(i + 1) % 3], apex = t[(i + 2) % 3];
       if (edge(a, b) != edge(from_, to_)) continue;
       const Vector w = plc_.points[apex] - plc_.points[from_];
-      // A triangle's normal along the axis points in the direction in which angles grow.
+      // If the triangle passes the edge in the axis's direction, its normal points towards increasing angles.
       spokes_.push_back(
           {std::atan2(dot(w, v_), dot(w, u_)), plc_.patches[triangle.patch].regions[a == from_ ? 1 : 0]});
     }
   }
 
-  /// Returns the angles within regions, radians, and the number of their wedges.
+  /// Returns the sum of the angles within regions, radians, and the number of their wedges.
   std::pair<double, int> inside() {
     std::sort(spokes_.begin(), spokes_.end());
     std::pair<double, int> sum{0, 0};
@@ -85,7 +85,7 @@ SolidAngles solid_angles(const Plc& plc) {
       if (const auto wheel = wheels.find(edge(triangle.points[i], triangle.points[(i + 1) % 3]));
           wheel != wheels.end())
         wheel->second.add(triangle);
-  std::vector<std::pair<double, int>> wedges;  // at the ends of curves: the sum and the number of angles
+  std::vector<std::pair<double, int>> wedges;  // at the ends of curves: the sum of angles and their number
   for (const Plc::Curve& curve : plc.curves) {
     const auto wheel = wheels.find(middle_segment(curve));
     wedges.push_back(curve.patches.empty() || wheel == wheels.end() ? std::pair{full_circle, 1}
@@ -93,8 +93,8 @@ SolidAngles solid_angles(const Plc& plc) {
     shares.of_curve.push_back(wedges.back().first / full_circle);
   }
 
-  // Girard's theorem: the solid angle of a cone with n edges is the sum of their dihedral angles less (n - 2)
-  // pi.
+  // Uses Girard's theorem: the solid angle of a cone with n edges is the sum of their dihedral angles minus
+  // (n - 2) pi.
   for (Index v = 0; v < plc.vertices.size(); ++v) {
     const Plc::Vertex& vertex = plc.vertices[v];
     std::set<Index> regions;

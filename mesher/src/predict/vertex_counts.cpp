@@ -14,13 +14,13 @@ namespace collarmesh::prediction {
 
 namespace {
 
-// Beyond this number the remaining pieces are not divided.
+// Limits on the number of pieces and cubes; beyond these, the remaining ones are not divided.
 constexpr std::size_t most_pieces = 40000, most_cubes = 20000;
-constexpr double most_pieces_of_segment = 1000, most_pieces_of_curves = 40000;  // beyond one piece for each
-                                                                                // segment
-constexpr double least_share = 0.002;  // share of the size: walls and strips reduce it at most to this
+constexpr double most_pieces_of_segment = 1000, most_pieces_of_curves = 40000;  // in addition to one piece
+                                                                                // for each segment
+constexpr double least_share = 0.002;  // limit of the reduction by walls and strips, relative to the size
 
-/// Rises from 0 to 1 between two bounds.
+/// Returns a value that rises from 0 to 1 between two bounds.
 double ramp(double x, double from, double to) { return std::clamp((x - from) / (to - from), 0.0, 1.0); }
 
 class Counter {
@@ -44,7 +44,7 @@ class Counter {
   }
 
  private:
-  /// A part of a curve's segment and the edge length that its curve asks for by itself.
+  /// A part of a curve's segment, with the edge length that the curve itself asks for.
   struct CurvePiece {
     Point from, to;
     double size;
@@ -54,7 +54,7 @@ class Counter {
     Index triangle;
     std::array<Point, 3> corners;
   };
-  /// A cube of an octree. Its region is known, unless the cube may meet the surface.
+  /// A cube of an octree. Its region is known unless the cube may meet the surface.
   struct Cube {
     Point centre;
     double half;
@@ -100,7 +100,8 @@ class Counter {
                : size;
   }
 
-  /// Returns the number of pieces: half an edge long, longer in very fine meshes.
+  /// Returns the number of pieces to divide a length into: each is half an edge long, longer in very fine
+  /// meshes.
   static double pieces_wanted(double length, double size) {
     return std::clamp(std::ceil(2 * length / size), 1.0, most_pieces_of_segment);
   }
@@ -131,7 +132,7 @@ class Counter {
     return all;
   }
 
-  /// Rounds the number of edges of a curve, to at least one, for a loop to at least three.
+  /// Rounds the number of edges of a curve to a whole number: at least one, for a loop at least three.
   double whole(Index c, double edges) const {
     const Plc::Curve& curve = plc_.curves[c];
     const bool loop = curve.closed || curve.ends[0] == curve.ends[1];
@@ -167,7 +168,7 @@ class Counter {
     add(whole(c, edges) - (has_vertex ? 1 : 0), shape_.angles().of_curve[c]);
   }
 
-  /// Counts the vertices of a patch: halves triangles until one size fits each piece.
+  /// Counts the vertices on patches: halves triangles until each piece has one size.
   void count_on_patches() {
     std::deque<Piece> pieces;
     for (Index t = 0; t < plc_.triangles.size(); ++t) pieces.push_back({t, shape_.corners(t)});
@@ -198,8 +199,8 @@ class Counter {
     }
   }
 
-  /// Returns a place, evenly spread over many pieces (the R2 sequence of M. Roberts, 2018), so that slivers
-  /// need not be cut down to their width.
+  /// Returns a place in a piece. The places of many pieces are evenly spread (the R2 sequence of M. Roberts,
+  /// 2018), so slivers need not be divided down to their width.
   static Point place_in(const Piece& piece, std::size_t number) {
     double whole = 0;
     double u = std::modf(0.5 + 0.7548776662466927 * static_cast<double>(number), &whole);
@@ -224,7 +225,7 @@ class Counter {
     pieces.push_back({piece.triangle, {middle, b, c}});
   }
 
-  /// Counts the vertices of regions: divides the bounding box into cubes until one size fits each.
+  /// Counts the vertices of regions: divides the bounding box into cubes until each has one size.
   void count_inside() {
     const Vector extent = plc_.bounds.max - plc_.bounds.min;
     std::deque<Cube> cubes{{plc_.bounds.centre(), 0.5 * std::max({extent.x, extent.y, extent.z})}};

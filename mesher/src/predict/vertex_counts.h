@@ -5,22 +5,24 @@
 
 namespace collarmesh::prediction {
 
-/// The fitted coefficients of predictions (bench/predicted_elements.py). Lengths are in target edge lengths.
+/// The fitted coefficients of predictions (bench/predicted_elements.py). Unit of length: the target edge
+/// length.
 struct Model {
   double edge = 1.04;          ///< length of an edge on a curve
   double area = 0.65;          ///< area of a patch per vertex
   double volume = 0.61;        ///< volume of a region per vertex
-  double growth = 2;           ///< growth of edges per unit length, away from small ones
-  double asked_growth = 1;     ///< the same, away from curves with sizes of their own
-  double chord = 1.15;         ///< share of the distance tolerance by which chords are off
-  double aspect = 3;           ///< the largest ratio of edges along and across a curved patch
+  double growth = 2;           ///< growth of edges per unit length, away from short edges
+  double asked_growth = 1;     ///< growth per unit length away from curves with sizes of their own
+  double chord = 1.15;         ///< deviation of chords, relative to the distance tolerance
+  double aspect = 3;           ///< largest ratio of edges along and across a curved patch
   double wall = 8.7;           ///< the largest ratio of edges to the width of a wall
   double strip = 7;            ///< the largest ratio of edges on curves to the width of a strip of surface
-  double border_from = 0.4;    ///< no vertex on a patch is nearer to its border
-  double border_to = 0.8;      ///< at this distance from the border vertices on a patch reach full density
-  double depth_from = 0.3;     ///< border_from for regions
-  double depth_to = 0.75;      ///< border_to for regions
-  double tets_per_vertex = 6;  ///< for a vertex inside: 24 tets meet there and have four corners each
+  double border_from = 0.4;    ///< least distance of vertices on a patch from its border
+  double border_to = 0.8;      ///< distance from the border at which vertices on a patch reach full density
+  double depth_from = 0.3;     ///< the same as border_from, for regions
+  double depth_to = 0.75;      ///< the same as border_to, for regions
+  double tets_per_vertex = 6;  ///< for a vertex inside a region: 24 tets meet there, and each has four
+                               ///< corners
 };
 
 /// Returns the model of the mesh before it is coarsened, where bounds on radius-edge ratios make tets as
@@ -33,9 +35,9 @@ inline Model model_of_refinement() {
   return model;
 }
 
-/// Predicts the number of tets: from the number of vertices, and the share of the directions around each that
-/// lead into regions. Infinite if a double cannot hold it. Cost: grows with the mesh, up to a bound that is
-/// linear in the complex.
+/// Predicts the number of tets from the number of vertices and the share of directions around each that lead
+/// into regions. Infinite if a double cannot hold it. Cost: grows with the mesh, up to a bound that is linear
+/// in the complex.
 double count_tets(const Shape& shape, const MeshOptions& options, const Model& model = {});
 
 }  // namespace collarmesh::prediction

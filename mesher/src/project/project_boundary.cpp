@@ -1,4 +1,4 @@
-// Moves boundary vertices onto exact geometry, all at once; then makes room where tets became invalid. Moves
+// Moves all boundary vertices onto exact geometry at once, then makes room where tets became invalid. Moves
 // vertices back that have no room, take faces too far from the complex, or leave thin tets outside narrow
 // places.
 #include "collarmesh/project_boundary.h"
@@ -64,10 +64,11 @@ class BoundaryProjection {
   }
 
  private:
-  // Relative to the tolerance: the largest distance of edges and triangles between vertices, and of vertices.
+  // Largest distances from the exact geometry, relative to the tolerance: of edges and triangles between
+  // vertices, and of vertices.
   static constexpr double largest_sag = 0.5, most_off = 0.75;
-  // A vertex that moves by more than this many times its shortest edge would pass through other tets: the
-  // faces of a CAD file may be farther from their edges than the distance between features.
+  // Limit of a vertex's move, relative to its shortest edge: a longer move would take it through other tets.
+  // (The faces of a CAD file may be farther from their edges than features are from each other.)
   static constexpr double longest_way = 2;
   static constexpr int retries = 2;
 
@@ -75,9 +76,9 @@ class BoundaryProjection {
     Index point;
     Point to;
     bool limited;   // stays off the exact geometry because its feature is flat
-    bool hopeless;  // farther than the tets there can follow
+    bool hopeless;  // farther away than the tets there can follow
     bool done = false;
-    std::size_t tried = 0;  // commits up to which no place was found
+    std::size_t tried = 0;  // number of commits after which no place was found
   };
 
   projection::Bounds bounds(const Plc& plc) const {
@@ -132,7 +133,7 @@ class BoundaryProjection {
       for (const auto& pair : faces.nodes) stays_.insert(pair.begin(), pair.end());
   }
 
-  // Makes these tets good.
+  // Makes room until these tets are good.
   void make_room(std::vector<Index> tets) {
     do {
       for (tets = room_.relax(std::move(tets)); !tets.empty();) tets = give_way(tets);
@@ -151,8 +152,8 @@ class BoundaryProjection {
   }
 
   // Moves back vertices that passed the end of an exact curve: curves of CAD files may end beside their
-  // vertices, within tolerances. The end of such an edge that moved farther moves back, until no such edge is
-  // left. Returns the tets around the vertices that moved back.
+  // vertices, within tolerances. Moves back the end of such an edge that moved farther, until no such edge is
+  // left. Returns the tets around the vertices moved back.
   std::vector<Index> keep_courses() {
     std::vector<Index> around;
     for (bool turned = true; turned;) {
@@ -174,9 +175,9 @@ class BoundaryProjection {
     return around;
   }
 
-  // Moves back corners of faces that are too far from a smooth patch, the corner that moved farthest first:
-  // the exact geometry may be nearly as far from the complex as the mesh may be. Returns the tets around such
-  // corners.
+  // Moves back corners of faces that are too far from a smooth patch, the corner that moved farthest first.
+  // Such faces occur because the exact geometry may be nearly as far from the complex as the mesh may be.
+  // Returns the tets around these corners.
   std::vector<Index> keep_distances() {
     std::vector<Index> around;
     const PatchPoints points_of(plc_);
@@ -214,9 +215,9 @@ class BoundaryProjection {
     return around.empty() ? keep_narrow_places() : around;
   }
 
-  // Moves back corners of thin tets that are in no narrow place any more: moving vertices turns the normals
-  // that define narrow places. The corner that moved farthest moves back; if none moved, the corner that
-  // moved farthest of each tet around does. Returns the tets around such vertices.
+  // Moves back corners of thin tets that no longer are in a narrow place: moving vertices turns the normals
+  // that define narrow places. Moves back the corner that moved farthest; if no corner moved, does so for
+  // each tet around. Returns the tets around these vertices.
   std::vector<Index> keep_narrow_places() {
     std::vector<Index> around;
     if (!options_.bounds.thin_in_narrow_places_only) return around;
@@ -243,7 +244,7 @@ class BoundaryProjection {
   }
 
   // Moves back, in each spoilt tet, the vertex that moved farthest, or all moved vertices. Returns the tets
-  // that are spoilt then.
+  // that are spoilt afterwards.
   std::vector<Index> give_way(const std::vector<Index>& spoilt) {
     std::vector<Index> around;
     for (const Index t : spoilt) {
@@ -265,8 +266,8 @@ class BoundaryProjection {
     return room_.relax(std::move(around));
   }
 
-  // Tries the vertices that moved back one by one, because there may be room now or after later changes.
-  // Returns whether anything changed.
+  // Tries again to move the vertices that were moved back, one by one, because later changes may have made
+  // room. Returns whether anything changed.
   bool retry(bool again) {
     bool any = false;
     for (Index slot = 0; slot < moves_.size() && !execution_.cancelled(); ++slot) {
@@ -322,13 +323,13 @@ class BoundaryProjection {
   const ProjectOptions& options_;
   const Execution& execution_;
   SurfaceTolerance tolerance_;
-  std::optional<TriangleHierarchy> triangles_;  // where the tolerance varies
+  std::optional<TriangleHierarchy> triangles_;  // set if the tolerance varies
   improvement::ThinShape thin_;
   improvement::CellBounds cells_;
   projection::Relaxation room_;
   std::vector<Move> moves_;
-  std::vector<Index> slot_of_;       // in moves_, by point
-  std::unordered_set<Index> stays_;  // centres of balls, nodes of periodic faces
+  std::vector<Index> slot_of_;       // by point: index in moves_
+  std::unordered_set<Index> stays_;  // centres of balls and nodes of periodic faces
   ProjectReport report_;
 };
 

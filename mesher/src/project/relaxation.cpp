@@ -11,19 +11,21 @@ namespace collarmesh::projection {
 
 namespace {
 
-// Sweeps continue while they help: the penalty must fall to this share within this number of sweeps.
+// Sweeps end unless the penalty falls to the share `worthwhile` within `idle_sweeps`; there are at most
+// `sweeps`.
 constexpr unsigned sweeps = 50, idle_sweeps = 3;
 constexpr double worthwhile = 0.9;
-// Vertices move by steps from this share of their shortest edge down, each half of the last, this many times.
+// Vertices move by steps that start with this share of their shortest edge and are halved this many times.
 constexpr double first_step = 0.3;
 constexpr unsigned halvings = 5;
-// A move that gains less is not worth it.
+// Least gain of a move.
 constexpr double least_gain = 1e-3;
-// Tets get room until they are as good as they were, or reach this smallest sine of their dihedral angles.
+// Tets get room until they are as good as before the move, or until the smallest sine of their dihedral
+// angles reaches this.
 constexpr double good_shape = 0.2;
 // Least cosine between an edge of a curve and its initial direction.
 constexpr double least_course = 0.5;
-// The bounds are kept with room for rounding.
+// Relative margin of the bounds, for rounding.
 constexpr double margin = 1e-6;
 
 double radius_edge(const improvement::Corners& p) {
@@ -102,7 +104,7 @@ void Relaxation::roll_back() {
   }
 }
 
-// Returns whether a search found no better place for the vertex with unchanged surroundings.
+// Returns whether a search found no better place for the vertex and nothing around it has changed since.
 bool Relaxation::in_vain(Index vertex) const {
   if (stuck_[vertex] == 0) return false;
   for (const Index t : tets_at_[vertex])
@@ -111,7 +113,7 @@ bool Relaxation::in_vain(Index vertex) const {
   return true;
 }
 
-// Returns 1 for a tet that keeps its bound and its shape, a positive value for one with positive volume.
+// Returns 1 if the tet keeps its bound and its shape; a smaller positive value if it has positive volume.
 double Relaxation::score(Index tet, const Corners& p) const {
   const double six = six_volume(p[0], p[1], p[2], p[3]);
   if (six <= 0) {
@@ -141,7 +143,7 @@ double Relaxation::collar_score(Index tet, const Corners& p) const {
   return angle <= bounds_.collar_angle ? 1 : (180 - angle) / (180 - wanted(tet).angle);
 }
 
-// Returns 1 for angles within the bounds of thin tets, or no farther beyond them than at the beginning.
+// Returns 1 if angles are within the bounds of thin tets, or no farther beyond them than at the beginning.
 double Relaxation::angle_score(Index tet, const Corners& p) const {
   constexpr double largest = improvement::ThinShape::largest_angle,
                    rounding = improvement::ThinShape::rounding;
@@ -165,8 +167,8 @@ const Relaxation::Wanted& Relaxation::wanted(Index tet) const {
   return want;
 }
 
-// Returns the sum of the penalties of the tets at the vertex, or any value >= `below` if the sum is not
-// smaller.
+// Returns the sum of the penalties of the tets at the vertex; any value >= `below` if the sum is not smaller
+// than that.
 double Relaxation::lack_around(std::span<const Index> tets, Index vertex, const Point& place,
                                double below) const {
   double lack = 0;
@@ -190,7 +192,7 @@ std::optional<Point> Relaxation::on_feature(Index vertex, const Point& wish) con
   return dimension == 3 ? wish : exact_(dimension, feature, wish);
 }
 
-// Searches by patterns for the place with the least penalty of the tets around the vertex.
+// Moves the vertex to the place where the penalty of the tets around it is least, found by pattern search.
 bool Relaxation::improve(Index vertex) {
   const Point start = mesh_.points[vertex];
   // Most places do not help the worst tets, so evaluate these first.
@@ -306,7 +308,8 @@ bool Relaxation::fits_features(Index vertex, const Point& place) {
   return on_course && (after <= 1 || after <= sag_around(vertex));
 }
 
-// Returns the largest distance of a face's or edge's middle from the exact geometry, relative to its bound.
+// Returns the largest distance of the middle of a face or edge at the vertex from the exact geometry,
+// relative to its bound.
 double Relaxation::sag_around(Index vertex) const {
   double most = 0;
   const auto see = [&](unsigned dimension, Index feature, const Point& middle) {
@@ -319,7 +322,7 @@ double Relaxation::sag_around(Index vertex) const {
   for (const Index f : faces_at_[vertex]) {
     const auto& [a, b, c] = mesh_.faces[f];
     see(2, mesh_.face_patch[f], (points[a] + points[b] + points[c]) / 3);
-    const Index next = vertex == a ? b : vertex == b ? c : a;  // its other side belongs to another face
+    const Index next = vertex == a ? b : vertex == b ? c : a;  // another face has its other side
     see(2, mesh_.face_patch[f], 0.5 * (points[vertex] + points[next]));
   }
   for (const Index e : edges_at_[vertex]) {

@@ -15,20 +15,21 @@
 namespace collarmesh::projection {
 
 struct Bounds {
-  double radius_edge = 2;                          ///< outside collars, except for thin tets
+  double radius_edge = 2;                          ///< bound for tets that are neither thin nor in collars
   double collar_angle = 150;                       ///< largest dihedral angle in collars, degrees
   const improvement::ThinShape* thin = nullptr;    ///< null: no tet is thin
-  const improvement::CellBounds* cells = nullptr;  ///< set if there are thin tets
-  /// Absolute, by patch and by curve: largest distance of faces and edges from the exact geometry.
+  const improvement::CellBounds* cells = nullptr;  ///< set if tets may be thin
+  /// Largest distance of faces and edges from the exact geometry, by patch and by curve, absolute.
   std::vector<double> patch_sag, curve_sag;
 };
 
 /// Makes room for placed vertices: moves the corners of the tets that became invalid, inside their regions or
-/// along their exact features, until the tets keep their bounds again. Changes since the last `commit` can be
-/// undone.
+/// along their exact features, until the tets are within their bounds again. Changes since the last `commit`
+/// can be undone.
 class Relaxation {
  public:
-  /// Keeps the mesh by reference. A tet that misses a bound already may still miss it, but not by more.
+  /// Keeps a reference to the mesh. A tet that misses a bound at the beginning may still miss it, but not by
+  /// more.
   Relaxation(TetMesh& mesh, const ExactGeometry& exact, const Bounds& bounds);
 
   const CellsAtVertices& tets_at() const { return tets_at_; }
@@ -38,13 +39,13 @@ class Relaxation {
   improvement::Corners origins_of(Index tet) const { return corners(tet, origins_); }
   /// Returns the initial shortest edge at the vertex.
   double shortest_edge(Index vertex) const;
-  /// Returns whether the tet is positive and within its bound.
+  /// Returns whether the tet has positive volume and is within its bound.
   bool good(Index tet) const;
 
   /// Returns whether a mesh edge of a curve has turned by less than 60 degrees. If it turned by more, a
   /// vertex has passed its neighbour.
   bool on_course(Index edge) const;
-  /// Returns whether this holds for all such edges at the vertex.
+  /// Returns whether all such edges at the vertex are on course.
   bool keeps_course(Index vertex);
 
   void put(Index vertex, const Point& place);
@@ -68,8 +69,8 @@ class Relaxation {
   struct Wanted {
     double shape = -1;  // negative until computed
     double ratio = 0;
-    double angle = 0;   // bound at creases
-    bool thin = false;  // its angles are bounded instead of its ratio
+    double angle = 0;   // bound on its angles at creases
+    bool thin = false;  // whether its angles are bounded instead of its ratio
   };
 
   const Wanted& wanted(Index tet) const;
@@ -80,8 +81,7 @@ class Relaxation {
   bool may_be_thin(Index tet, const Corners& p) const {
     return !bounds_.cells->forbid_thin_tets() || bounds_.cells->allow(p, mesh_.tets[tet]);
   }
-  // Returns whether the tet is in a collar that has not been coarsened: then only its obtuse angles are
-  // bounded.
+  // Returns whether the tet is in a collar that was not coarsened: then only its obtuse angles are bounded.
   bool in_ball(Index tet) const { return mesh_.tet_collar[tet] != 0 && !mesh_.collar_balls.empty(); }
   double collar_score(Index tet, const Corners& p) const;
   double score(Index tet, const Corners& p) const;
@@ -102,9 +102,9 @@ class Relaxation {
   std::vector<Point> origins_;
   std::vector<bool> free_;
   mutable std::vector<Wanted> wanted_;  // by tet
-  std::vector<std::size_t> changed_;    // by vertex: the commit that moved it last, 0: none did
+  std::vector<std::size_t> changed_;    // by vertex: the last commit that moved it; 0: none
   std::size_t commits_ = 0;
-  // By vertex: the number of moves when it last moved, and when no better place for it was found.
+  // By vertex: the number of all moves when it last moved, and when no better place for it was found.
   std::vector<std::size_t> moved_, stuck_;
   std::size_t moves_ = 0;
   std::vector<std::pair<double, Index>> worst_first_;

@@ -17,12 +17,12 @@ namespace {
 constexpr std::size_t least_vertices = 4096;
 // A round costs some time for every vertex of the mesh, so it needs this many entries.
 constexpr std::size_t least_entries = 2048, vertices_per_entry = 64;
-// If a round destroys less than this share of the entries it took, it was not worthwhile: the next round
+// A round was not worthwhile if it destroys less than this share of the entries it took. The next round then
 // waits until the mesh has grown by a share.
 constexpr std::size_t entries_per_insertion = 48, vertices_per_wait = 32;
 constexpr std::size_t vertices_per_block = 4000, most_blocks = 256, samples_per_block = 64;
 constexpr std::size_t most_insertions_of_a_round = std::size_t{1} << 18;
-// Blocks are cut between these shares of a sample.
+// Each cut lies between these shares of a sample's points.
 constexpr double first_share = 0.4, last_share = 0.6;
 
 bool of_cells(WorkQueue::Priority priority) {
@@ -33,7 +33,7 @@ bool of_triangles(WorkQueue::Priority priority) {
   return priority == WorkQueue::unresolved_triangles || priority == WorkQueue::large_triangles;
 }
 
-// Returns the seed of random offsets at a place: the same for the same cell or triangle, in any thread.
+// Returns the seed of random offsets at a place. It is the same for the same cell or triangle, in any thread.
 std::uint64_t seed_at(const Point& centre, std::uint64_t seed) {
   for (std::size_t axis = 0; axis < 3; ++axis)
     seed = mixed(seed + split_mix_step + std::bit_cast<std::uint64_t>(centre[axis]));
@@ -59,7 +59,8 @@ BlockRefinement::BlockRefinement(const Domain& domain, RefinedMesh& mesh, Surfac
       cells_(cells),
       queue_(queue),
       next_round_(least_vertices) {
-  // Callers' functions need not be safe for several threads, and data at vertices is not kept by blocks.
+  // Blocks are impossible if callers' functions, which need not be thread-safe, or data at vertices are
+  // involved.
   if (sizes.asked().has_field() || sizes.any_at_vertices() || domain_.options.vertex_ratio > 0 ||
       domain_.is_papers())
     next_round_ = std::numeric_limits<std::size_t>::max();
@@ -91,7 +92,8 @@ bool BlockRefinement::due() {
   return most_insertions() >= least_entries;
 }
 
-// Returns the largest number of insertions before the caller may cancel or the budget of vertices ends.
+// Returns the largest number of insertions that the budget of vertices and the caller's chance to cancel
+// allow.
 std::size_t BlockRefinement::most_insertions() const {
   const std::size_t wanted = domain_.options.max_vertices, vertices = mesh_.vertex_count();
   if (wanted == 0) return most_insertions_of_a_round;
@@ -196,8 +198,8 @@ bool BlockRefinement::may_belong_to_block(Index vertex) const {
          !collar_cells_.near(vertex);
 }
 
-// Deals the entries to blocks: those of cells, and of triangles between cells, all of whose vertices belong
-// to the block. Puts the others back.
+// Deals the entries to blocks: an entry of a cell, or of a triangle between cells, goes to a block if all
+// vertices of the cells belong to the block. Puts the other entries back.
 std::vector<std::vector<WorkQueue::Entry>> BlockRefinement::deal(const std::vector<WorkQueue::Entry>& taken) {
   constexpr std::uint16_t gone = Triangulation::no_owner - 1;
   std::vector<std::uint16_t> owner(taken.size());
@@ -234,7 +236,8 @@ std::uint16_t BlockRefinement::owner_of(const WorkQueue::Entry& entry) const {
                                                                               : Triangulation::no_owner;
 }
 
-// Most insertions destroy several cells that are in the queue.
+// Returns the number of insertions that each block has room for. Most insertions destroy several cells that
+// are in the queue.
 std::vector<Index> BlockRefinement::room_for(
     const std::vector<std::vector<WorkQueue::Entry>>& entries) const {
   constexpr std::size_t entries_per_room = 5, least_room = 64;
@@ -247,7 +250,8 @@ std::vector<Index> BlockRefinement::room_for(
   return room;
 }
 
-// A vertex on the surface makes two triangles more than it destroys; other vertices make hardly any.
+// Returns the number of records that each block may need. A vertex on the surface makes two triangles more
+// than it destroys; other vertices make hardly any.
 std::vector<std::size_t> BlockRefinement::records_for(std::span<const Index> room) const {
   constexpr std::size_t of_a_zone = 512, insertions_per_record = 4;
   std::vector<std::size_t> records;
@@ -269,7 +273,8 @@ void BlockRefinement::refine(Block block, const std::vector<WorkQueue::Entry>& e
     const Fate fate = destroy(item, block, worker);
     if (fate == Fate::waits)
       waiting.push_back({item.priority, queue.bucket_of(radius), item.entry});
-    else if (fate == Fate::destroyed && due(item))  // it yielded to another insertion that left it alive
+    else if (fate == Fate::destroyed && due(item))  // it yielded to another insertion, after which it still
+                                                    // exists
       queue.push(item.priority, radius, item.entry);
   }
   for (WorkQueue::Priority priority = queue.first_priority(); priority < WorkQueue::priority_count;
@@ -280,7 +285,7 @@ void BlockRefinement::refine(Block block, const std::vector<WorkQueue::Entry>& e
   }
 }
 
-// Returns whether entries are left that the round should take: skinny cells of any size, and entries with
+// Returns whether the round should go on: whether the queue has skinny cells of any size, or entries with
 // larger balls than the round's smallest, which the loop would take first.
 bool BlockRefinement::any_left(WorkQueue& queue) const {
   const WorkQueue::Priority priority = queue.first_priority();
@@ -303,7 +308,7 @@ std::optional<Candidate> BlockRefinement::candidate(const WorkQueue::Item& item,
                                  : triangles_.candidate_beside(item.entry.id, random);
 }
 
-// Destroys an item like the loop, if no candidate warps or encroaches a subsegment.
+// Destroys an item as the loop does, if no candidate warps or encroaches a subsegment.
 BlockRefinement::Fate BlockRefinement::destroy(const WorkQueue::Item& item, Block block, Worker& worker) {
   const Point& centre =
       of_cells(item.priority) ? mesh_.circumcentre(item.entry.id) : surface_.triangle(item.entry.id).x;
@@ -325,8 +330,8 @@ BlockRefinement::Fate BlockRefinement::destroy(const WorkQueue::Item& item, Bloc
   }
 }
 
-// Inserts a candidate. Returns false if the block has no room for it. If no part of the complex is found from
-// the zone's vertices, the new cells get the region of the old ones.
+// Inserts a candidate. Returns false if the block has no room for it. If the zone's vertices know no part of
+// the complex, the new cells get the region of the old ones.
 bool BlockRefinement::insert(const Candidate& candidate, Block block, Worker& worker) {
   ConflictZone& zone = worker.zone;
   const bool quiet =

@@ -22,14 +22,12 @@
 namespace collarmesh {
 
 /// Destroys many skinny or large cells, or triangles of the surface, at once, with several threads.
-///
 /// A vertex may belong to a block if it lies on no vertex or curve of the complex, and no unresolved point,
 /// protective ball or collar is found from it. An insertion among such vertices only concerns the mesh, the
 /// surface and the quality of triangles and cells. So a round takes the first bucket of the queue, divides
-/// these vertices into blocks, and refines each block like the loop: in the same order of priorities, with
-/// cells that yield to triangles. Entries that do not lie in one block wait in the queue. The next round has
-/// other blocks; the loop handles the few entries that remain.
-///
+/// these vertices into blocks, and refines each block as the loop does: in the same order of priorities;
+/// cells yield to triangles. Entries that do not lie in one block wait in the queue. The next round has other
+/// blocks; the loop handles the few entries that remain.
 /// The mesh does not depend on the number of threads: blocks depend only on the mesh, and random offsets on
 /// the cell or triangle to destroy. The loop decides when a round may take entries from the queue.
 class BlockRefinement {
@@ -56,8 +54,8 @@ class BlockRefinement {
     unsigned bucket;
     WorkQueue::Entry entry;
   };
-  /// The data of a thread while it refines a block; kept to the end, because SurfaceNodes points into its
-  /// lists.
+  /// The data of a thread while it refines a block. It is kept to the end, because SurfaceNodes points into
+  /// its lists.
   struct Worker {
     explicit Worker(const Domain& domain);
 
@@ -101,7 +99,7 @@ class BlockRefinement {
   enum class Fate {
     destroyed,  ///< a vertex was inserted to destroy it
     stays,      ///< no vertex can be inserted to destroy it
-    waits       ///< left for the loop
+    waits       ///< the loop will handle it
   };
   Fate destroy(const WorkQueue::Item& item, Block block, Worker& worker);
   bool insert(const Candidate& candidate, Block block, Worker& worker);
@@ -117,10 +115,10 @@ class BlockRefinement {
   const TriangleQuality& triangles_;
   const CellQuality& cells_;
   WorkQueue& queue_;
-  std::size_t next_round_;  // the number of vertices before which no round begins
+  std::size_t next_round_;  // no round begins before the mesh has this number of vertices
   std::uint64_t rounds_ = 0;
   std::size_t inserted_ = 0;
-  // During a round:
+  // Data of the current round:
   WorkQueue::Priority priority_ = WorkQueue::large_cells;
   unsigned bucket_ = 0;
   std::vector<Cut> cuts_;

@@ -8,15 +8,15 @@
 namespace collarmesh {
 
 /// The time, memory and vertices that a refinement may use, and the caller's wish to continue. The loop
-/// checks it now and then. Only callers of `generate` pass a time limit: the pipeline, the program and the
-/// Python package watch the time of all stages themselves, pass none, and cancel.
+/// checks it regularly. Only direct callers of `generate` pass a time limit: the pipeline, the program and
+/// the Python package watch the time of all stages themselves and cancel.
 class Budget {
  public:
   /// The resources in use.
   struct Usage {
     std::size_t vertices, cells, bytes;
     std::size_t planned_vertices;  ///< vertices that will be inserted for sure
-    Point last_vertex;             ///< a refinement that does not end stays near it
+    Point last_vertex;             ///< if refinement does not end, it stays near this vertex
     double expected_cells;         ///< estimated cells of the complete mesh
   };
 
@@ -40,7 +40,8 @@ class Budget {
   Outcome& outcome_;
   std::chrono::steady_clock::time_point started_;
   std::size_t peak_bytes_ = 0;
-  double reported_ = -1, fraction_ = 0;  // progress: seconds at the last report, largest fraction
+  double reported_ = -1, fraction_ = 0;  // for progress: seconds at the last report, and the largest fraction
+                                         // so far
 };
 
 }  // namespace collarmesh

@@ -5,11 +5,11 @@
 
 namespace collarmesh {
 
-/// A point about to be inserted to destroy a ball (paper, Procedure 2). The part that wants it makes it, the
-/// parts that it may encroach or warp to examine it, and the loop inserts it.
+/// A point that may be inserted to destroy a ball (paper, Procedure 2). The part that needs it makes it; the
+/// parts that it may encroach or that it may warp to examine it; the loop inserts it.
 struct Candidate {
   Point point;
-  double squared_radius;  ///< of the ball to destroy
+  double squared_radius;  ///< squared radius of the ball to destroy
   Point ball_centre;
   Feature feature;      ///< feature that the point lies on; dimension 3: none
   Index start;          ///< a cell in conflict with the point

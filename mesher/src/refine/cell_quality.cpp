@@ -7,12 +7,12 @@ namespace collarmesh {
 
 namespace {
 
-// A centre is inserted with a pseudo-random offset of this share of its ball's radius.
+// A centre is inserted with a pseudo-random offset of up to this share of its ball's radius.
 constexpr double offset_per_radius = 0.05;
 // A cell whose volume is below this share of its longest edge cubed is flat.
 constexpr double flat_volume = 1e-11;
-// Narrow cells keep the bound on the ratio where a new vertex has more cells than this: between lines there
-// may be as many as the product of the numbers of their vertices. In a mesh with bounded ratios a new vertex
+// Largest number of cells at a new vertex for which narrow cells may exceed the ratio. Between lines a vertex
+// may have as many cells as the product of the numbers of their vertices; in a mesh with bounded ratios it
 // has at most 60.
 constexpr std::size_t most_narrow_cells = 80;
 
@@ -60,8 +60,8 @@ void CellQuality::judge(Index cell, WorkQueue& queue, bool leaves_narrow_cells) 
       region == 0 ? std::max(domain_.options.exterior_radius_edge, domain_.options.bounds.radius_edge)
                   : domain_.options.bounds.radius_edge;
   const bool skinny = r2 > bound * bound * shape.shortest_squared_edge;
-  // Cocircular input makes cells whose volume is noise although their radius-edge ratio is not. Cells on one
-  // patch are handled when the queue is empty.
+  // Cocircular input makes cells whose volume is only rounding noise although their radius-edge ratio is
+  // small. Cells with all vertices on one patch are handled when the queue is empty.
   const auto fills_gap = [&] {
     return (region == 0 && facing_sheets_.is_within(cell, bound)) ||
            (leaves_narrow_cells && is_narrow(cell, region));
@@ -76,8 +76,8 @@ void CellQuality::judge(Index cell, WorkQueue& queue, bool leaves_narrow_cells) 
     queue.push(WorkQueue::large_cells, r2, {cell, mesh_.generation(cell)});
 }
 
-// Judges a cell in a collar. There the paper ignores the complex, but not quality: the mesh is well-spaced
-// everywhere.
+// Judges a cell in a collar. There the paper ignores the complex but not quality, so that the mesh is
+// well-spaced everywhere.
 void CellQuality::judge_in_collar(Index cell, WorkQueue& queue) const {
   if (!domain_.is_papers()) return;
   const double bound = domain_.options.bounds.radius_edge, r2 = mesh_.squared_radius(cell);
@@ -90,7 +90,7 @@ bool CellQuality::is_narrow(Index cell, Index region) const {
   return gap < INFINITY && gap < Sizing::narrow_gap_per_size * target_size(cell, region);
 }
 
-// Returns the smallest size asked for at the cell, without gradation.
+// Returns the smallest size that applies to the cell, without gradation.
 double CellQuality::target_size(Index cell, Index region) const {
   const Sizing& sizing = sizes_.asked();
   const Point& centre = mesh_.circumcentre(cell);
@@ -131,8 +131,8 @@ bool CellQuality::uneven_at_vertex(Index cell) const {
   return mesh_.squared_radius(cell) > bound * bound;
 }
 
-// Updates the shortest edges. The nearest neighbour of a vertex is always joined to it, so the shortest edge
-// at a vertex only ever shrinks. Where it did, older cells may have become uneven.
+// Updates the shortest edges. A vertex and its nearest neighbour are always joined, so the shortest edge at a
+// vertex never grows. If it shrank, older cells may have become uneven.
 void CellQuality::note_edges(const ConflictZone& zone, Index vertex) {
   if (domain_.options.vertex_ratio == 0) return;
   shortest_edge_.resize(mesh_.vertex_count(), INFINITY);

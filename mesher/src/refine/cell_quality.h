@@ -27,10 +27,10 @@ class CellQuality {
               const RestrictedSurface& surface, const GradedSizes& sizes, const FacingSheets& facing_sheets,
               RandomOffsets& random, WorkQueue& queue);
 
-  /// Returns a candidate that destroys a cell, if there is one. For one thread.
+  /// Returns a candidate that destroys a cell, if there is one. Not thread-safe.
   std::optional<Candidate> candidate(Index cell) { return candidate(cell, random_); }
-  /// Returns the same. Several threads may call it at once, each with its own offsets and for cells of its
-  /// own block.
+  /// Returns such a candidate. Several threads may call this at once, each with its own offsets and for cells
+  /// of its own block.
   std::optional<Candidate> candidate(Index cell, RandomOffsets& random) const;
   /// Returns whether the cell of a queue entry still exists and is outside the collars. In the paper's
   /// profile cells inside count, too.
@@ -39,13 +39,13 @@ class CellQuality {
            (!collar_cells_.inside(item.entry.id) ||
             (domain_.is_papers() && item.priority == WorkQueue::skinny_cells));
   }
-  /// Queues a cell again if another insertion has left it alive.
+  /// Queues a cell again if another insertion has been made and the cell still exists.
   void queue_again(const WorkQueue::Item& item, double squared_radius);
 
-  /// Judges the new cells. Precondition: surface, collar cells and sizes know them.
+  /// Judges the new cells. Precondition: surface, collar cells and sizes know these cells.
   void cells_made(const ConflictZone& zone, Index vertex);
   /// Queues a cell if it must be destroyed. Several threads may call it at once, each with its own queue, if
-  /// no sizes come from the caller or are kept at vertices and there is no vertex ratio.
+  /// there is no vertex ratio and no sizes come from the caller or are kept at vertices.
   void judge(Index cell, WorkQueue& queue) const { judge(cell, queue, leaves_narrow_cells_); }
   /// Judges all cells: at the start, and when sizes have changed everywhere.
   void judge_all();

@@ -7,7 +7,7 @@ namespace collarmesh {
 
 namespace {
 
-// Up to this many balls near a vertex are tested one by one; more are looked up in their hierarchy.
+// Up to this many balls near a vertex are tested one by one; if there are more, their hierarchy is searched.
 constexpr std::size_t most_nearby_balls = 24;
 
 }  // namespace

@@ -11,11 +11,11 @@
 namespace collarmesh {
 
 /// Knows which cells lie inside the collars, and which vertices are near them.
-///
 /// Invariants: a cell is inside if its circumcentre lies in a ball, or if it was taken in; a vertex v is near
-/// if B(v, R_v), which contains the circumcentres of its cells, meets a ball. The mark may be stale, because
-/// cells become smaller, but is never missing. Refinement ignores cells inside, so all parts query this
-/// class. The loop reports insertions, CollarCreator reports new balls, and CollarReview takes cells in.
+/// if B(v, R_v), which contains the circumcentres of its cells, meets a ball. A vertex may be marked as near
+/// although it no longer is, because cells become smaller; no mark is missing. Refinement ignores cells
+/// inside, so all parts query this class. The loop reports insertions, CollarCreator reports new balls, and
+/// CollarReview takes cells in.
 class CollarCells {
  public:
   /// Keeps both by reference. Without balls all functions are cheap.
@@ -39,12 +39,12 @@ class CollarCells {
   /// Reports new balls: this vertex, or the circumcentre of this cell, may lie in one.
   void note_near(Index vertex);
   void note_inside(Index cell);
-  /// Checks again which of the near vertices still are.
+  /// Checks again which of the near vertices still are near.
   void forget_far_vertices();
 
   /// Adds a cell outside all balls to the collar of a ball.
   void take_in(Index cell, Index ball);
-  /// Returns the ball to whose collar a cell was added; none if it was not.
+  /// Returns the ball whose collar a cell was added to; none if it was not added to any.
   Index taken_in_by(Index cell) const;
 
   std::size_t bytes() const { return inside_.bytes() + near_.bytes(); }
@@ -52,7 +52,7 @@ class CollarCells {
  private:
   struct TakenIn {
     Index ball;
-    std::uint32_t generation;  // of the cell
+    std::uint32_t generation;  // generation of the cell
   };
 
   const RefinedMesh& mesh_;

@@ -71,8 +71,8 @@ void CollarCreator::cells_made(const ConflictZone& zone, Index vertex) {
   for (const Index v : zone.vertices) create_if_isolated(v);
 }
 
-// Places a ball if the cell contains one crease vertex that is not in the mesh, theta_0-medial and isolated
-// (paper, appendix A).
+// Places a ball if the cell contains exactly one crease vertex that is not in the mesh, and that vertex is
+// theta_0-medial and isolated (paper, appendix A).
 void CollarCreator::create_if_isolated(Index at) {
   const Index only = points_.only_vertex_at(at);
   if (only == none || !waits_for_ball(only)) return;
@@ -138,7 +138,8 @@ bool CollarCreator::create_remaining() {
 void CollarCreator::create_on_curve(Index curve, BallReason reason) {
   const OpenCreases::Chain chain = open_creases_.close(curve);
   isolated_.erase(curve);
-  // Only rims have been seen to need it; on other curves the surface of a repaired link did not settle.
+  // Only the balls on rims are centred on mesh vertices: on other curves the surface of a repaired link did
+  // not settle.
   std::vector<PlaceOnCurve> vertices;
   if (domain_.plc.curves[curve].closed) vertices = curves_.vertices_amid(curve);
   const Index at_chain = curves_.remove_chain(curve),
@@ -148,8 +149,8 @@ void CollarCreator::create_on_curve(Index curve, BallReason reason) {
   take_up_balls(near, chain.ends, reason);
 }
 
-// Registers the balls placed last. The first and the last one may have their centres among the unresolved
-// points already.
+// Registers the balls placed last. The centres of the first and the last one may be unresolved points
+// already.
 void CollarCreator::take_up_balls(Index near, const std::array<Index, 2>& ends, BallReason reason) {
   const auto first = static_cast<Index>(ball_points_.size());
   const auto count = static_cast<Index>(collars_.balls().size());

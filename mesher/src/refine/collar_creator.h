@@ -17,10 +17,9 @@
 namespace collarmesh {
 
 /// Creates the collars: all of them before refinement, or each in the pass (paper, section 3.2 and Procedures
-/// 3 and 4). A vertex ball is created when the vertex is inserted or, still uninserted, isolated and medial;
-/// the balls along a crease curve when all cells that it crosses outside its ends' balls are isolated with
-/// respect to it, or when one of its subsegments would be split.
-///
+/// 3 and 4). A vertex ball is created when the vertex is inserted or, before that, when it is isolated and
+/// medial. The balls along a crease curve are created when all cells that it crosses outside its ends' balls
+/// are isolated with respect to it, or when one of its subsegments would be split.
 /// Invariant: the centre of every ball and every corner point of the collars is an unresolved point or a mesh
 /// vertex. Only this class adds balls to the system, and reports them to cells, surface and curves. The loop
 /// starts it, reports insertions and decides when curves get their balls; the parts that stitch ask it for
@@ -42,7 +41,7 @@ class CollarCreator {
   /// Returns the reason why a ball was placed.
   BallReason reason(Index ball) const { return reasons_[ball]; }
 
-  // In the pass:
+  // Functions for collars created in the pass:
   /// Returns whether an unresolved point is a vertex of the complex that will get a ball.
   bool waits_for_ball(Index point) const {
     return placement_ && collars_.is_crease_vertex(point) && collars_.ball_at_vertex(point) == none;
@@ -50,13 +49,14 @@ class CollarCreator {
   /// Creates the ball of a vertex (paper, Procedure 4). `near` is the mesh vertex whose cell contains the
   /// vertex. Precondition: the vertex waits for its ball.
   void create_at_vertex(Index vertex, Index near, BallReason reason);
-  /// Looks for crease vertices or curves that are isolated now. Vertices get their balls at once; curves when
-  /// `create_on_isolated_curves` is called. Precondition: all other parts know the new cells.
+  /// Looks for crease vertices or curves that have become isolated. Creates the balls of vertices at once;
+  /// those of curves are created by `create_on_isolated_curves`. Precondition: all other parts know the new
+  /// cells.
   void cells_made(const ConflictZone& zone, Index vertex);
   /// Creates the balls of curves that have become isolated.
   void create_on_isolated_curves();
   /// Creates the balls of a crease instead of splitting its subsegment, if its chain has started. Returns
-  /// whether it did; then the subsegment is gone. Precondition: the subsegment exists.
+  /// whether it did so; then the subsegment no longer exists. Precondition: the subsegment exists.
   bool create_at_subsegment(Index subsegment);
   /// Creates the balls of all creases that have none yet. Returns false if there are no such creases.
   /// Precondition: the queue is empty, so the ends of creases have their balls.
@@ -66,7 +66,7 @@ class CollarCreator {
   GapExplorer& gap_size();
   /// Returns the explorer of gaps; null unless it was used.
   const GapExplorer* gap_explorer() const { return gap_.get(); }
-  /// For tests: called for every ball.
+  /// For tests: sets a function to call for every ball.
   void observe(std::function<void(const CollarBall&)> observer) { observer_ = std::move(observer); }
 
  private:
@@ -88,8 +88,8 @@ class CollarCreator {
   CurveChains& curves_;
   OpenCreases& open_creases_;
   std::function<bool(std::size_t)> stopped_;
-  std::unique_ptr<GapExplorer> gap_;                 // created when first asked for
-  std::unique_ptr<CollarPlacement> placement_;       // only if collars are created in the pass
+  std::unique_ptr<GapExplorer> gap_;                 // created on first use
+  std::unique_ptr<CollarPlacement> placement_;       // set only if collars are created in the pass
   std::unordered_map<Index, std::size_t> isolated_;  // by curve: the number of links at the start of its
                                                      // chain that are isolated
   std::vector<Index> ball_points_;                   // unresolved points at the balls' centres

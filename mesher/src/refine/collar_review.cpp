@@ -81,8 +81,8 @@ bool CollarReview::check() {
   return queue_.pushed() > before;
 }
 
-// Starts the review: all cells are new. Voronoi cells have become smaller, so fewer vertices are near collars
-// than when these were created.
+// Starts the review: all cells are new. Voronoi cells have become smaller since the collars were created, so
+// fewer vertices are near them now.
 void CollarReview::start() {
   started_ = true;
   collars_.complete();
@@ -105,7 +105,7 @@ void CollarReview::touch(Index cell) {
   if (std::exchange(touched_[cell], 1) == 0) touched_cells_.push_back(cell);
 }
 
-// Returns the touched cells that still exist. A cell that replaces one is touched itself.
+// Returns the touched cells that still exist. A cell that replaced a touched one is itself touched.
 std::vector<Index> CollarReview::take_touched() {
   std::vector<Index> cells;
   cells.swap(touched_cells_);
@@ -115,8 +115,8 @@ std::vector<Index> CollarReview::take_touched() {
   return cells;
 }
 
-// Gives flat cells to collars: corner points of neighbouring circles on neighbouring sheets are cocircular,
-// and may form a flat cell just outside the collar. Adds these cells to `cells`.
+// Adds flat cells to collars: corner points of neighbouring circles on neighbouring sheets are cocircular,
+// and may form a flat cell just outside the collar. Appends these cells to `cells`.
 void CollarReview::take_in_flat_cells(std::vector<Index>& cells) {
   std::vector<Index> candidates = cells;
   const auto add_neighbours = [&](Index cell) {
@@ -137,7 +137,7 @@ void CollarReview::take_in_flat_cells(std::vector<Index>& cells) {
   sort_and_make_unique(cells);
 }
 
-// Returns the ball whose collar gets a flat cell; none if it stays outside.
+// Returns the ball to whose collar a flat cell is added; none if it stays outside.
 Index CollarReview::ball_to_take_in(Index cell) {
   if (cells_.inside(cell) || surface_.region(cell) == 0) return none;
   const auto& v = mesh_.corners(cell);
@@ -233,8 +233,8 @@ bool CollarReview::poor_edge(const CollarTriangle& t, Index a, Index b) const {
          collar_surface_.poor_book(t, *neighbour, {std::min(a, b), std::max(a, b)});
 }
 
-// Finds vertices of creases, centres of balls above all, that are vertices of cells outside: their part of
-// the sphere has no points yet.
+// Finds vertices of creases (usually centres of balls) that are vertices of cells outside: the sphere has no
+// points near them yet.
 void CollarReview::find_exposed_vertices(const std::vector<Index>& cells) {
   for (const Index cell : cells) {
     if (surface_.region(cell) == 0 || cells_.inside(cell)) continue;
@@ -247,7 +247,7 @@ void CollarReview::find_exposed_vertices(const std::vector<Index>& cells) {
   sort_and_make_unique(exposed_);
 }
 
-// Returns the cells of regions that have the vertex and lie outside the collar.
+// Returns the cells of regions outside the collar that have the vertex.
 const std::vector<Index>& CollarReview::cells_outside(Index vertex) {
   mesh_.incident_cells(vertex, scratch_);
   std::erase_if(scratch_, [&](Index cell) { return surface_.region(cell) == 0 || cells_.inside(cell); });
@@ -278,11 +278,11 @@ std::optional<Candidate> CollarReview::candidate(const WorkQueue::Item& item) {
                                                              : candidate_on_triangle(item.entry);
 }
 
-// Returns a point on the sphere, towards the centre of a cell outside.
+// Returns a point on the sphere, in the direction of the centre of a cell outside.
 std::optional<Candidate> CollarReview::candidate_at_vertex(Index vertex) {
   for (const Index outside : cells_outside(vertex))
     if (auto found = candidate_towards(outside, vertex)) {
-      exposed_.push_back(vertex);  // it may yield: review it again
+      exposed_.push_back(vertex);  // the candidate may yield: review the vertex again
       return found;
     }
   return std::nullopt;
@@ -306,7 +306,7 @@ std::optional<Candidate> CollarReview::candidate_on_triangle(const WorkQueue::En
       touched_[cell_of(mesh_.opposite(face))] != 0)
     return std::nullopt;
   auto found = collar_surface_.repair(*t);
-  if (found) poor_.push_back(face);  // it may yield: review it again
+  if (found) poor_.push_back(face);  // the candidate may yield: review the triangle again
   return found;
 }
 

@@ -21,17 +21,17 @@ namespace collarmesh {
 /// candidate is not reviewed again before its cells change: it stays, and the certificate reports it.
 class CollarReview {
  public:
-  /// Keeps all by reference. Calls `stopped` now and then. The first review tells the collars that no more
-  /// balls will come.
+  /// Keeps references to all arguments. Calls `stopped` now and then. The first review tells the collars that
+  /// no more balls will come.
   CollarReview(const RefinedMesh& mesh, CollarSystem& collars, CollarCells& cells,
                const RestrictedSurface& surface, const CollarCreator& creator, CollarSurface& collar_surface,
                WorkQueue& queue, std::function<bool()> stopped);
 
-  /// Reviews the surface. Returns false if nothing was queued: there is no fault that can be repaired, or the
-  /// last queued items changed nothing. Precondition: the queue is empty.
+  /// Reviews the surface. Returns false if nothing was queued: either no fault can be repaired, or the last
+  /// queued items changed nothing. Precondition: the queue is empty.
   bool check();
   /// Returns the point to insert for this queue item: it repairs a poor triangle or shields an exposed crease
-  /// vertex. Returns nothing if there is none, or if recent changes must be reviewed first.
+  /// vertex. Returns nothing if there is no such point, or if recent changes must be reviewed first.
   std::optional<Candidate> candidate(const WorkQueue::Item& item);
 
   void cells_made(const ConflictZone& zone);
@@ -69,7 +69,8 @@ class CollarReview {
   bool started_ = false;
   bool changed_ = true;                 // vertices or their features have changed since the last review
   GrowingArray<std::uint8_t> touched_;  // by cell: a flag
-  std::vector<Index> touched_cells_;    // the touched cells, and some that are gone or not touched any more
+  std::vector<Index> touched_cells_;    // the touched cells, and some that no longer exist or no longer are
+                                        // touched
   CollarTriangles triangles_;
   std::vector<FaceId> poor_;                  // triangles inside regions to review
   std::unordered_map<Index, Index> ball_at_;  // by mesh vertex on a crease

@@ -9,14 +9,15 @@ namespace collarmesh {
 
 namespace {
 
-// A representation point this close to an arc, in radii of its ball, is moved onto the arc: inserting points
-// of lower dimension first keeps collars small.
+// A representation point this close to an arc, relative to the radius of its ball, is moved onto the arc:
+// inserting points of lower dimension first keeps collars small.
 constexpr double arc_reach = 0.7;
-// This does not apply if a mesh vertex is this close to the arc's point already, in radii of the empty ball.
+// It is not moved if a mesh vertex is already this close to the arc's point, relative to the radius of the
+// empty ball.
 constexpr double arc_clearance = 0.5;
-// Where a smooth patch bends, a point of its arc comes this close to mesh vertices, in distance tolerances.
+// Least distance of an arc's point from mesh vertices where a smooth patch bends, in distance tolerances.
 constexpr double bent_clearance = 0.1;
-// Other points on the collar surface come this close to mesh vertices, in radii of their ball.
+// Least distance of other points on the collar surface from mesh vertices, in radii of their ball.
 constexpr double clearance_in_radii = 1e-3;
 // The radius of a ball is at most a third of the gap size.
 constexpr double gap_per_radius = 3;
@@ -115,7 +116,8 @@ bool CollarSurface::poorly_represented(const CollarTriangle& t) {
   const auto v = mesh_.face_vertices(t.face);
   for (const Index vertex : v)
     if (on_crease(vertex)) return true;
-  // A patch separates the outer cell from the sphere, so the star tet would lie on the patch's other side.
+  // A patch separates the outer cell from the sphere, so the star tet would lie on the other side of the
+  // patch.
   if (surface_.is_marked(t.face) && !surface_.triangle(t.face).in_collar) return true;
   const CollarBall& ball = collars_.balls()[t.ball];
   const Index centre_vertex = creator_.vertex_of(t.ball);
@@ -143,8 +145,8 @@ bool CollarSurface::far_from_patch(Index patch, const Point& p) const {
   return nearest == none;
 }
 
-// Returns whether an edge on a smooth patch, which makes a face with the ball's centre there, leaves the
-// patch by more than the tolerance.
+// Returns whether an edge on a smooth patch, which forms a face with the ball's centre there, is farther from
+// the patch than the tolerance.
 bool CollarSurface::bends(CollarTriangle& t) const {
   if (surface_.region(cell_of(t.face)) == 0) return false;
   const CollarBall& ball = collars_.balls()[t.ball];
@@ -154,7 +156,7 @@ bool CollarSurface::bends(CollarTriangle& t) const {
     for (unsigned k = 0; k < 3; ++k) {
       const Index i = v[k], j = v[(k + 1) % 3];
       if (mesh_.on_patch(i, patch)) {
-        // The edge to the centre, which is longer than the radius if i is not on the sphere.
+        // The edge to the centre; it is longer than the radius if i is not on the sphere.
         const Vector spoke = mesh_.point(i) - ball.centre;
         for (const double share : {0.4, 0.65}) {
           if (!far_from_patch(patch, ball.centre + share * spoke)) continue;
@@ -177,7 +179,7 @@ bool CollarSurface::bends(CollarTriangle& t) const {
 }
 
 bool CollarSurface::spans_sheets(const CollarBall& ball, Index a, Index b) const {
-  constexpr double largest_sagitta = 0.15;  // a turn of 30 degrees makes 0.13
+  constexpr double largest_sagitta = 0.15;  // 0.13 for a turn of 30 degrees
   const Point middle = 0.5 * (mesh_.point(a) + mesh_.point(b));
   const double most = largest_sagitta * distance(mesh_.point(a), mesh_.point(b));
   if (most >= domain_.tolerance.largest()) return false;
@@ -239,10 +241,10 @@ bool CollarSurface::crosses_patch(const CollarBall& ball, Index a, Index b) {
 }
 
 // Returns whether an edge leads to another sheet. A smooth patch may pass through a ball's centre in several
-// sheets, so an edge may begin on one and cross another. A sheet leaves its chords by the shares for which
-// balls are made (collar/flatness.cpp): by h over a radius r, with a triangle tilted by about 4 h / r; so a
-// point of it is off the triangle's plane by less than 8 h, where h is half the distance tolerance at most,
-// and less than r / 2.
+// sheets, so an edge may begin on one and cross another. Balls are made so small that a sheet deviates from
+// its chords by at most h over a radius r (collar/flatness.cpp), and its triangles are tilted by about 4 h /
+// r. So a point of the same sheet is off the triangle's plane by less than 8 h, where h is at most half the
+// distance tolerance, and by less than r / 2.
 bool CollarSurface::on_another_sheet(const CollarBall& ball, const Point& p, Index triangle) const {
   const auto [a, b, c] = nodes_.hierarchy().corners(triangle);
   const Index patch = domain_.plc.triangles[triangle].patch;
@@ -302,7 +304,7 @@ std::optional<Candidate> CollarSurface::repair(const CollarTriangle& t) const {
   return Candidate{best, radius * radius, t.representation, feature, start};
 }
 
-// Forgets what is known of faces whose cells have changed.
+// Drops what is stored for faces whose cells have changed.
 void CollarSurface::cells_made(const ConflictZone& zone) {
   if (off_.size() == 0) return;
   off_.resize(mesh_.cell_capacity(), 0);

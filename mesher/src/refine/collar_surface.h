@@ -11,9 +11,8 @@
 namespace collarmesh {
 
 /// The collar surface as a restricted Delaunay triangulation (paper, section 4): the triangles between cells
-/// inside the collars and outside, whether they represent the surface well enough to be stitched to the
-/// balls' centres, and the points that repair it elsewhere, lower dimension first.
-///
+/// inside and outside the collars. Decides whether they represent the surface well enough to be stitched to
+/// the balls' centres, and finds the points that repair it elsewhere, lower dimension first.
 /// State: the faces whose dual edges are known to meet no ball. CollarReview asks which triangles are poor,
 /// and decides when; RipAndStitch takes them all. The loop reports insertions.
 class CollarSurface {
@@ -39,13 +38,13 @@ class CollarSurface {
     return cell_of(outer) < off_.size() && (off_[cell_of(outer)] >> corner_of(outer) & 1U) != 0;
   }
 
-  /// Returns whether a triangle is poor whatever its neighbours are. Records where it bends.
+  /// Returns whether a triangle is poor regardless of its neighbours. Records where it bends.
   bool poor_alone(CollarTriangle& t) { return poorly_represented(t) || bends(t); }
   /// Returns whether the book tet between two triangles of consecutive balls would be inverted, or its angle
   /// too large.
   bool poor_book(const CollarTriangle& t, const CollarTriangle& u, const std::array<Index, 2>& edge) const;
-  /// Returns whether an edge, which with the ball's centre makes a face between two regions, leads from one
-  /// sheet of a smooth patch to another. Cannot tell in balls smaller than the distance tolerance.
+  /// Returns whether an edge leads from one sheet of a smooth patch to another. The edge forms a face between
+  /// two regions with the ball's centre. Always false in balls smaller than the distance tolerance.
   bool spans_sheets(const CollarBall& ball, Index a, Index b) const;
   /// Returns the point that repairs a triangle: its representation point, or the nearest point of an arc
   /// where a patch through the ball's centre meets the sphere. Returns nothing if there is none, or if it is

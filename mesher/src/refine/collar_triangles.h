@@ -6,24 +6,24 @@
 
 namespace collarmesh {
 
-/// A face between a cell inside the collars and one outside, with the ball that its dual edge
-/// enters first and the point where it does (paper, Definition 9).
+/// A face between a cell inside the collars and a cell outside, with the ball that its dual edge enters first
+/// and the point where it enters (paper, Definition 9).
 struct CollarTriangle {
   FaceId face;               ///< seen from the cell outside
-  std::uint32_t generation;  ///< of that cell
+  std::uint32_t generation;  ///< generation of that cell
   Index ball;
   Point representation;
   bool several;             ///< its dual edge meets the collar surface more than once
-  bool poor_alone = false;  ///< poor whatever its neighbours are
+  bool poor_alone = false;  ///< poor regardless of its neighbours
   bool poor = false;
-  Index bent_on = none;  ///< a smooth patch that an edge of it leaves too far ...
+  Index bent_on = none;  ///< a smooth patch from which one of its edges deviates too far ...
   Point bent_at = {};    ///< ... at its middle
 };
 
 /// Collar triangles by their faces. Records of a removed cell are reused for the next cell in its slot.
 class CollarTriangles {
  public:
-  /// Returns the record of a face; none if there is none since its cell was created.
+  /// Returns the record of a face; none if there is none since the cell was created.
   CollarTriangle* find(FaceId face, std::uint32_t generation) {
     for (Index at = first(cell_of(face)); at != none; at = triangles_[at].next)
       if (triangles_[at].face == face && triangles_[at].generation == generation) return &triangles_[at];

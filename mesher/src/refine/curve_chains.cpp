@@ -11,14 +11,15 @@ namespace collarmesh {
 
 namespace {
 
-// A curve that is this much longer than its chord gets inner seeds, because its first ball would miss it.
+// A curve gets inner seeds if its length exceeds its chord by this factor, because its first ball would not
+// cover it.
 constexpr double seeded_length_per_chord = 1.2;
-// Subsegments are split at most this share of their radius off the centre.
+// Subsegments are split off the centre by at most this share of their radius.
 constexpr double subsegment_offset = 0.1;
-// The rest of a subsegment beyond the ball at its end is at least this share of the ball's radius long,
-// unless a vertex is there already.
+// Least length of the rest of a subsegment beyond the ball at its end, relative to the ball's radius, unless
+// a vertex is there already.
 constexpr double least_clipped_length = 0.3;
-// An arc may leave its chord by this share of the chord: about 60 degrees of turning.
+// Largest deviation of an arc from its chord, relative to the chord: about 60 degrees of turning.
 constexpr double largest_sagitta_per_chord = 0.15;
 
 }  // namespace
@@ -30,7 +31,7 @@ void CurveChains::start() {
 
 void CurveChains::add_chain(Index c) {
   if (collars_.is_crease_curve(c)) {
-    if (domain_.options.collar_creation != CollarCreation::in_pass) return;  // covered by balls
+    if (domain_.options.collar_creation != CollarCreation::in_pass) return;  // covered by balls of creases
     open_creases_.open(c);
   }
   const std::vector<End> ends = first_ends(c);
@@ -121,8 +122,8 @@ void CurveChains::resolve_end(Index subsegment, unsigned side) {
   if (s.piece.resolved()) judge(subsegment);
 }
 
-// Returns the parameter at which the curve between two parameters meets the bisector plane of a and b: by
-// bisection on the sign of |xa| - |xb| over the polyline's points, then linear on one segment.
+// Returns the parameter at which the curve between two parameters meets the bisector plane of a and b. Finds
+// the segment by bisection on the sign of |xa| - |xb| at the polyline's points, then interpolates linearly.
 double CurveChains::bisecting_parameter(Index c, const Point& a, const Point& b, double from,
                                         double to) const {
   const auto nearer_to_a = [&](const Point& p) { return squared_distance(p, b) - squared_distance(p, a); };
@@ -181,7 +182,7 @@ void CurveChains::note_piece(Index point, Index subsegment) {
   piece_at_[point] = subsegment;
 }
 
-// Links two pieces; none stands for the ends of a curve.
+// Links two pieces; `none` stands for the end of a curve.
 void CurveChains::link(Index curve, Index before, Index after) {
   (before == none ? chain_ends_[curve][0] : subsegments_[before].neighbours[1]) = after;
   (after == none ? chain_ends_[curve][1] : subsegments_[after].neighbours[0]) = before;
@@ -205,7 +206,8 @@ void CurveChains::judge(Index subsegment) {
     queue(WorkQueue::coarse_subsegments, subsegment);
 }
 
-// Returns whether a vertex encroaches a subsegment. Its ends do not, nor do vertices at their places.
+// Returns whether a vertex encroaches a subsegment. The subsegment's ends do not encroach it, nor do vertices
+// at the places of its ends.
 bool CurveChains::holds(const Chained& s, Index vertex) const {
   return squared_distance(mesh_.point(vertex), s.piece.centre) <= s.piece.squared_radius &&
          !is_end(s, vertex);
@@ -228,7 +230,7 @@ void CurveChains::queue(WorkQueue::Priority priority, Index subsegment) {
 
 bool CurveChains::too_coarse(const Chained& chained) const {
   const Subsegment& s = chained.piece;
-  if (collars_.is_crease_curve(s.curve)) return false;  // it only waits for its balls
+  if (collars_.is_crease_curve(s.curve)) return false;  // a crease's subsegment only waits for its balls
   const Point a = place(chained, 0), b = place(chained, 1);
   const double size = sizes_.asked().curve_size(s.curve, domain_.paths.segment(s.curve, s.parameters[0]),
                                                 domain_.paths.segment(s.curve, s.parameters[1]), s.centre);
@@ -237,7 +239,7 @@ bool CurveChains::too_coarse(const Chained& chained) const {
   return squared_distance(a, b) > length * length || leaves_chord(chained, tolerance_of(s));
 }
 
-// Returns the smallest tolerance on its part of the curve.
+// Returns the smallest tolerance on the subsegment's part of the curve.
 double CurveChains::tolerance_of(const Subsegment& s) const {
   if (!domain_.tolerance.varies()) return domain_.tolerance.largest();
   const CurvePaths& paths = domain_.paths;
@@ -257,7 +259,7 @@ bool CurveChains::turns_too_far(const Chained& s) const {
   return leaves_chord(s, largest_sagitta_per_chord * distance(place(s, 0), place(s, 1)));
 }
 
-// Returns whether the curve leaves its chord by more than this.
+// Returns whether the curve deviates from its chord by more than `sagitta`.
 bool CurveChains::leaves_chord(const Chained& chained, double sagitta) const {
   const Subsegment& s = chained.piece;
   if (domain_.plc.curves[s.curve].straight) return false;
@@ -319,7 +321,7 @@ std::optional<CurveChains::Split> CurveChains::split_of(Index subsegment) {
   const auto across = is_end(chained, nearest) ? std::nullopt
                                                : facing_sheets_.parameter_across(
                                                      s, place(chained, 1) - place(chained, 0), nearest);
-  // The split is a little off the centre: halves of symmetric curves would be cocircular.
+  // Split a little off the centre: otherwise halves of symmetric curves would be cocircular.
   const double parameter =
       across ? *across
              : s.centre_parameter + subsegment_offset * std::sqrt(s.squared_radius) * random_.in_cube().x;
@@ -352,8 +354,8 @@ void CurveChains::drop_ball(const Split& split) {
   s.ball = none;
 }
 
-// Splits a subsegment at a vertex. The vertex may have created a ball at an end of the curve; then the piece
-// has become another one.
+// Splits a subsegment at a vertex. If the vertex has created a ball at an end of the curve, the piece is a
+// different one now.
 void CurveChains::split_at(const Split& split, Index vertex) {
   Index piece = split.link.subsegment;
   if (!is_there(split.link)) {
@@ -425,7 +427,7 @@ std::vector<PlaceOnCurve> CurveChains::vertices_amid(Index curve) const {
 
 void CurveChains::withdraw(Index point, Index curve) {
   points_.withdraw(point);
-  if (!points_[point].dormant) open_creases_.note_resolved(curve);  // nobody waits for it any more
+  if (!points_[point].dormant) open_creases_.note_resolved(curve);  // the crease no longer waits for it
 }
 
 void CurveChains::clip(Index c, bool at_start, Index near) {
@@ -446,7 +448,7 @@ void CurveChains::clip(Index c, bool at_start, Index near) {
   cut_off(first, side, {none, point, parameter}, near);
 }
 
-// Cuts a chain at a new end: removes the part beyond it, and unresolved points just behind it.
+// Cuts a chain at a new end: removes the part beyond it, and unresolved points close to it.
 void CurveChains::cut_off(Index first, unsigned side, const End& end, Index near) {
   const Index curve = subsegments_[first].piece.curve;
   const double from = subsegments_[first].piece.parameters[side];

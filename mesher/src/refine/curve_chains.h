@@ -33,9 +33,9 @@ namespace collarmesh {
 /// through OpenCreases.
 class CurveChains {
  public:
-  /// A place where a subsegment is to be split.
+  /// A place at which a subsegment will be split.
   struct Split {
-    Candidate candidate;  ///< start == none: the mesh vertex `vertex` is there already
+    Candidate candidate;  ///< start == none: the place already has a mesh vertex, `vertex`
     ChainLink link;
     double parameter;
     Index vertex;  ///< mesh vertex nearest to the place
@@ -69,19 +69,19 @@ class CurveChains {
   Index encroached(const ConflictZone& zone, const Candidate& candidate) const;
   /// Returns whether any ball is found from this mesh vertex.
   bool any_at(Index mesh_vertex) const { return balls_.first_at(mesh_vertex) != none; }
-  /// Returns the unresolved end of a subsegment that is inserted instead of a candidate that encroaches it:
-  /// among the medial ends the one nearer to the candidate. None if there is no such end.
+  /// Returns the unresolved end of a subsegment that is inserted instead of a candidate that encroaches the
+  /// subsegment: of the medial ends, the one nearer to the candidate. None if there is no such end.
   Index end_to_resolve(Index subsegment, const Candidate& candidate) const;
 
   bool due(const WorkQueue::Entry& entry) const { return is_there({entry.id, entry.stamp}); }
-  // To split a subsegment the loop calls, in this order: CollarCreator::create_at_subsegment, which must say
-  // no; `split_of`; then `split_ahead`, or `drop_ball`, force_insert and `split_at`. Where a vertex is there
-  // already (`start` is none), `can_join` must say yes, the vertex takes over the curve as its feature, and
-  // `split_at` follows. When the candidate warps, `queue_again` follows.
-  /// Returns where to split a subsegment; nothing, and gives up, if its ball is at the floor. Precondition:
-  /// the subsegment exists (`due`, or `encroached`).
+  // To split a subsegment the loop first calls CollarCreator::create_at_subsegment. If that returns false, it
+  // calls `split_of`; then either `split_ahead`, or `drop_ball`, force_insert and `split_at`. If the place
+  // already has a vertex (`start` is none) and `can_join` returns true, the vertex joins the curve and
+  // `split_at` follows. If the candidate warps, `queue_again` follows.
+  /// Returns where to split a subsegment. If its ball is at the floor, gives up and returns nothing.
+  /// Precondition: the subsegment exists (`due`, or `encroached`).
   std::optional<Split> split_of(Index subsegment);
-  /// Returns whether the mesh vertex at the place splits the subsegment. Not if it is one of its ends.
+  /// Returns whether the mesh vertex at the place can split the subsegment: it must not be one of its ends.
   bool can_join(const Split& split) const;
   /// Splits a subsegment by an unresolved point. Precondition: no mesh vertex is at the place.
   void split_ahead(const Split& split);
@@ -89,7 +89,7 @@ class CurveChains {
   void drop_ball(const Split& split);
   /// Splits a subsegment by a mesh vertex at the place. Precondition: sizes know it.
   void split_at(const Split& split, Index vertex);
-  /// Queues a subsegment that is too coarse again, if another insertion has left it.
+  /// Queues a subsegment that is too coarse again, if it still exists after another insertion.
   void queue_again(const Split& split);
 
   /// Reports that an unresolved point has become a mesh vertex; updates the subsegments that end there.
@@ -116,7 +116,7 @@ class CurveChains {
   }
   const std::vector<ClippedEnd>& clipped_ends() const { return clipped_ends_; }
 
-  // For collars that are created in the pass:
+  // Functions for collars created in the pass:
   /// Reports that a vertex of the complex has its ball: a curve that ends there now ends on the sphere.
   void clip(Index curve, bool at_start, Index near);
   /// Returns the subsegment of a link, if it still exists.
@@ -124,7 +124,7 @@ class CurveChains {
     return is_there(link) ? &subsegments_[link.subsegment].piece : nullptr;
   }
   /// Removes a chain that balls replace: its subsegments, and the unresolved points between them. Returns a
-  /// mesh vertex near it, none if there was no chain.
+  /// mesh vertex near it; none if there was no chain.
   Index remove_chain(Index curve);
   /// Returns the mesh vertices between the ends of a chain, in their order.
   std::vector<PlaceOnCurve> vertices_amid(Index curve) const;
@@ -134,7 +134,7 @@ class CurveChains {
   std::size_t bytes() const;
 
  private:
-  /// The end of a subsegment: a mesh vertex or, as long as there is none, an unresolved point.
+  /// The end of a subsegment: a mesh vertex or, before there is one, an unresolved point.
   struct End {
     Index vertex, point;
     double parameter;

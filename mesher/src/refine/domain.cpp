@@ -8,11 +8,11 @@ namespace collarmesh {
 namespace {
 
 constexpr double floor_per_diagonal = 1e-10;
-// Edges of the complex shorter than this share of the diagonal are tiny. The floor near them has the same
+// Edges of the complex shorter than this share of the diagonal are tiny. Near them the floor has the same
 // ratio to their length as elsewhere to the diagonal, limited by double precision.
 constexpr double tiny_per_diagonal = 1e-5, floor_per_tiny_edge = floor_per_diagonal / tiny_per_diagonal;
 constexpr double precise_per_diagonal = 1e-13, precise_per_coordinate = 500 * 2.2e-16;
-constexpr double reach_of_tiny_edge = 10;  // in lengths of the edge
+constexpr double reach_of_tiny_edge = 10;  // relative to the edge's length
 // The share of the distance tolerance that refinement aims at, because it tests only a few points of a face.
 constexpr double distance_reserve = 0.75;
 
@@ -69,7 +69,8 @@ std::vector<Domain::TinyEdge> Domain::tiny_edges() const {
   return found;
 }
 
-// Returns the floor. Queries are rare (the ball is at the floor elsewhere), so all tiny edges are tested.
+// Returns the floor at a place. Queries are rare (elsewhere the ball is below the floor of the whole domain),
+// so all tiny edges are tested.
 double Domain::floor_at(const Point& p) const {
   double edge = tiny_per_diagonal * diagonal;
   for (const auto& [middle, length] : tiny_edges_)
@@ -81,7 +82,7 @@ double Domain::floor_at(const Point& p) const {
 }
 
 // Returns the nearest point in the plane of the patch. In a facet that is planar only within a tolerance,
-// normals of needle triangles are meaningless.
+// normals of needle triangles are unreliable.
 Point Domain::on_plane(Index patch, const Point& p) const {
   const Plc::Patch& plane = plc.patches[patch];
   return p - dot(p - frame.inside(plane.origin), plane.normal) * plane.normal;

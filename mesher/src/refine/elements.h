@@ -14,8 +14,8 @@ void visit_segments(const Plc::Curve& curve, const Visit& visit) {
   if (curve.closed) visit(curve.points.back(), curve.points[0]);
 }
 
-/// Returns the corners of the elements of a complex: its triangles, then, as degenerate ones, features on no
-/// patch: the segments of curves and single vertices.
+/// Returns the corners of the elements of a complex: first its triangles, then, as degenerate triangles,
+/// features on no patch: the segments of curves and single vertices.
 inline std::vector<std::array<Index, 3>> elements_of(const Plc& plc) {
   std::vector<std::array<Index, 3>> elements;
   elements.reserve(plc.triangles.size());

@@ -54,7 +54,7 @@ class Extraction {
  private:
   static constexpr std::size_t at_once = 8192;  // cells in a chunk of one thread
 
-  // Finds the cells of regions outside collars; the stitched tets follow.
+  // Finds the cells of regions outside collars; stitched tets come after them.
   void find_tets() {
     std::vector<std::uint8_t> used(refined_.mesh.vertex_count(), 0);
     const auto use = [&](const std::array<Index, 4>& corners) {
@@ -186,15 +186,15 @@ class Extraction {
         mesh_.collar_balls.push_back({number_[v], balls[ball].radius, mesh_.points[number_[v]]});
   }
 
-  // Adds a face oriented so that the normal points from the first region to the second: like the patch,
-  // except that a boundary's solid comes first.
+  // Adds a face, oriented so that the normal points from the first region to the second. The regions are in
+  // the patch's order, except that a boundary's solid comes first.
   void add_face(FaceId face) {
     const RefinedMesh& mesh = refined_.mesh;
     const Index cell = cell_of(face), beyond = cell_of(mesh.opposite(face));
     if (refined_.collar_cells.inside(cell) || refined_.collar_cells.inside(beyond)) return;
     const RestrictedTriangle& t = refined_.surface.triangle(face);
     const Index patch = refined_.surface.patch(face);
-    // face_vertices is counterclockwise as seen from outside its cell: the normal points out of that cell.
+    // face_vertices is counterclockwise as seen from outside its cell, so the normal points out of that cell.
     auto v = mesh.face_vertices(face);
     std::array<Index, 2> regions{refined_.surface.region(cell), refined_.surface.region(beyond)};
     if (regions[0] == 0 && regions[1] == 0) return;
@@ -226,8 +226,8 @@ class Extraction {
     permute(mesh_.face_tag, order);
   }
 
-  // Removes the feature of vertices that may lie in the plane of their patch, but beside the patch, as the
-  // middle of a triangle can.
+  // Removes the feature of vertices that lie in the plane of their patch, but may lie beside the patch: the
+  // middle of a triangle can be outside it.
   void forget_features_off_the_surface() {
     std::vector<bool> on_surface(mesh_.points.size(), false);
     for (const auto& face : mesh_.faces)

@@ -21,7 +21,7 @@ struct Refined {
 
 struct Extracted {
   TetMesh mesh;
-  KnownNeighbours neighbours;  ///< none at all sides of stitched tets
+  KnownNeighbours neighbours;  ///< `none` at all sides of stitched tets
 };
 
 /// Returns the result of the refinement: the cells inside regions and outside collars, and the stitched tets.

@@ -12,16 +12,17 @@ namespace {
 
 // Bytes per entry of a hash set: a node and its slot in the table.
 constexpr std::size_t bytes_per_pair = 32;
-// Largest width of a gap, relative to the radius of the ball to split. In wider gaps samples are as dense as
-// the gap is narrow anyway.
+// Largest width of a gap, relative to the radius of the ball to split. In wider gaps samples are about as
+// dense as the gap is narrow anyway.
 constexpr double widest_gap_per_radius = 0.9;
-// The new vertex keeps at least this share of that radius from all vertices on its own side.
+// Least distance of a new vertex from all vertices on its own side, relative to that radius.
 constexpr double least_spacing_per_radius = 0.35;
-// The least cosine between the direction across and the normals of sheets that face each other.
+// Least cosine between the direction across the gap and the normals of sheets that face each other.
 constexpr double least_facing = 0.97;
-// Cells that span a gap are flatter than this.
+// Cells that span a gap have a smaller ratio of height to edge.
 constexpr double largest_narrowness = 0.5;
-// A curve is split beneath a vertex only in this middle part of a subsegment.
+// Beneath a vertex, a curve is split only in the middle part of a subsegment, at least this share away from
+// its ends.
 constexpr double least_part = 0.25;
 
 using Corners = std::array<Point, 4>;
@@ -90,9 +91,9 @@ std::optional<double> FacingSheets::parameter_across(const Subsegment& s, const 
   return low;
 }
 
-// Returns whether a patch faces a vertex: only if the sheets are parallel and, for other features, have no
-// point in common. Otherwise the samples of features that meet would bring each other ever closer to their
-// common point.
+// Returns whether a patch faces a vertex: the sheets must be parallel and, if they belong to different
+// features, have no point in common. Otherwise the samples of features that meet would approach their common
+// point ever more closely.
 bool FacingSheets::faces(Index vertex, Index patch, const Vector& normal) const {
   const Feature& v = mesh_.feature(vertex);
   if (v.dimension == 0) return true;

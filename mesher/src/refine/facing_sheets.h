@@ -32,11 +32,11 @@ class FacingSheets {
         surface_(surface),
         contacts_(domain.plc) {}
 
-  /// For a restricted triangle with a vertex on another sheet, returns the point of its patch beneath that
-  /// vertex.
+  /// Returns the point of a restricted triangle's patch beneath a vertex of the triangle that lies on another
+  /// sheet.
   std::optional<Candidate> candidate_across(FaceId face);
-  /// Returns the parameter on a subsegment, which has this direction, that is nearest to a vertex that
-  /// encroaches it from across a gap, if it does. Precondition: the vertex is none of its ends.
+  /// Returns the parameter on a subsegment, which has this direction, nearest to a vertex that encroaches it
+  /// from across a gap; nothing if the vertex does not do so. Precondition: the vertex is none of its ends.
   std::optional<double> parameter_across(const Subsegment& s, const Vector& along, Index vertex) const;
 
   /// Records that these vertices face each other; the second one may be about to be inserted.
@@ -44,9 +44,9 @@ class FacingSheets {
   /// Returns whether a cell is within the radius-edge bound if edges between vertices of a pair do not count.
   /// Several threads may call it at once, while no pairs are recorded.
   bool is_within(Index cell, double bound) const;
-  /// Returns the width of the gap that a flat cell with corners on features alone spans: between vertices of
-  /// pairs, or of features that have no point in common; infinite if it spans none. Several threads may call
-  /// it in the same way.
+  /// Returns the width of the gap that a flat cell spans whose corners all lie on features: between vertices
+  /// of pairs, or of features that have no point in common. Infinite if it spans no gap. Thread-safe under
+  /// the same condition.
   double gap_across(Index cell) const;
 
   std::size_t bytes() const;

@@ -86,7 +86,7 @@ bool GapExplorer::isolated(const Feature& vertex_or_curve, Index cell, std::span
     last.cell = cell;
     return false;
   }
-  double squared_bound = INFINITY;  // 0 when a witness has been found
+  double squared_bound = INFINITY;  // 0 as soon as a witness has been found
   interview(nodes_.at(cell), vertex_or_curve, mesh_.point(cell), squared_bound,
             [&](Index a, Index b, Index c) {
               if (squared_bound == 0 || !reaches_into(cell, {a, b, c}, except)) return;
@@ -114,7 +114,8 @@ bool GapExplorer::reaches_into(Index cell, const std::array<Index, 3>& points,
   return !polygon_.empty() && std::none_of(except.begin(), except.end(), holds_polygon);
 }
 
-// Cuts by the planes between the vertex and its neighbours, as long as anything is left.
+// Cuts the triangle by the planes between the vertex and its neighbours, until nothing is left or all planes
+// are done.
 void GapExplorer::cut_to_cell(Index vertex, const Point& a, const Point& b, const Point& c) {
   const Point& u = mesh_.point(vertex);
   polygon_ = {a, b, c};
@@ -144,8 +145,8 @@ void GapExplorer::interview(std::span<const Index> nodes, const Feature& at, con
   nodes_.hierarchy().visit_near(nodes, x, squared_bound, contains_all, [&](Index element) {
     ++interviews_;
     const auto& e = nodes_.hierarchy().points(element);
-    // The border of a patch is no nearer than the patch. An element without a border counts, because it was
-    // not left out.
+    // The border of a patch is no nearer than the patch, so triangles need no test of it. An element without
+    // a border counts, because it was not left out.
     const bool is_triangle = element < plc_.triangles.size();
     if (border_of_[element] == none || (is_triangle && counts({2, plc_.triangles[element].patch})))
       return witness(e[0], e[1], e[2]);

@@ -13,8 +13,9 @@
 namespace collarmesh {
 
 /// The gap size by exploring the mesh (paper, Procedure 4): breadth first from the Voronoi cell that contains
-/// the point, interviewing the elements that meet the cells, until the ball of the nearest witness is
-/// explored. Features that contain the point are left out as a whole, however finely they are tessellated.
+/// the point, computing the distance of the elements that meet each cell, until the ball of the nearest
+/// witness is explored. Features that contain the point are left out as a whole, however finely they are
+/// tessellated.
 class GapExplorer final : public GapSize {
  public:
   /// Keeps all by reference.
@@ -30,7 +31,7 @@ class GapExplorer final : public GapSize {
   /// (paper, Definition 6): whether every feature that meets the cell contains it. A feature does not count
   /// if its whole part in the cell lies in one of these balls: the cell of a point on the sphere of a vertex
   /// ball reaches into the ball, where features come arbitrarily close. The witness against isolation is
-  /// kept, and tested first the next time.
+  /// stored, and tested first in the next query.
   bool isolated(const Feature& vertex_or_curve, Index cell, std::span<const CollarBall> except = {});
   /// Returns whether the last witness against the isolation of this vertex or curve is still in the cell
   /// where it was found.
@@ -56,8 +57,8 @@ class GapExplorer final : public GapSize {
 
   void find_borders();
   double explore(const Feature& at, const Point& x, double bound);
-  /// Calls witness(a, b, c) with points of elements below the nodes whose features do not contain `at`, if
-  /// nearer to x than the bound, which may be lowered.
+  /// Calls witness(a, b, c) with the points of each element below the nodes whose features do not contain
+  /// `at`, if the element is nearer to x than the bound, which may be lowered.
   template <class Found>
   void interview(std::span<const Index> nodes, const Feature& at, const Point& x, const double& squared_bound,
                  const Found& witness);
@@ -67,8 +68,8 @@ class GapExplorer final : public GapSize {
   double squared_distance_to(const std::array<Index, 3>& points, const Point& x) const {
     return squared_distance_to_triangle(x, points_[points[0]], points_[points[1]], points_[points[2]]);
   }
-  /// Returns whether a witness reaches into this cell, whose neighbours are adjacent_, with more than the
-  /// part in one of these balls.
+  /// Returns whether a witness reaches into this cell, whose neighbours are adjacent_, with more than a part
+  /// inside one of these balls.
   bool reaches_into(Index cell, const std::array<Index, 3>& points, std::span<const CollarBall> except);
   /// Writes the part of a triangle in the cell of this vertex, whose neighbours are adjacent_, to polygon_.
   void cut_to_cell(Index vertex, const Point& a, const Point& b, const Point& c);
@@ -77,11 +78,11 @@ class GapExplorer final : public GapSize {
   std::span<const Point> points_;
   const RefinedMesh& mesh_;
   const SurfaceNodes& nodes_;
-  std::vector<Border> borders_;             // of elements that have any
-  std::vector<Index> border_of_;            // by element; none: only a triangle
+  std::vector<Border> borders_;             // of elements that have a border
+  std::vector<Index> border_of_;            // by element; none: the element is only a triangle
   std::vector<Index> patch_below_;          // by node: the patch of all elements below, if none has a border
-  std::vector<Witness> witnesses_;          // the last ones of vertices, then of curves
-  std::vector<std::uint32_t> interviewed_;  // by node: the number of the exploration that last interviewed it
+  std::vector<Witness> witnesses_;          // last witnesses of vertices, then of curves
+  std::vector<std::uint32_t> interviewed_;  // by node: the number of the last exploration that visited it
   std::uint32_t exploration_ = 0;
   std::vector<Index> fresh_nodes_, adjacent_;
   std::vector<Point> polygon_, clipped_;

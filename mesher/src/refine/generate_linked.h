@@ -6,8 +6,8 @@
 
 namespace collarmesh {
 
-/// Does the same as the public function. Sets `neighbours` to the tets' neighbours known from the
-/// triangulation, for later stages. `trace` gets the steps of the run, of the last one if it is run twice;
+/// Meshes a complex like the public function. Sets `neighbours` to the tets' neighbours known from the
+/// triangulation, for later stages. `trace` gets the steps of the run (of the last one if it runs twice);
 /// null if they are not needed.
 MeshResult generate(const Plc& plc, const MeshOptions& options, const Execution& execution,
                     KnownNeighbours& neighbours, Trace* trace = nullptr);

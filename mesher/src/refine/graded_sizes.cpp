@@ -7,8 +7,8 @@ namespace collarmesh {
 namespace {
 
 constexpr unsigned most_rounds = 20;
-// Elements between two surfaces are as fine as the surfaces: sizes spread from there with this growth if gaps
-// were asked for.
+// Elements between two surfaces are as fine as the surfaces: if the options ask for elements across gaps,
+// sizes grow from the surfaces by this much per unit length.
 constexpr double gradation_in_gaps = 0.25;
 
 }  // namespace

@@ -11,9 +11,8 @@
 
 namespace collarmesh {
 
-/// Target edge lengths: those asked for (Sizing) and, with gradation, one at every mesh vertex, which grow by
-/// at most `gradation` per unit length from where they are small.
-///
+/// Target edge lengths: those asked for (Sizing) and, with gradation, one at every mesh vertex. The lengths
+/// at vertices grow by at most `gradation` per unit of distance from places where they are small.
 /// When a vertex is inserted, it gets the smallest size that its neighbours allow; sizes that decrease later
 /// are spread over the mesh when the queue is empty. The parts that judge cells, triangles and subsegments
 /// query sizes; TriangleQuality imposes sizes found on the surface; the loop reports insertions and spreads
@@ -41,7 +40,7 @@ class GradedSizes {
   void cells_made(const ConflictZone& zone, Index vertex);
 
   /// Spreads sizes over the whole mesh by Dijkstra's algorithm. Returns false without gradation, and after
-  /// too many times.
+  /// too many calls.
   bool spread();
 
  private:

@@ -26,8 +26,10 @@ class OpenCreases {
   struct Chain {
     std::vector<ChainLink> links;           ///< all links so far
     std::size_t unresolved = 0;             ///< number of unresolved points that its chain started with
-    bool split = false;                     ///< a subsegment was split before all of these were resolved
-    std::array<Index, 2> ends{none, none};  ///< unresolved points where it leaves the balls at its ends
+    bool split = false;                     ///< a subsegment was split before all of these points were
+                                            ///< resolved
+    std::array<Index, 2> ends{none, none};  ///< unresolved points where the crease leaves the balls at its
+                                            ///< ends
   };
 
   void open(Index curve) { creases_[curve] = {}; }
@@ -45,8 +47,8 @@ class OpenCreases {
   void note_unresolved(Index curve) {
     if (Crease* crease = find(curve)) ++crease->chain.unresolved;
   }
-  /// Reports that one of these points is resolved, or not needed any more. Returns whether it was the last
-  /// one and the chain has been split.
+  /// Reports that one of these points is resolved or no longer needed. Returns whether it was the last one
+  /// and the chain has been split.
   bool note_resolved(Index curve) {
     Crease* crease = find(curve);
     return crease != nullptr && --crease->chain.unresolved == 0 && crease->chain.split;
@@ -89,7 +91,7 @@ class OpenCreases {
  private:
   struct Crease {
     Chain chain;
-    bool touched = false;  // it is in touched_
+    bool touched = false;  // whether it is in touched_
   };
   Crease* find(Index curve) {
     const auto found = creases_.find(curve);

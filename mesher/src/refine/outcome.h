@@ -17,10 +17,10 @@ class Outcome {
 
   explicit Outcome(const Frame& frame) : frame_(frame) {}
 
-  /// Reports a missed guarantee. `next` tells what the user can do. The refinement goes on: the loop finishes
-  /// the queue, makes no more checks and returns `guarantee_missed`.
+  /// Reports a missed guarantee. `next` tells what the user can do. The refinement continues: the loop
+  /// finishes the queue, makes no more checks and returns `guarantee_missed`.
   void give_up(const Point& where, const std::string& what, const std::string& next);
-  /// Ends the refinement with this status, whatever else was reported: the loop returns without a mesh.
+  /// Ends the refinement with this status, whatever was reported before: the loop returns without a mesh.
   void stop(MeshStatus status, const Point& where, const std::string& what, const std::string& next);
 
   bool given_up() const { return !message_.empty(); }

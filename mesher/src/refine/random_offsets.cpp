@@ -6,7 +6,8 @@ namespace collarmesh {
 
 namespace {
 
-// The number of offsets tried if they lead into a collar.
+// Number of offsets that are tried if they lead into a collar; the first `offsets_of_full_length` have full
+// length.
 constexpr int most_offsets = 16, offsets_of_full_length = 8;
 
 }  // namespace

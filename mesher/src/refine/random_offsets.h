@@ -6,8 +6,8 @@
 
 namespace collarmesh {
 
-/// Pseudo-random offsets of inserted points: exact centres of cospherical input make flat cells whose
-/// refinement never ends. The loop and the parts it drives share one sequence, so the order of calls
+/// Pseudo-random offsets of inserted points: with exact centres, cospherical input would lead to flat cells
+/// whose refinement never ends. The loop and the parts it drives share one sequence, so the order of calls
 /// determines the mesh. BlockRefinement has one for each cell or triangle, from its centre and the seed, so
 /// that the number of threads does not matter.
 class RandomOffsets {
@@ -18,8 +18,8 @@ class RandomOffsets {
   /// Returns a vector with each coordinate from -1 to 1.
   Vector in_cube();
   /// Returns a vector in the cube of this half edge length, orthogonal to the normal unless that is zero,
-  /// that does not lead into a collar: between two sheets exact centres often lie on a third one. Zero if
-  /// none was found.
+  /// that does not lead into a collar. (Between two sheets exact centres often lie on a third one.) Zero if
+  /// no such vector was found.
   Vector outside_collars(const Point& from, double length, const Vector& normal);
 
  private:

@@ -21,8 +21,8 @@ bool RefinedMesh::on_one_patch(std::span<const Index> vertices) const {
   return std::any_of(patches.begin(), patches.end(), contains_all);
 }
 
-// Finds the nearest vertex. At first there are only the corners of the box, which are cospherical and not all
-// neighbours.
+// Finds the nearest vertex. At first the only vertices are the corners of the box, which are cospherical and
+// not all neighbours.
 Index RefinedMesh::nearest_vertex(const Point& p, Index near) const {
   if (vertex_count() > 8) return walk_.nearest(p, near == none ? last_vertex() : near);
   Index nearest = 0;

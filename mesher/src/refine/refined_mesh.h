@@ -12,11 +12,10 @@
 namespace collarmesh {
 
 /// The Delaunay mesh and the features that its vertices lie on.
-///
-/// The loop inserts vertices and reports further features of a vertex, BlockRefinement inserts into blocks;
-/// all other parts read. Searching counts as reading, though it marks cells and vertices, so only one thread
-/// may search. `visit_ball` does not nest. Invariant: every vertex has a feature, of the lowest dimension
-/// known to contain it; dimension 3: none.
+/// The loop inserts vertices and reports further features of a vertex; BlockRefinement inserts into blocks;
+/// all other parts only read. Searching counts as reading, but it marks cells and vertices, so only one
+/// thread may search. `visit_ball` does not nest. Invariant: every vertex has a feature, of the lowest
+/// dimension known to contain it; dimension 3: none.
 class RefinedMesh {
  public:
   /// Makes a mesh of the corners of a box. Keeps the complex by reference.
@@ -76,18 +75,18 @@ class RefinedMesh {
     walk_.visit_ball(x, nearest, squared_radius, visit);
   }
 
-  /// Replaces the zone's cells by those around its point. For the loop.
+  /// Replaces the zone's cells by cells around its point. Only the loop calls this.
   Index insert(ConflictZone& zone, const Feature& feature) {
     features_.push_back(feature);
     return triangulation_.insert(zone);
   }
-  /// Divides the mesh like Triangulation::divide.
+  /// Divides the mesh into blocks, like Triangulation::divide.
   std::vector<Triangulation::Block> divide(std::span<const Index> insertions, Triangulation::Owners& owners) {
     auto blocks = triangulation_.divide(insertions, owners);
     features_.resize(vertex_count(), Feature{3, none});
     return blocks;
   }
-  /// Inserts into a block. For several threads, each with a block of its own.
+  /// Inserts into a block. Several threads may call it, each with its own block.
   Index insert(Triangulation::Block& block, ConflictZone& zone, const Feature& feature) {
     const Index vertex = block.insert(zone);
     features_[vertex] = feature;
@@ -98,7 +97,7 @@ class RefinedMesh {
     renumbering.apply(features_);
     return renumbering;
   }
-  /// Records that a vertex lies on this feature, too: it becomes the vertex's feature if its dimension is
+  /// Records that a vertex also lies on this feature: it becomes the vertex's feature if its dimension is
   /// lower.
   void lower_feature(Index vertex, const Feature& feature) {
     if (feature.dimension < features_[vertex].dimension) features_[vertex] = feature;
@@ -108,7 +107,7 @@ class RefinedMesh {
 
  private:
   const Plc& plc_;
-  mutable Triangulation triangulation_;  // for its marks
+  mutable Triangulation triangulation_;  // mutable for its marks
   mutable VoronoiWalk walk_;
   GrowingArray<Feature> features_;
 };

@@ -15,7 +15,7 @@ namespace collarmesh {
 namespace {
 
 constexpr std::size_t steps_between_stops = 512;
-// Bytes of a ball to come: with its links, corner points and places in hierarchies.
+// Bytes of a future ball, with its links, corner points and places in hierarchies.
 constexpr std::size_t bytes_of_ball = 512;
 
 }  // namespace
@@ -71,10 +71,10 @@ MeshStatus Refinement::run() {
     return found;
   };
   WorkQueue::Item item;
-  // Repairs of the collar surface take many small steps: let it settle before the next check of everything
-  // else.
+  // Whether the collar surface is being repaired. This takes many small steps, so let it settle before
+  // everything else is checked again.
   bool mending_collars = false;
-  // Until then the collar surface, to which blocks report nothing, is not used.
+  // During the first pass the collar surface is not used, because blocks do not report to it.
   bool first_pass = true;
   if (trace_) trace_->record("box");
   while (!outcome_.stopped()) {
@@ -148,7 +148,7 @@ void Refinement::process(const WorkQueue::Item& item) {
 
 void Refinement::destroy_cell(const WorkQueue::Item& item) {
   const auto candidate = cells_.candidate(item.entry.id);
-  // It may have yielded or warped to another insertion that left this cell alive.
+  // The candidate may have yielded or warped to another point, whose insertion left this cell.
   if (candidate && destroy(*candidate)) cells_.queue_again(item, candidate->squared_radius);
 }
 
@@ -191,8 +191,8 @@ bool Refinement::destroy(Candidate candidate) {
   }
 }
 
-// Yields to a subsegment. Its ball is empty, so its middle is as good a place for a vertex as the
-// candidate's, and so is a medial end.
+// Yields to a subsegment. Its ball is empty, so its middle or a medial end is as good a place for a vertex as
+// the candidate's.
 bool Refinement::yield_to(Index subsegment, const Candidate& candidate) {
   if (const Index end = curves_.end_to_resolve(subsegment, candidate); end != none) {
     insert_point(end);
@@ -220,7 +220,7 @@ bool Refinement::destroy_subsegment(Index subsegment, bool queue_again) {
   return true;
 }
 
-// Splits a subsegment by an unresolved point because a vertex is in its ball; the point waits for its turn.
+// Splits a subsegment by an unresolved point, because a vertex is in its ball; the point is inserted later.
 void Refinement::split_ahead(Index subsegment) {
   if (collar_creator_.create_at_subsegment(subsegment)) return;
   const auto split = curves_.split_of(subsegment);
@@ -231,7 +231,7 @@ void Refinement::split_ahead(Index subsegment) {
     curves_.split_ahead(*split);
 }
 
-// Lets the vertex at the place of a split join the curve.
+// Adds the curve to the features of the vertex at the place of a split.
 bool Refinement::join(const CurveChains::Split& split) {
   if (!curves_.can_join(split)) return false;
   mesh_.lower_feature(split.vertex, split.candidate.feature);
@@ -241,7 +241,7 @@ bool Refinement::join(const CurveChains::Split& split) {
 }
 
 // Resolves an unresolved point. The paper inserts no point that is not medial (section 3.1): it destroys the
-// balls around the point, until one warps to it or the point is medial.
+// balls around the point until one of them warps to it or the point is medial.
 void Refinement::resolve_point(Index index) {
   if (!domain_.is_papers() || points_.medial(index)) return insert_point(index);
   const Point& p = points_[index].point;
@@ -264,7 +264,7 @@ void Refinement::insert_point(Index index) {
   if (distance(p.point, mesh_.point(vertex)) < p.apart && mesh_.on_patch(vertex, p.feature.index))
     return points_.resolve(index, vertex);
   const Index cell = mesh_.conflicting_cell_around(vertex, p.point);
-  if (cell == none) {  // a vertex is there already: it takes over the feature
+  if (cell == none) {  // the place has a vertex already, which gets the feature
     mesh_.lower_feature(vertex, p.feature);
     collar_review_.vertex_joined_feature(vertex);
     points_.resolve(index, vertex);
@@ -284,12 +284,12 @@ Index Refinement::force_insert(const Feature& feature) {
   surface_.cells_vanish(zone_);
   const Index vertex = mesh_.insert(zone_, feature);
   if (counter_) counter_->note_insertion(zone_, early);
-  // Structures that represent the mesh:
+  // Parts that represent the mesh:
   nodes_.cells_made(zone_, vertex);
   collar_cells_.cells_made(zone_, vertex);
   surface_.cells_made(zone_, vertex);
   sizes_.cells_made(zone_, vertex);
-  // Structures that queue work:
+  // Parts that queue work:
   points_.cells_made(zone_, vertex);
   curves_.cells_made(zone_, vertex);
   triangles_.cells_made(zone_);
@@ -300,7 +300,8 @@ Index Refinement::force_insert(const Feature& feature) {
   return vertex;
 }
 
-// Returns whether the insertion has another purpose than destroying skinny cells, while a skinny cell waits.
+// Returns whether the insertion has a purpose other than destroying skinny cells although a skinny cell
+// waits.
 bool Refinement::too_early() {
   return working_on_ != WorkQueue::skinny_cells &&
          queue_.any_due(WorkQueue::skinny_cells, [&](const WorkQueue::Entry& entry) {
@@ -395,7 +396,7 @@ WorkCounts Refinement::work_counts() const {
   return counts;
 }
 
-// Returns the number of vertices that only cells in collars have, but no cell outside and no stitched tet.
+// Returns the number of vertices that only cells in collars have: no cell outside and no stitched tet.
 std::size_t Refinement::ripped_out() const {
   enum : std::uint8_t { elsewhere, ripped, kept };
   std::vector<std::uint8_t> where(mesh_.vertex_count(), elsewhere);

@@ -43,8 +43,8 @@ class Refinement {
 
   /// Refines until nothing is left to do, a budget is spent or the caller cancels.
   MeshStatus run();
-  /// After run() returned budget_hit: returns whether the run was within the budget until the ratio was
-  /// bounded in narrow cells, too.
+  /// Returns whether a run that returned budget_hit was within the budget before the ratio was bounded in
+  /// narrow cells, too.
   bool narrow_cells_are_dear() const { return narrow_cells_are_dear_; }
   /// Returns the mesh, after run() returned complete or guarantee_missed.
   Extracted extract() const;
@@ -72,9 +72,9 @@ class Refinement {
   MeshStatistics statistics() const;
 
  private:
-  /// Starts all parts. The order matters: collars and curves take the numbers of the complex's vertices for
-  /// those of the first unresolved points; curves ask which creases balls cover and where balls clip them;
-  /// cells are judged when it is known which lie in collars.
+  /// Starts all parts. The order matters: collars and curves assume that the first unresolved points are the
+  /// complex's vertices, in their order; curves ask which creases balls cover and where balls clip them;
+  /// cells can be judged only when it is known which of them lie in collars.
   void start();
   void process(const WorkQueue::Item& item);
   void destroy_cell(const WorkQueue::Item& item);
@@ -83,20 +83,20 @@ class Refinement {
   void split_ahead(Index subsegment);
   bool join(const CurveChains::Split& split);
   bool yield_to(Index subsegment, const Candidate& candidate);
-  /// Inserts a candidate or what it yields or warps to (paper, Procedure 2). Returns false if nothing could
-  /// be inserted.
+  /// Inserts a candidate, or the point that it yields or warps to (paper, Procedure 2). Returns false if
+  /// nothing could be inserted.
   bool destroy(Candidate candidate);
   void resolve_point(Index point);
   void insert_point(Index point);
-  /// Inserts a point (paper, Procedure 3). Precondition: zone_ is the point's. Returns the new vertex.
+  /// Inserts a point (paper, Procedure 3). Precondition: zone_ is the point's conflict zone. Returns the new
+  /// vertex.
   Index force_insert(const Feature& feature);
   bool at_floor(const Candidate& candidate) const {
     return domain_.at_floor(candidate.point, candidate.squared_radius);
   }
   bool check_gradation();
   bool check_collars();
-  /// Bounds the ratio in narrow cells, when nothing else is left to do. Returns whether there is more to do
-  /// now.
+  /// Bounds the ratio in narrow cells when no other work is left. Returns whether there is more work now.
   bool bound_narrow_cells();
   /// Returns whether a budget is spent, given a lower bound on the vertices to come.
   bool stopped(std::size_t planned_vertices = 0);
@@ -114,14 +114,14 @@ class Refinement {
   CollarSystem collars_;
   RandomOffsets random_;
 
-  // Structures that represent the mesh:
+  // Parts that represent the mesh:
   RefinedMesh mesh_;
   SurfaceNodes nodes_;
   CollarCells collar_cells_;
   RestrictedSurface surface_;
   GradedSizes sizes_;
   FacingSheets facing_sheets_;
-  // Structures that queue work:
+  // Parts that queue work:
   UnresolvedPoints points_;
   OpenCreases open_creases_;
   CurveChains curves_;
@@ -129,7 +129,7 @@ class Refinement {
   CellQuality cells_;
   CollarCreator collar_creator_;
   BlockRefinement blocks_;
-  // Structures used when the queue is empty:
+  // Parts used when the queue is empty:
   CollarSurface collar_surface_;
   CollarReview collar_review_;
   SurfaceCheck surface_check_;
@@ -137,12 +137,13 @@ class Refinement {
   SurfaceTopology topology_;
 
   ConflictZone zone_;
-  std::optional<WorkCounter> counter_;  // only if counts are wanted
+  std::optional<WorkCounter> counter_;  // set only if counts are wanted
   std::optional<TraceRecorder> trace_;
   WorkQueue::Priority working_on_ = WorkQueue::priority_count;
   std::size_t steps_ = 0, warps_ = 0, yields_ = 0;
   double seconds_ = 0;
-  std::size_t most_with_narrow_cells_ = 0;  // vertices at which the ratio of narrow cells becomes bounded
+  std::size_t most_with_narrow_cells_ = 0;  // number of vertices up to which the ratio of narrow cells is not
+                                            // bounded
   bool narrow_cells_are_dear_ = false;
   std::function<void()> observer_;
 };

@@ -74,8 +74,8 @@ Index RestrictedSurface::region_beyond(Index region, const Workspace& w) const {
   return region;
 }
 
-// Labels one of the new cells from across the zone's border, preferably where no patch can be in between; if
-// the zone is the whole box, from the box's corner. Returns its index in the zone.
+// Labels one of the new cells from across the zone's border, preferably where no patch can be in between. If
+// the zone fills the whole box, starts from the box's corner. Returns the cell's index in the zone.
 std::size_t RestrictedSurface::first_label(const ConflictZone& zone, Workspace& w) {
   std::size_t seed = zone.created.size();
   for (std::size_t i = 0; i < zone.created.size(); ++i) {
@@ -93,8 +93,8 @@ std::size_t RestrictedSurface::first_label(const ConflictZone& zone, Workspace& 
   return 0;
 }
 
-// Finds restricted triangles among the faces between the new cells: their dual edges are those of the new
-// vertex's Voronoi cell. Keeps their crossings in crossed_faces_ and dual_crossings_.
+// Finds restricted triangles among the faces between the new cells. The dual edges of these faces are edges
+// of the new vertex's Voronoi cell. Stores their crossings in crossed_faces_ and dual_crossings_.
 void RestrictedSurface::restrict_created_faces(const ConflictZone& zone, Index vertex, Workspace& w) {
   double largest = 0;
   for (const Index cell : zone.created) largest = std::max(largest, mesh_.squared_radius(cell));
@@ -103,12 +103,12 @@ void RestrictedSurface::restrict_created_faces(const ConflictZone& zone, Index v
   for (Index i = 0; i < zone.created.size(); ++i) {
     const Index cell = zone.created[i];
     w.dual_edges_.add_point(mesh_.circumcentre(cell));
-    labels_[cell].region = i;  // until it is known
+    labels_[cell].region = i;  // a temporary label
     for (unsigned corner = 0; corner < 4; ++corner) {
       const FaceId face = face_id(cell, corner), other = mesh_.opposite(face);
       if (mesh_.corners(cell)[corner] == vertex || other == no_face) continue;
       const Index j = labels_[cell_of(other)].region;
-      if (j >= i) continue;  // it is handled later
+      if (j >= i) continue;  // each pair is handled once
       w.dual_edges_.add_segment(i, j);
       w.faces_.push_back(face);
     }
@@ -126,8 +126,8 @@ void RestrictedSurface::restrict_created_faces(const ConflictZone& zone, Index v
   }
 }
 
-// Puts the crossings of the dual edge of a face between new cells, on the way out of the face's cell, into
-// crossings_.
+// Puts the crossings of the dual edge of a face between new cells into crossings_, in the direction out of
+// the face's cell.
 void RestrictedSurface::recall_crossings(FaceId face, Workspace& w) const {
   w.crossings_.clear();
   if (!is_marked(face)) return;
@@ -166,11 +166,11 @@ void RestrictedSurface::label_created_cells(const ConflictZone& zone, Index vert
   }
 }
 
-// Returns whether a border face's dual edge still crosses the single triangle that it crossed, from one label
-// to the other. The insertion shortened the edge, so it can only lose crossings.
+// Returns whether a border face's dual edge still crosses the single triangle that it crossed before, from
+// one label to the other. The insertion shortened the edge, so it can only lose crossings.
 bool RestrictedSurface::crosses_as_before(FaceId outer, FaceId face, Index vertex, Workspace& w) const {
   const RestrictedTriangle& t = triangle(outer);
-  // If a dual edge lies in the plane of its triangle, x may be any point of it, so the triangle is lost when
+  // If a dual edge lies in the plane of its triangle, x may be any point of it; so the triangle is lost if
   // the new vertex lies in the surface gap ball.
   if (t.several_sheets || squared_distance(mesh_.point(vertex), t.x) < t.squared_radius) return false;
   const int direction = nodes_.hierarchy().crossing(mesh_.circumcentre(cell_of(outer)),
@@ -180,8 +180,8 @@ bool RestrictedSurface::crosses_as_before(FaceId outer, FaceId face, Index verte
   return region_beyond(labels_[cell_of(outer)].region, w) == labels_[cell_of(face)].region;
 }
 
-// Returns whether a border face's dual edge has lost its single crossing, which is then beyond the lost end.
-// The labels show it, unless the regions on both sides of the patch are the same.
+// Returns whether a border face's dual edge has lost its single crossing, which is then beyond the end that
+// was cut off. The labels show that, unless the regions on both sides of the patch are the same.
 bool RestrictedSurface::crosses_no_more(FaceId outer, FaceId face) const {
   const RestrictedTriangle& t = triangle(outer);
   const auto& regions = domain_.plc.patches[patch_of(t)].regions;
@@ -190,7 +190,7 @@ bool RestrictedSurface::crosses_no_more(FaceId outer, FaceId face) const {
 }
 
 // Checks the border faces again that were marked or whose labels require it: their dual edges have become
-// shorter, and their ends are rounded again.
+// shorter, and the edges' ends are rounded anew.
 void RestrictedSurface::mark_border_faces(const ConflictZone& zone, Index vertex, Workspace& w) {
   for (std::size_t i = 0; i < zone.border.size(); ++i) {
     const FaceId outer = zone.outer[i];
@@ -201,7 +201,7 @@ void RestrictedSurface::mark_border_faces(const ConflictZone& zone, Index vertex
     const FaceId face = face_id(created, corner_of(zone.border[i]));
     if (was_marked && crosses_as_before(outer, face, vertex, w)) {
       mark(face, record_of(outer));
-      own_notes(face).judged = false;  // it may have been queued as the destroyed cell's face
+      own_notes(face).judged = false;  // it may have been queued as a face of the destroyed cell
       continue;
     }
     const bool known = was_marked && crosses_no_more(outer, face);
@@ -215,7 +215,7 @@ void RestrictedSurface::mark_border_faces(const ConflictZone& zone, Index vertex
 void RestrictedSurface::cells_vanish(const ConflictZone& zone, Workspace& w) {
   const auto has_marks = [&](Index cell) { return labels_[cell].marked != 0; };
   if (std::none_of(zone.cells.begin(), zone.cells.end(), has_marks)) return;
-  // The record of a border face stays, because the cell beyond has it, too.
+  // The record of a border face stays, because the cell beyond uses it, too.
   for (const FaceId border : zone.border)
     labels_[cell_of(border)].marked &= static_cast<std::uint8_t>(~(1U << corner_of(border)));
   for (const Index cell : zone.cells)
@@ -226,7 +226,8 @@ void RestrictedSurface::cells_vanish(const ConflictZone& zone, Workspace& w) {
     });
 }
 
-// Returns whether the cell's faces are marked, with one record, from both of their cells or from none.
+// Returns whether the marks of the cell's faces agree with its neighbours': a face is marked in both of its
+// cells, with one record, or in neither.
 [[maybe_unused]] static bool consistent(const RestrictedSurface& surface, const RefinedMesh& mesh,
                                         Index cell) {
   for (unsigned corner = 0; corner < 4; ++corner) {
@@ -255,7 +256,7 @@ void RestrictedSurface::fit_mesh() {
   marks_.extend(mesh_.cell_capacity());
 }
 
-// Gives free records to blocks first.
+// Gives free records to the workspaces of blocks.
 void RestrictedSurface::divide(std::span<const std::size_t> records, std::span<Workspace> of_blocks) {
   fit_mesh();
   std::vector<Index>& free = workspace_.free_records_;
@@ -328,7 +329,7 @@ void RestrictedSurface::restrict_face(FaceId face, Workspace& w) {
   t.resolved_vertices =
       mesh_.on_patch(v[0], patch) && mesh_.on_patch(v[1], patch) && mesh_.on_patch(v[2], patch);
   if (t.resolved_vertices && domain_.plc.patches[patch].planar && !t.several_sheets) {
-    // The circumcentre of a needle is noise; the crossing is not.
+    // The circumcentre of a needle is inaccurate; the crossing is not.
     const Point centre = circumcentre(face);
     if (squared_distance(centre, t.x) < 0.01 * t.squared_radius) {
       t.x = centre;
@@ -345,7 +346,8 @@ Point RestrictedSurface::crossing_point(FaceId face, Index triangle) const {
   const Vector n = cross(t[1] - t[0], t[2] - t[0]);
   const double hp = dot(p - t[0], n), hq = dot(q - t[0], n);
   const double share = hp == hq ? 0.5 : std::clamp(hp / (hp - hq), 0.0, 1.0);
-  // The place where a dual edge almost in the triangle's plane crosses it is noise: keep it on the triangle.
+  // If a dual edge lies almost in the triangle's plane, the place where it crosses the plane is inaccurate,
+  // so move it to the nearest point of the triangle.
   return nearest_point_on_triangle(p + share * (q - p), t[0], t[1], t[2]);
 }
 

@@ -18,29 +18,28 @@ namespace collarmesh {
 struct RestrictedTriangle {
   Point x;
   double squared_radius;
-  Index triangle;          ///< triangle of the complex crossed at x; of several crossings the one with the
+  Index triangle;          ///< triangle of the complex crossed at x; of several crossings, the one with the
                            ///< largest ball
   bool resolved_vertices;  ///< all three vertices lie on the patch
   bool several_sheets;     ///< the dual edge crosses the surface more than once
   bool in_collar;          ///< x lies in a collar ball, so refinement ignores it
 };
 
-/// The judges' knowledge of a restricted triangle, for as long as its record lasts. A new record is
-/// empty.
+/// Notes on a restricted triangle by the parts that judge it. They last as long as its record; a new record
+/// has none.
 struct TriangleNotes {
   bool judged = false;            ///< judged since its cells last changed (TriangleQuality)
   bool given_up = false;          ///< no point could be inserted to destroy it (TriangleQuality)
-  bool surface_needs_it = false;  ///< it is split although x may lie in a collar ball (TriangleQuality)
+  bool surface_needs_it = false;  ///< it must be split although x may lie in a collar ball (TriangleQuality)
   bool known_near = false;  ///< no sample of it is farther from its patch than the tolerance (SurfaceCheck)
 };
 
 /// The restricted Delaunay triangulation of the mesh to the patches, and the regions of the cells.
-///
 /// Invariants, between insertions and until `give_outside`: a cell has the region that contains its
-/// circumcentre, unless rounding moves that across the surface; a face is marked, from both of its cells, if
-/// its dual edge crosses a patch, and then it has a record. The loop reports insertions, BlockRefinement
-/// reports those into blocks; the parts that judge triangles read records and write notes; CollarCreator
-/// reports new balls; at the very end SurfaceCheck gives flat cells to the outside.
+/// circumcentre, unless rounding moves the circumcentre across the surface; a face is marked in both of its
+/// cells if its dual edge crosses a patch, and it then has a record. The loop reports insertions,
+/// BlockRefinement reports those into blocks; the parts that judge triangles read records and write notes;
+/// CollarCreator reports new balls; at the very end SurfaceCheck gives flat cells to the outside.
 class RestrictedSurface {
  public:
   /// Labels the cells that the mesh has. Keeps all by reference.
@@ -51,7 +50,7 @@ class RestrictedSurface {
   /// Returns the marked faces of a cell. Bit i: the face opposite corner i.
   unsigned marked(Index cell) const { return labels_[cell].marked; }
   bool is_marked(FaceId face) const { return labels_[cell_of(face)].marked >> corner_of(face) & 1U; }
-  /// Returns all marked faces, each from the cell with the smaller number, in their order; uses all threads.
+  /// Returns all marked faces in order, each as seen from the cell with the smaller number. Uses all threads.
   std::vector<FaceId> marked_faces() const;
   /// Visits the marked faces of a cell, seen from it.
   template <class Visit>
@@ -60,11 +59,11 @@ class RestrictedSurface {
       if (marked & 1U) visit(face_id(cell, corner));
   }
 
-  // For marked faces:
+  // Data of marked faces:
   const RestrictedTriangle& triangle(FaceId face) const { return record(face).triangle; }
   Index patch(FaceId face) const { return patch_of(triangle(face)); }
   const TriangleNotes& notes(FaceId face) const { return record(face).notes; }
-  // Notes of those who judge them:
+  // Notes of the parts that judge them:
   void note_judged(FaceId face) { own_notes(face).judged = true; }
   void note_given_up(FaceId face) { own_notes(face).given_up = true; }
   void note_needed(FaceId face) { own_notes(face).surface_needs_it = true; }
@@ -74,8 +73,8 @@ class RestrictedSurface {
   /// where its dual edge crosses the patch.
   Point circumcentre(FaceId face) const;
 
-  /// Removes the triangles between the zone's cells, which are about to be replaced. Precondition: the mesh
-  /// still has them; RefinedMesh::insert with the same zone comes next.
+  /// Removes the triangles between the zone's cells, which will be replaced. Precondition: the mesh still has
+  /// the cells; RefinedMesh::insert with the same zone is called next.
   void cells_vanish(const ConflictZone& zone) { cells_vanish(zone, workspace_); }
   /// Labels the new cells; finds restricted triangles between them, and checks those on the border again.
   /// Precondition: `cells_vanish` had the same zone; SurfaceNodes and CollarCells know the new vertex.
@@ -100,16 +99,17 @@ class RestrictedSurface {
   /// Makes room for all cells before cells are made in blocks, and for this many records in each block's
   /// workspace.
   void divide(std::span<const std::size_t> records, std::span<Workspace> of_blocks);
-  /// Takes back the workspaces after blocks were joined.
+  /// Takes the workspaces back after blocks were joined.
   void join(std::span<Workspace> of_blocks);
-  // For several threads, each with a block of its own and the block's workspace:
+  // Functions for several threads, each with its own block and the block's workspace:
   /// Returns whether a block has enough records for an insertion with this zone.
   bool has_room(const ConflictZone& zone, const Workspace& workspace) const;
-  /// Do the same in a block. Preconditions: `divide` gave the workspace, the zone lies in its block, and it
-  /// has room; without room a record would be added to those that all threads share.
+  /// Versions of the functions above for a block. Preconditions: `divide` gave the workspace, the zone lies
+  /// in its block, and `has_room` is true; without room a record would be added to those that all threads
+  /// share.
   void cells_vanish(const ConflictZone& zone, Workspace& workspace);
   void cells_made(const ConflictZone& zone, Index vertex, Workspace& workspace);
-  /// Replaces these three for a cell of a zone from whose vertices no part of the complex is found: its
+  /// Replaces these functions for a new cell if the zone's vertices know no part of the complex. The cell's
   /// region is that of the cells that it replaces.
   void quiet_cell_made(Index cell, Index region) { labels_[cell] = {.region = region}; }
 
@@ -158,7 +158,7 @@ class RestrictedSurface {
   GrowingArray<Label> labels_;                // by cell
   GrowingArray<std::array<Index, 4>> marks_;  // by cell and corner: records of marked faces
   GrowingArray<Record> records_;
-  Workspace workspace_;  // of the loop
+  Workspace workspace_;  // for the loop
 };
 
 }  // namespace collarmesh

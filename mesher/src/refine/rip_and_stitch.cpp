@@ -7,14 +7,14 @@ namespace collarmesh {
 
 namespace {
 
-// The middle of an edge between points of a smooth patch is off the patch by at most this share of the edge:
-// a turn of 30 degrees makes 0.13. An edge across a fold is farther off.
+// Largest distance of the middle of an edge between points of a smooth patch from the patch, relative to the
+// edge: 0.13 for a turn of 30 degrees. An edge across a fold is farther off.
 constexpr double largest_sagitta = 0.15;
 
 struct FaceUse {
   std::array<Index, 3> key;   // sorted mesh vertices
   std::array<Index, 3> face;  // counterclockwise as seen from outside its tet
-  Index region;               // of the tet
+  Index region;               // region of the tet
 };
 
 FaceUse face_use(const std::array<Index, 3>& face, Index region) {
@@ -44,8 +44,8 @@ void RipAndStitch::stitch() {
     stitched_.edges.push_back({{creator_.vertex_of(end.ball), points_[end.point].vertex}, end.curve});
 }
 
-// Adds a tet. If the review has given up, a triangle may have the centre of its own ball as a corner. No cell
-// is made of it, and the collar stays open there.
+// Adds a tet. If the review has given up, a triangle may have the centre of its own ball as a corner. Makes
+// no cell of such a triangle, so the collar stays open there.
 void RipAndStitch::add(const Stitched::Tet& tet) {
   std::array<Index, 4> sorted = tet.corners;
   std::sort(sorted.begin(), sorted.end());
@@ -69,7 +69,7 @@ void RipAndStitch::stitch_books(const std::vector<CollarTriangle>& triangles) {
     const std::array<Index, 2> balls{std::min(a, b), std::max(a, b)};
     const auto found =
         std::lower_bound(curve_between.begin(), curve_between.end(), std::pair{balls, Index{0}});
-    // Triangles of balls that are not consecutive meet only where the review has given up.
+    // Triangles of balls that are not consecutive meet only if the review has given up.
     if (found == curve_between.end() || found->first != balls) return crease_tag(a);
     return domain_.plc.curves[found->second].tag;
   };
@@ -99,7 +99,8 @@ void RipAndStitch::stitch_books(const std::vector<CollarTriangle>& triangles) {
   }
 }
 
-// Makes the faces of the new tets that lie on patches: where two regions meet, or on a patch inside one.
+// Makes the faces of the new tets that lie on patches: faces between two regions, or on a patch inside one
+// region.
 void RipAndStitch::stitch_faces(const std::vector<CollarTriangle>& triangles) {
   std::vector<FaceUse> uses;
   for (const auto& tet : stitched_.tets)
@@ -137,7 +138,7 @@ Point RipAndStitch::centroid(const std::array<Index, 3>& face) const {
   return (mesh_.point(face[0]) + mesh_.point(face[1]) + mesh_.point(face[2])) / 3;
 }
 
-// Returns whether the face's normal points to the patch's back.
+// Returns whether the face's normal points to the back of the patch.
 bool RipAndStitch::against_patch(const std::array<Index, 3>& face, Index patch) const {
   double any = INFINITY;
   const Index nearest = nodes_.nearest_triangle(centroid(face), patch, any);
@@ -179,8 +180,8 @@ Index RipAndStitch::patch_between(const std::array<Index, 3>& corners, Index a, 
   return a != b || lies_on(corners, nearest) ? nearest : none;
 }
 
-// Returns whether a face inside one region lies on the patch that contains its vertices: it may lie beside
-// it, or across a fold of it.
+// Returns whether a face inside one region lies on the patch that contains its vertices, and not beside the
+// patch or across a fold of it.
 bool RipAndStitch::lies_on(const std::array<Index, 3>& face, Index patch) const {
   const auto is_near = [&](const Point& p, double most) {
     return squared_distance(p, collars_.features().nearest_point({2, patch}, p)) <= most * most;

@@ -34,8 +34,7 @@ struct Stitched {
 /// Rip and stitch (paper, Procedure 5). `extract` drops the cells inside the collars, and this class makes
 /// the tets that replace them: each triangle of the collar surface makes a star tet with its ball's centre,
 /// each edge between triangles of consecutive balls a book tet with the two centres.
-///
-/// State: the result for the mesh at the loop's last call. SurfaceTopology and extraction read it.
+/// State: the result of the loop's last call. SurfaceTopology and extraction read it.
 class RipAndStitch {
  public:
   /// Keeps all by reference.
@@ -52,8 +51,8 @@ class RipAndStitch {
         creator_(creator),
         collar_surface_(collar_surface) {}
 
-  /// Makes the tets. Precondition: every point is resolved. If the collar surface is not well represented,
-  /// because refinement has given up, some collars are `open` or have other cells than the paper's.
+  /// Makes the tets. Precondition: every point is resolved. If refinement has given up, so that the collar
+  /// surface is not well represented, some collars are `open` or have cells other than the paper's.
   void stitch();
   const Stitched& result() const { return stitched_; }
 

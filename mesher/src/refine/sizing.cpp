@@ -67,7 +67,7 @@ double Sizing::curve_size(Index curve, std::size_t first, std::size_t last, cons
   double size = limited(curve_size_[curve], p);
   if (curved_.curve_segment.empty() || curved_.curve_segment[curve].empty()) return size;
   const auto& segments = curved_.curve_segment[curve];
-  // A closed curve's last segment is followed by its first.
+  // In a closed curve the first segment follows the last one.
   for (std::size_t i = first;; i = (i + 1) % segments.size()) {
     size = std::min(size, at_least_minimum(segments[i]));
     if (i == last) return size;

@@ -18,20 +18,20 @@ namespace collarmesh {
 /// kept at vertices, BlockRefinement must not have rounds with it, as with `has_field`.
 class Sizing {
  public:
-  /// The target edge length relative to a size that is asked for. The median edge of other meshers' meshes
-  /// exceeds the size by more. Sizes given as a number of elements, across a gap or on a circle, are not
-  /// stretched.
+  /// The target edge length relative to a size that is given as a length. (In other meshers' meshes the
+  /// median edge exceeds the size by more.) Sizes given as a number of elements, across a gap or on a circle,
+  /// are not stretched.
   static constexpr double edge_per_size = 1.08;
   /// If the mesh will be coarsened, cells are left in gaps narrower than this share of the target edge
   /// length: in wider gaps a bounded ratio costs little, and angles are better.
   static constexpr double narrow_gap_per_size = 0.1;
 
-  /// Makes the sizes. Functions of a place throw OptionError where the field returns no positive size;
-  /// infinite: no size.
+  /// Makes the sizes. Functions of a place throw OptionError if the field returns no positive size there; an
+  /// infinite size means none.
   Sizing(const Plc& plc, const MeshOptions& options, const Frame& frame);
 
   /// Returns the largest allowed circumradius of a cell of this region at this point; infinite outside.
-  /// `graded` is a target edge length that gradation imposes, here and below.
+  /// In all functions `graded` is a target edge length that gradation imposes.
   double cell_radius(Index region, const Point& p, double graded) const {
     return region == 0 ? INFINITY : cell_radius_per_edge * std::min(graded, limited(region_size_[region], p));
   }
@@ -46,8 +46,8 @@ class Sizing {
   double curve_size(Index curve, std::size_t first, std::size_t last, const Point& p) const;
   /// Returns the largest allowed length of a subsegment for this target edge length.
   static double subsegment_length(double size) { return subsegment_length_per_edge * size; }
-  /// Returns the target edge length where two facing parts of the surface have this distance; infinite unless
-  /// gaps were asked for.
+  /// Returns the target edge length between two facing parts of the surface at this distance; infinite unless
+  /// the options ask for elements across gaps.
   double gap_size(double gap) const {
     return elements_across_gap_ > 0 ? at_least_minimum(gap / elements_across_gap_) : INFINITY;
   }
@@ -61,7 +61,7 @@ class Sizing {
   double region_size(Index region, const Point& p) const {
     return region == 0 ? INFINITY : limited(region_size_[region], p);
   }
-  /// Returns the target edge length where nothing finer is asked for.
+  /// Returns the target edge length where nothing finer applies.
   double default_size(const Point& p) const { return limited(global_size_, p); }
   /// Returns whether the caller provides a size field.
   bool has_field() const { return static_cast<bool>(field_); }
@@ -80,12 +80,12 @@ class Sizing {
     if (!(asked > 0)) refuse(asked, place);
     return std::min(size, edge_per_size * std::max(asked, size_min_));
   }
-  /// Throws OptionError.
+  /// Throws OptionError about an invalid size at a place.
   [[noreturn]] static void refuse(double asked, const Point& place);
 
   double at_least_minimum(double size) const { return std::max(size, size_min_); }
 
-  CurvatureSizes curved_;  // empty unless asked for
+  CurvatureSizes curved_;  // empty unless the options ask for it
   double elements_across_gap_;
   std::vector<double> region_size_, patch_size_, curve_size_;  // target edge lengths by index
   std::function<double(const Point&)> field_;

@@ -6,11 +6,11 @@
 
 namespace collarmesh {
 
-/// A piece of a curve between two points that are consecutive on it, with its protective ball: centred
-/// where the curve meets the bisector plane of the ends.
+/// A piece of a curve between two consecutive points, with its protective ball: centred where the curve meets
+/// the bisector plane of the ends.
 struct Subsegment {
   Index curve;
-  std::array<Index, 2> ends;         ///< mesh vertices; none where the point is unresolved
+  std::array<Index, 2> ends;         ///< mesh vertices; none while the point is unresolved
   std::array<double, 2> parameters;  ///< arc length along the curve
   Point centre;
   double centre_parameter;

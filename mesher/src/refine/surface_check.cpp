@@ -18,7 +18,7 @@ namespace collarmesh {
 namespace {
 
 constexpr unsigned most_rounds = 60;
-// Six volumes over the longest edge cubed: rounding may turn zero into this.
+// Six times a cell's volume over its longest edge cubed: below this value it may be zero but for rounding.
 constexpr double rounded_volume = 1e-13;
 constexpr std::size_t seeds_per_closed_patch = 4, seeds_per_missed_patch = 8;
 
@@ -41,7 +41,7 @@ bool has_use(const std::vector<EdgeUse>& sorted, const EdgeUse& wanted) {
   return first != sorted.end() && first->same_place(wanted);
 }
 
-// Sorts by counting the lower ends, then within each of them.
+// Sorts by the lower ends with a counting sort, then within each group.
 void sort_by_edge(std::vector<EdgeUse>& uses, std::size_t vertex_count) {
   std::vector<std::size_t> next(vertex_count + 1, 0);
   for (const EdgeUse& use : uses) ++next[(use.edge >> 32) + 1];
@@ -139,7 +139,7 @@ bool SurfaceCheck::check_patch_topology(const std::vector<FaceId>& faces) {
   for (std::size_t i = 0, j = 0; i < uses.size(); i = j) {
     for (j = i; j < uses.size() && uses[j].same_place(uses[i]);) ++j;
     if (j - i == 2 || has_use(on_curves, uses[i])) continue;
-    // The patch continues inside a collar.
+    // The patch continues inside a collar, so there are no triangles to count.
     if (at_collars[uses[i].edge >> 32] && at_collars[uses[i].edge & 0xffffffff]) continue;
     std::size_t largest = i;
     for (std::size_t k = i; k < j; ++k)
@@ -152,8 +152,8 @@ bool SurfaceCheck::check_patch_topology(const std::vector<FaceId>& faces) {
   return found;
 }
 
-// Returns whether p is within the tolerance of the patch. `near`, a triangle of it to begin with, becomes the
-// triangle that proves it.
+// Returns whether p is within the tolerance of the patch. The search starts at triangle `near`, which becomes
+// the triangle that proves it.
 bool SurfaceCheck::is_near_patch(const Point& p, Index patch, Index& near) const {
   const SurfaceTolerance& tolerance = domain_.tolerance;
   const Index found = triangle_within_tolerance(
@@ -168,8 +168,8 @@ bool SurfaceCheck::is_near_patch(const Point& p, Index patch, Index& near) const
 
 // Queues triangles on smooth patches whose edges or middle leave the patch by more than the tolerance.
 bool SurfaceCheck::refine_distant_triangles(const std::vector<FaceId>& faces) {
-  // A cache of edges found near a patch, most of which two triangles share. An entry that another one
-  // replaces is only tested again.
+  // A cache of edges that were found to be near a patch, as two triangles share most edges. If another edge
+  // replaces an entry, the edge is tested again.
   struct NearEdge {
     std::uint64_t edge;
     Index patch;
@@ -181,7 +181,7 @@ bool SurfaceCheck::refine_distant_triangles(const std::vector<FaceId>& faces) {
     const TriangleNotes& notes = surface_.notes(face);
     const Index patch = surface_.patch(face);
     if (domain_.plc.patches[patch].planar || t.in_collar || notes.given_up || notes.known_near) continue;
-    Index near = t.triangle;  // the next sample is often near the same triangle
+    Index near = t.triangle;  // try first the triangle of the last sample
     const auto is_near = [&](const Point& p) { return is_near_patch(p, patch, near); };
     const auto v = mesh_.face_vertices(face);
     bool near_there = is_near((mesh_.point(v[0]) + mesh_.point(v[1]) + mesh_.point(v[2])) / 3);
@@ -203,14 +203,15 @@ bool SurfaceCheck::refine_distant_triangles(const std::vector<FaceId>& faces) {
   return found;
 }
 
-// Seeds a patch for which no triangle was found, because its dual edges cross it back and forth.
+// Inserts a point of a patch for which no triangle was found, because dual edges cross it back and forth.
 void SurfaceCheck::seed_missed_patch(Index patch) {
   const std::size_t seeds = seeds_per_missed_patch << std::min(rounds_, 16U);
   for (const Index point : spread_points(domain_.patch_points[patch], domain_.points, seeds))
     seed(patch, domain_.points[point]);
 }
 
-// A point that faces another sheet may, but for rounding, be a vertex already.
+// Adds a point of a patch as an unresolved point. If the point faces another sheet, it may be a vertex
+// already, but for rounding.
 void SurfaceCheck::seed(Index patch, const Point& at) {
   points_.add({.point = at, .feature = {2, patch}, .apart = domain_.floor_at(at)}, none);
 }
@@ -233,7 +234,7 @@ void SurfaceCheck::prepare_tessellation() {
   first_tessellation_point_.push_back(tessellation_.size());
 }
 
-// Returns whether the triangle that the point was near to at the last check still exists.
+// Returns whether the face that the point was near to at the last check still exists.
 bool SurfaceCheck::still_near(const TessellationPoint& p, Index patch) const {
   if (p.near == no_face) return false;
   const Index cell = cell_of(p.near);
@@ -245,7 +246,7 @@ void SurfaceCheck::resolve(const TessellationPoint& p, Index patch, FaceId neare
   constexpr double same_place = 0.1;  // share of the tolerance
   const Index vertex = mesh_.nearest_vertex(p.at, mesh_.face_vertices(nearest)[0]);
   const double apart = same_place * p.tolerance;
-  // A vertex that is not on the surface yet: a second vertex beside it would not be on it either.
+  // If the vertex is not on the surface yet, a second vertex beside it would not be on the surface either.
   if (distance(mesh_.point(vertex), p.at) < apart)
     triangles_.split(nearest);
   else
@@ -284,7 +285,7 @@ bool SurfaceCheck::resolve_distant_points(const std::vector<FaceId>& faces) {
       const TessellationPoint* point = nullptr;
     };
     std::vector<Farthest> farthest(faces_of[patch].size());
-    Index near = none;  // the next point is often near the same triangle
+    Index near = none;  // try first the triangle of the last point
     for (TessellationPoint* p : lost) {
       near = surface.triangle_within(p->at, p->tolerance * p->tolerance, near);
       if (near != none) {
@@ -332,7 +333,7 @@ bool SurfaceCheck::flat_on_patch(Index cell) const {
   return found;
 }
 
-// Returns whether a cell has no volume but for rounding, because samples that face each other on two curves
+// Returns whether a cell has no volume except by rounding, because samples that face each other on two curves
 // of a smooth patch form rectangles. Two of its faces then lie on the patch.
 bool SurfaceCheck::has_no_volume(Index cell) const {
   if (std::popcount(surface_.marked(cell)) != 2) return false;
@@ -344,14 +345,14 @@ bool SurfaceCheck::has_no_volume(Index cell) const {
   return std::fabs(six_volume(a, b, c, d)) <= rounded_volume * longest * longest * longest;
 }
 
-// Returns whether the face lies on the domain's boundary: one region beside it is outside.
+// Returns whether the face lies on the domain's boundary: one region beside it is the outside.
 bool SurfaceCheck::at_boundary(FaceId face) const {
   const auto& regions = domain_.plc.patches[surface_.patch(face)].regions;
   return regions[0] != regions[1] && (regions[0] == 0 || regions[1] == 0);
 }
 
-// Queues flat cells. A cell with all vertices on one planar patch cannot stay between two regions or inside
-// one, so its centre is inserted. At a domain boundary relabel_flat_cells handles it.
+// Queues flat cells for destruction. A cell with all vertices on one planar patch cannot stay between two
+// regions or inside one, so its centre is inserted. At a domain boundary relabel_flat_cells handles it.
 bool SurfaceCheck::check_flat_cells() {
   bool found = false;
   for (const Index cell : cells_on_surface()) {
@@ -367,7 +368,8 @@ bool SurfaceCheck::check_flat_cells() {
   return found;
 }
 
-// Gives flat cells just inside a boundary facet, which four cocircular vertices can form, to the outside.
+// Gives flat cells just inside a boundary facet to the outside. Four cocircular vertices can form such a
+// cell.
 bool SurfaceCheck::relabel_flat_cells() {
   bool found = false;
   for (const Index cell : cells_on_surface()) {

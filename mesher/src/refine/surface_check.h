@@ -10,8 +10,8 @@
 
 namespace collarmesh {
 
-/// Returns points far from each other among these: each next one is the farthest from all before. Cost:
-/// candidates times count.
+/// Returns some of the candidates that are far from each other: each one is the candidate farthest from all
+/// before. Cost: candidates times count.
 std::vector<Index> spread_points(std::span<const Index> candidates, const std::vector<Point>& points,
                                  std::size_t count);
 
@@ -38,24 +38,24 @@ class SurfaceCheck {
         curves_(curves),
         outcome_(outcome) {}
 
-  /// Seeds closed patches, which have no border to start from.
+  /// Seeds closed patches: refinement has no border to start from there.
   void seed_closed_patches();
   /// Runs a round. Returns false if it found nothing wrong.
   bool check();
-  /// Counts a round that found a violation. Gives up and returns false after too many.
+  /// Counts a round that found a violation. After too many rounds, gives up and returns false.
   bool another_round();
   /// Gives flat cells at the boundary of the domain to the outside. Precondition: refinement is over. Returns
   /// false if there are none.
   bool relabel_flat_cells();
 
  private:
-  /// A corner or the centre of one of a smooth patch's triangles, outside collars as the certificate tests
-  /// them, with a face of the mesh that it was near to.
+  /// A point at which the certificate tests a smooth patch, outside collars: a corner or the centre of a
+  /// triangle. Stores a face of the mesh that it was near to.
   struct TessellationPoint {
     Point at;
     double tolerance;
     FaceId near = no_face;
-    std::uint32_t generation = 0;  // of the face's cell
+    std::uint32_t generation = 0;  // generation of the face's cell
   };
   std::vector<bool> vertices_at_collars() const;
   bool check_patch_topology(const std::vector<FaceId>& faces);

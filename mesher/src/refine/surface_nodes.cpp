@@ -9,9 +9,9 @@ namespace collarmesh {
 
 namespace {
 
-// The nodes of a vertex are filtered again after this many insertions in its star: rarely on the surface,
-// where insertions never end. In a large star filtering waits for a share of its cells, because it visits all
-// of them: a hub with n cells would otherwise cost n^2.
+// The nodes of a vertex are filtered again after this many insertions in its star. On the surface this
+// happens rarely, because insertions never end there. Filtering visits all cells of the star, so in a large
+// star it waits until a share of its cells is new: otherwise a hub with n cells would cost n^2.
 constexpr std::size_t insertions_between_refreshes = 16;
 constexpr std::size_t insertions_between_surface_refreshes = 48;
 constexpr std::size_t cells_per_insertion = 4;
@@ -123,8 +123,9 @@ void SurfaceNodes::expect_insertions(Index vertex, std::size_t star) {
       std::min<std::size_t>(std::max(least, star / cells_per_insertion), UINT16_MAX));
 }
 
-// Finds, in found_, nodes that cover the elements in the Voronoi cell of a vertex with these cells, by the
-// box of its corners, widened by the rounding of circumcentres. Precondition: seeds_ cover them.
+// Finds nodes that cover the elements in the Voronoi cell of a vertex with these cells, by the box around the
+// cell's corners, widened by the rounding of circumcentres. The result is in found_. Precondition: seeds_
+// cover these elements.
 void SurfaceNodes::find(const std::vector<Index>& cells, Workspace& w) const {
   Box box;
   double largest = 0;

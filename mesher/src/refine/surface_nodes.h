@@ -20,14 +20,14 @@ namespace collarmesh {
 /// into blocks; all parts query it.
 class SurfaceNodes {
  public:
-  /// Gives every vertex that the mesh has the root. Keeps both by reference.
+  /// Gives every existing vertex the root. Keeps references to both arguments.
   SurfaceNodes(const Domain& domain, const RefinedMesh& mesh);
 
   const TriangleHierarchy& hierarchy() const { return hierarchy_; }
   std::span<const Index> at(Index vertex) const { return {lists_[vertex].nodes, lists_[vertex].count}; }
   bool any_at(Index vertex) const { return lists_[vertex].count > 0; }
-  /// Returns the nodes of the vertex of a face that has the fewest: they cover what the face's dual edge
-  /// meets.
+  /// Returns the nodes of one vertex of a face, the one with fewest nodes: they cover everything that the
+  /// face's dual edge meets.
   std::span<const Index> fewest(FaceId face) const;
   /// Replaces `found` by the triangles that the dual edge of a face crosses, seen from the face's cell.
   void crossings_of_dual_edge(FaceId face, std::vector<TriangleHierarchy::Crossing>& found) const;
@@ -36,14 +36,14 @@ class SurfaceNodes {
     const Index root = hierarchy_.root();
     hierarchy_.crossings(p, q, {&root, 1}, found);
   }
-  /// Returns the triangle of a patch that is nearest to p, if it is nearer than `within_squared`, which
-  /// becomes its squared distance; else none.
+  /// Returns the triangle of a patch nearest to p, if its squared distance is below `within_squared`, and
+  /// sets `within_squared` to that; else returns none.
   Index nearest_triangle(const Point& p, Index patch, double& within_squared) const;
 
   void cells_made(const ConflictZone& zone, Index vertex);
 
-  /// The data of a thread that inserts into blocks: scratch, and the lists that it has made. SurfaceNodes
-  /// points into these, so it must not be destroyed first.
+  /// The data of a thread that inserts into blocks: scratch data, and the lists that it has made.
+  /// SurfaceNodes points into these lists, so it must be destroyed first.
   class Workspace {
    public:
     /// Returns the bytes of the lists: their sum over all threads does not depend on which thread made which.
@@ -62,7 +62,8 @@ class SurfaceNodes {
   };
   /// Makes room for all vertices before some are inserted into blocks.
   void fit_mesh();
-  /// Does the same as `cells_made`. For several threads, each with its block.
+  /// Version of `cells_made` for an insertion into a block. Several threads may call it, each with its own
+  /// block.
   void cells_made(const ConflictZone& zone, Index vertex, const Triangulation::Block& block,
                   Workspace& workspace);
   /// Renumbers vertices after blocks were joined.
@@ -90,7 +91,7 @@ class SurfaceNodes {
   TriangleHierarchy hierarchy_;
   std::vector<Index> patch_below_;  // by node: the patch of all elements below, none if they differ
   GrowingArray<List> lists_;        // by vertex
-  Workspace workspace_;             // of the loop
+  Workspace workspace_;             // for the loop
 };
 
 }  // namespace collarmesh

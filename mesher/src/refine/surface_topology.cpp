@@ -10,13 +10,13 @@ namespace collarmesh {
 namespace {
 
 struct SurfaceTriangle {
-  std::array<Index, 3> corners;  // mesh vertices
+  std::array<Index, 3> corners;  // mesh vertices of a triangle
   Index patch;
-  FaceId face;  // no_face: stitched
+  FaceId face;  // its face; no_face if it is stitched
 };
 
 struct Side {
-  std::array<Index, 2> ends;  // sorted
+  std::array<Index, 2> ends;  // mesh vertices, sorted
   Index patch;
   Index triangle;
   std::array<Index, 2> corners;  // corners of the triangle at these ends, 3 * triangle + i
@@ -28,7 +28,7 @@ struct Side {
 };
 
 struct CurveEdge {
-  std::array<Index, 2> ends;  // sorted
+  std::array<Index, 2> ends;  // mesh vertices, sorted
   Index curve;
 
   friend bool operator<(const CurveEdge& a, const CurveEdge& b) { return a.ends < b.ends; }
@@ -36,7 +36,7 @@ struct CurveEdge {
 
 std::array<Index, 2> sorted(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
 
-// Sorts by mesh vertices first: there are many, and few entries have the same one.
+// Sorts by mesh vertices first: there are many vertices, and few entries for each.
 template <class T, class VertexOf>
 void sort_by_vertex(std::vector<T>& values, std::size_t vertices, const VertexOf& vertex_of) {
   std::vector<Index> end(vertices + 1, 0);
@@ -67,9 +67,9 @@ std::vector<Side> sorted_sides(const std::vector<SurfaceTriangle>& triangles, st
 
 }  // namespace
 
-// Counts the triangles of each of its patches at each segment of a curve.
+// Counts the triangles of each of a curve's patches at each segment of the curve.
 void SurfaceTopology::count_curve_sides() {
-  std::vector<CurveEdge> segments;  // by curve: the first one
+  std::vector<CurveEdge> segments;  // by curve: its first segment
   segments.reserve(domain_.plc.curves.size());
   curve_sides_.reserve(domain_.plc.curves.size());
   for (Index c = 0; c < domain_.plc.curves.size(); ++c) {
@@ -113,7 +113,7 @@ bool SurfaceTopology::check() {
   std::sort(curve_edges.begin(), curve_edges.end());
   const std::vector<Side> sides = sorted_sides(triangles, mesh_.vertex_count());
   DisjointSets fans(3 * triangles.size());
-  std::vector<Index> wrong_at(mesh_.vertex_count(), none);  // a patch that is wrong at the vertex
+  std::vector<Index> wrong_at(mesh_.vertex_count(), none);  // by vertex: a patch that is wrong there
   for (const Index v : stitching_.result().open)
     wrong_at[v] = mesh_.feature(v).dimension == 2 ? mesh_.feature(v).index : none;
   const auto expected = [&](const Side& side) -> std::size_t {

@@ -33,7 +33,7 @@ class TraceRecorder {
   Trace trace_;
 };
 
-/// Returns the step after the refinement: the mesh, with the collars' balls of the step before.
+/// Returns the step after the refinement: the final mesh, with the collars' balls of the step before.
 TraceStep stitched_step(const TetMesh& mesh, const TraceStep& before);
 
 }  // namespace collarmesh

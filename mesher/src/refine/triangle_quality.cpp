@@ -9,7 +9,7 @@ namespace collarmesh {
 
 namespace {
 
-// A centre is inserted with a pseudo-random offset of this share of its ball's radius.
+// A centre is inserted with a pseudo-random offset of up to this share of its ball's radius.
 constexpr double offset_per_radius = 0.1;
 
 }  // namespace
@@ -66,7 +66,7 @@ bool TriangleQuality::has_vertex_on_another_sheet(FaceId face) const {
   });
 }
 
-// Returns the point to insert: the middle of its ball, or a point near it.
+// Returns the point to insert: the centre of the triangle's ball, or a point near it.
 Point TriangleQuality::place(FaceId face, RandomOffsets& random) const {
   const RestrictedTriangle& t = surface_.triangle(face);
   const Index patch = surface_.patch(face);
@@ -163,7 +163,7 @@ double TriangleQuality::gap_at(const RestrictedTriangle& t, double widest) {
   for (unsigned side = 0; side < 2; ++side) {
     if (patch.regions[side] == 0) continue;
     const Vector way = side == 0 ? -1 * normal : normal;
-    // Starts off the plane of its own triangle, which would cause ties.
+    // Starts off the plane of the triangle, which would cause ties.
     nodes_.crossings(t.x + 1e-6 * widest * way, t.x + widest * way, crossings_);
     for (const auto& [triangle, direction] : crossings_)
       gap = std::min(

@@ -12,10 +12,10 @@
 
 namespace collarmesh {
 
-/// Decides which restricted triangles to destroy: unresolved ones, whose vertices lie elsewhere, whose dual
-/// edge crosses several sheets or whose circumcentre is too far from the surface; and large ones.
-/// (RestrictedSurface::restrict_face finds the first two when it makes the record.)
-///
+/// Decides which restricted triangles to destroy: large ones and unresolved ones. A triangle is unresolved if
+/// its vertices do not all lie on its patch, if its dual edge crosses several sheets, or if its circumcentre
+/// is too far from the surface. (RestrictedSurface::restrict_face finds the first two when it makes the
+/// record.)
 /// State: the notes of the restricted surface. Invariant: after an insertion every triangle of the new cells
 /// is judged, and the queue contains those that must be destroyed. The loop and BlockRefinement report
 /// insertions and take candidates; SurfaceCheck and SurfaceTopology ask for triangles to split.
@@ -39,21 +39,21 @@ class TriangleQuality {
   FaceId encroached(const ConflictZone& zone, const Candidate& candidate) const;
   /// Returns a candidate that destroys a triangle, if there is one.
   std::optional<Candidate> candidate(FaceId face);
-  /// Returns the same, if no vertex of the triangle lies on another sheet and a cell beside it is in conflict
-  /// with the candidate; otherwise nothing, and only the loop can decide. Several threads may call it at
-  /// once, each with its own offsets and for triangles in its own block.
+  /// Returns such a candidate if no vertex of the triangle lies on another sheet and a cell beside it is in
+  /// conflict with the candidate. Otherwise returns nothing: only the loop can decide. Several threads may
+  /// call it at once, each with its own offsets and for triangles in its own block.
   std::optional<Candidate> candidate_beside(FaceId face, RandomOffsets& random) const;
-  /// Returns whether the triangle of a queue entry still must be destroyed.
+  /// Returns whether the triangle of a queue entry must still be destroyed.
   bool due(const WorkQueue::Entry& entry) const;
-  /// Queues a triangle again if another insertion has left it.
+  /// Queues a triangle again if it still exists after another insertion.
   void queue_again(const WorkQueue::Item& item, double squared_radius);
   /// Records that no point could be inserted to destroy a triangle, so that it is not tried again.
   void give_up(FaceId face) { surface_.note_given_up(face); }
 
   /// Judges the triangles of new cells. Precondition: surface and sizes know the new cells and the vertex.
   void cells_made(const ConflictZone& zone);
-  /// Does the same for a zone in a block. Several threads may call it, each with its own queue, if no sizes
-  /// come from the caller or are kept at vertices.
+  /// Judges the triangles of new cells in a block. Several threads may call it, each with its own queue, if
+  /// no sizes come from the caller or are kept at vertices.
   void cells_made(const ConflictZone& zone, WorkQueue& queue) const;
   /// Judges all triangles because sizes have changed everywhere.
   void judge_all();

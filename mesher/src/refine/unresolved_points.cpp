@@ -8,7 +8,8 @@ namespace collarmesh {
 
 namespace {
 
-// Returns the exponent of a ball, which is the stamp of a queued point, so that a stale entry is noticed.
+// Returns the exponent of a ball's squared radius. It is the stamp of a queued point: a stale entry has
+// another one.
 int exponent(double squared_radius) { return std::ilogb(std::max(squared_radius, 1e-300)); }
 
 }  // namespace
@@ -27,7 +28,7 @@ void UnresolvedPoints::withdraw(Index point) {
   points_[point].object = none;
 }
 
-// Returns whether a point is medial. The second nearest vertex is a neighbour of the nearest one.
+// Returns whether a point is medial. Its second nearest vertex is a neighbour of the nearest one.
 bool UnresolvedPoints::medial(Index point) const {
   const double theta_0 = theta_ / (theta_ + 1);
   const Unresolved& p = points_[point];
@@ -57,7 +58,8 @@ void UnresolvedPoints::resolve(Index point, Index vertex) {
   points_[point].vertex = vertex;
 }
 
-// Returns the point that a candidate warps to. Points near enough are in a list of the zone's vertices.
+// Returns the point that a candidate warps to. All points near enough are found from one of the zone's
+// vertices.
 Index UnresolvedPoints::warp_target(const ConflictZone& zone, const Candidate& candidate) const {
   Index best = none;
   double reach = theta_ * theta_ * candidate.squared_radius;

@@ -12,20 +12,19 @@ namespace collarmesh {
 
 /// Points that the mesh must have and does not have yet: vertices of the complex, seeds, corner points of
 /// collars.
-///
-/// Invariant: each of them is found from the mesh vertex nearest to it, and is in the queue with the empty
-/// ball around it, unless it is dormant. Any part may add one; the loop resolves them, when their turn has
+/// Invariant: each point is found from the mesh vertex nearest to it and, unless it is dormant, is in the
+/// queue with the empty ball around it. Any part may add points. The loop resolves them when their turn has
 /// come or when a candidate warps to them.
 class UnresolvedPoints {
  public:
   struct Unresolved {
     Point point;
     Feature feature;
-    Index object = none;   // in objects_; none when it is resolved or withdrawn
+    Index object = none;   // index in objects_; none when resolved or withdrawn
     Index vertex = none;   ///< the mesh vertex that it became
     Index across = none;   ///< the mesh vertex that it faces across a gap
     bool dormant = false;  ///< inserted only when a candidate warps to it
-    double apart = 0;      ///< a vertex of the same patch that is nearer than this serves as well
+    double apart = 0;      ///< a vertex of the same patch nearer than this can take its place
   };
 
   /// Keeps all by reference. `theta`: how far to warp (paper, Procedure 2).
@@ -37,7 +36,7 @@ class UnresolvedPoints {
     return add(Unresolved{p, feature}, near);
   }
   Index add(Unresolved point, Index near);
-  /// Removes a point that is not needed any more. Precondition: it is not resolved.
+  /// Removes a point that is no longer needed. Precondition: it is not resolved.
   void withdraw(Index point);
   const Unresolved& operator[](Index point) const { return points_[point]; }
   std::size_t size() const { return points_.size(); }
@@ -50,8 +49,8 @@ class UnresolvedPoints {
     const Unresolved& p = points_[point];
     return p.vertex != none ? p.vertex : objects_[p.object].vertex;
   }
-  /// Returns whether a queue entry with this stamp is current. If not, queues the point again: the mesh has
-  /// become finer there since, and other points have larger balls.
+  /// Returns whether a queue entry with this stamp is current. If not, the mesh has become finer there since:
+  /// queues the point again, because other points may have larger balls now.
   bool due(Index point, std::uint32_t stamp);
   /// Queues a point again after another insertion in its place, if it is still needed.
   void queue_again(Index point) {
@@ -62,11 +61,11 @@ class UnresolvedPoints {
   /// Records that a point becomes this vertex, which may be about to be inserted.
   void resolve(Index point, Index vertex);
 
-  /// Returns the point that a candidate with this zone warps to (paper, Procedure 2): the one of lowest
-  /// containment dimension within theta r of the centre of the ball. None if there is none.
+  /// Returns the point that a candidate with this zone warps to (paper, Procedure 2): of the points within
+  /// theta r of the ball's centre, the one of lowest containment dimension. None if there is no such point.
   Index warp_target(const ConflictZone& zone, const Candidate& candidate) const;
-  /// Returns the only point on a vertex of the complex that is found from this mesh vertex; none if there are
-  /// several.
+  /// Returns the only unresolved vertex of the complex that is found from this mesh vertex; none if there are
+  /// several or none.
   Index only_vertex_at(Index mesh_vertex) const;
 
   void cells_made(const ConflictZone& zone, Index vertex);

@@ -6,7 +6,8 @@ namespace collarmesh {
 
 namespace {
 
-// More features than meet where eight boxes share a corner, or where their sides share an edge.
+// A hub has more features than these: as many as meet where eight boxes share a corner, or where their sides
+// share an edge.
 constexpr std::size_t most_at_vertex = 24, most_sheets_at_curve = 8;
 
 }  // namespace
@@ -31,7 +32,7 @@ void WorkCounter::note_round(const LargestZone& largest) {
   note_size();
 }
 
-// Returns whether the zone lies at a hub, which is connected with everything near it.
+// Returns whether the zone lies at a hub: a vertex there is connected with everything near it.
 bool WorkCounter::at_hub(const ConflictZone& zone) const {
   return std::any_of(zone.vertices.begin(), zone.vertices.end(), [&](Index v) {
     const Feature& feature = mesh_.feature(v);

@@ -16,9 +16,9 @@ class WorkCounter {
   /// Keeps both by reference.
   WorkCounter(const Plc& plc, const RefinedMesh& mesh);
 
-  /// Reports a new vertex. `too_early`: it has another purpose, while a skinny cell waited.
+  /// Reports a new vertex. `too_early`: it was inserted for another purpose while a skinny cell waited.
   void note_insertion(const ConflictZone& zone, bool too_early);
-  /// Reports a round, which adds many cells and vertices at once.
+  /// Reports a round of blocks, which adds many cells and vertices at once.
   void note_round(const LargestZone& largest);
 
   void fill(WorkCounts& counts) const;

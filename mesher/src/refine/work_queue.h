@@ -11,9 +11,9 @@
 
 namespace collarmesh {
 
-/// The paper's work queue (Procedure 1): takes priorities in order, and inside a priority the largest ball
-/// first, in buckets of log2(r^2), last in first out inside a bucket, which keeps the working set in the
-/// cache. Entries are never removed early: the caller that takes one compares its stamp.
+/// The paper's work queue (Procedure 1). It takes priorities in order and, within a priority, the largest
+/// ball first, in buckets of log2(r^2). Within a bucket it is last in, first out, which keeps the working set
+/// in the cache. Obsolete entries are not removed: the caller that takes an entry compares its stamp.
 class WorkQueue {
  public:
   /// The order in which work is taken; doc/architecture/refinement.md and doc/theory.md give the reasons.
@@ -81,7 +81,7 @@ class WorkQueue {
     while (bucket < bucket_count && buckets_[priority][bucket].empty()) ++bucket;
     return bucket;
   }
-  /// Returns whether any entry of a priority is still due. Drops others on the way.
+  /// Returns whether any entry of a priority is still due. Drops entries that are not.
   template <class Due>
   bool any_due(Priority priority, const Due& due) {
     for (unsigned bucket = first_bucket(priority); bucket < bucket_count; bucket = first_bucket(priority)) {

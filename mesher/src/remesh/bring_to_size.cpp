@@ -20,16 +20,15 @@ namespace {
 
 using improvement::Workpiece;
 
-// Rounds of divisions and improvement, and passes of divisions in each.
+// Number of rounds of divisions and improvement, and number of passes of divisions in each round.
 constexpr unsigned rounds = 3, divisions = 2;
-// Edges longer than this times the target are divided.
+// Edges longer than this factor times the target are divided.
 constexpr double longest = coarsening::CoarseningRule::longest_new;
 
-// Next to a short edge an edge is at most this many times as long; the length grows by this share of the
-// distance.
+// Ratio of an edge to a short edge beside it; edges may grow from there by this much per unit of distance.
 constexpr double of_shortest = 1.5, growth = 1;
 
-// Graded sizes are used only if they multiply the number of tets by at most this, plus some.
+// Graded sizes are used only if they multiply the number of tets by at most `most_times`, plus `some`.
 constexpr double most_times = 2, some = 2000, tets_per_cube = 8;
 
 /// The edges of a mesh, by vertex.
@@ -57,7 +56,7 @@ class EdgeGraph {
         if (a < b) visit(a, b);
   }
 
-  /// Makes sizes smaller where they grow by more than this share of the length of an edge.
+  /// Reduces sizes where they grow along an edge by more than this share of its length.
   void grade(const std::vector<Point>& points, double share, std::vector<double>& sizes) const {
     using Next = std::pair<double, Index>;
     std::priority_queue<Next, std::vector<Next>, std::greater<>> queue;
@@ -83,7 +82,7 @@ class Bringing {
  public:
   Bringing(TetMesh& mesh, const Plc& plc, MeshOptions options, const Execution& execution)
       : mesh_(mesh), plc_(plc), options_(std::move(options)), execution_(execution) {
-    options_.edges_per_hole = 0;  // the existing edges may be all that a hole has
+    options_.edges_per_hole = 0;  // a hole may have no edges but the existing ones
   }
 
   bool run() {
@@ -116,9 +115,9 @@ class Bringing {
  private:
   std::vector<double> sizes() const { return coarsening::target_sizes(mesh_, plc_, options_); }
 
-  /// Returns sizes that grow with the distance from edges shorter than the targets: edges that collapses have
-  /// left will stay, and tets between short and long ones have poor shapes. Along thin parts that would take
-  /// very many tets; there the targets count.
+  /// Returns sizes that grow with the distance from edges shorter than the targets. Collapses have left these
+  /// edges, so they will stay, and tets between short and long edges have poor shapes. Where graded sizes
+  /// would take very many tets, as along thin parts, returns the targets.
   std::vector<double> graded_sizes() const {
     const std::vector<double> targets = sizes();
     std::vector<double> graded = targets;
@@ -131,12 +130,12 @@ class Bringing {
     return tets_of(graded) <= most_times * tets_of(targets) + some ? graded : targets;
   }
 
-  /// Estimates the number of tets for these sizes, by vertex.
+  /// Estimates the number of tets for these sizes, given by vertex.
   double tets_of(const std::vector<double>& size) const {
     double sum = 0;
     for (const auto& tet : mesh_.tets) {
       const double mean = 0.25 * (size[tet[0]] + size[tet[1]] + size[tet[2]] + size[tet[3]]);
-      double pieces = 1;  // pieces across the tet
+      double pieces = 1;  // number of pieces of the tet's extent
       for (unsigned i = 0; i < 4; ++i)
         for (unsigned j = i + 1; j < 4; ++j)
           pieces = std::max(pieces, distance(mesh_.points[tet[i]], mesh_.points[tet[j]]) / mean);

@@ -13,10 +13,10 @@ using improvement::Change;
 
 namespace {
 
-// New tets have at least this share of the worst quality at the edge. Halves of a tet have about half of its
-// smallest angle; later improvement finds better tets.
+// New tets must have at least this share of the quality of the worst tet at the edge. Halves of a tet have
+// about half of its smallest angle; later improvement finds better tets.
 constexpr double least_share = 0.4;
-// Tets of this quality may at most become as bad as that share of it.
+// Tets of at least this quality may become as bad as `least_share` times it.
 constexpr double good = 1;
 constexpr std::size_t steps_between_reports = 4096;
 
@@ -52,13 +52,13 @@ double EdgeDivision::ratio(Index a, Index b) const {
   return distance(mesh().points[a], mesh().points[b]) / (0.5 * (sizes_[a] + sizes_[b]));
 }
 
-// Returns the ratio by the size field, which may ask for less between vertices than at them.
+// Returns the ratio of the edge to the size field, which may ask for less between the vertices than at them.
 double EdgeDivision::ratio_by_field(const LongEdge& edge) const {
   const Point &a = mesh().points[edge.a], &b = mesh().points[edge.b];
   return std::max(edge.ratio, distance(a, b) / sizing_.default_size(0.5 * (a + b)));
 }
 
-// Finds long edges with one thread: the field may be the caller's, who expects one call at a time.
+// Finds long edges with one thread: the field may belong to a caller who expects one call at a time.
 std::vector<EdgeDivision::LongEdge> EdgeDivision::long_edges(double longest) const {
   const bool all = sizing_.has_field();
   std::vector<LongEdge> edges =

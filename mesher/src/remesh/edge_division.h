@@ -17,9 +17,9 @@ class EdgeDivision {
   /// Keeps the workpiece and the options by reference; `sizes` are targets at the current vertices.
   EdgeDivision(improvement::Workpiece& workpiece, const MeshOptions& options, std::vector<double> sizes);
 
-  /// Divides once each edge that is longer now than `longest` times its target, the relatively longest first,
-  /// and returns how many it divided. Skips edges where the new tets would be much worse than the old ones.
-  /// Stops at `most_vertices`; 0: no bound.
+  /// Divides once each edge that is longer than `longest` times its target, the relatively longest ones
+  /// first. Returns the number of divided edges. Skips edges whose division would make much worse tets. Stops
+  /// at `most_vertices`; 0: no bound.
   std::size_t divide_all(double longest, std::size_t most_vertices, const Execution& execution);
 
  private:

@@ -115,7 +115,7 @@ class ComplexBuilder {
  private:
   Tag tag_of(const MeshSide& side) const { return side.face == none ? 0 : mesh_.face_tag[side.face]; }
 
-  /// Throws PlcError for edges between nodes that no tet joins, because they could not be kept.
+  /// Throws PlcError for edges between nodes that no tet joins, because remeshing could not keep them.
   void require_edges() const {
     if (mesh_.edges.empty()) return;
     std::vector<Ends> joined;
@@ -230,7 +230,7 @@ class ComplexBuilder {
     }
   }
 
-  /// Sets the regions of patches. A patch with the outside on one side has it in front.
+  /// Sets the regions of patches. If one side of a patch is outside, that side is its front.
   void set_regions_of_patches() {
     for (Plc::Patch& patch : plc_.patches) {
       const Index first = patch.first_triangle, last = first + patch.triangle_count;

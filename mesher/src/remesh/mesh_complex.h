@@ -10,13 +10,13 @@ namespace collarmesh::remeshing {
 /// this complex at all its points, faces and edges.
 struct MeshComplex {
   Plc plc;
-  TetMesh mesh;  ///< of first order, without points that no tet uses
+  TetMesh mesh;  ///< of first order, without unused points
 };
 
 /// Builds the complex of a mesh. Its facets are the sides of tets at a boundary or between two regions, and
 /// listed faces inside a region. If the mesh has edges along all borders between tags of its faces, these
-/// edges are its curves; otherwise folds above `options.feature_angle` are, too. Connected tets of one region
-/// make a region of the complex. Throws PlcError where the tets do not fit each other. Cost: O(n log n).
+/// edges are its curves; otherwise folds above `options.feature_angle` are curves, too. Connected tets of one
+/// region form a region of the complex. Throws PlcError if the tets do not fit each other. Cost: O(n log n).
 MeshComplex complex_of(const TetMesh& mesh, const PlcOptions& options);
 
 }  // namespace collarmesh::remeshing

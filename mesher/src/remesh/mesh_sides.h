@@ -13,19 +13,19 @@ Triangle sorted(Triangle corners);
 
 /// A triangle that separates a region from another one or from the outside, or that the mesh lists as a face.
 struct MeshSide {
-  Triangle corners;     ///< the tet `behind` is on the triangle's back side
+  Triangle corners;     ///< corners; the tet `behind` is on the triangle's back side
   Index behind, front;  ///< tets; none: the outside
   Index face;           ///< index of the mesh's face; none if it is not listed
 };
 
-/// Finds these triangles, in the order of their tets, and which tets are connected without crossing one.
-/// Throws PlcError for sides that more than two tets share and for listed faces that are no side of a tet.
-/// Cost: O(n log n).
+/// Finds these triangles, in the order of their tets, and which tets are connected without crossing such a
+/// triangle. Throws PlcError for sides that more than two tets share, and for listed faces that are no side
+/// of a tet. Cost: O(n log n).
 struct MeshSides {
   explicit MeshSides(const TetMesh& mesh);
 
   std::vector<MeshSide> sides;
-  std::vector<Index> component;  ///< by tet: the first of the tets connected to it
+  std::vector<Index> component;  ///< by tet: the first tet connected to it
 };
 
 }  // namespace collarmesh::remeshing

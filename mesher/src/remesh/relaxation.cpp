@@ -14,16 +14,16 @@ using improvement::Change;
 
 namespace {
 
-// Collapses and divisions leave at least this share of the quality of the worst tet around.
+// Collapses and divisions must leave at least this share of the quality of the worst tet around.
 constexpr double share_left = 0.3;
-// Shares of the target up to which edges are collapsed, one after the other.
+// Edges are collapsed below these shares of the target, one share after the other.
 constexpr std::array lengths{0.05, 0.2, 0.5, 0.7};
-// Qualities: a thin tet has at least 1.
+// Qualities. A tet within the bounds on thin tets has at least 1.
 constexpr double good = 1, better = 1.3, least = 1e-12;
 constexpr unsigned most_passes = 4, most_improvements = 3;
-// A pass that changes fewer than this share of the vertices or tets is the last one of its kind.
+// If a pass changes fewer than this share of the vertices or tets, it is the last one of its kind.
 constexpr double least_share = 0.005;
-// Vertices with more tets stay, because all these tets would have to be replaced.
+// Vertices with more tets are not collapsed, because all these tets would have to be replaced.
 constexpr std::size_t most_tets = 400;
 constexpr unsigned most_tries = 12;
 constexpr std::size_t steps_between_reports = 1024;
@@ -122,7 +122,8 @@ bool Relaxation::contract_at(Index vertex, double below, double share) {
   return false;
 }
 
-/// Finds the vertices around a vertex, the longest edge to them, and those that are near enough.
+/// Finds the vertices joined to a vertex by an edge, the longest such edge, and the vertices that are near
+/// enough to collapse onto.
 void Relaxation::find_neighbours(Index vertex, double below) {
   neighbours_.clear();
   for (const Index t : star_)
@@ -213,7 +214,7 @@ bool Relaxation::has_changed_since(Index tet, std::uint32_t when) const {
   return std::ranges::any_of(v, [&](Index w) { return changed_[w] >= when; });
 }
 
-/// Returns whether a tet was tried in vain with these or more means since its corners last changed.
+/// Returns whether improving a tet with these or more means has failed since its corners last changed.
 bool Relaxation::was_tried(Index tet, Means means) const {
   for (auto kind = static_cast<unsigned>(means); kind < kinds_of_means; ++kind) {
     const auto& tried = not_better_[kind];

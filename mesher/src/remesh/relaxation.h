@@ -15,11 +15,10 @@
 
 namespace collarmesh::remeshing {
 
-/// Brings a mesh with any shapes and lengths near to its sizes, so that coarsening and improvement, which
+/// Brings a mesh with any shapes and lengths close to its sizes, so that coarsening and improvement, which
 /// keep bounds, can do the rest.
-///
-/// No operation makes the worst tet around worse than a share of its quality, unless all new ones are good.
-/// Collapses short edges first, shortest first, and improves tets in between; then long edges are divided.
+/// No operation may reduce the quality of the worst tet around below a share of it, unless all new tets are
+/// good. Collapses short edges first, shortest first, and improves tets in between; then divides long edges.
 class Relaxation {
  public:
   /// Keeps the workpiece and the execution by reference; `sizes` are targets at the vertices.
@@ -28,7 +27,7 @@ class Relaxation {
 
   /// Collapses short edges and improves tets, for lengths that grow up to the target.
   void contract();
-  /// Improves tets and collapses the edges that this permits.
+  /// Improves tets and collapses edges where that has become possible.
   void improve();
 
   /// Returns the number of changes.
@@ -39,7 +38,7 @@ class Relaxation {
     double relative_length;
     Index vertex;
   };
-  /// The means of improvement besides removing edges.
+  /// The means of improvement in addition to removing edges.
   enum class Means { edges, moves, vertices };
   static constexpr unsigned kinds_of_means = 3;
 
@@ -69,8 +68,8 @@ class Relaxation {
   std::vector<Near> near_;  // neighbours of the last vertex, by length
   double longest_ = 0;      // longest edge there, relative to the target
   std::size_t contractions_ = 0, others_ = 0, steps_ = 0;
-  // When tets at a vertex last changed, and when an attempt last failed: an attempt is repeated only after a
-  // change.
+  // Times at which tets at a vertex last changed, and at which an attempt last failed. An attempt is repeated
+  // only after a change.
   std::uint32_t now_ = 1;
   std::vector<std::uint32_t> changed_, kept_;                          // by vertex
   std::array<std::vector<std::uint32_t>, kinds_of_means> not_better_;  // by tet

@@ -26,18 +26,21 @@ namespace {
 
 using improvement::Workpiece;
 
-// Each round at least halves the longest edges of most tets; halving alone does not reach far finer sizes.
+// Limits on rounds and passes. Each round at least halves the longest edges of most tets, but halving alone
+// does not reach far finer sizes.
 constexpr unsigned most_rounds = 40, most_passes = 3;
-// A pass of divisions that changes a smaller share of the vertices is the last one.
+// If a pass of divisions changes a smaller share of the vertices, it is the last one.
 constexpr double least_share = 0.01;
-// Edges longer than this times the target are divided: first so that halves are no shorter than an edge that
-// coarsening collapses, later those longer than any edge that coarsening makes.
+// Edges longer than this factor times the target are divided. At first the factor is such that halves are no
+// shorter than the edges that coarsening collapses; later, such that edges made by coarsening are not
+// divided.
 constexpr double longest_at_first = 1.4142, longest_later = coarsening::CoarseningRule::longest_new;
-// Larger than any ratio: then only the worst tet around limits an operation.
+// Larger than any ratio: with this bound only the worst tet around limits an operation.
 constexpr double any_ratio = 1e12;
-// Smaller than any ratio: then angles alone decide, and slivers of a small ratio are forbidden.
+// Smaller than any ratio: with this bound angles alone decide, and slivers with a small ratio are forbidden.
 constexpr double no_ratio = 0.1;
-// Degrees: a mesh whose smallest angle, away from creases and narrow places, is at least this keeps it.
+// If the smallest angle of a mesh, away from creases and narrow places, is at least this (degrees), the mesh
+// keeps it.
 constexpr double good_angle = 15;
 
 /// Thrown if a stage stops early; the result says why.
@@ -81,14 +84,14 @@ class Remeshing {
     made_.remeshing.tets_before = mesh().tets.size();
     measure_before();
     choose_size();
-    options_.mesh.edges_per_hole = 0;  // the existing edges may be all that a hole has
+    options_.mesh.edges_per_hole = 0;  // a hole may have no edges but the existing ones
     if (!options_.mesh.bounds.tolerance)
       options_.mesh.bounds.tolerance = tolerance_of(made_.plc, options_.mesh.bounds, largest_size_);
     choose_bounds();
   }
 
-  /// Chooses the bounds that operations keep: if all angles of the mesh lie within stricter bounds already,
-  /// those.
+  /// Chooses the bounds that operations keep: stricter ones if all angles of the mesh are already within
+  /// them.
   void choose_bounds() {
     kept_ = options_.mesh.bounds;
     for (const double angle : {good_angle, kept_.thin_angle})
@@ -120,7 +123,8 @@ class Remeshing {
     }
   }
 
-  /// Chooses the size: without a size the field alone counts, and without a field the mesh's own lengths.
+  /// Chooses the size. If the options have no size, the field alone counts; without a field, the mesh's own
+  /// lengths count.
   void choose_size() {
     MeshOptions& options = options_.mesh;
     const double diagonal = made_.plc.bounds.diagonal();
@@ -172,7 +176,7 @@ class Remeshing {
     return options;
   }
 
-  /// Divides long edges until there are none, or none that can be divided.
+  /// Divides long edges until none is left, or none of those left can be divided.
   std::size_t refine(bool first) {
     Workpiece piece = workpiece();
     if (first) improve_shapes(piece, false);
@@ -195,7 +199,7 @@ class Remeshing {
   }
 
   /// Improves poor tets by any operation that does not make the worst tet around worse. With `keep_vertices`,
-  /// vertices are inserted and removed only where an angle is above the largest of thin tets.
+  /// vertices are inserted and removed only where an angle is above the largest one of thin tets.
   void improve_shapes(Workpiece& piece, bool keep_vertices) {
     ImproveOptions options = improve_options(2);
     options.bounds = kept_;
@@ -242,8 +246,8 @@ class Remeshing {
     stop_if_asked(made_.check.cancelled);
   }
 
-  /// Removes feature numbers, which would refer to this complex. Tags identify features, as in a mesh from a
-  /// file.
+  /// Removes feature numbers, which would refer to this internal complex. Tags identify features, as in a
+  /// mesh from a file.
   void forget_numbers() {
     for (TetMesh::VertexFeature& feature : mesh().features) feature.feature = none;
     std::fill(mesh().face_patch.begin(), mesh().face_patch.end(), none);

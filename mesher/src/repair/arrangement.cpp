@@ -31,8 +31,8 @@ using namespace facets;
 
 using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
 using ExactPoint = Kernel::Point_3;
-// The number of an inserted point, counted from 1; 0 for a vertex that the triangulation made where
-// constraints cross.
+// The number of an inserted point, counted from 1; 0 for a vertex that the triangulation made at a crossing
+// of constraints.
 struct Inserted {
   Index number = 0;
 };
@@ -44,22 +44,22 @@ using Edge = std::array<Index, 2>;
 
 constexpr std::size_t most_rounds = 12;
 constexpr std::size_t most_places = 100;
-constexpr std::size_t work_of_a_cut = 1000;  // work of cutting a pair of facets, in units of Work
+constexpr std::size_t work_of_a_cut = 1000;  // work of cutting a pair of facets, in units of `Work`
 
 Edge edge_key(Index a, Index b) { return a < b ? Edge{a, b} : Edge{b, a}; }
 
 Point rounded(const ExactPoint& p) {
-  // Round the exact value, so that equal points are rounded to the same doubles.
+  // Rounds the exact value, so that equal points are rounded to the same doubles.
   return {CGAL::to_double(p.x().exact()), CGAL::to_double(p.y().exact()), CGAL::to_double(p.z().exact())};
 }
 
-// Points and segments in a triangle's plane that cut it inside.
+// Points and segments in a triangle's plane that cut its interior.
 struct Cuts {
   std::vector<ExactPoint> points;
   std::vector<std::array<ExactPoint, 2>> segments;
 };
 
-// One round: cuts the pairs that intersect exactly, then rounds.
+// One round of cutting: cuts intersecting pairs exactly, then rounds.
 class Cutter {
  public:
   Cutter(Draft& draft, const EdgeTable& edges, std::span<const Simplex> simplices)
@@ -104,7 +104,7 @@ class Cutter {
   }
 
   // Finds where the sides of s pierce t. Returns false if a corner of one lies in the plane of the other or a
-  // side meets an edge: their constructions handle those.
+  // side meets an edge: other functions construct those points.
   bool find_piercings(const facets::Corners& s, const facets::Corners& t, Index number,
                       std::vector<ExactPoint>& found) {
     const auto at = [&](Index p) -> const Point& { return draft_.points[p]; };
@@ -130,7 +130,7 @@ class Cutter {
     return true;
   }
 
-  // Computes the piercing point once for all triangles at the edge.
+  // Computes a piercing point once for all triangles at the edge.
   ExactPoint piercing(const Edge& edge, const facets::Corners& t, Index number) {
     const auto [at, added] = piercings_.try_emplace({edge[0], edge[1], number});
     if (!added) return at->second;
@@ -158,7 +158,7 @@ class Cutter {
     return true;
   }
 
-  // Adds the cuts of two triangles in one plane: the sides of each cut the other.
+  // Adds the cuts of two triangles in one plane: the sides of each cut the other one.
   bool add_coplanar(const facets::Corners& s, Index i, const facets::Corners& t, Index j) {
     const auto at = [&](Index p) -> const Point& { return draft_.points[p]; };
     for (const Index p : t)
@@ -184,7 +184,7 @@ class Cutter {
       return planar_orientation(axis, draft_.points[p], draft_.points[q], draft_.points[r]);
     };
     const int inwards = turn(t[0], t[1], t[2]);
-    std::array<std::array<int, 3>, 2> within{};  // by end and side
+    std::array<std::array<int, 3>, 2> within{};  // by end and side of the triangle
     for (unsigned end = 0; end < 2; ++end)
       for (unsigned k = 0; k < 3; ++k) within[end][k] = inwards * turn(t[k], t[(k + 1) % 3], e[end]);
     bool along = false;
@@ -194,7 +194,7 @@ class Cutter {
     }
     std::vector<ExactPoint> common;
     for (unsigned end = 0; end < 2; ++end) add_end(e[end], t, within[end], common);
-    std::array<int, 3> beside{};  // by corner: on which side of the edge it lies
+    std::array<int, 3> beside{};  // by corner: the side of the edge on which it lies
     for (unsigned k = 0; k < 3; ++k) beside[k] = turn(e[0], e[1], t[k]);
     for (unsigned k = 0; k < 3; ++k) {
       const unsigned next = (k + 1) % 3;
@@ -219,7 +219,7 @@ class Cutter {
     on_edge_[edge_key(t[k], t[(k + 1) % 3])].push_back(common.back());
   }
 
-  // Computes the crossing once for both edges.
+  // Computes a crossing once for both edges.
   ExactPoint crossing(const Edge& e, const Edge& f, unsigned axis) {
     const auto [at, added] = crossings_.try_emplace(e < f ? std::pair{e, f} : std::pair{f, e});
     if (!added) return at->second;
@@ -279,7 +279,7 @@ class Cutter {
   std::vector<ExactPoint> chain(Index a, Index b) const {
     std::vector<ExactPoint> points{exact(a)};
     if (const auto found = on_edge_.find(edge_key(a, b)); found != on_edge_.end()) {
-      // They are in lexicographic order, which is an order along the edge.
+      // The points are in lexicographic order, which is an order along the edge.
       if (exact(a) < exact(b))
         points.insert(points.end(), found->second.begin(), found->second.end());
       else
@@ -422,7 +422,8 @@ void note_places(const Draft& draft, std::span<const Simplex> simplices,
   }
 }
 
-// Simplices by their corners. Points never move, so simplices with the same corners are at the same place.
+// Finds simplices of earlier rounds by their corners. Points never move, so simplices with the same corners
+// are at the same place.
 class KnownSimplices {
  public:
   void clear() { corners_.clear(); }
@@ -437,10 +438,10 @@ class KnownSimplices {
   std::vector<Corners> corners_;
 };
 
-// Facets without intersections in the last round, which can only intersect facets created since.
+// Facets without intersections in the last round. They can only intersect facets created since.
 class Settled {
  public:
-  /// Returns by number whether the simplex existed and met nothing.
+  /// Returns for each simplex whether it existed in the last round and intersected nothing.
   std::vector<bool> among(std::span<const Simplex> simplices) const {
     std::vector<bool> result;
     if (known_.empty()) return result;
@@ -469,8 +470,8 @@ class GrainSnapper {
   GrainSnapper(Draft& draft, double reach, Work* work, bool cancel)
       : draft_(draft), reach_(reach), work_(work), cancel_(cancel) {}
 
-  // Pauses or resumes snapping after a round that did not help: where snapping undoes cuts, rounds without it
-  // may help.
+  // Pauses or resumes snapping after a round that did not help: if snapping undoes cuts, rounds without
+  // snapping may help.
   void change() { pausing_ = !pausing_; }
   /// Resumes snapping. Returns false if it was not paused, or never snaps.
   bool resume() { return std::exchange(pausing_, false) && reach_ > 0; }
@@ -544,7 +545,7 @@ ArrangementReport arrange(Draft& draft, double grain, Work* work, bool cancel_tw
       report.intersecting_pairs = pairs.size();
       note_places(draft, simplices.list(), pairs, report.places);
     }
-    // Snap what the rounds without snapping left; undo it if facets then intersect.
+    // Snap corners that the rounds without snapping left; undo that if facets intersect afterwards.
     if (report.clean && !clean_before && snapper.resume()) {
       clean_before = draft;
       snapper.run();
@@ -554,7 +555,7 @@ ArrangementReport arrange(Draft& draft, double grain, Work* work, bool cancel_tw
       draft = std::move(*clean_before);
       report.clean = true;
     }
-    // Rounding may increase their number; the rounds then do not converge.
+    // Rounding may increase the number of pairs; the rounds then do not converge.
     if (report.clean || report.rounds == most_rounds || pairs.size() > 2 * fewest + few) return report;
     if (pairs.size() >= fewest) snapper.change();
     fewest = std::min(fewest, pairs.size());

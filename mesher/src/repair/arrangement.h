@@ -8,26 +8,30 @@
 
 namespace collarmesh::repairing {
 
-/// The result of cutting.
+/// The result of cutting facets along their intersections.
 struct ArrangementReport {
-  std::size_t intersecting_pairs = 0;  ///< of triangles, segments and points, in the first round
+  std::size_t intersecting_pairs = 0;  ///< intersecting pairs of triangles, segments and points in the first
+                                       ///< round
   std::size_t cut_triangles = 0;
   std::size_t rounds = 0;
-  bool clean = false;         ///< nothing intersects any more
+  bool clean = false;         ///< no intersection is left
   std::vector<Point> places;  ///< some places where triangles met, in the first round
 };
 
 /// Cuts the triangles and segments of a draft along their intersections until they only meet in common
-/// corners and edges. Constructions are exact, then rounded. Corners that come within `grain` (absolute) of
-/// other corners or edges are merged with them, unless that undoes the cuts; intersections that this causes
-/// are cut in further rounds. Merges that undid cuts are tried once more at the end, and undone if they do so
-/// again. Triangles that cover each other become copies of one: all stay, because their orientations tell
-/// what is inside; copies created from near triangles cancel, unless `cancel_twins` is false. Throws
-/// WorkStopped; the draft is then unusable. Pieces keep their triangle's origin, except `Origin::facet`,
-/// which is renumbered. Cost: O(n log n), and for k intersecting pairs O(k log k) exact constructions.
+/// corners and edges. Points are constructed exactly, then rounded.
+/// Corners that come within `grain` (absolute) of other corners or edges are merged with them, unless that
+/// undoes the cuts; intersections that this causes are cut in further rounds. Merges that undid cuts are
+/// tried once more at the end, and undone if they undo cuts again.
+/// Triangles that cover each other become copies of one triangle: all copies stay, because their orientations
+/// tell what is inside; copies that come from triangles close to each other cancel, unless `cancel_twins` is
+/// false.
+/// Throws WorkStopped; the draft is then unusable. Pieces keep their triangle's origin, except
+/// `Origin::facet`, which is renumbered. Cost: O(n log n), and for k intersecting pairs O(k log k) exact
+/// constructions.
 ArrangementReport arrange(facets::Draft& draft, double grain, Work* work = nullptr, bool cancel_twins = true);
 
-/// Merges points with equal coordinates, and drops the triangles and segments that lose a corner by this.
+/// Merges points with equal coordinates, and drops triangles and segments that thereby lose a corner.
 void unify_equal_points(facets::Draft& draft);
 
 }  // namespace collarmesh::repairing

@@ -15,7 +15,8 @@ namespace {
 
 using namespace facets;
 
-// Returns for each place (connected changed triangles, see `Changes`) the cost of the troubles nearest to it.
+// Returns the cost of each place (connected changed triangles, see `Changes`): the sum over the troubles that
+// are nearest to it.
 std::vector<double> costs(const Draft& draft, const std::vector<Index>& place_of, Index places,
                           const std::vector<Trouble>& troubles, double reach) {
   std::vector<double> cost(places, 0);
@@ -35,7 +36,7 @@ std::vector<double> costs(const Draft& draft, const std::vector<Index>& place_of
   return cost;
 }
 
-// Returns the places of triangles that intersect.
+// Returns the places whose triangles intersect others.
 std::vector<Index> places_that_meet(Draft draft, const std::vector<Index>& place) {
   for (Index t = 0; t < draft.origins.size(); ++t) draft.origins[t].facet = t;
   const EdgeTable edges(draft.triangles, draft.points.size());
@@ -60,7 +61,7 @@ BetterPlaces better_places(const Draft& before, const std::vector<Trouble>& trou
   for (Index p = 0; p < changes.places(); ++p) taken_back[p] = cost_after[p] > cost_before[p];
   BetterPlaces result;
   result.places = changes.places();
-  // Find which changes to undo so that the draft is as clean as before.
+  // Find the changes to undo so that the draft is as clean as before.
   constexpr unsigned most_rounds = 8;
   for (unsigned round = 0;; ++round) {
     std::vector<Index> place;

@@ -10,13 +10,14 @@ namespace collarmesh::repairing {
 /// The result of `better_places`.
 struct BetterPlaces {
   facets::Draft draft;
-  Index places = 0;               ///< number of places that differ
+  Index places = 0;               ///< number of places where the states differ
   std::vector<Point> taken_back;  ///< a point in each place that was restored
 };
 
-/// Returns the later one of two valid states of a draft, except for places that had less trouble before, and
-/// those that meet them. The troubles are those of the complexes of both states; each counts for the nearest
-/// changed triangle, within `reach` (absolute). Precondition: that of `Changes`. Cost: O(n log n).
+/// Combines two valid states of a draft: returns the later one, but restores places that had less trouble
+/// before, and places that would intersect these. The troubles are those of the complexes of both states;
+/// each counts for the nearest changed triangle, within `reach` (absolute). Precondition: as for `Changes`.
+/// Cost: O(n log n).
 BetterPlaces better_places(const facets::Draft& before, const std::vector<Trouble>& troubles_before,
                            const facets::Draft& after, const std::vector<Trouble>& troubles_after,
                            double reach);

@@ -13,7 +13,7 @@ namespace {
 
 using namespace facets;
 
-// A triangle, rotated to its smallest corner, with its soup and tag.
+// A triangle, rotated to begin with its smallest corner, with its soup and tag.
 struct Key {
   Corners corners;
   Index soup;
@@ -55,7 +55,7 @@ Changes::Changes(const Draft& before, const Draft& after) : before_(before), aft
   find_places();
 }
 
-// Marks triangles in both states as unchanged, and all others by 0 for now.
+// Marks triangles that both states have; all others get the temporary mark 0.
 void Changes::match() {
   of_gone_.assign(before_.triangles.size(), none);
   of_come_.assign(after_.triangles.size(), none);
@@ -122,7 +122,8 @@ Draft Changes::without(const std::vector<bool>& taken_back, std::vector<Index>& 
   return mixed;
 }
 
-// Mixes segments: those that differ belong to the place of the triangles at them.
+// Combines the segments of both states: a segment in one state only belongs to the place of the triangles at
+// it.
 void Changes::mix_segments(const std::vector<bool>& taken_back, Draft& mixed) const {
   std::vector<Segment> before = before_.segments, after = after_.segments;
   std::sort(before.begin(), before.end(), in_order);

@@ -7,7 +7,7 @@
 namespace collarmesh::repairing {
 
 /// The difference between two states of a draft, divided into places: removed or added triangles that are
-/// connected by edges. Surfaces stay closed if any of the places is undone; facets may intersect then.
+/// connected by edges. If the changes at a place are undone, surfaces stay closed, but facets may intersect.
 class Changes {
  public:
   /// Keeps both by reference. Precondition: the later state has the points of the earlier one, with the same
@@ -15,12 +15,12 @@ class Changes {
   Changes(const facets::Draft& before, const facets::Draft& after);
 
   Index places() const { return places_; }
-  /// Returns the place by triangle of the earlier or later state; none: both have it.
+  /// Return the place of each triangle of the earlier or the later state; none: both states have it.
   const std::vector<Index>& place_of_gone() const { return of_gone_; }
   const std::vector<Index>& place_of_come() const { return of_come_; }
 
-  /// Returns the later state without the undone places. Sets `place` to the place of each triangle; none:
-  /// both states have it.
+  /// Returns the later state with the changes at some places undone. Sets `place` to the place of each
+  /// triangle; none: both states have it.
   facets::Draft without(const std::vector<bool>& taken_back, std::vector<Index>& place) const;
 
  private:
@@ -32,8 +32,8 @@ class Changes {
 
   const facets::Draft &before_, &after_;
   std::vector<Index> of_gone_, of_come_;
-  std::vector<std::pair<std::array<Index, 2>, Index>> edges_;  // edges of these triangles, and their places;
-                                                               // sorted
+  std::vector<std::pair<std::array<Index, 2>, Index>> edges_;  // edges of changed triangles, and their
+                                                               // places; sorted
   Index places_ = 0;
 };
 

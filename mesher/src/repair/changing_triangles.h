@@ -15,17 +15,18 @@
 
 namespace collarmesh::repairing {
 
-/// The triangles of a draft while some are replaced by others. They keep their numbers. Finds the triangles
-/// at a point, at an edge and near others, and corners near edges, without visiting all of them. Between
-/// calls the draft's points may grow; only these functions may change its triangles.
+/// The triangles of a draft while some are replaced by others. Triangles keep their numbers. Finds the
+/// triangles at a point or an edge, pairs of near triangles, and corners near edges, without visiting all
+/// triangles. Between calls points may be added to the draft, but only these functions may change its
+/// triangles.
 class ChangingTriangles {
  public:
-  /// Makes the lists. Triangles are near each other if their boxes, along the axes of a frame and larger by
-  /// half of `reach` (absolute) on all sides, meet, and each comes within `reach` of the plane of the other.
-  /// Pairs of boxes that meet are spent from `work`.
+  /// Makes the lists. Two triangles are near each other if their boxes meet, along the axes of a frame and
+  /// enlarged by half of `reach` (absolute) on all sides, and if each comes within `reach` of the plane of
+  /// the other. Spends the pairs of boxes that meet from `work`.
   ChangingTriangles(facets::Draft& draft, double reach, Work& work);
 
-  /// Returns how many there are.
+  /// Returns the number of triangles.
   std::size_t count() const { return count_; }
   /// Returns one more than the largest number.
   Index end() const { return static_cast<Index>(draft_.triangles.size()); }
@@ -35,7 +36,8 @@ class ChangingTriangles {
   Index add(const facets::Corners& corners, const facets::Origin& origin);
   void remove(Index triangle);
 
-  /// Calls visit(side) with the sides (3 t + i) that start in this point. Nothing may change meanwhile.
+  /// Calls visit(side) with the sides (3 t + i) that start at this point. The visitor must not change
+  /// triangles.
   template <class Visit>
   void for_each_at(Index point, const Visit& visit) const {
     if (point < first_.size())
@@ -48,9 +50,9 @@ class ChangingTriangles {
   /// Returns the unit normal of a triangle, or zero.
   const Vector& normal(Index triangle) const { return normals_[triangle]; }
 
-  /// Calls visit(s, t), s < t, once for each pair of triangles near each other of which at least one is
-  /// `changed`; the changed ones exist and are in order. Cost: O(k log n + p) for k changed ones and p pairs
-  /// of boxes; O(n log n + p) if k is a large share of n.
+  /// Calls visit(s, t), s < t, once for each pair of near triangles of which at least one is `changed`; the
+  /// changed ones must exist and be in order. Cost: O(k log n + p) for k changed triangles and p pairs of
+  /// boxes; O(n log n + p) if k is a large share of n.
   template <class Visit>
   void for_each_near_pair(const std::vector<Index>& changed, const Visit& visit) {
     std::vector<bool> among(end(), false);
@@ -82,9 +84,10 @@ class ChangingTriangles {
     for (const Index s : changed) trees_.for_each_meeting(box_of(s), [&](Index t) { meet_once(s, t); });
   }
 
-  /// Calls visit(p, edge) for each corner p and each edge without it whose boxes, larger by half of `reach`
-  /// on all sides, meet, if a changed triangle has one of them; several times for some pairs. Corners and
-  /// edges may be gone. Spends these pairs. Cost: as above, however many triangles have a corner.
+  /// Calls visit(p, edge) for each corner p and each edge without it whose boxes meet, enlarged by half of
+  /// `reach` on all sides, if a changed triangle has the corner or the edge; some pairs are visited several
+  /// times. Corners and edges may no longer exist. Spends these pairs. Cost: as above, regardless of the
+  /// number of triangles at a corner.
   template <class Visit>
   void for_each_corner_near_edge(const std::vector<Index>& changed, const Visit& visit) {
     const std::vector<Index> corners = corners_of(changed);
@@ -120,33 +123,35 @@ class ChangingTriangles {
       });
   }
 
-  /// Returns the draft without gaps: triangles stay in order, but get other numbers.
+  /// Returns the draft without gaps: triangles keep their order, but get new numbers.
   facets::Draft compacted() const;
 
  private:
-  static constexpr std::size_t few = 8;  // up to this share of all, changed ones are searched one by one
+  static constexpr std::size_t few = 8;  // if less than one in so many triangles has changed, changed ones
+                                         // are searched one by one
 
   // Returns existing triangles from this number on.
   std::vector<Index> triangles_from(Index first) const;
-  // Returns their corners, each once.
+  // Returns the corners of some triangles, each once.
   std::vector<Index> corners_of(const std::vector<Index>& triangles) const;
   std::vector<Edge> edges_of(const std::vector<Index>& triangles) const;
   static std::array<Edge, 3> edges_of(const facets::Corners& c) {
     return {edge_key(c[0], c[1]), edge_key(c[1], c[2]), edge_key(c[2], c[0])};
   }
   Box box_around(std::span<const Index> points) const;
-  // Returns whether t keeps its distance from the plane of s.
+  // Returns whether t is farther than `reach` from the plane of s.
   bool beyond(Index s, Index t) const;
   void link(Index triangle);
-  /// Returns whether the lists at these points hold sides of existing triangles, and the right number of
-  /// them.
+  /// Returns whether the lists at these points contain sides of existing triangles only, and the right number
+  /// of them.
   bool consistent(const facets::Corners& corners) const;
 
   facets::Draft& draft_;
   double reach_;
   Work& work_;
-  const BoxFrame frame_;                                        // of the boxes
-  bool searched_triangles_ = false, searched_corners_ = false;  // once, without trees, as few had changed
+  const BoxFrame frame_;                                        // axes of the boxes
+  bool searched_triangles_ = false, searched_corners_ = false;  // whether the last search went without trees,
+                                                                // because few triangles had changed
   std::size_t count_ = 0;
   std::vector<bool> alive_;
   std::vector<Vector> normals_;

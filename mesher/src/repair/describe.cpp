@@ -15,7 +15,7 @@ std::string first_place(const RepairPlaces& places) {
 
 const char* plural(std::size_t count) { return count == 1 ? "" : "s"; }
 
-/// Describes how far the facets are from the input.
+/// Describes the distances of the facets from the input.
 std::string moved_text(const RepairReport& r) {
   if (r.largest_distance == 0 && r.largest_distance_of_input == 0) return "repair moved nothing";
   return fmt::format(

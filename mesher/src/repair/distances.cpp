@@ -14,7 +14,7 @@ namespace {
 
 constexpr double spacing_by_diagonal = 0.02;
 
-// Rotates and sorts corners into an order that two copies share.
+// Rotates and sorts corners into an order that is the same for two copies of a triangle.
 CornerPoints canonical(CornerPoints t) {
   const auto key = [](const Point& p) { return std::array{p.x, p.y, p.z}; };
   std::sort(t.begin(), t.end(), [&](const Point& a, const Point& b) { return key(a) < key(b); });
@@ -28,7 +28,7 @@ bool before(const CornerPoints& s, const CornerPoints& t) {
   return false;
 }
 
-// Returns the triangles of which the other surface has no copy.
+// Returns the triangles that the other surface does not have.
 std::vector<CornerPoints> without(std::span<const CornerPoints> triangles,
                                   std::span<const CornerPoints> others) {
   std::vector<CornerPoints> sorted;
@@ -46,8 +46,8 @@ unsigned steps(double length, double spacing) {
   return static_cast<unsigned>(std::clamp(std::ceil(length / spacing), 1.0, most));
 }
 
-// Visits its corners, its centroid, and points on lines along its longest side, no farther apart than the
-// spacing.
+// Visits a triangle's corners, its centroid, and points on lines along its longest side, no farther apart
+// than the spacing.
 template <class Visit>
 void for_each_sample(const CornerPoints& t, double spacing, const Visit& visit) {
   unsigned first = 0;
@@ -134,7 +134,7 @@ KeptVolume kept_volume(std::span<const CornerPoints> input, std::span<const Corn
   KeptVolume kept;
   int inside = 0, unclear = 0, lost = 0;
   for (int i = 0; i < places; ++i) {
-    // M. Roberts' sequence: evenly spread, the same on every machine.
+    // M. Roberts' sequence: its points are evenly spread, and the same on every machine.
     constexpr std::array<double, 3> steps{0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
     Point p;
     for (std::size_t axis = 0; axis < 3; ++axis) {

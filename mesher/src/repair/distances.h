@@ -13,24 +13,24 @@ using CornerPoints = std::array<Point, 3>;
 /// The distances between a repaired surface and its input, absolute.
 struct RepairDistances {
   double of_repaired = 0;  ///< largest distance of a point of the repaired surface from the input
-  double of_input =
-      0;  ///< largest distance from the repaired surface of a point of the input that it does not enclose
-  Point farthest_of_input;  ///< such a point
+  double of_input = 0;  ///< largest distance of the input, except parts that the repaired surface encloses,
+                        ///< from the repaired surface
+  Point farthest_of_input;  ///< a point of the input at this distance
 };
 
-/// Measures both distances, at points of the triangles no farther apart than 1/50 of the diagonal, corners
-/// among them. Triangles in both surfaces are near. Leaves out `filled` triangles of the repaired surface,
-/// which are far from the input by intention, and parts of the input that the repaired surface encloses
-/// (winding number above 1/2), because walls inside are meant to vanish. Cost: O(n log n).
+/// Measures both distances, at the triangles' corners and at further points no farther apart than 1/50 of the
+/// diagonal. Skips triangles that both surfaces have. Leaves out `filled` triangles of the repaired surface,
+/// which are far from the input on purpose, and parts of the input that the repaired surface encloses
+/// (winding number above 1/2), because walls inside solids are meant to vanish. Cost: O(n log n).
 RepairDistances measure_distances(std::span<const CornerPoints> input, std::span<const CornerPoints> repaired,
                                   std::span<const CornerPoints> filled);
 
-/// The part of the volume enclosed by the input that a repaired surface still encloses, by winding numbers at
-/// places all over the box.
+/// The volume that the input encloses, and the part of it that a repaired surface no longer encloses, by
+/// winding numbers at places all over the box.
 struct KeptVolume {
-  double input = 0;  ///< absolute; 0 unless most winding numbers are nearly whole, because otherwise the
+  double input = 0;  ///< absolute; 0 unless most winding numbers are nearly integers, because otherwise the
                      ///< surface is not closed
-  double lost = 0;   ///< lost part of it, absolute
+  double lost = 0;   ///< volume of the lost part, absolute
   Point where;       ///< a place in the lost part, if any
 };
 

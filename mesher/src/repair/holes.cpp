@@ -17,10 +17,10 @@ using namespace facets;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
 constexpr std::size_t most_edges_for_cubic_time = 200;
-constexpr std::size_t work_of_an_edge = 1000;  // work of an edge around a hole, in units of Work
+constexpr std::size_t work_of_an_edge = 1000;  // work of an edge around a hole, in units of `Work`
 
-// The directed edges, by soup, that lack a partner: the missing surface would have an edge from their end to
-// their start.
+// The directed edges, by soup, that lack a partner. The missing surface would use them in the opposite
+// direction.
 struct OpenEdges {
   std::map<Index, std::vector<std::array<Index, 3>>> of_soup;  // from, to, a triangle there
 };
@@ -28,7 +28,8 @@ struct OpenEdges {
 OpenEdges find_open_edges(const Draft& draft) {
   OpenEdges open;
   const EdgeTable edges(draft.triangles, draft.points.size());
-  std::vector<std::pair<Index, int>> balance;  // soup, number of uses upwards minus downwards
+  std::vector<std::pair<Index, int>> balance;  // soup, and number of uses in ascending minus descending
+                                               // direction
   for (Index e = 0; e < edges.size(); ++e) {
     balance.clear();
     for (const Index side : edges.sides(e)) {
@@ -52,7 +53,7 @@ OpenEdges find_open_edges(const Draft& draft) {
   return open;
 }
 
-// Compares points by coordinates: an order that does not depend on the order of points and facets.
+// Compares points by coordinates, so that the result does not depend on the order of points and facets.
 bool comes_before(const Draft& draft, Index p, Index q) {
   const Point &a = draft.points[p], &b = draft.points[q];
   return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
@@ -60,7 +61,7 @@ bool comes_before(const Draft& draft, Index p, Index q) {
 
 using Loop = std::vector<std::array<Index, 3>>;
 
-// Rotates the loop so that it starts at its first point in this order.
+// Rotates the loop so that it starts at the first of its points by `comes_before`.
 void start_first(const Draft& draft, Loop& loop) {
   const auto first = std::min_element(loop.begin(), loop.end(), [&](const auto& e, const auto& f) {
     return comes_before(draft, e[0], f[0]);
@@ -68,8 +69,8 @@ void start_first(const Draft& draft, Loop& loop) {
   std::rotate(loop.begin(), first, loop.end());
 }
 
-// Finds closed curves of directed edges; where several meet in a point they are separated. The edges are
-// ordered by coordinates, so the curves and their starts do not depend on the order of the facets.
+// Finds closed curves of directed edges, and separates curves that meet in a point. The edges are ordered by
+// coordinates, so the curves and their starts do not depend on the order of the facets.
 std::vector<Loop> find_loops(const Draft& draft, std::vector<std::array<Index, 3>> edges) {
   std::sort(edges.begin(), edges.end(), [&](const auto& e, const auto& f) {
     if (comes_before(draft, e[0], f[0])) return true;
@@ -122,7 +123,7 @@ class SurfaceAreas {
   std::map<Index, double> area_;
 };
 
-// Returns a lower bound on the area of surfaces with this border: the length of its area vector.
+// Returns a lower bound on the area of surfaces with this border: the length of the border's area vector.
 double least_area(const Draft& draft, const Loop& loop) {
   const Point& origin = draft.points[loop[0][0]];
   Vector twice{};
@@ -132,7 +133,7 @@ double least_area(const Draft& draft, const Loop& loop) {
 }
 
 std::vector<Corners> triangulate(const Draft& draft, const Loop& loop) {
-  // The hole's triangles run against the edges around it.
+  // The hole's triangles use the edges around it in the opposite direction.
   std::vector<Index> corners;
   corners.reserve(loop.size());
   for (auto e = loop.rbegin(); e != loop.rend(); ++e) corners.push_back((*e)[1]);
@@ -155,7 +156,7 @@ std::vector<Corners> triangulate(const Draft& draft, const Loop& loop) {
   triangles.reserve(faces.size());
   const auto at = [&](int i) { return corners[static_cast<std::size_t>(i)]; };
   for (const Face& face : faces) triangles.push_back({at(face.a), at(face.b), at(face.c)});
-  // The first edge shows how the library has oriented them.
+  // The first edge shows which orientation the library has chosen.
   for (const Corners& t : triangles)
     for (unsigned i = 0; i < 3; ++i)
       if (t[i] == corners[1] && t[(i + 1) % 3] == corners[0]) {

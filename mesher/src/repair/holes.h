@@ -9,17 +9,17 @@
 
 namespace collarmesh::repairing {
 
-/// Closes the holes of each surface: closed curves of edges that one triangle has. They are filled with
-/// triangles between their points that turn and spread little (CGAL's triangulation of holes). Each hole gets
-/// its own tag, from `first_tag` on. A curve whose filling would need more than `largest_share` of the area
-/// of the surface around it is no hole, but the border of an open sheet. Neither holes nor tags depend on the
-/// order of points and facets. Throws WorkStopped; the draft is then unusable. Cost: for a hole of k edges
-/// O(k^2) in practice.
+/// Closes the holes of each surface: closed curves of edges that only one triangle has. Fills them with
+/// triangles between their points, with small dihedral angles and areas (CGAL's triangulation of holes). Each
+/// hole gets its own tag, from `first_tag` on. A curve counts as the border of an open sheet, not as a hole,
+/// if its filling would need more than `largest_share` of the area of the surface around it. Neither holes
+/// nor tags depend on the order of points and facets. Throws WorkStopped; the draft is then unusable. Cost:
+/// for a hole of k edges O(k^2) in practice.
 std::vector<FilledHole> fill_holes(facets::Draft& draft, Tag first_tag, Work* work = nullptr,
                                    double largest_share = 0.6);
 
-/// Returns the number of edges that only one triangle of a soup has (more precisely: that are used in one
-/// direction more often than in the other).
+/// Returns the number of edges that only one triangle of a soup has (more precisely: edges that the soup uses
+/// more often in one direction than in the other).
 std::size_t count_open_edges(const facets::Draft& draft);
 
 }  // namespace collarmesh::repairing

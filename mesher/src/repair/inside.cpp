@@ -19,7 +19,7 @@ using namespace facets;
 
 constexpr std::size_t most_places = 100;
 constexpr std::size_t most_asked =
-    3;  // triangles of a shell, a patch or a component at which the winding number is computed
+    3;  // number of triangles of a shell, a patch or a component at which the winding number is computed
 
 Point centroid(const Draft& draft, const Corners& t) {
   return (1.0 / 3) * (draft.points[t[0]] + draft.points[t[1]] + draft.points[t[2]]);
@@ -37,7 +37,7 @@ bool turned_against(const Corners& a, const Corners& b) {
   return b[(at + 1) % 3] != a[1];
 }
 
-// The largest few of some triangles.
+// Keeps the largest few of some triangles.
 class Largest {
  public:
   static constexpr std::size_t count = 24;
@@ -58,8 +58,8 @@ class Largest {
   std::vector<std::pair<double, Index>> items_;
 };
 
-// The triangles of a clean arrangement, with copies merged: a sheet has the corners and the orientation of
-// the first of its copies.
+// The triangles of a clean arrangement, with copies merged into sheets. A sheet has the corners and the
+// orientation of the first of its copies.
 struct Sheets {
   struct Copy {
     Index triangle;
@@ -121,7 +121,8 @@ class BoundaryKeeper {
       if (draft_.soup_is_complex[origin(copy).soup]) return true;
     return false;
   }
-  // Returns how often the soup's triangles cover the sheet; opposite ones count negatively.
+  // Returns how often the soup's triangles cover the sheet; triangles of opposite orientation count
+  // negatively.
   int weight(Index sheet, Index soup) const {
     int sum = 0;
     for (const Sheets::Copy& copy : sheets_.of(sheet))
@@ -138,7 +139,7 @@ class BoundaryKeeper {
            ascending(sheets_.unique.triangles, sides[0]) != ascending(sheets_.unique.triangles, sides[1]);
   }
 
-  // Finds clusters of sheets connected by edges; a cluster is tangled if any of its edges is not plain.
+  // Finds clusters of sheets connected by edges. A cluster is tangled if any of its edges is not plain.
   void find_clusters() {
     DisjointSets sets(sheets_.size());
     std::vector<bool> tangled(sheets_.size(), false);
@@ -150,7 +151,7 @@ class BoundaryKeeper {
     for (Index s = 0; s < sheets_.size(); ++s) tangled_[s] = tangled[sets.find(s)];
   }
 
-  // Finds patches of sheets connected by edges that have two sheets.
+  // Finds patches: sheets connected by edges that have two sheets.
   void find_patches() {
     DisjointSets sets(sheets_.size());
     for (Index e = 0; e < edges_.size(); ++e)
@@ -181,7 +182,7 @@ class BoundaryKeeper {
     return soups;
   }
 
-  // Labels the shells that are inside this soup and no earlier one.
+  // Labels the shells that are inside this soup and inside no earlier one.
   void weigh(Index soup) {
     std::vector<int> weights(sheets_.size());
     for (Index s = 0; s < sheets_.size(); ++s) weights[s] = weight(s, soup);
@@ -213,9 +214,9 @@ class BoundaryKeeper {
     return WindingNumber(std::move(triangles));
   }
 
-  // Removes open sheets: patches at edges where the soup is open bound nothing if the winding number there,
-  // without them, is that of a single place and not the mean of inside and outside. Starts with the smallest
-  // one: half a box with a wall inside is closed without the other half, too.
+  // Removes open sheets: patches at edges where the soup is open. Such a patch bounds nothing if the winding
+  // number there, without the patch, is that of a single place and not the mean of inside and outside. Starts
+  // with the smallest patch: half a box with a wall inside stays closed without the other half, too.
   void remove_open_sheets(Index soup, std::vector<int>& weights) {
     constexpr std::size_t most = 100;
     for (std::size_t count = 0; count < most; ++count) {
@@ -227,10 +228,10 @@ class BoundaryKeeper {
     }
   }
 
-  // Returns the patches without which the soup has fewer open edges, by length; small ones first.
+  // Returns the patches whose removal reduces the length of the soup's open edges, small ones first.
   std::vector<Index> open_patches(const std::vector<int>& weights) const {
     std::map<Index, double> gain;
-    std::vector<std::pair<Index, int>> own;  // patches at the edge
+    std::vector<std::pair<Index, int>> own;  // the soup's patches at the edge
     for (Index e = 0; e < edges_.size(); ++e) {
       int sum = 0;
       own.clear();
@@ -290,11 +291,11 @@ class BoundaryKeeper {
     });
   }
 
-  // The space that a shell encloses, as seen from its chamber.
+  // The space that a shell encloses.
   struct Chamber {
     Point origin;
     double volume = 0, area = 0;
-    std::vector<std::pair<Index, double>> neighbours;  // shells across, and the common area
+    std::vector<std::pair<Index, double>> neighbours;  // shells on the other side, and the common area
   };
 
   std::map<Index, Chamber> thin_chambers() const {
@@ -318,14 +319,14 @@ class BoundaryKeeper {
     return chambers;
   }
 
-  // Gives each thin chamber the label with which it has the largest common area, starting beside thick
+  // Gives each thin chamber the label with which it has the largest common area, beginning beside thick
   // chambers.
   void give_away_thin_chambers() {
     std::map<Index, Chamber> left = thin_chambers();
     while (!left.empty()) {
       std::vector<std::pair<Index, Index>> labelled;
       for (const auto& [shell, chamber] : left) {
-        std::map<Index, double> area;  // by label
+        std::map<Index, double> area;  // common area by label
         for (const auto& [neighbour, common] : chamber.neighbours)
           if (left.count(neighbour) == 0) area[label_[neighbour]] += common;
         if (area.empty()) continue;
@@ -333,7 +334,7 @@ class BoundaryKeeper {
                                            [](const auto& a, const auto& b) { return a.second < b.second; });
         labelled.emplace_back(shell, most->first);
       }
-      if (labelled.empty()) return;  // only thin ones beside each other
+      if (labelled.empty()) return;  // only thin chambers are left, beside each other
       for (const auto& [shell, label] : labelled) {
         if (label_[shell] != label) {
           report_.chamber_volume += left.at(shell).volume;
@@ -384,7 +385,7 @@ class BoundaryKeeper {
     draft_.origins = std::move(origins);
   }
 
-  // Returns the origin of the soup's own copy, if it has one.
+  // Returns the origin of the soup's own copy of the sheet, if there is one.
   Origin origin_for(Index sheet, Index soup) const {
     for (const Sheets::Copy& copy : sheets_.of(sheet))
       if (origin(copy).soup == soup) return origin(copy);
@@ -394,19 +395,19 @@ class BoundaryKeeper {
   Draft& draft_;
   double thickness_;
   Sheets sheets_;
-  EdgeTable edges_;            // of the sheets
+  EdgeTable edges_;            // edges of the sheets
   std::vector<bool> tangled_;  // by sheet
   std::vector<Index> patch_;   // by sheet
   std::vector<Index> shell_;   // by side of a sheet
-  std::vector<Index> label_;   // by shell: the soup that contains it, none outside all
+  std::vector<Index> label_;   // by shell: the soup that contains it; none if it is outside all
   std::map<Index, Largest> largest_of_shell_, largest_of_patch_;
-  std::vector<std::pair<Index, Index>> walls_;  // patch and soup
+  std::vector<std::pair<Index, Index>> walls_;  // pairs of a patch and its soup
   InsideReport report_;
 };
 
-// Triangles connected by edges that two triangles of one soup share.
+// Components: triangles connected by edges that two triangles of one soup share.
 struct Components {
-  std::vector<Index> of;  // by triangle: the first one of its component
+  std::vector<Index> of;  // by triangle: the first triangle of its component
   std::map<Index, std::vector<Index>> triangles;
   std::map<Index, bool> closed;
 
@@ -441,7 +442,7 @@ struct Components {
 
 bool peels_away(const Draft& draft) {
   const EdgeTable edges(draft.triangles, draft.points.size());
-  std::vector<std::size_t> left(edges.size());  // number of triangles left at the edge
+  std::vector<std::size_t> left(edges.size());  // number of triangles that remain at the edge
   std::vector<bool> gone(draft.triangles.size(), false);
   std::vector<Index> open;
   for (Index e = 0; e < edges.size(); ++e) {
@@ -531,7 +532,7 @@ FlakeReport drop_flakes(Draft& draft, double thickness) {
     report.places.push_back(centroid(draft, draft.triangles[component]));
   }
   if (report.places.empty()) return report;
-  if (report.places.size() == components.triangles.size()) return {};  // all components would be dropped
+  if (report.places.size() == components.triangles.size()) return {};  // do not drop everything
   std::size_t kept = 0;
   for (Index t = 0; t < draft.triangles.size(); ++t) {
     if (dropped[t]) continue;

@@ -16,15 +16,15 @@ std::vector<Box> boxes_of(const std::vector<Item>& items, const BoxOf& box_of) {
   return boxes;
 }
 
-/// Boxes of items that belong to numbered triangles: a tree of most of them, and a tree of later ones. Items
-/// may be gone, or be in both.
+/// Boxes of items that belong to numbered triangles: one tree of most items, and one of later items. The
+/// trees may contain items that no longer exist, and some items twice.
 template <class Item>
 class ItemTrees {
  public:
   bool empty() const { return !all_.tree; }
 
   /// Puts the items of all triangles into the trees. `items_from(t)` returns the items of triangles from
-  /// number t on, `box_of(item)` their boxes; `end` is one more than the largest number, `count` the number
+  /// number t on, `box_of(item)` an item's box; `end` is one more than the largest number, `count` the number
   /// of triangles.
   template <class ItemsFrom, class BoxOf>
   void renew(Index end, std::size_t count, const ItemsFrom& items_from, const BoxOf& box_of) {
@@ -43,12 +43,13 @@ class ItemTrees {
   }
 
  private:
-  static constexpr std::size_t few = 8;  // largest share of later items
+  static constexpr std::size_t few = 8;  // a new large tree is built when later items are more than one in so
+                                         // many
 
   struct Tree {
     std::vector<Item> items;
     std::unique_ptr<BoxTree> tree;
-    Index end = 0;  // it holds the items of triangles below this number
+    Index end = 0;  // the large tree holds the items of triangles below this number
 
     template <class BoxOf>
     void build(std::vector<Item> new_items, const BoxOf& box_of, Index new_end) {

@@ -7,19 +7,20 @@
 
 namespace collarmesh::repairing {
 
-/// Returns a place where a valid complex has features below a tolerance (absolute), if there is one: shorter
-/// curves, features that come as close without meeting, and patches that meet at such a small angle that they
-/// stay as close all along. Cost: O(n log n + k) for k pairs of near neighbours.
+/// Returns a place where a valid complex has features below a tolerance (absolute), if there is one: curves
+/// that are shorter, features that come closer without meeting, and patches that meet at such a small angle
+/// that they stay closer everywhere. Cost: O(n log n + k) for k pairs of near neighbours.
 std::optional<Point> find_noise(const Plc& plc, double tolerance);
 
 /// A place that makes refinement expensive.
 struct Trouble {
   Point where;
-  double cost;  ///< any unit
+  double cost;  ///< relative to other costs
 };
 
-/// Returns features below a tolerance (absolute), the first of near ones, and creases of less than a degree,
-/// which cost more the sharper they are. Cost: O(n log n + k) for k pairs of near neighbours.
+/// Returns features below a tolerance (absolute) and creases of less than a degree, which cost more the
+/// sharper they are. Of troubles near each other only the first is returned. Cost: O(n log n + k) for k pairs
+/// of near neighbours.
 std::vector<Trouble> find_troubles(const Plc& plc, double tolerance);
 
 }  // namespace collarmesh::repairing

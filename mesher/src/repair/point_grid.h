@@ -8,16 +8,17 @@
 
 namespace collarmesh::repairing {
 
-/// Points in a hashed grid, to find those within a distance.
+/// Points in a hashed grid, for finding points within a distance.
 class PointGrid {
  public:
-  /// `reach` is absolute and positive. The points may grow in number, but not move, while the grid is in use.
+  /// Makes an empty grid. `reach` is absolute and positive. While the grid is in use, points may be appended,
+  /// but must not move.
   PointGrid(const std::vector<Point>& points, double reach);
 
   void add(Index p);
 
-  /// Returns the nearest point within the reach that `accept(point)` takes; among equally near ones the
-  /// lexicographically first; `none` if there is none.
+  /// Returns the nearest point within the reach that `accept(point)` accepts; among equally near points the
+  /// lexicographically first one; `none` if there is none.
   template <class Accept>
   Index nearest(const Point& p, const Accept& accept) const {
     Index best = none;
@@ -52,7 +53,7 @@ class PointGrid {
 
   std::uint64_t mask() const { return first_.size() - 1; }
   std::int64_t cell(double x) const;
-  // Returns the key of a cell. Cells that share a key only cost time.
+  // Returns the key of a cell. Different cells may share a key, which only costs time.
   static std::uint64_t key(std::int64_t x, std::int64_t y, std::int64_t z);
   bool before(Index p, Index q) const;
   void grow();
@@ -71,7 +72,7 @@ class PointGrid {
 
   const std::vector<Point>& points_;
   double reach_;
-  std::vector<Index> first_;  // by key: first entry of a chain
+  std::vector<Index> first_;  // by key: first entry of a linked list
   std::vector<Entry> entries_;
 };
 

@@ -34,7 +34,7 @@ class PolygonCutter {
     } catch (const PlaneTriangulation::Intersection_of_constraints_exception&) {
       return std::nullopt;
     }
-    if (mesh_.dimension() < 2) return std::nullopt;  // all points lie in one line
+    if (mesh_.dimension() < 2) return std::nullopt;  // all points lie on one line
     mark_outside();
     return triangles();
   }
@@ -42,7 +42,7 @@ class PolygonCutter {
  private:
   Index next(std::size_t i) const { return cuts_.border[(i + 1) % cuts_.border.size()]; }
 
-  // Inserts a point. Returns false if it lies above another one.
+  // Inserts a point. Returns false if it coincides with another one in the projection.
   bool insert(Index p) {
     const auto [at, added] = handles_.try_emplace(p);
     if (!added) return true;
@@ -75,10 +75,10 @@ class PolygonCutter {
     }
   }
 
-  // Returns the triangles; nothing unless their border is the polygon.
+  // Returns the triangles; nothing if their border is not the polygon.
   std::optional<std::vector<facets::Corners>> triangles() const {
     std::vector<facets::Corners> result;
-    std::set<Edge> sides;  // directed
+    std::set<Edge> sides;  // directed sides of the triangles
     for (const auto face : mesh_.finite_face_handles()) {
       if (face->info()) continue;
       facets::Corners t{face->vertex(0)->info(), face->vertex(1)->info(), face->vertex(2)->info()};

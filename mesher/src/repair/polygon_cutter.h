@@ -20,9 +20,9 @@ struct PolygonCuts {
   std::vector<Edge> edges;    ///< edges between any of these points
 };
 
-/// Returns the constrained Delaunay triangulation of a polygon that is nearly planar, as seen along `normal`,
-/// with the points and edges inside. The triangles are oriented like the polygon. Returns nothing if points
-/// coincide or edges cross, as seen along the normal.
+/// Returns the constrained Delaunay triangulation of a nearly planar polygon, as seen along `normal`, with
+/// the points and edges inside it. The triangles are oriented like the polygon. Returns nothing if points
+/// coincide or edges cross in this projection.
 std::optional<std::vector<facets::Corners>> cut_polygon(const std::vector<Point>& points,
                                                         const Vector& normal, const PolygonCuts& cuts);
 

@@ -45,9 +45,9 @@ constexpr std::size_t most_places = 100;
 constexpr std::size_t most_rounds = 6;
 // Borders are stitched over at most this share of the diagonal: wider gaps are intended.
 constexpr double widest_stitch = 1e-3;
-// A result with more than this share of the area in open sheets is no repair of a solid.
+// If more than this share of the area is in open sheets, the result is no repair of a solid.
 constexpr double most_in_open_sheets = 0.5;
-constexpr double grain = 1e-3;  // of the arrangement, relative to the tolerance
+constexpr double grain = 1e-3;  // merging distance of the arrangement, relative to the tolerance
 
 void add_places(RepairPlaces& places, std::size_t count, double size, const std::vector<Point>& where) {
   places.count += count;
@@ -56,7 +56,7 @@ void add_places(RepairPlaces& places, std::size_t count, double size, const std:
     if (places.where.size() < most_places) places.where.push_back(p);
 }
 
-// Returns the error of coordinates that were stored in 32 bits, absolute; 0 if some were not.
+// Returns the error of coordinates that were stored in 32 bits, absolute; 0 unless all were.
 double single_precision_error(std::span<const PolygonSoup> soups) {
   double farthest = 0;
   for (const PolygonSoup& soup : soups)
@@ -65,7 +65,7 @@ double single_precision_error(std::span<const PolygonSoup> soups) {
         if (static_cast<double>(static_cast<float>(p[axis])) != p[axis]) return 0;
         farthest = std::max(farthest, std::fabs(p[axis]));
       }
-  constexpr double half_unit = 6e-8;  // 2^-24
+  constexpr double half_unit = 6e-8;  // about 2^-24
   return half_unit * farthest;
 }
 
@@ -76,8 +76,8 @@ struct LostVolume : PlcError {
 
 class Repairer {
  public:
-  /// Solids: fills holes, and drops parts that enclose nothing. Sheets: keeps everything, including open
-  /// borders, and cuts intersections.
+  /// What is repaired. Solids: fills holes, and drops parts that enclose nothing. Sheets: keeps everything,
+  /// including open borders, and cuts intersections.
   enum class Of { solids, sheets };
 
   Repairer(std::span<const PolygonSoup> soups, const RepairOptions& options, const PlcOptions& complex,
@@ -96,14 +96,15 @@ class Repairer {
   }
 
   std::span<const PolygonSoup> input() const { return soups_; }
-  double tolerance() const { return tolerance_; }  // absolute
+  double tolerance() const { return tolerance_; }  // the tolerance that is used, absolute
   /// Returns whether all sheets are open and do not even meet, or most of the area is in open sheets.
   bool encloses_nothing() const { return encloses_nothing_; }
 
-  /// Measures the volume of surfaces that are closed, or nearly so; measures nothing if no part of the input
-  /// that is far from the result lies outside it.
+  /// Measures how much of the input's volume is kept, for surfaces that are closed or nearly so. Measures
+  /// nothing if parts of the input outside the result are all near it, because little volume can be lost
+  /// then.
   KeptVolume kept_volume(const RepairReport& report) const {
-    constexpr double far = 10;  // tolerances
+    constexpr double far = 10;  // in tolerances
     const bool any_complex = std::ranges::any_of(draft_.soup_is_complex, [](bool b) { return b; });
     if (any_complex || report.largest_distance_of_input < far * tolerance_) return {};
     std::vector<CornerPoints> repaired;
@@ -112,7 +113,7 @@ class Repairer {
     return repairing::kept_volume(input_triangles_, repaired);
   }
 
-  /// Measures how far the result is from the input.
+  /// Measures the distances between the result and the input.
   void measure(RepairReport& report) const {
     std::set<Tag> fills;
     for (const FilledHole& hole : report.filled) fills.insert(hole.tag);
@@ -182,7 +183,7 @@ class Repairer {
     orient_components(draft_, edges, one_sided);
   }
 
-  // Stitches borders that nearly meet; fills those that stay open if they are holes.
+  // Stitches borders that nearly meet; then fills open borders that are holes.
   void close() {
     std::size_t open = count_open_edges(draft_);
     for (const double factor : {1.0, 10.0, 100.0}) {
@@ -203,7 +204,8 @@ class Repairer {
       orient_components(draft_, edges, one_sided);
       report_.filled = fill_holes(draft_, next_tag(), &work_);
     }
-    if (!is_two_sided(draft_)) {  // otherwise its faces alone may be closed, as two sides of nothing
+    if (!is_two_sided(draft_)) {  // if it is two-sided, only the faces may seem closed, as two sides of an
+                                  // open surface
       const FlakeReport flakes = drop_flakes(draft_, tolerance_);
       add_places(report_.flakes, flakes.places.size(), flakes.volume, flakes.places);
     }
@@ -211,7 +213,7 @@ class Repairer {
     add_places(report_.turned, turned.turned_components, 0, turned.places);
   }
 
-  // Returns a tag that the input does not use; tags of CAD faces are their numbers.
+  // Returns a tag that the input does not use; CAD faces have their numbers as tags.
   Tag next_tag() const {
     Tag tag = 0;
     for (const PolygonSoup& soup : soups_)
@@ -219,7 +221,7 @@ class Repairer {
     return tag + 1;
   }
 
-  /// The state of the draft. Once clean, it stays clean.
+  /// The state of the draft. Once it is clean, steps must keep it clean.
   struct State {
     Draft draft;
     RepairReport report;
@@ -237,7 +239,7 @@ class Repairer {
     const State valid = state();
     try_on([&] { snap_in_rounds(); });
     // Cutting leaves corners that almost touch other facets. Within a small part of the tolerance there are
-    // few such places, so this settles.
+    // few of them, so snapping settles.
     try_on([&] {
       const State clean = state();
       if (!collapse(grain * tolerance_).changed() || !cut_and_keep()) restore(clean);
@@ -245,7 +247,7 @@ class Repairer {
     keep_better_places(valid);
   }
 
-  /// Tries a step; if it takes too much work, the repair stays as it was.
+  /// Tries a step. If it takes too much work, restores the state before it.
   template <class Step>
   void try_on(const Step& step) {
     State clean = state();
@@ -258,8 +260,8 @@ class Repairer {
     restore(std::move(clean));
   }
 
-  // Snaps in rounds, because cutting undoes some of the snapping. Keeps the round that leaves the least to
-  // snap. If snapping spoils a clean draft, tries a smaller distance.
+  // Snaps in rounds, because cutting undoes some of the snapping. Keeps the round that leaves the fewest
+  // places to snap. If snapping spoils a clean draft, tries a smaller distance.
   void snap_in_rounds() {
     constexpr std::size_t most_worse = 2;
     double reach = tolerance_;
@@ -316,8 +318,8 @@ class Repairer {
     }
   }
 
-  // Cuts facets that nearly coincide: rounding their cuts would make ever more intersections, so they are
-  // made to coincide first, moving no farther than needed.
+  // Cuts facets that nearly coincide. Rounding their cuts would make ever more intersections, so they are
+  // first snapped together, within the smallest distance that helps.
   bool cut_what_nearly_coincides() {
     const Draft before = draft_;
     const RepairReport report_before = report_;
@@ -342,7 +344,7 @@ class Repairer {
     const ArrangementReport arranged = arrange(draft_, grain * tolerance_, &work_, !two_sided);
     if (report_.cut.count == 0) add_places(report_.cut, arranged.intersecting_pairs, 0, arranged.places);
     if (!arranged.clean) return false;
-    if (of_ == Of::sheets) {  // one of several that cover each other stays
+    if (of_ == Of::sheets) {  // of triangles that cover each other, one stays
       drop_repeated(draft_);
       return true;
     }
@@ -365,7 +367,7 @@ class Repairer {
     return true;
   }
 
-  // Returns lost tags of facets; tags of CAD faces are their numbers, not groups.
+  // Returns the lost tags of facets. Tags of CAD faces are their numbers, not groups.
   std::vector<Tag> lost_tags(const std::vector<PolygonSoup>& repaired, bool only_groups) const {
     std::set<Tag> before, after;
     for (const PolygonSoup& soup : soups_)
@@ -378,21 +380,21 @@ class Repairer {
     return lost;
   }
 
-  std::span<const PolygonSoup> soups_;  // as they came in
+  std::span<const PolygonSoup> soups_;  // the soups before the repair
   const RepairOptions& options_;
   const PlcOptions& complex_;
   Of of_;
   Draft draft_;
   std::vector<CornerPoints> input_triangles_;
-  double tolerance_ = 0;  // absolute
+  double tolerance_ = 0;  // absolute; the tolerance that is used
   Index first_new_point_ = none;
   bool encloses_nothing_ = false;
   Work work_;
   RepairReport report_;
 };
 
-// Returns the options for a try of `build_repaired_plc`. If the soups can be wrapped in the end, earlier
-// tries are not worth much work.
+// Returns the options for one try of `build_repaired_plc`. If the soups can be wrapped in the end, earlier
+// tries get less work.
 RepairOptions for_try(RepairOptions options, double factor) {
   constexpr std::size_t share_of_work = 4;
   options.tolerance *= factor;
@@ -400,7 +402,7 @@ RepairOptions for_try(RepairOptions options, double factor) {
   return options;
 }
 
-// Adds the tags of regions that the soups give, but the complex does not have.
+// Adds the tags of regions that the soups have, but the complex does not.
 RepairedPlc with_lost_regions(RepairedPlc complex, std::span<const PolygonSoup> soups) {
   std::set<Tag> given, there;
   for (const PolygonSoup& soup : soups) {
@@ -414,7 +416,7 @@ RepairedPlc with_lost_regions(RepairedPlc complex, std::span<const PolygonSoup> 
   return complex;
 }
 
-// Returns warnings of lines of soups without facets that are no curves of the complex.
+// Returns warnings of lines that are no curves of the complex, in soups without facets.
 std::vector<Plc::Warning> lost_lines(std::span<const PolygonSoup> soups, const Plc& plc) {
   std::map<Tag, Point> lost;
   for (const PolygonSoup& soup : soups)
@@ -432,7 +434,7 @@ std::vector<Plc::Warning> lost_lines(std::span<const PolygonSoup> soups, const P
   return warnings;
 }
 
-// Throws LostVolume if most of the volume would be lost, otherwise reports the lost volume.
+// Throws LostVolume if most of the volume would be lost; otherwise adds a warning of the lost volume.
 void judge_volume(const KeptVolume& kept, Plc& plc) {
   constexpr double most = 0.5, told = 0.05;
   if (kept.lost > most * kept.input)
@@ -448,7 +450,7 @@ void judge_volume(const KeptVolume& kept, Plc& plc) {
          kept.where});
 }
 
-// Builds the complex of the repaired soups, and measures how far it is from the input. Throws PlcError.
+// Builds the complex of the repaired soups, and measures its distances from the input. Throws PlcError.
 RepairedPlc judged(const Repairer& repairer, RepairResult result, const PlcOptions& options) {
   RepairedPlc complex{build_plc(result.soups, options), std::move(result.report), std::move(result.soups)};
   number_untagged(repairer.input(), complex.plc);
@@ -462,7 +464,7 @@ RepairedPlc judged(const Repairer& repairer, RepairResult result, const PlcOptio
   return with_lost_regions(std::move(complex), repairer.input());
 }
 
-/// Builds the complex of sheets, cut where they intersect. Throws PlcError if they cannot be cut.
+/// Builds the complex of sheets that are cut where they intersect. Throws PlcError if they cannot be cut.
 RepairedPlc build_cut_sheets(std::span<const PolygonSoup> soups, const PlcOptions& options,
                              const RepairOptions& repair_options, const Execution& execution,
                              const PlcError& fault) {
@@ -537,7 +539,7 @@ RepairedPlc remove_noise(Plc plc, std::span<const PolygonSoup> soups, const PlcO
       compare_regions(plc, complex);
       return complex;
     } catch (const PlcError&) {
-      // The complex is valid without this repair.
+      // The complex is valid without this repair, so it is kept.
     }
   }
   plc.warnings.push_back(
@@ -574,7 +576,7 @@ RepairedPlc build_repaired_plc(std::span<const PolygonSoup> soups, const PlcOpti
   std::optional<std::string> lost_volume;
   bool are_sheets = false;
   for (const double factor : {1.0, 10.0, 0.1}) {
-    if (factor < 1 && !lost_volume) break;  // a finer one may keep more
+    if (factor < 1 && !lost_volume) break;  // a smaller tolerance may keep more
     const RepairOptions other = for_try(repair_options, factor);
     Repairer repairer(soups, other, options, execution);
     RepairResult result = repairer.run();
@@ -597,7 +599,7 @@ RepairedPlc build_repaired_plc(std::span<const PolygonSoup> soups, const PlcOpti
     }
   }
   if (are_sheets) return build_cut_sheets(soups, options, repair_options, execution, *first);
-  // The last resort, on request.
+  // As a last resort, and only in this mode, wrap.
   if (repair_options.mode == RepairMode::wrap)
     if (auto wrapped = build_wrapped_plc(soups, options, repair_options)) return *std::move(wrapped);
   if (lost_volume) throw PlcError(fmt::format("{} {}", first->what(), *lost_volume), first->faults);

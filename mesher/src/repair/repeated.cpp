@@ -42,7 +42,7 @@ std::vector<bool> find_copies(const Draft& draft) {
   return copy;
 }
 
-// Groups of copies connected by edges: finds for each whether dropping it leaves the surface more open.
+// Groups of copies connected by edges. Finds for each group whether dropping it leaves the surface more open.
 class CopyGroups {
  public:
   CopyGroups(const Draft& draft, const std::vector<bool>& copy) : sets_(draft.triangles.size()) {
@@ -81,7 +81,7 @@ class CopyGroups {
   }
 
   DisjointSets sets_;
-  std::map<Index, int> change_;  // by group: change of the number of open edges if it is dropped
+  std::map<Index, int> change_;  // by group: change of the number of open edges if the group is dropped
 };
 
 }  // namespace

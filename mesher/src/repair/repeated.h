@@ -12,8 +12,9 @@ struct RepeatedReport {
   std::vector<Point> where;
 };
 
-/// Drops duplicate triangles: those of one soup with the same corners and orientation, if that does not open
-/// the surface (two solids may share a facet), and in complexes all copies but one. Cost: O(n log n).
+/// Drops duplicate triangles. Of triangles of one soup with the same corners and orientation, keeps one,
+/// unless that opens the surface (two solids may share a facet); in complexes keeps one regardless of
+/// orientation. Cost: O(n log n).
 RepeatedReport drop_repeated(facets::Draft& draft);
 
 }  // namespace collarmesh::repairing

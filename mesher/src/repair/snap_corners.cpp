@@ -13,7 +13,7 @@ namespace collarmesh::repairing {
 
 using namespace facets;
 
-// Longer edges come first, then nearer ones.
+// Orders by length, longer edges first, then by distance, nearer ones first.
 bool CornerSnapper::NearEdge::operator<(const NearEdge& other) const {
   return std::tie(other.length, distance, edge, corner.point) <
          std::tie(length, other.distance, other.edge, other.corner.point);
@@ -49,7 +49,8 @@ std::vector<CornerSnapper::NearEdge> CornerSnapper::near_edges() {
   return found;
 }
 
-// Chooses the edges that are cut in this round. Where one has no room its triangles are looked at again.
+// Chooses the edges that are cut in this round. If an edge has no room for a corner, its triangles are looked
+// at again in the next round.
 void CornerSnapper::choose(const std::vector<NearEdge>& found) {
   struct EdgeState {
     std::vector<Index> sides;
@@ -70,8 +71,8 @@ void CornerSnapper::choose(const std::vector<NearEdge>& found) {
   }
 }
 
-// Edges that arise are shorter than the one that is cut, or it is cut for the first time since the last
-// overlay: so it ends.
+// Returns whether cutting an edge makes progress: either the new edges are shorter than it, or it was not cut
+// since the last overlay. So the process ends.
 bool CornerSnapper::may_cut(const NearEdge& near, std::span<const Index> sides) {
   const bool shorter = std::all_of(sides.begin(), sides.end(), [&](Index side) {
     const Index opposite = apex(state_.draft().triangles, side);
@@ -80,7 +81,7 @@ bool CornerSnapper::may_cut(const NearEdge& near, std::span<const Index> sides) 
   return shorter || cut_before_.insert(near.edge).second;
 }
 
-// Is it away from the other corners that the edge gets?
+// Returns whether a corner is far enough from other corners that the edge gets.
 bool CornerSnapper::has_room(const NearEdge& near) const {
   const std::vector<SnapCuts::OnEdge>* others = cuts_.on(near.edge);
   if (others == nullptr) return true;
@@ -101,7 +102,7 @@ void CornerSnapper::find_near_edge(Index p, const Edge& edge, std::vector<NearEd
   if (d > limit || !(parameter > 0 && parameter < 1) || !state_.takes_part(edge) ||
       !state_.triangles().uses(p))
     return;
-  if (state_.triangles().sides(edge).empty()) return;  // it is gone
+  if (state_.triangles().sides(edge).empty()) return;  // the edge no longer exists
   found.push_back({std::sqrt(ll), d, edge, {parameter, p}});
 }
 

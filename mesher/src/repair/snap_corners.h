@@ -10,10 +10,10 @@
 
 namespace collarmesh::repairing {
 
-/// How far beyond the limit an edge or a corner may be from a plane or an edge by rounding alone.
+/// Factor on the limit that covers rounding in distances from planes and edges.
 inline constexpr double beyond_plane = 1 + 1e-9;
 
-/// Edges get the corners near them, the longest first.
+/// Inserts corners into edges that they are near to, the longest edges first.
 class CornerSnapper {
  public:
   enum class Outcome { nothing_near, snapped, too_many };
@@ -21,16 +21,16 @@ class CornerSnapper {
   /// Keeps both by reference.
   CornerSnapper(SnapState& state, SnapCuts& cuts) : state_(state), cuts_(cuts) {}
 
-  /// Cuts edges of triangles that were not looked at, unless that makes more than so many triangles.
+  /// Cuts edges of triangles not looked at yet, unless that makes more than `most_triangles` triangles.
   Outcome snap(std::size_t most_triangles);
 
-  /// Each edge may be cut once more, however long its pieces are.
+  /// Allows each edge to be cut once more, even if its pieces are not shorter.
   void allow_cuts() { cut_before_.clear(); }
 
  private:
-  // A corner near an edge that it is no end of.
+  // A corner near an edge without being one of its ends.
   struct NearEdge {
-    double length, distance;  // of the edge, and to it
+    double length, distance;  // length of the edge; distance of the corner from it
     Edge edge;
     SnapCuts::OnEdge corner;
 

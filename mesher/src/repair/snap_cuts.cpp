@@ -104,7 +104,7 @@ void SnapCuts::cut(Index t, const Corners& corners, const Origin& origin) {
   std::vector<Index> sorted = cuts.border;
   std::sort(sorted.begin(), sorted.end());
   const bool simple = std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
-  // A plain step cuts from the opposite corner; a triangulation might take the old edge again.
+  // If nothing is inside, cut from the opposite corner: a triangulation might make the old edge again.
   const bool plain = cuts.inside.empty() && along_.empty();
   if (simple && !plain) {
     const Vector normal = cross(at(corners[1]) - at(corners[0]), at(corners[2]) - at(corners[0]));
@@ -119,12 +119,12 @@ void SnapCuts::cut(Index t, const Corners& corners, const Origin& origin) {
   for (const Corners& piece : pieces) add_cut(piece, origin);
 }
 
-// The pieces of other triangles' edges that run along a triangle, inside it.
+// Returns the pieces of other triangles' edges that run along a triangle, inside it.
 std::vector<Edge> SnapCuts::constraints(Index t, const Corners& corners) const {
   std::vector<Edge> result;
   const auto found = along_.find(t);
   if (found == along_.end()) return result;
-  std::map<Index, unsigned> sides;  // by point: bits of the sides it is on, 8 inside
+  std::map<Index, unsigned> sides;  // by point: bits of the sides that it is on; 8: inside
   for (unsigned i = 0; i < 3; ++i) {
     const std::vector<Index> points = chain(corners[i], corners[(i + 1) % 3]);
     for (const Index p : points) sides[p] |= 1U << i;
@@ -144,7 +144,7 @@ std::vector<Edge> SnapCuts::constraints(Index t, const Corners& corners) const {
   return result;
 }
 
-// A corner for the piece that it is in, seen along its normal.
+// Inserts a point into the piece that contains it, as seen along the piece's normal.
 void SnapCuts::insert(Index p, std::vector<Corners>& pieces) const {
   std::size_t best = 0;
   double depth = -INFINITY;
@@ -168,7 +168,7 @@ void SnapCuts::insert(Index p, std::vector<Corners>& pieces) const {
   pieces.push_back({t[2], t[0], p});
 }
 
-// From a to b, both included.
+// Returns the points of an edge from a to b, both included.
 std::vector<Index> SnapCuts::chain(Index a, Index b) const {
   std::vector<Index> points{a};
   if (const auto found = on_edge_.find(edge_key(a, b)); found != on_edge_.end()) {
@@ -179,9 +179,10 @@ std::vector<Index> SnapCuts::chain(Index a, Index b) const {
   return points;
 }
 
-// Each step fans the apex opposite one cut side.
+// Cuts a triangle at the points on its sides. Each step makes a fan from the corner opposite a side with
+// points.
 void SnapCuts::add_cut(const Corners& triangle, const Origin& origin) {
-  std::vector<std::pair<Corners, unsigned>> stack{{triangle, 0}};  // and which sides are done
+  std::vector<std::pair<Corners, unsigned>> stack{{triangle, 0}};  // and flags of the sides that are done
   while (!stack.empty()) {
     const auto [t, done] = stack.back();
     stack.pop_back();
@@ -193,7 +194,8 @@ void SnapCuts::add_cut(const Corners& triangle, const Origin& origin) {
       cut = true;
       const Index apex = t[(i + 2) % 3];
       for (std::size_t k = 0; k + 1 < points.size(); ++k) {
-        // Side 0 is a piece of an edge that is cut already; sides 1 and 2 are whole edges at the ends only.
+        // Side 0 of a new triangle is a piece of a cut edge; sides 1 and 2 are whole edges only in the last
+        // and the first triangle of the fan.
         const bool first = k == 0, last = k + 2 == points.size();
         const unsigned side_after = done >> ((i + 1) % 3) & 1U, side_before = done >> ((i + 2) % 3) & 1U;
         const unsigned flags = 1U | (last ? side_after : 1U) << 1U | (first ? side_before : 1U) << 2U;

@@ -10,30 +10,32 @@
 
 namespace collarmesh::repairing {
 
-/// The edges and triangles that get points in one round, and how they are cut there.
+/// The edges and triangles that get points in one round. Cuts them there.
 class SnapCuts {
  public:
   struct OnEdge {
-    double parameter;  ///< from the smaller end
+    double parameter;  ///< position on the edge, from its smaller end (0) to the other one (1)
     Index point;
   };
 
-  /// Keeps the state by reference.
+  /// Keeps a reference to the state.
   explicit SnapCuts(SnapState& state) : state_(state) {}
 
   void clear();
 
-  /// An edge gets a point, which `moved` so far to it.
+  /// Adds a point to an edge; the point is at the distance `moved` from it.
   void add(const Edge& edge, const OnEdge& point, double moved);
-  /// A triangle gets a point if that is near it, seen along its normal. Returns whether it gets or has it.
+  /// Adds a point to a triangle if it lies inside, as seen along the triangle's normal. Returns whether the
+  /// triangle has the point now.
   bool add_if_inside(Index triangle, Index point);
-  /// An edge of another triangle comes near this one: its pieces there become edges, too.
+  /// Records that an edge of another triangle comes near this one: its pieces there become edges of this one,
+  /// too.
   void add_along(Index triangle, const Edge& edge) { along_[triangle].push_back(edge); }
 
   bool empty() const { return on_edge_.empty() && inside_.empty(); }
   bool has_edges() const { return !on_edge_.empty(); }
   std::size_t triangles_with_points() const { return inside_.size(); }
-  /// The points that an edge gets; null if none.
+  /// Returns the points that an edge gets; null if there are none.
   const std::vector<OnEdge>* on(const Edge& edge) const;
   std::size_t points_inside(Index triangle) const;
   /// Calls visit(edge) for each edge that gets points.
@@ -50,9 +52,9 @@ class SnapCuts {
       visit(t, std::as_const(edges));
     }
   }
-  /// How many triangles cutting the edges would make.
+  /// Returns the number of triangles that cutting the edges would make.
   std::size_t pieces() const;
-  /// The points of an edge from a to b, both included.
+  /// Returns the points of an edge from a to b, both included.
   std::vector<Index> chain(Index a, Index b) const;
 
   /// Cuts the triangles and segments.

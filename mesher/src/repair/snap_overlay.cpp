@@ -32,7 +32,7 @@ bool Overlay::run() {
   return true;
 }
 
-// Where edges of two other triangles cross each other on a third one, that gets the crossing, too.
+// If edges of two other triangles cross on a third triangle, adds their crossing to that triangle, too.
 void Overlay::find_crossings_inside() {
   cuts_.for_each_along([&](Index t, const std::vector<Edge>& edges) {
     const Corners& corners = state_.draft().triangles[t];
@@ -52,7 +52,7 @@ void Overlay::find_crossings_inside() {
   });
 }
 
-// Those corners of s that t does not have.
+// Adds the corners of s that t does not have and that are near to t.
 void Overlay::find_near_corners(Index s, Index t) {
   const Corners& corners = state_.draft().triangles[t];
   for (unsigned k = 0; k < 3; ++k) {
@@ -63,7 +63,7 @@ void Overlay::find_near_corners(Index s, Index t) {
   }
 }
 
-// Does the edge keep its distance from the plane of a triangle?
+// Returns whether the edge is farther than the limit from the plane of a triangle.
 bool Overlay::beyond(const Edge& edge, Index t) const {
   const Vector& normal = state_.triangles().normal(t);
   const Point& origin = state_.draft().corner(t, 0);
@@ -85,21 +85,23 @@ void Overlay::find_crossings(Index s, Index t) {
   }
 }
 
-// Two edges that pass each other closely, away from their ends: a new point in between.
+// Adds a new point between two edges that pass each other closely, away from their ends.
 bool Overlay::consider_crossing(const Edge& e, const Edge& f) {
   if (e[0] == f[0] || e[0] == f[1] || e[1] == f[0] || e[1] == f[1]) return false;
   const Point &p = at(e[0]), &r = at(f[0]);
   const Vector u = at(e[1]) - p, v = at(f[1]) - r, w = p - r;
   const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), uw = dot(u, w), vw = dot(v, w);
   const double determinant = uu * vv - uv * uv;
-  if (!(determinant > 1e-12 * uu * vv)) return false;  // parallel: their ends are near
+  if (!(determinant > 1e-12 * uu * vv)) return false;  // almost parallel: their ends are near each other
   const double a = (uv * vw - vv * uw) / determinant, b = (uu * vw - uv * uw) / determinant;
   if (!(a > 0 && a < 1 && b > 0 && b < 1)) return false;
   const Point on_e = p + a * u, on_f = r + b * v;
   const double d = distance(on_e, on_f);
   if (d > state_.limit()) return false;
   for (const auto& [end, on] : {std::pair{e[0], on_f}, {e[1], on_f}, {f[0], on_e}, {f[1], on_e}})
-    if (distance(at(end), on) <= state_.limit()) return false;  // that end is near
+    if (distance(at(end), on) <= state_.limit())
+      return false;  // this end is near the other edge, so it is
+                     // used instead
   const auto key = e < f ? std::pair{e, f} : std::pair{f, e};
   if (crossing_.count(key) > 0) return true;
   if (!crossed_before_.insert(key).second) return false;
@@ -113,7 +115,7 @@ bool Overlay::consider_crossing(const Edge& e, const Edge& f) {
   return true;
 }
 
-// Where more than two edges meet, all get one point.
+// Returns the point for a crossing. If more than two edges cross at a place, all get the same point.
 Index Overlay::crossing_at(const Point& on_e, const Point& on_f) {
   const Point p = 0.5 * (on_e + on_f);
   const Index known = crossing_points_.nearest(p, [&](Index q) {

@@ -10,17 +10,17 @@
 
 namespace collarmesh::repairing {
 
-/// Triangles that run along each other get each other's corners and edges.
+/// Overlays triangles that run along each other: each gets the corners and edges of the other.
 class Overlay {
  public:
   /// Keeps both by reference.
   Overlay(SnapState& state, SnapCuts& cuts)
       : state_(state), cuts_(cuts), crossing_points_(state.draft().points, state.limit()) {}
 
-  /// Looks at triangles that were not looked at. Returns whether any were cut.
+  /// Overlays the triangles not looked at yet. Returns whether any were cut.
   bool run();
 
-  /// How many crossings of edges and triangles with new points the last run made.
+  /// Returns how many crossings of edges and triangles got new points in the last run.
   std::size_t count() const { return count_; }
 
  private:
@@ -35,7 +35,7 @@ class Overlay {
   SnapState& state_;
   SnapCuts& cuts_;
   PointGrid crossing_points_;
-  Index first_ = 0;  // of the points that it makes
+  Index first_ = 0;  // number of the first point that it makes
   std::size_t count_ = 0;
   std::set<std::pair<Edge, Edge>> crossing_, crossed_before_;
 };

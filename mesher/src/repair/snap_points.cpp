@@ -31,7 +31,7 @@ bool PointMerger::before(Index p, Index q) const {
 
 bool PointMerger::merge() {
   std::vector<Index> order = points_to_compare();
-  std::vector<std::pair<Index, Index>> merged;  // what, into what
+  std::vector<std::pair<Index, Index>> merged;  // a point, and the one it is merged with
   for (const Index p : order) {
     const Index near = grid_.nearest(state_.at(p), [&](Index q) { return in_grid_[q]; });
     if (near == none) {
@@ -47,7 +47,7 @@ bool PointMerger::merge() {
   return true;
 }
 
-// New points and the old ones near them; these leave the grid.
+// Returns new points and the old ones near them, sorted; removes these from the grid.
 std::vector<Index> PointMerger::points_to_compare() {
   in_grid_.resize(state_.draft().points.size(), false);
   std::vector<Index> order, touched = state_.take_touched();

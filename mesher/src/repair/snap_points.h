@@ -8,15 +8,15 @@
 
 namespace collarmesh::repairing {
 
-/// Points near each other become one.
+/// Merges points that are near each other.
 class PointMerger {
  public:
-  /// Keeps the state by reference. Points of triangles that are known are apart from each other already.
+  /// Keeps a reference to the state. Points of `known` triangles must already be apart from each other.
   PointMerger(SnapState& state, const std::vector<bool>& known);
 
-  /// Merges the points that came since the last call, or whose triangles changed. Points that were compared
-  /// before are apart from each other: new ones are compared with them and among themselves, in an order that
-  /// does not depend on that of the input. Returns whether any were merged.
+  /// Merges points that are new, or whose triangles have changed, since the last call. Points that were
+  /// compared before are apart from each other: new ones are compared with them and among themselves, in an
+  /// order that does not depend on the input's. Returns whether any points were merged.
   bool merge();
 
  private:
@@ -26,8 +26,8 @@ class PointMerger {
   void rename(const std::vector<std::pair<Index, Index>>& merged);
 
   SnapState& state_;
-  std::vector<bool> pinned_;   // by point: of a segment or loose
-  std::vector<bool> in_grid_;  // by point: apart from all others there
+  std::vector<bool> pinned_;   // by point: whether it is loose or the end of a segment
+  std::vector<bool> in_grid_;  // by point: whether it is in the grid; points there are apart from each other
   PointGrid grid_;
 };
 

@@ -21,7 +21,7 @@ SnapState::SnapState(Draft& draft, double limit, SnapWhat what, Work& work, cons
   }
 }
 
-// Only borders can be near anything there.
+// Returns whether a triangle takes part: if only borders do, whether it has one.
 bool SnapState::takes_part(Index triangle) const {
   const Corners& c = draft_.triangles[triangle];
   return takes_part(edge_key(c[0], c[1])) || takes_part(edge_key(c[1], c[2])) ||

@@ -13,22 +13,22 @@
 
 namespace collarmesh::repairing {
 
-/// What the parts of snapping share: the triangles that come and go, which of them each part has not looked
-/// at yet, and what was done.
+/// The data that the parts of snapping share: the triangles as they change, which of them each part has not
+/// looked at yet, and a record of the changes.
 class SnapState {
  public:
-  /// The parts that look at triangles.
+  /// The parts that look at triangles, as bits.
   enum By : std::uint8_t { by_corners = 1, by_overlay = 2, by_both = 3 };
 
-  /// A change to be told.
+  /// A change, for the report.
   struct Done {
     enum class What { merged, cut_edge, cut_triangle, more } what;
     Index point;
     double moved;
   };
 
-  /// Keeps the draft and the work by reference. All but the triangles that are known (empty: none) are to be
-  /// looked at.
+  /// Keeps references to the draft and the work. All triangles have to be looked at except those that are
+  /// `known` (empty: none).
   SnapState(facets::Draft& draft, double limit, SnapWhat what, Work& work, const std::vector<bool>& known);
 
   facets::Draft& draft() { return draft_; }
@@ -36,30 +36,30 @@ class SnapState {
   ChangingTriangles& triangles() { return triangles_; }
   const ChangingTriangles& triangles() const { return triangles_; }
   Work& work() { return work_; }
-  /// Absolute.
+  /// Returns the distance limit, absolute.
   double limit() const { return limit_; }
   const Point& at(Index p) const { return draft_.points[p]; }
 
-  /// Only borders take part in some snapping.
+  /// Returns whether an edge takes part: in some modes only borders do.
   bool takes_part(const Edge& edge) const { return what_ != SnapWhat::borders || is_border(edge); }
   bool takes_part(Index triangle) const;
-  /// `pinned`: of a segment or loose.
+  /// Returns whether a point takes part. `pinned`: it is loose or the end of a segment.
   bool takes_part(Index point, bool pinned) const;
 
   void put(const facets::Corners& corners, const facets::Origin& origin);
   void take(Index triangle);
 
-  /// Returns the triangles that are still there and were not looked at, in order; they count as looked at
-  /// from now on.
+  /// Returns the existing triangles that this part has not looked at yet, in order, and counts them as looked
+  /// at.
   std::vector<Index> take_unseen(By by);
-  /// Corners look at this triangle again in the next round.
+  /// Makes the corner snapper look at this triangle again in the next round.
   void defer(Index triangle);
-  /// Returns by triangle of the compacted draft whether it is still to be looked at.
+  /// Returns for each triangle of the compacted draft whether this part still has to look at it.
   std::vector<bool> unseen(By by) const;
 
-  /// Triangles that came since this was called last, some of which are gone.
+  /// Returns the triangles added since the last call; some no longer exist.
   std::vector<Index> take_added() { return std::exchange(added_, {}); }
-  /// The corners of triangles that came or went since then, some several times.
+  /// Returns the corners of triangles added or removed since the last call, some several times.
   std::vector<Index> take_touched() { return std::exchange(touched_, {}); }
   void touch(Index point) { touched_.push_back(point); }
 
@@ -74,8 +74,9 @@ class SnapState {
   SnapWhat what_;
   Work& work_;
   ChangingTriangles triangles_;
-  std::vector<std::uint8_t> flags_;           // by triangle: who has not looked at it yet
-  std::array<std::vector<Index>, 2> unseen_;  // triangles, by corners and by overlay; some are gone
+  std::vector<std::uint8_t> flags_;           // by triangle: bits of the parts that have not looked at it yet
+  std::array<std::vector<Index>, 2> unseen_;  // triangles not looked at, by corners and by overlay; some no
+                                              // longer exist
   std::vector<Index> added_, touched_;
   std::vector<Done> done_;
 };

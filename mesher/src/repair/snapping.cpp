@@ -22,7 +22,7 @@ constexpr std::size_t most_rounds = 50, most_rounds_after_overlay = 12;
 constexpr std::size_t most_places = 100;
 constexpr std::size_t most_overlays = 10, few_crossings = 100;
 
-// Each round looks at the triangles that the one before has changed.
+// Snaps in rounds. Each round only looks at triangles that the one before has changed.
 class Snapper {
  public:
   Snapper(Draft& draft, double distance_limit, SnapWhat what, Work& work, const std::vector<bool>& known,
@@ -39,7 +39,8 @@ class Snapper {
 
   SnapReport run() {
     if (knows_some_) cancel_new_twins();
-    // Corners alone are few after a cut: where they multiply triangles, these run along each other.
+    // Snapping corners makes few triangles. If it multiplies them, triangles run along each other, and this
+    // limit stops it.
     const std::size_t count = state_.triangles().count();
     most_triangles_ = count / (what_ == SnapWhat::corners ? 4 : 1) + count + 1000;
     if (Draft before = draft_; !snap_all_corners()) return keep_settled(before, 0, SnapState::by_corners);
@@ -47,9 +48,9 @@ class Snapper {
   }
 
  private:
-  // Overlays make new corners. Where one makes many and more than half as many as the one before, where
-  // corners come and go, and where there are too many overlays, the places are taken back that still
-  // change.
+  // Overlays triangles until nothing changes. Overlays make new corners. Stops if an overlay makes many
+  // crossings, more than half as many as the one before; if corners never settle; or after too many overlays.
+  // Then undoes the changes at places that still change.
   SnapReport overlay_until_settled() {
     const Draft before = state_.triangles().compacted();
     const std::size_t done_before = state_.done().size();
@@ -73,7 +74,7 @@ class Snapper {
     return std::move(report_);
   }
 
-  // Take back what was done since then where triangles are still to be looked at by these.
+  // Undoes the changes since `before` at places with triangles that these parts still have to look at.
   SnapReport keep_settled(const Draft& before, std::size_t done_before, SnapState::By by) {
     const Draft after = state_.triangles().compacted();
     const std::vector<bool> unseen = state_.unseen(by);
@@ -96,7 +97,8 @@ class Snapper {
     return std::move(report_);
   }
 
-  // Until nothing is near or many rounds are over; false where triangles grow and grow.
+  // Snaps corners until nothing is near or the rounds are over. Returns false if the number of triangles
+  // keeps growing.
   bool snap_all_corners(std::size_t rounds = most_rounds) {
     settled_ = false;
     for (std::size_t round = 0; round < rounds; ++round) {
@@ -120,7 +122,7 @@ class Snapper {
     if (report_.places.size() < most_places) report_.places.push_back(state_.at(done.point));
   }
 
-  // Only triangles that were added can have become twins.
+  // Cancels twins among added triangles; others cannot have become twins.
   void cancel_new_twins() {
     if (!cancel_) return;
     for (const Index t : state_.take_added()) {
@@ -141,8 +143,8 @@ class Snapper {
     }
   }
 
-  bool cancel_;      // twins
-  bool knows_some_;  // triangles
+  bool cancel_;      // whether twins are cancelled
+  bool knows_some_;  // whether some triangles are known
   Draft& draft_;
   SnapWhat what_;
   SnapState state_;
@@ -152,7 +154,7 @@ class Snapper {
   Overlay overlay_;
   SnapReport report_;
   std::size_t most_triangles_ = 0;
-  bool settled_ = false;  // nothing more is merged or cut
+  bool settled_ = false;  // whether nothing more is merged or cut
 };
 
 }  // namespace

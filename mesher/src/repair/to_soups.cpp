@@ -57,7 +57,7 @@ class SoupMaker {
     return index[p];
   }
   bool has(Index soup, Index p) const { return !index_[soup].empty() && index_[soup][p] != none; }
-  /// Returns whether segments and points of a soup are removed with its facets.
+  /// Returns whether segments and points of a soup are removed together with its facets.
   bool needs_facets(Index soup) const {
     return !draft_.soup_is_complex[soup] && soups_[soup].facet_count() > 0;
   }
@@ -66,7 +66,7 @@ class SoupMaker {
     std::set<std::array<Index, 3>> known;
     for (const Segment& s : draft_.segments) {
       if (s.a == s.b || !known.insert({s.soup, std::min(s.a, s.b), std::max(s.a, s.b)}).second) continue;
-      // A segment is removed if its facets are gone.
+      // A segment is removed if the facets at it are gone.
       if (needs_facets(s.soup) && !(has(s.soup, s.a) && has(s.soup, s.b))) continue;
       result_[s.soup].segments.push_back({point(s.soup, s.a), point(s.soup, s.b), s.tag});
     }

@@ -8,9 +8,9 @@
 
 namespace collarmesh::repairing {
 
-/// Turns a draft back into soups, with all data of the old soups besides facets. New edges, with a point at
-/// or after `first_new_point`, become segments of soups that give their features, if their facets meet at an
-/// angle.
+/// Turns a draft back into soups, with all data of the old soups except facets. If facets meet at an angle in
+/// a new edge (with a point from `first_new_point` on), the edge becomes a segment, in soups with given
+/// features.
 std::vector<PolygonSoup> to_soups(std::span<const PolygonSoup> soups, const facets::Draft& draft,
                                   Index first_new_point);
 

@@ -60,7 +60,7 @@ void for_each_group(const Draft& draft, const Visit& visit) {
   }
 }
 
-// Removes triangles. Returns how many.
+// Removes triangles. Returns their number.
 std::size_t drop(Draft& draft, const std::vector<bool>& removed) {
   std::size_t kept = 0;
   for (Index t = 0; t < draft.triangles.size(); ++t) {
@@ -74,7 +74,7 @@ std::size_t drop(Draft& draft, const std::vector<bool>& removed) {
   return count;
 }
 
-// Returns by point the component of triangles connected by corners.
+// Returns the components of triangles connected by corners, by point.
 DisjointSets components_of(const Draft& draft) {
   DisjointSets sets(draft.points.size());
   for (const Corners& t : draft.triangles) {

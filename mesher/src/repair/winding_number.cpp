@@ -7,7 +7,7 @@ namespace collarmesh::repairing {
 
 namespace {
 
-// Beyond this many radii a node's triangles count together.
+// At more than this distance, in radii of a node, the node's triangles are taken together.
 constexpr double far = 3;
 
 // Returns the signed solid angle of a triangle (Van Oosterom and Strackee 1983), positive behind it.
@@ -79,7 +79,7 @@ bool WindingNumber::is_on_another(const Point& p, Index left_out) const {
 }
 
 bool WindingNumber::is_on_another(Index node, const Point& p, Index left_out) const {
-  // Seen from a point on it, a triangle covers half of the sphere.
+  // Seen from a point on a triangle, the triangle covers half of the sphere.
   constexpr double half_sphere = 2 * std::numbers::pi - 1e-6;
   const Node& n = nodes_[node];
   if (distance(n.centre, p) > 1.001 * n.radius) return false;
@@ -95,7 +95,7 @@ double WindingNumber::at_node(Index node, const Point& p, Index left_out) const 
   const Vector r = n.centre - p;
   const double distance = norm(r);
   if (distance > far * n.radius) {
-    // The first two terms of the expansion about the centre.
+    // Computes the first two terms of the expansion about the centre.
     const double cubed = distance * distance * distance;
     double trace = 0, along = 0;
     for (std::size_t i = 0; i < 3; ++i) {

@@ -6,20 +6,20 @@
 
 namespace collarmesh::repairing {
 
-/// Thrown if repair ends before it is done; caught inside the library.
+/// Thrown if repair stops early; caught inside the library.
 struct WorkStopped {
-  bool cancelled;  ///< false: the work was too much
+  bool cancelled;  ///< false: the limit of work was reached
 };
 
-/// Limits the work of repair. Work is counted, not timed, so that it ends in the same place on every machine:
-/// a unit is a visited pair of triangles near each other.
+/// Limits the work of repair. Work is counted instead of timed, so that repair stops in the same place on
+/// every machine. A unit is one visited pair of near triangles.
 class Work {
  public:
   /// Allows any amount of work, without cancellation.
   Work() = default;
   explicit Work(std::size_t most, const Execution& execution) : left_(most), execution_(&execution) {}
 
-  /// Spends units of work. Throws WorkStopped.
+  /// Spends units of work. Throws WorkStopped if the limit is reached.
   void spend(std::size_t units) {
     if (execution_ == nullptr) return;
     if (execution_->cancelled()) throw WorkStopped{true};

@@ -1,4 +1,4 @@
-// The only source that includes Alpha_wrap_3, which takes long to compile.
+// Wraps facets. Only this source includes Alpha_wrap_3, which takes long to compile.
 #include "repair/wrap.h"
 
 #include <CGAL/AABB_traits.h>
@@ -28,7 +28,8 @@ using Point3 = Kernel::Point_3;
 using Triangle3 = Kernel::Triangle_3;
 using Surface = CGAL::Surface_mesh<Point3>;
 
-// Twice the offset: gaps of four offsets stay open, and convex edges are cut by about an offset.
+// Ratio of alpha to the offset. Gaps wider than four offsets stay open, and convex edges are cut off by about
+// an offset.
 constexpr double alpha_by_offset = 2;
 constexpr Tag wrap_tag = 1;
 
@@ -40,7 +41,7 @@ struct Triangles {
   double diagonal = 0;
 };
 
-// Returns all facets, cut into triangles, without those that have no area.
+// Returns all facets as triangles, except those without area.
 Triangles triangles_of(std::span<const PolygonSoup> soups) {
   facets::Draft draft;
   facets::Faults faults;

@@ -6,9 +6,9 @@ namespace {
 
 constexpr std::array<std::array<unsigned, 2>, 6> ends{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
 
-// The determinant is a product of three linear functions; a Bernstein coefficient is 8 times the mean over
-// the six ways to assign its three corners to them. A Way is one assignment: its coefficient, and its weight,
-// which is 8/6 times the number of equal assignments.
+// The determinant is a product of three linear functions. A Bernstein coefficient is 8 times the mean over
+// the six ways to assign its three corners to these functions. A Way is one assignment, with its coefficient
+// and its weight, which is 8/6 times the number of equal assignments.
 struct Way {
   std::size_t coefficient = 0;
   double weight = 0;

@@ -7,9 +7,9 @@
 
 namespace collarmesh::second_order {
 
-/// The Bernstein coefficients of the Jacobian determinant of a tetrahedron of second order, a cubic: all are
-/// six times the volume if its edges are straight, and the determinant is nowhere below the smallest of them
-/// (Johnen, Remacle and Geuzaine 2013).
+/// The Bernstein coefficients of the Jacobian determinant, a cubic polynomial, of a tetrahedron of second
+/// order. If the edges are straight, all coefficients are six times the volume. The determinant is nowhere
+/// below the smallest coefficient (Johnen, Remacle and Geuzaine 2013).
 class JacobianCoefficients {
  public:
   static constexpr std::size_t count = 20;
@@ -19,7 +19,7 @@ class JacobianCoefficients {
 
   const Values& values() const { return values_; }
   double least() const { return *std::min_element(values_.begin(), values_.end()); }
-  /// Returns the gradient of the weighted sum of the coefficients, by the six mid-edge nodes.
+  /// Returns the gradient of the weighted sum of the coefficients with respect to the six mid-edge nodes.
   std::array<Vector, 6> gradient(const Values& weights) const;
 
  private:

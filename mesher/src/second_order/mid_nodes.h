@@ -8,8 +8,8 @@
 
 namespace collarmesh::second_order {
 
-/// The edges of a mesh, sorted, each with the feature it lies on: the edges of tets, and in a mesh that
-/// misses a guarantee also edges of faces and curves that are in no tet. The mid-edge node of the edge e is
+/// The edges of a mesh, sorted, each with the feature it lies on: the edges of tets and, in a mesh that
+/// misses a guarantee, also edges of faces and curves that belong to no tet. The mid-edge node of edge e is
 /// the point first_node() + e.
 class MeshEdges {
  public:

@@ -10,7 +10,7 @@ Point NearestOnFeatures::nearest(const TetMesh::VertexFeature& feature, const Po
   return nearest_point_on_triangle(p, a, b, c);
 }
 
-// Builds the hierarchy of a curve. A segment is a triangle without an area.
+// Builds the hierarchy of a curve. Segments are triangles without area.
 const TriangleHierarchy& NearestOnFeatures::curve(Index id) {
   if (curves_[id]) return *curves_[id];
   const Plc::Curve& curve = plc_.curves[id];

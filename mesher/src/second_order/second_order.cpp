@@ -26,20 +26,20 @@ namespace {
 
 using improvement::UnwantedTet;
 
-// A node farther than this from the middle of its edge, relative to the edge, does not belong to it: the
-// nearest point lies on another part of the feature. A half circle has 0.5.
+// A node farther than this from the middle of its edge, relative to the edge, does not belong to the edge:
+// the nearest point lies on another part of the feature. On a half circle it is 0.5.
 constexpr double farthest = 0.5;
 
-// Two edges have one tangent if the area between their tangents is smaller than this share of the area
+// Two edges have the same tangent if the area between their tangents is smaller than this share of the area
 // between the edges.
 constexpr double least_turn = 0.15;
 
-// Nodes move back by these steps; below this share of the full distance they go to the middle of their edge.
+// Nodes move back by this factor; below this share of the full distance they go to the middle of their edge.
 constexpr double step = 0.8, least_share = 0.1, forward_precision = 0.04;
-constexpr unsigned steps_per_try = 3;  // after this many steps nodes inside may find room again
+constexpr unsigned steps_per_try = 3;  // after this many steps, nodes inside regions may find room again
 
-// A node on a planar patch or straight curve goes to the exact geometry if that is farther away, relative to
-// the edge.
+// A node on a planar patch or a straight curve moves to the exact geometry if that is farther away than this,
+// relative to the edge.
 constexpr double rounding = 1e-12, slight = 1e-6;
 
 class Curving {
@@ -55,16 +55,16 @@ class Curving {
         exact_(options.exact ? flat_.limit(options.exact) : ExactGeometry{}),
         untangling_(mesh, edges_, plc, options.least_jacobian) {}
 
-  /// First step: finds the places of the nodes on features. Returns false if cancelled.
+  /// Finds the places of the nodes on features, the first step. Returns false if cancelled.
   bool find_nodes() {
     find_moves();
     return !execution_.cancelled();
   }
 
-  /// Finds tets that would be flat at a corner, with the edge to split there. Two curved edges that have one
-  /// tangent, or three with tangents in one plane, as at a corner inside a smooth patch, leave no Jacobian
-  /// determinant, however small they are. Edges that join their other ends, inside a region or on a planar
-  /// patch, have to be split.
+  /// Finds tets that would be flat at a corner, with the edge to split there. If two curved edges have the
+  /// same tangent, or three have tangents in one plane, as at a corner inside a smooth patch, the Jacobian
+  /// determinant vanishes, however small the edges are. The edges that join their other ends, inside a region
+  /// or on a planar patch, have to be split.
   std::vector<UnwantedTet> flat_at_corners() const {
     std::vector<UnwantedTet> found;
     if (moves_.empty()) return found;
@@ -77,8 +77,8 @@ class Curving {
     return found;
   }
 
-  /// Gives the mesh its nodes, and moves those on no smooth feature if that makes tets valid. Returns the
-  /// tets that are still invalid.
+  /// Gives the mesh its mid-edge nodes, and moves those that are on no smooth feature if that makes tets
+  /// valid. Returns the tets that are still invalid.
   std::vector<UnwantedTet> place_nodes() {
     add_mid_nodes(edges_, mesh_);
     for (const auto& [edge, way] : slight_moves_) mesh_.points[edges_.first_node() + edge] = home(edge);
@@ -115,14 +115,14 @@ class Curving {
   }
 
  private:
-  /// A node that belongs off the middle of its edge.
+  /// A node whose place is off the middle of its edge.
   struct Move {
     Index edge;
     Vector way;        ///< from the middle to its intended place
     double share = 1;  ///< share of that way that it moves
   };
 
-  /// A node on a planar patch that moves by little more than rounding, and always moves all the way.
+  /// A move of a node on a planar patch by little more than rounding. It is always made in full.
   struct SlightMove {
     Index edge;
     Vector way;
@@ -158,7 +158,7 @@ class Curving {
     }
   }
 
-  // Returns the place of a node that is not curved.
+  // Returns the place of a node without a move.
   Point home(Index edge) const {
     const auto [a, b] = edges_.ends(edge);
     const Point middle = 0.5 * (mesh_.points[a] + mesh_.points[b]);
@@ -196,7 +196,7 @@ class Curving {
       const Vector straight = mesh_.points[tet[k]] - mesh_.points[at];
       const Move* move = move_of(edge);
       const bool is_fixed = !untangling_.may_move(edge);
-      // Tangent of the quadratic curve through the ends and a node this far off the middle.
+      // Uses the tangent of the quadratic curve through the ends and a node this far off the middle.
       sides[n++] = {tet[k], straight,
                     move != nullptr && move->share > 0 ? straight + 4 * move->way : straight, is_fixed};
       fixed += is_fixed ? 1 : 0;
@@ -287,7 +287,7 @@ class Curving {
     }
   }
 
-  // Moves nodes forward again: nodes that moved back later may have made room.
+  // Moves nodes forward again, because nodes that moved back later may have made room.
   void put_forward() {
     std::vector<Index> drawn;
     for (Index m = 0; m < moves_.size(); ++m)
@@ -318,7 +318,7 @@ class Curving {
 
   bool is_valid(const CurvedTet& nodes) const { return jacobian_exceeds(nodes, options_.least_jacobian); }
 
-  // If the curved edges of a tet are straight again, moves its nodes inside back for good.
+  // If the curved edges of a tet are straight again, moves its nodes inside regions back for good.
   void put_back_inside(Index tet, std::vector<Index>& work) {
     for (const Index node : mesh_.tet_mid_nodes[tet]) {
       const Index edge = node - edges_.first_node();
@@ -332,8 +332,8 @@ class Curving {
 
   static void step_back(Move& move) { move.share = move.share > least_share ? step * move.share : 0; }
 
-  // Returns the move with the shortest way whose next step back makes the tet valid, otherwise the longest
-  // move; none if all its edges are straight.
+  // Returns the move to take back: the shortest one whose next step back makes the tet valid, otherwise the
+  // longest one; none if all its edges are straight.
   Index move_at_fault(Index tet) const {
     const CurvedTet nodes = curved_tet(mesh_, tet);
     const std::array<Index, 6> moves = moves_of(tet);
@@ -377,7 +377,7 @@ class Curving {
   MeshEdges edges_;
   NearestOnFeatures nearest_;
   FlatFeatures flat_;
-  ExactGeometry exact_;                   // limited; empty if there is none
+  ExactGeometry exact_;                   // restricted to flat features; empty if there is none
   std::vector<Move> moves_;               // sorted by edge
   std::vector<SlightMove> slight_moves_;  // sorted by edge
   std::vector<Index> curved_;             // tets with moves
@@ -385,7 +385,7 @@ class Curving {
   Untangling untangling_;
 };
 
-// Maximum number of rounds. The replacements of a tet may be no better, so another round follows as long as
+// Maximum number of rounds. The replacements of a tet may be poor, too, so another round follows as long as
 // the number of poor tets falls.
 constexpr unsigned most_rounds = 4;
 

@@ -11,13 +11,13 @@ namespace collarmesh::second_order {
 
 namespace {
 
-// The distance of the barrier below the least coefficient, relative to the straight tet's, or as a share of
-// its distance from 1.
+// Distance of the barrier below the least coefficient, relative to the straight tet's coefficient: this gap,
+// or this share of the least coefficient's distance from 1.
 constexpr double barrier_gap = 0.02, barrier_share = 0.1;
 constexpr unsigned most_barriers = 12, steps_per_barrier = 15, remembered_steps = 6, most_halvings = 12;
-// Nodes have no room if the objective rises by less than this with one barrier.
+// If the objective rises by less than this with one barrier, the nodes have no room.
 constexpr double least_rise = 0.01;
-// Moving nodes in a wider neighbourhood is slow: stop after this many failures.
+// Moving nodes in a wider neighbourhood is slow, so it is given up after this many failures.
 constexpr std::size_t most_wide_failures = 100;
 // The first step moves no node farther than this share of the shortest edge.
 constexpr double first_step = 0.05;
@@ -63,7 +63,7 @@ class Directions {
  private:
   struct Pair {
     std::vector<Vector> step, change;
-    double inverse;  // of their product
+    double inverse;  // inverse of the product of step and change of gradient
   };
   std::deque<Pair> pairs_;
 };
@@ -172,7 +172,7 @@ double Untangling::least_coefficient() const {
   return least;
 }
 
-// Returns the objective; infinite if a coefficient is not above the barrier.
+// Returns the objective; infinite if a coefficient does not exceed the barrier.
 double Untangling::objective(double barrier, std::vector<Vector>* gradient) const {
   if (gradient != nullptr) gradient->assign(free_.size(), {});
   double sum = 0;
@@ -223,7 +223,7 @@ void Untangling::minimize(double barrier) {
       gone = length;
       for (std::size_t f = 0; f < free_.size(); ++f)
         mesh_.points[free_[f].node] = before[f] + length * way[f];
-      has_gradient = h == 0;  // the first length is usually right
+      has_gradient = h == 0;  // the first step length is usually right
       after = objective(barrier, has_gradient ? &next_gradient : nullptr);
       if (after <= value + 1e-4 * length * slope) break;
     }

@@ -12,20 +12,21 @@
 
 namespace collarmesh::second_order {
 
-/// Makes curved tets valid by moving nodes that lie on no smooth feature: those inside regions anywhere,
-/// those on planar patches in their planes. They follow the curved edges beside them, as far as necessary. It
-/// minimizes the sum of squares of a barrier and of the differences of the Jacobian's coefficients from those
-/// of the straight tet, with the barrier just below the least one, until that is high enough (Toulorge,
-/// Geuzaine, Remacle and Lambrechts, Robust untangling of curvilinear meshes, 2013).
+/// Makes curved tets valid by moving nodes that lie on no smooth feature: nodes inside regions anywhere,
+/// nodes on planar patches in their planes. They follow the curved edges beside them as far as necessary.
+/// Minimizes the sum of squares of a barrier and of the differences between the Jacobian's coefficients and
+/// those of the straight tet. The barrier is just below the least coefficient and rises until that is high
+/// enough (Toulorge, Geuzaine, Remacle and Lambrechts, Robust untangling of curvilinear meshes, 2013).
 class Untangling {
  public:
   /// Keeps all by reference. Precondition: the mesh has its nodes.
   Untangling(TetMesh& mesh, const MeshEdges& edges, const Plc& plc, double least_jacobian);
 
-  /// Makes a tet valid, and none invalid. Returns the number of moved nodes; 0: it was not possible, and all
-  /// nodes are at their old places.
+  /// Makes a tet valid, and no tet invalid. Returns the number of moved nodes; 0: it was not possible, and
+  /// all nodes are at their old places.
   std::size_t untangle(Index tet) { return untangle_within(tet, false); }
-  /// Does the same with a wider neighbourhood, at several times the cost; gives up after many failures.
+  /// Makes a tet valid by moving nodes in a wider neighbourhood, at several times the cost. Gives up after
+  /// many failures.
   std::size_t untangle_farther(Index tet);
   /// Returns whether the node of this edge is inside a region or on a planar patch.
   bool is_free(Index edge) const;
@@ -36,7 +37,7 @@ class Untangling {
   std::vector<Index> tets_at(Index edge);
 
  private:
-  /// A node that may move, in the plane with this normal, or anywhere if that is zero.
+  /// A node that may move: in the plane with this normal, or anywhere if the normal is zero.
   struct Free {
     Index node;
     Vector normal;
@@ -53,16 +54,17 @@ class Untangling {
   const MeshEdges& edges_;
   const Plc& plc_;
   double least_jacobian_;
-  CellsAtVertices tets_at_vertex_;  // empty until first needed
+  CellsAtVertices tets_at_vertex_;  // empty until first used
   std::unordered_set<Index> kept_;  // edges of fixed nodes
   std::size_t wide_failures_ = 0;
 
   // State of the current tet:
   std::vector<Free> free_;
-  std::unordered_map<Index, Index> free_at_;        // in free_, by node
+  std::unordered_map<Index, Index> free_at_;        // index in free_, by node
   std::vector<Index> tets_;                         // all tets that have a free node
-  std::vector<std::array<Index, 6>> free_of_tets_;  // in free_, by their nodes; none for fixed ones
-  std::vector<double> six_volumes_;                 // of these tets, straight
+  std::vector<std::array<Index, 6>> free_of_tets_;  // indices in free_, by the tets' nodes; none for fixed
+                                                    // nodes
+  std::vector<double> six_volumes_;                 // of these tets, taken as straight
 };
 
 }  // namespace collarmesh::second_order

@@ -10,7 +10,7 @@ namespace collarmesh::shells {
 /// Some patches of a complex, with their curves and vertices.
 struct ChosenPatches {
   Plc plc;
-  std::vector<Index> patch, curve;  ///< number in the whole complex, by index in `plc`
+  std::vector<Index> patch, curve;  ///< numbers in the whole complex, by index in `plc`
 
   /// Restricts the exact geometry and measures of the whole complex to this part.
   void adapt(PipelineOptions& options) const;

@@ -9,11 +9,11 @@ namespace collarmesh::shells {
 
 namespace {
 
-/// The number of target edge lengths between two places, by place.
+/// Counts target edge lengths along a curve up to each place.
 class EdgesAlong {
  public:
   EdgesAlong(const std::function<double(double)>& size_at, double from, double to) {
-    constexpr double least_step = 1e-4, steps_per_size = 8;  // relative to the length
+    constexpr double least_step = 1e-4, steps_per_size = 8;  // relative to the curve's length
     const double length = to - from;
     double at = from, count = 0, size = size_at(from);
     places_.push_back(from);
@@ -98,7 +98,7 @@ std::vector<double> divide_by_size(const std::function<double(double)>& size, do
 std::vector<double> divide_curve(const Plc& plc, const CurvePaths& paths, const SagLimit& limit,
                                  const SurfaceSizes& sizes, Index curve, const std::array<double, 2>& tips) {
   const double length = paths.length(curve), shortest = 1e-6 * length;
-  constexpr double rounding = 0.3;  // edges are longer by a third at most
+  constexpr double rounding = 0.3;  // edges are longer than the size by a third at most
   const double from = tips[0], to = length - tips[1];
   const double of_tips = (tips[0] > 0 ? 1 : 0) + (tips[1] > 0 ? 1 : 0);
   std::vector<double> at;
@@ -112,8 +112,7 @@ std::vector<double> divide_curve(const Plc& plc, const CurvePaths& paths, const 
   at.back() = length;
   std::reverse(at.begin(), at.end());
   std::vector<double> divided;
-  while (!at.empty()) {  // from the first to the last, with intervals halved if they are too far from the
-                         // curve
+  while (!at.empty()) {  // goes through the intervals and halves those that are too far from the curve
     const double next = at.back();
     const bool tip = (tips[0] > 0 && divided.size() == 1) || (tips[1] > 0 && at.size() == 1);
     if (!divided.empty() && !tip && next - divided.back() > shortest &&

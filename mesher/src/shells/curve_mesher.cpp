@@ -13,8 +13,8 @@ namespace collarmesh::shells {
 
 namespace {
 
-/// Returns the sizes for lines. Edges of triangles and tets may be somewhat longer than the size, so that
-/// their mean is the size; lines may not.
+/// Returns options with exact sizes, for lines. Edges of triangles and tets may be somewhat longer than the
+/// size, so that their mean is the size; lines may not.
 MeshOptions exact_sizes(const Plc& plc, MeshOptions options) {
   constexpr double factor = 1 / Sizing::edge_per_size;
   options.size = factor * default_size(plc, options);
@@ -96,8 +96,8 @@ class CurveMesher {
     }
   }
 
-  /// Adds the middle of an edge: the node at the parameter's middle. An edge of second order does not fold if
-  /// its node is within a quarter of its length from the middle of the chord, measured along it.
+  /// Adds the mid-edge node at the middle parameter of an edge. An edge of second order does not fold if its
+  /// node is within a quarter of its length from the middle of the chord, measured along the chord.
   void add_middle(std::size_t edge) {
     constexpr double most_shift = 0.24;
     const Index curve = mesh_.edge_curve[edge];
@@ -126,7 +126,7 @@ class CurveMesher {
   MeshOptions options_;
   SurfaceSizes sizes_;
   std::vector<Index> node_of_;   // by vertex of the complex
-  std::vector<double> middles_;  // parameters, by edge
+  std::vector<double> middles_;  // parameters of mid-edge nodes, by edge
   CurveMesh made_;
   TetMesh& mesh_ = made_.mesh;
 };

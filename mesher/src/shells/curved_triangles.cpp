@@ -33,14 +33,14 @@ class Curving {
     Index point;
     std::array<Index, 2> edge;
     Point middle, wanted;
-    double share = 1;  // share of the way from the middle
+    double share = 1;  // position between the middle of the edge (0) and the feature (1)
   };
 
   Index add(const std::array<Index, 2>& edge, const Point& place, const TetMesh::VertexFeature& feature) {
     const Point middle = 0.5 * (mesh_.points[edge[0]] + mesh_.points[edge[1]]);
     const std::optional<Point> exact =
         exact_ ? exact_(feature.dimension, feature.feature, place) : std::nullopt;
-    // Ignore a place on another sheet.
+    // Ignore a place on another sheet of the feature.
     const double reach = 0.5 * distance(mesh_.points[edge[0]], mesh_.points[edge[1]]);
     const Point wanted = exact && distance(*exact, place) < reach ? *exact : place;
     const auto point = static_cast<Index>(mesh_.points.size());
@@ -85,8 +85,8 @@ class Curving {
     mesh_.points[node.point] = node.middle + share * (node.wanted - node.middle);
   }
 
-  /// Returns a bound of the Jacobian, relative to the straight triangle's: the smallest of its coefficients
-  /// in the Bernstein basis of degree 2, which enclose its values.
+  /// Returns a lower bound on the Jacobian, relative to the straight triangle's: the smallest of its
+  /// Bernstein coefficients of degree 2, which enclose its values.
   double least_jacobian_of(std::size_t face) const {
     std::array<Point, 6> p;
     for (unsigned i = 0; i < 3; ++i) {
@@ -96,7 +96,7 @@ class Curving {
     const Vector normal = cross(p[1] - p[0], p[2] - p[0]);
     const double scale = squared_norm(normal);
     if (!(scale > 0)) return 0;
-    // Control points of the sides, and differences of these in both directions at the three corners.
+    // Computes control points of the sides, and their differences in both directions at the three corners.
     const Point ab = 2 * p[3] - 0.5 * (p[0] + p[1]), bc = 2 * p[4] - 0.5 * (p[1] + p[2]),
                 ca = 2 * p[5] - 0.5 * (p[2] + p[0]);
     const std::array<Vector, 3> u{2 * (ab - p[0]), 2 * (p[1] - ab), 2 * (bc - ca)},

@@ -7,7 +7,7 @@
 namespace collarmesh::shells {
 
 /// Gives a surface mesh of first order mid-edge nodes: on curves, on smooth patches, and in the middle of
-/// straight edges; on the exact geometry, if there is any. A node moves back towards the middle of its edge
+/// straight edges. Uses the exact geometry, if there is any. A node moves back towards the middle of its edge
 /// if the Jacobian of one of its triangles would be `least_jacobian` or less, relative to the straight
 /// triangle.
 SecondOrderReport curve_triangles(TetMesh& mesh, const Plc& plc, SurfaceMesher& mesher,

@@ -8,10 +8,10 @@ namespace collarmesh::shells {
 
 namespace {
 
-// Length of edges on both sides of a narrow place, relative to its width: angles are 22 degrees where ends of
-// edges face each other, and 39 where they face middles.
+// Length of edges on both sides of a narrow place, relative to its width. Angles are then 22 degrees where
+// ends of edges face each other, and 39 where ends face middles.
 constexpr double length_per_width = 2.5;
-// The approximate maximum number of edges in narrow places: in narrower places edges are longer than good
+// Approximate limit on the number of edges in narrow places. In narrower places edges are longer than good
 // angles need.
 constexpr double most_edges = 32'000;
 
@@ -28,7 +28,7 @@ void NarrowPlaces::measure() {
   });
 }
 
-/// Sets a lower bound for the length of divided edges, so that there are not too many.
+/// Sets a lower bound on the length of divided edges, so that there are not too many edges.
 void NarrowPlaces::bound_widths() {
   constexpr unsigned most_steps = 60;
   constexpr double step = 1.3, first = 1e-6;  // relative to the target edge length
@@ -51,7 +51,7 @@ void NarrowPlaces::bound_widths() {
       widths_[e] = std::max(widths_[e], least(e, share));
 }
 
-/// Lowers sizes at the ends of edges that are at most four times as long as the distance to the features
+/// Lowers sizes at the ends of edges that are at most four times as long as their distance from the features
 /// facing them.
 void NarrowPlaces::lower_sizes() {
   constexpr double much_longer = 4;
@@ -95,7 +95,7 @@ bool NarrowPlaces::divide_edge(Index edge) {
   return divide_at(edge, divide_by_size([&](double at) { return size_on(edge, at); }, from, to, 1, rounding));
 }
 
-/// Keeps the tips at a vertex equally long.
+/// Divides the tips at a vertex so that they stay equally long.
 bool NarrowPlaces::divide_tips(Index vertex) {
   constexpr double least_difference = 1.02;
   std::vector<Index> tips;
@@ -134,7 +134,7 @@ bool NarrowPlaces::divide() {
   for (Index e = 0; e < complex_.edges.size(); ++e)
     if (complex_.edges[e].alive() && complex_.edges[e].tip == none)
       edges.emplace_back(-editor_.length(complex_.edges[e].ends[0], complex_.edges[e].ends[1]), e);
-  // Longest first, because otherwise a curve may cross longer edges of another one.
+  // Divide the longest edges first; otherwise a curve may cross longer edges of another one.
   std::sort(edges.begin(), edges.end());
   for (const auto& [length, e] : edges)
     if (complex_.vertices.size() < limit_) divided |= divide_edge(e);

@@ -16,7 +16,8 @@ struct NarrowTriangle {
   double width;  ///< distance of the third corner from the side
 };
 
-/// Calls visit(NarrowTriangle) for all of them. Triangles with two sides on curves lie in a corner.
+/// Calls visit(NarrowTriangle) for all triangles with all corners on curves. Leaves out triangles with two
+/// sides on curves, which lie in a corner.
 template <class Visit>
 void for_narrow_triangles(const SurfaceComplex& complex, const Visit& visit) {
   for (Index t = 0; t < complex.triangles.size(); ++t) {
@@ -42,17 +43,15 @@ void for_narrow_triangles(const SurfaceComplex& complex, const Visit& visit) {
 }
 
 /// Divides the curves of a complex where their distance across a patch is smaller than the length of their
-/// edges, so that triangles between them have good angles; edge lengths grow from there by the gradation. The
-/// distance is measured in triangles with all corners on curves, which becomes more exact as these are
-/// divided.
+/// edges, so that triangles between them have good angles. Edge lengths grow from there by the gradation. The
+/// distance is measured in triangles with all corners on curves; it becomes more exact as these are divided.
 class NarrowPlaces {
  public:
   /// Keeps all by reference.
   NarrowPlaces(SurfaceComplex& complex, SurfaceEditor& editor, const SurfaceSizes& sizes,
                const Execution& execution);
 
-  /// Runs with at most this many new vertices. Returns whether good angles would need more edges than it
-  /// makes.
+  /// Divides curves with at most this many new vertices. Returns whether good angles would need more edges.
   bool run(std::size_t most_vertices);
 
  private:
@@ -69,7 +68,7 @@ class NarrowPlaces {
   SurfaceEditor& editor_;
   const SurfaceSizes& sizes_;
   const Execution& execution_;
-  std::vector<double> widths_;  // by edge: its allowed length with regard to features that face it
+  std::vector<double> widths_;  // by edge: its allowed length, considering the features that face it
   std::size_t limit_ = 0;
   bool bounded_ = false;
 };

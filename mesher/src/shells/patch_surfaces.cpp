@@ -33,7 +33,7 @@ PatchSurfaces::PatchSurfaces(const Plc& plc, SurfaceTolerance tolerance)
   }
 }
 
-// Weighted by areas, in which slivers of a tessellation do not count.
+// Finds the patch's normals, weighted by areas, so that slivers of a tessellation do not matter.
 void PatchSurfaces::find_normals(Index patch) {
   const Plc::Patch& p = plc_.patches[patch];
   std::unordered_map<Index, Vector> sums;
@@ -67,7 +67,8 @@ Vector PatchSurfaces::normal_at(Index patch, Index triangle, const Point& p) con
   return squared_norm(own) > 0 ? unit(own) : normals_[patch];
 }
 
-/// The triangle that is nearest to p, or one within the share of the patch's least tolerance.
+/// Returns the triangle nearest to p, or one that is nearer than the share `enough` of the patch's least
+/// tolerance.
 Index PatchSurfaces::triangle_near(Index patch, const Point& p, double enough) const {
   const TriangleHierarchy& tree = hierarchy(patch);
   const Index first = plc_.patches[patch].first_triangle;
@@ -103,7 +104,7 @@ PatchSurfaces::Foot PatchSurfaces::nearest(Index patch, const Point& p) const {
 double PatchSurfaces::agreement(const Corners& t, Index patch) const { return fit(t, patch).agreement; }
 
 PatchSurfaces::Fit PatchSurfaces::fit(const Corners& t, Index patch, double enough) const {
-  constexpr double certain = 0.8;  // agreement with a place near enough
+  constexpr double certain = 0.8;  // with this agreement a place near enough is accepted
   const Vector area = area_vector(t);
   const double size = norm(area);
   const auto agreement = [&](const Vector& normal) { return size > 0 ? dot(area, normal) / size : -1; };

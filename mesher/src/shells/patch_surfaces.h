@@ -12,7 +12,7 @@
 
 namespace collarmesh::shells {
 
-/// The patches of a complex as surfaces: nearest places, normals, and how far triangles may be from them.
+/// The patches of a complex as surfaces: finds nearest places and normals, and judges how well triangles fit.
 class PatchSurfaces {
  public:
   /// Keeps the complex by reference. Cost: linear.
@@ -20,10 +20,10 @@ class PatchSurfaces {
 
   struct Foot {
     Point point;
-    Vector normal;   ///< unit, interpolated between the patch's points
-    Index triangle;  ///< of the complex
+    Vector normal;   ///< unit normal, interpolated between the patch's points
+    Index triangle;  ///< triangle of the complex
     double distance;
-    double tolerance;  ///< there
+    double tolerance;  ///< tolerance at this place
   };
   /// Returns the place of a patch that is nearest to p.
   Foot nearest(Index patch, const Point& p) const;
@@ -37,20 +37,21 @@ class PatchSurfaces {
     return p - dot(p - origin, normals_[patch]) * normals_[patch];
   }
 
-  /// Returns the cosine of the angle between the triangle and the patch; -1 for a flat one.
+  /// Returns the cosine of the angle between the triangle and the patch; -1 for a flat triangle.
   double agreement(const Corners& t, Index patch) const;
-  /// How well a triangle fits a patch.
+  /// The quality of a triangle's fit to a patch.
   struct Fit {
-    double agreement = 1;  ///< as above
-    double excess = 0;     ///< distance of its centre from the patch by the tolerance there
+    double agreement = 1;  ///< see `agreement`
+    double excess = 0;     ///< distance of its centre from the patch, divided by the tolerance there
   };
-  /// A distance within the share `enough` of the tolerance may be too large, but stays within that.
+  /// Returns the fit of a triangle. Distances below the share `enough` of the tolerance need not be exact:
+  /// the result may be too large, up to that share.
   Fit fit(const Corners& t, Index patch, double enough = 0) const;
   /// Returns the larger distance from the patch of two points inside a segment, divided by the tolerance
   /// there. `enough`: as for `fit`.
   double excess_between(Index patch, const Point& a, const Point& b, double enough) const;
   /// Returns points of a smooth patch that are farther than this share of the tolerance from the triangles on
-  /// it, and the nearest triangle of each, at most one for a triangle.
+  /// it, each with the nearest triangle; at most one point per triangle.
   std::vector<std::pair<Index, Point>> far_points(Index patch, std::span<const Corners> triangles,
                                                   double share) const;
 
@@ -63,11 +64,12 @@ class PatchSurfaces {
 
   const Plc& plc_;
   SurfaceTolerance tolerance_;
-  std::vector<Vector> normals_;                    // of patches, unit
-  std::vector<std::array<Vector, 3>> at_corners_;  // of triangles
+  std::vector<Vector> normals_;                    // by patch, unit vectors
+  std::vector<std::array<Vector, 3>> at_corners_;  // by triangle and corner
   mutable std::vector<std::unique_ptr<TriangleHierarchy>> hierarchies_;
-  mutable std::vector<Index> last_found_;  // by patch; the next place is probably near
-  std::vector<double> least_tolerance_;    // of patches
+  mutable std::vector<Index> last_found_;  // by patch: the last triangle found, because the next place is
+                                           // probably near it
+  std::vector<double> least_tolerance_;    // by patch
 };
 
 }  // namespace collarmesh::shells

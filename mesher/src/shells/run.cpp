@@ -21,8 +21,8 @@ namespace collarmesh::shells {
 
 namespace {
 
-// Shares of the tolerance for the mesh's distance from the complex: for meshes whose vertices move onto exact
-// geometry afterwards, and for all others.
+// Shares of the tolerance that the distance between mesh and complex may use: in meshes whose vertices will
+// move onto exact geometry, and in all others.
 constexpr double share_before_moves = 0.7, share = 0.85;
 
 struct Ended {};
@@ -33,9 +33,9 @@ bool is_solid(const Plc& plc) {
                      [](const Plc::Patch& patch) { return patch.regions[0] > 0 || patch.regions[1] > 0; });
 }
 
-/// Returns the tolerance. Faces that nearly touch limit the distance of volumes, which would vanish there, to
-/// far less than surfaces on their own need, so here it is at least a share of the target edge length, unless
-/// one is asked for.
+/// Returns the tolerance. Where faces nearly touch, the default of solids is tiny, because volumes would
+/// vanish there; surfaces need no such bound. So here the tolerance is at least a share of the target edge
+/// length, unless the options give one.
 SurfaceTolerance surface_tolerance(const Plc& plc, const PipelineOptions& options) {
   constexpr double least_per_size = 0.005;
   const Bounds& bounds = options.mesh.bounds;
@@ -103,7 +103,7 @@ class Run {
     stop_if_asked();
   }
 
-  /// Meshes curves alone, for beams.
+  /// Meshes curves alone, as for beams.
   void mesh_lines(const Plc& plc, const PipelineOptions& options, PipelineResult& made) {
     if (plc.curves.empty())
       throw PlcError(
@@ -164,7 +164,7 @@ SoupPipelineResult run(ComplexSource& source, const PipelineOptions& options, co
     stages.build(source, all);
     PipelineOptions adapted = stages.options();
     if (!adapted.faces.empty()) {
-      whole = std::move(all.plc);  // the adapted options may refer to it
+      whole = std::move(all.plc);  // the adapted options may refer to the complex
       source.adapt(whole, adapted);
       ChosenPatches chosen = choose_patches(whole, adapted.faces);
       chosen.adapt(adapted);

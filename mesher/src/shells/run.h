@@ -4,8 +4,8 @@
 
 namespace collarmesh::shells {
 
-/// Runs `run_pipeline` for `PipelineOptions::dimension` 2: see `mesh_shells`. The options are valid, and the
-/// caller keeps their limit of time.
+/// Does the work of `run_pipeline` for `PipelineOptions::dimension` 1 and 2: see `mesh_shells`.
+/// Preconditions: the options are valid, and the caller watches their time limit.
 SoupPipelineResult run(ComplexSource& source, const PipelineOptions& options, const Execution& execution);
 PipelineResult run(const Plc& plc, const PipelineOptions& options, const Execution& execution);
 

@@ -7,13 +7,15 @@ namespace collarmesh::shells {
 
 namespace {
 
-// Angles that stay within the bounds when vertices move onto exact geometry.
+// Angles must exceed their bounds by this margin (degrees), so that they stay within the bounds when vertices
+// move onto exact geometry.
 constexpr double margin = 1.5;
-// Edges that are not divided further, relative to the target edge length.
+// Edges shorter than twice this, relative to the target edge length, are not divided.
 constexpr double shortest = 0.015;
-// Vertices with more triangles, as a tessellation has them, are not moved or removed: others around them are.
+// Vertices with more triangles, which a tessellation may have, are not moved or removed; their neighbours
+// are.
 constexpr std::size_t most_triangles = 24;
-// Of a shape, for which a vertex is moved.
+// The gain of shape for which a vertex is moved.
 constexpr double least_gain = 0.1;
 
 }  // namespace
@@ -44,7 +46,7 @@ bool ShapeRepair::poor(Index triangle, double wanted) const {
   return shape < wanted * bound(triangle) / least_angle;
 }
 
-/// Has nothing changed around the triangle since it was tried in vain?
+/// Returns whether improving the triangle has failed and nothing around it has changed since.
 bool ShapeRepair::tried(Index triangle, double wanted) {
   if (triangle >= tried_.size()) return false;
   std::size_t changes = 0;
@@ -89,7 +91,7 @@ bool ShapeRepair::move_within(Index vertex) {
   return v.feature.dimension == 1 ? move_on_curve(vertex, fan) : move_on_patch(vertex, fan);
 }
 
-// Tries places, and moves to the best one.
+// Tries places on the curve, and moves the vertex to the best one.
 bool ShapeRepair::move_on_curve(Index vertex, const VertexFan& fan) {
   const auto around = editor_.edges_around(vertex);
   if (!around || editor_.ends_tip(vertex)) return false;
@@ -146,7 +148,8 @@ bool ShapeRepair::improve_by_moves(Index triangle) {
   return moved;
 }
 
-/// The same some times for each triangle: small gains go on for long.
+/// Moves the corners of a triangle, at most three times for each triangle, because small gains would go on
+/// for long.
 bool ShapeRepair::move_corners(Index triangle) {
   constexpr unsigned char most = 3;
   if (triangle >= moves_.size()) moves_.resize(complex_.triangles.size(), 0);
@@ -188,16 +191,17 @@ void ShapeRepair::improve(double wanted) {
   }
 }
 
-/// Divides an edge of a curve beside the triangle that a vertex at p would encroach upon.
+/// Divides an edge of a curve beside the triangle if a vertex at p would encroach upon it.
 bool ShapeRepair::divide_curve_beside(Index triangle, const Point& p) {
-  constexpr double least_cosine = -0.45;  // of 117 degrees
+  constexpr double least_cosine = -0.45;  // cosine of 117 degrees
   const std::array<Index, 3> c = complex_.triangles[triangle].corners;
   for (unsigned i = 0; i < 3; ++i) {
     const Index edge = complex_.edge_at(c[i], c[(i + 1) % 3]);
     if (edge == none) continue;
     const auto [a, b] = complex_.edges[edge].ends;
     const Vector to_a = complex_.vertices[a].point - p, to_b = complex_.vertices[b].point - p;
-    if (complex_.edges[edge].tip != none) {  // not divided: a vertex may be so near that angles are good
+    if (complex_.edges[edge].tip != none) {  // tips are not divided: a vertex may be so near that angles stay
+                                             // good
       if (dot(to_a, to_b) < least_cosine * norm(to_a) * norm(to_b)) return true;
       continue;
     }
@@ -211,7 +215,8 @@ bool ShapeRepair::divide_curve_beside(Index triangle, const Point& p) {
   return false;
 }
 
-/// Walks from the triangle to the one at p, and inserts it there, unless a vertex is nearer than `nearest`.
+/// Walks from the triangle to the one that contains p, and inserts a vertex there, unless a vertex is nearer
+/// than `nearest`. Divides the edge of a curve that is in the way.
 bool ShapeRepair::insert_towards(Index triangle, const Point& p, double nearest) {
   constexpr unsigned most_steps = 30;
   constexpr double inside = -1e-9;
@@ -249,7 +254,8 @@ bool ShapeRepair::insert_towards(Index triangle, const Point& p, double nearest)
   return v != none;
 }
 
-/// Lies the triangle between curves so near to each other that no edges reach the bound that may be made?
+/// Returns whether the triangle lies between curves so close to each other that edges of the allowed length
+/// cannot reach the bound.
 bool ShapeRepair::too_narrow(Index triangle) const {
   const auto& c = complex_.triangles[triangle].corners;
   double size = INFINITY, longest = 0;
@@ -265,7 +271,7 @@ bool ShapeRepair::too_narrow(Index triangle) const {
 bool ShapeRepair::refine(Index triangle) {
   if (too_narrow(triangle)) return false;
   const auto corners = complex_.corners(triangle);
-  unsigned opposite = 0;  // to the shortest side
+  unsigned opposite = 0;  // the corner opposite the shortest side
   double shortest_side = INFINITY;
   for (unsigned i = 0; i < 3; ++i) {
     const double side = distance(corners[(i + 1) % 3], corners[(i + 2) % 3]);
@@ -277,7 +283,7 @@ bool ShapeRepair::refine(Index triangle) {
   const Point middle = 0.5 * (corners[(opposite + 1) % 3] + corners[(opposite + 2) % 3]);
   Point p = circumcentre(corners);
   constexpr double least_share = 0.3;
-  // So high above the shortest side its angle is 28 degrees.
+  // At this height above the shortest side the angle opposite it is 28 degrees.
   const double high = 2 * shortest_side, height = distance(middle, p);
   if (height > high) p = middle + high / height * (p - middle);
   return insert_towards(triangle, p, least_share * shortest_side);
@@ -286,7 +292,7 @@ bool ShapeRepair::refine(Index triangle) {
 std::size_t ShapeRepair::run(std::size_t most_vertices) {
   constexpr unsigned most_passes = 40, contracting_passes = 3, first_passes = 12;
   const double wanted = least_angle + margin;
-  constexpr double refined = 180;  // more than only improved
+  constexpr double refined = 180;  // stands for more than mere improvement
   std::size_t limit = complex_.vertices.size() + most_vertices, fewest = complex_.triangles.size();
   std::vector<Index> poor_ones;
   Index first = 0;
@@ -295,13 +301,14 @@ std::size_t ShapeRepair::run(std::size_t most_vertices) {
     poor_ones = poor_triangles(wanted, poor_ones, first);
     first = static_cast<Index>(complex_.triangles.size());
     fewest = std::min(fewest, poor_ones.size());
-    // Where new vertices make more poor triangles than they cure, as between surfaces that overlap.
+    // Stop inserting vertices if they make more poor triangles than they cure, as between surfaces that
+    // overlap.
     if (pass > first_passes && poor_ones.size() > fewest + fewest / 4 + 20) limit = 0;
     for (const Index t : poor_ones) {
       if (!poor(t, wanted) || tried(t, refined)) continue;
-      // Moves alone do not make a triangle good that is far from it.
+      // Moves alone do not make a triangle good that is far from good.
       const bool near = editor_.shape(t) > 0.5 * wanted;
-      // After some passes no vertex goes, so that those that come do so for good.
+      // After some passes edges are no longer contracted, so that new vertices stay.
       if (improve_connections(t, wanted, pass < contracting_passes) || (near && move_corners(t)) ||
           (complex_.vertices.size() < limit && refine(t)) || (!near && move_corners(t)))
         changed = true;
@@ -316,7 +323,7 @@ std::size_t ShapeRepair::run(std::size_t most_vertices) {
 bool ShapeRepair::approach(std::size_t most_vertices) {
   constexpr unsigned most_passes = 12;
   const std::size_t before = complex_.vertices.size(), limit = before + most_vertices;
-  std::vector<std::size_t> seen(complex_.triangles.size(), 0);  // changes of the corners, and 1
+  std::vector<std::size_t> seen(complex_.triangles.size(), 0);  // number of changes of the corners, plus 1
   for (unsigned pass = 0; pass < most_passes && !execution_.cancelled(); ++pass) {
     bool changed = false;
     seen.resize(complex_.triangles.size(), 0);

@@ -9,37 +9,37 @@
 
 namespace collarmesh::shells {
 
-/// Makes triangles better whose angles are out of bounds: by flips, moves and contractions where that is
-/// enough, else by a vertex at the circumcentre or, where that lies behind a curve, by dividing its edge
-/// (J. Ruppert: A Delaunay refinement algorithm for quality 2-dimensional mesh generation, 1995; the vertex
-/// is nearer to the shortest edge where that is enough: A. Ungor, Off-centers, 2004).
+/// Improves triangles whose angles are out of bounds: by flips, moves and contractions if that suffices; else
+/// by a vertex at the circumcentre or, if that lies beyond a curve, by dividing the curve's edge (J. Ruppert:
+/// A Delaunay refinement algorithm for quality 2-dimensional mesh generation, 1995). The vertex is closer to
+/// the shortest edge if that suffices (A. Ungor, Off-centers, 2004).
 class ShapeRepair {
  public:
   /// Keeps all by reference.
   ShapeRepair(SurfaceComplex& complex, SurfaceEditor& editor, const Execution& execution);
 
-  /// Works until all triangles are good or nothing helps, with so many new vertices at most. Returns the
-  /// number of triangles that stay out of bounds.
+  /// Works until all triangles are good or nothing helps, with at most `most_vertices` new vertices. Returns
+  /// the number of triangles that stay out of bounds.
   std::size_t run(std::size_t most_vertices);
-  /// Improves what is possible without new vertices.
+  /// Improves triangles without new vertices, up to the shape `wanted`.
   void improve(double wanted);
-  /// Divides triangles that are too far from their patches, with so many new vertices at most.
-  /// Returns whether any was.
+  /// Divides triangles that are too far from their patches, with at most `most_vertices` new vertices.
+  /// Returns whether it divided any.
   bool approach(std::size_t most_vertices);
-  /// Contracts edges where the shapes stay good.
+  /// Contracts edges if the shapes stay good.
   void coarsen();
 
-  /// Triangles between curves are not refined that are lower than this, relative to the target edge length.
+  /// Sets a height, relative to the target edge length: lower triangles between curves are not refined.
   void set_narrowest(double share) { narrowest_ = share; }
 
-  /// The bound on a triangle's shape: less at a sharp corner of the input.
+  /// Returns the bound on a triangle's shape. It is smaller at a sharp corner of the input.
   double bound(Index triangle) const;
 
  private:
   bool poor(Index triangle, double wanted) const;
   bool tried(Index triangle, double wanted);
   void note_tried(Index triangle, double wanted);
-  /// Among those that were poor before, and those from a number on; the worst first.
+  /// Returns poor triangles, worst first: among `known` ones and those from number `first` on.
   std::vector<Index> poor_triangles(double wanted, std::span<const Index> known, Index first) const;
   bool approach_points();
   bool improve_connections(Index triangle, double wanted, bool may_contract);
@@ -59,12 +59,12 @@ class ShapeRepair {
   const Execution& execution_;
   double narrowest_ = 0;
   struct Tried {
-    std::size_t changes = 0;  // of its corners
+    std::size_t changes = 0;  // sum over its corners
     double wanted = 0;
   };
-  std::vector<Tried> tried_;          // by triangle, the last time in vain
-  std::vector<unsigned char> moves_;  // by triangle, of its corners
-  std::vector<Index> not_movable_;    // changes of each vertex, and 1, when it was moved in vain
+  std::vector<Tried> tried_;          // by triangle: the last attempt that failed
+  std::vector<unsigned char> moves_;  // by triangle: number of times its corners were moved
+  std::vector<Index> not_movable_;    // by vertex: its number of changes, plus 1, when a move last failed
 };
 
 }  // namespace collarmesh::shells

@@ -9,7 +9,8 @@ namespace collarmesh::shells {
 
 namespace {
 
-// Degrees. A triangle in a less sharp corner may be divided into two good ones.
+// Corners are sharp below this angle, degrees. A triangle in a less sharp corner may be divided into two good
+// ones.
 constexpr double sharp = 2 * least_angle;
 
 unsigned end_of(const SurfaceComplex::Edge& edge, Index vertex) {
@@ -54,7 +55,8 @@ Fan fan_from(const SurfaceComplex& complex, Index vertex, Index first, std::vect
 SharpCorners::SharpCorners(const SurfaceComplex& complex, const Plc& plc, const CurvePaths& paths,
                            const SurfaceSizes& sizes, const SurfaceTolerance& tolerance)
     : tips_(plc.curves.size(), {0, 0}) {
-  std::vector<std::pair<Index, std::vector<End>>> corners;  // vertices of the complex, their curves
+  std::vector<std::pair<Index, std::vector<End>>> corners;  // vertices of the complex, each with the ends of
+                                                            // its curves
   for (Index v = 0; v < complex.vertices.size(); ++v) {
     if (complex.vertices[v].feature.dimension != 0) continue;
     std::vector<End> ends;
@@ -81,7 +83,8 @@ void SharpCorners::find(const SurfaceComplex& complex, Index vertex, std::vector
   }
 }
 
-/// Returns a tip length as long as the sizes permit that leaves no much shorter edge behind it.
+/// Returns a length for tips that is as long as the sizes permit, and that leaves no much shorter edge behind
+/// the tip.
 double SharpCorners::tip_length(const Plc& plc, const CurvePaths& paths, const SurfaceSizes& sizes,
                                 const SurfaceTolerance& tolerance, Index vertex,
                                 const std::vector<End>& ends) const {

@@ -10,8 +10,8 @@
 namespace collarmesh::shells {
 
 /// Corners of patches between two curves that are sharper than the angles of good triangles. All curves that
-/// begin there at a sharp angle have a first edge of the same length, the tip, so that a triangle between two
-/// tips closes the corner, and no sharp corner remains behind it.
+/// begin there at a sharp angle get a first edge of the same length, the tip. A triangle between two tips
+/// closes the corner, and no sharp corner remains behind it.
 class SharpCorners {
  public:
   /// Finds the corners. `complex` has triangles on the patches of `plc`. Cost: linear.
@@ -27,7 +27,7 @@ class SharpCorners {
  private:
   struct End {
     Index curve;
-    unsigned end;  // 0: the beginning
+    unsigned end;  // 0: the beginning of the curve, 1: its end
   };
   void find(const SurfaceComplex& complex, Index vertex, std::vector<End>& ends) const;
   double tip_length(const Plc& plc, const CurvePaths& paths, const SurfaceSizes& sizes,

@@ -10,17 +10,18 @@
 namespace collarmesh::shells {
 
 /// The triangles of all patches and the edges of their curves, for editing. Any number of triangles may meet
-/// in an edge on a curve.
+/// at an edge on a curve.
 class SurfaceComplex {
  public:
   struct Triangle {
-    std::array<Index, 3> corners{none, none, none};  ///< oriented like the patch; none: removed
+    std::array<Index, 3> corners{none, none, none};  ///< oriented like the patch; none: the triangle is
+                                                     ///< removed
     Index patch = none;
-    double shape = 0;  ///< see shape_of
+    double shape = 0;  ///< its quality, see shape_of
 
     bool alive() const { return corners[0] != none; }
     bool has(Index v) const { return corners[0] == v || corners[1] == v || corners[2] == v; }
-    /// Precondition: it has both.
+    /// Returns the third corner. Precondition: the triangle has both a and b.
     Index third(Index a, Index b) const {
       for (const Index c : corners)
         if (c != a && c != b) return c;
@@ -28,10 +29,12 @@ class SurfaceComplex {
     }
   };
   struct Edge {
-    std::array<Index, 2> ends{none, none};  ///< none: removed
+    std::array<Index, 2> ends{none, none};  ///< none: the edge is removed
     Index curve = none;
-    std::array<double, 2> at{};  ///< arc lengths of the ends on the curve, ascending; may exceed its length
-    Index tip = none;            ///< the end at a sharp corner; all edges that begin there are equally long
+    std::array<double, 2> at{};  ///< arc lengths of the ends on the curve, ascending; the second one may
+                                 ///< exceed the curve's length
+    Index tip = none;            ///< its end at a sharp corner, else none; all edges that begin there are
+                                 ///< equally long
 
     bool alive() const { return ends[0] != none; }
     Index other(Index v) const { return ends[0] == v ? ends[1] : ends[0]; }
@@ -61,16 +64,16 @@ class SurfaceComplex {
   Index add_edge(const std::array<Index, 2>& ends, Index curve, const std::array<double, 2>& at);
   void remove_edge(Index edge);
 
-  /// The triangles that have both vertices.
+  /// Returns the triangles that have both vertices.
   std::vector<Index> triangles_at(Index a, Index b) const;
-  /// The same if there are two.
+  /// Returns the triangles that have both vertices if there are exactly two of one patch.
   std::optional<std::array<Index, 2>> two_triangles_at(Index a, Index b) const;
   bool have_triangle(Index a, Index b) const;
-  /// The edge of a curve between the vertices, none if there is none.
+  /// Returns the edge of a curve between the vertices, or none.
   Index edge_at(Index a, Index b) const;
-  /// The vertices that share a triangle or edge with v, sorted.
+  /// Returns the vertices that share a triangle or edge with v, sorted.
   std::vector<Index> neighbours(Index v) const;
-  /// The triangle on the other side of the side ab of a triangle; none where a curve is, or a border.
+  /// Returns the triangle on the other side of the side ab of a triangle; none at a curve or border.
   Index across(Index triangle, Index a, Index b) const;
 };
 

@@ -10,8 +10,8 @@ namespace collarmesh::shells {
 
 namespace {
 
-// Cosines of the angle between triangles and their patch: of those made, and of those at a new vertex, which
-// may be flipped afterwards.
+// Least cosine of the angle between a new triangle and its patch; and the least one at a new vertex, whose
+// triangles may be flipped afterwards.
 constexpr double least_agreement = 0.6, least_agreement_at_first = 0.2;
 
 }  // namespace
@@ -85,7 +85,8 @@ PatchSurfaces::Fit SurfaceEditor::worst_fit(std::span<const Index> triangles) co
   return worst;
 }
 
-/// Looks at the centres of the triangles and, unless it is none, at their sides from a centre.
+/// Returns whether created triangles fit their patches, at their centres and, unless `centre` is none, along
+/// their sides at that vertex.
 bool SurfaceEditor::fit(std::span<const Created> created, std::span<const Index> removed,
                         Index centre) const {
   std::optional<PatchSurfaces::Fit> before;
@@ -115,7 +116,7 @@ bool SurfaceEditor::flip(Index a, Index b) {
   const auto& s = complex_.triangles[two[0]];
   const auto& t = complex_.triangles[two[1]];
   if (s.patch != t.patch) return false;
-  // Oriented as in the first triangle.
+  // Orients ab as in the first triangle.
   const auto place =
       static_cast<unsigned>(std::find(s.corners.begin(), s.corners.end(), a) - s.corners.begin());
   if (s.corners[(place + 1) % 3] != b) std::swap(a, b);
@@ -123,7 +124,7 @@ bool SurfaceEditor::flip(Index a, Index b) {
   if (c == d) return false;
   const std::array<Created, 2> created{{{{a, d, c}, patch}, {{d, b, c}, patch}}};
   const double before = std::min(shape(two[0]), shape(two[1]));
-  constexpr double least_gain = 1e-6;  // relative: in needles between curves angles are tiny
+  constexpr double least_gain = 1e-6;  // relative gain, because angles of needles between curves are tiny
   for (const Created& n : created)
     if (!(shape_of(complex_.corners(n.corners)) > (1 + least_gain) * before)) return false;
   if (complex_.edge_at(c, d) != none || complex_.have_triangle(c, d)) return false;
@@ -133,7 +134,8 @@ bool SurfaceEditor::flip(Index a, Index b) {
   return true;
 }
 
-/// Keeps the topology: what is common to the ends' neighbourhoods is that of the edge.
+/// Returns whether contracting an edge keeps the topology: the neighbourhoods of its ends may have nothing in
+/// common but that of the edge.
 bool SurfaceEditor::can_contract(Index from, Index to) const {
   const std::vector<Index> around = complex_.neighbours(from), around_to = complex_.neighbours(to);
   std::vector<Index> common, thirds;
@@ -172,7 +174,7 @@ bool SurfaceEditor::shapes_permit(Index from, Index to, const Contraction& rule)
 }
 
 bool SurfaceEditor::lengths_permit(Index from, Index to, const Contraction& rule) const {
-  double longest = 0, longest_before = 0;  // of edges, relative to the sizes
+  double longest = 0, longest_before = 0;  // longest edge after and before, relative to the sizes
   const auto look_at = [&](Index n) {
     if (n == to || n == from) return;
     longest = std::max(longest, length(n, to) / size_of_edge(n, to));
@@ -360,8 +362,8 @@ void SurfaceEditor::flip_around(Index vertex) {
   }
 }
 
-/// Of the triangles around a vertex, at their centres and at their sides from there: the least agreement,
-/// and by how much they are too far from their patches, all together.
+/// Returns the fit of the triangles around a vertex, at their centres and along their sides at it: the least
+/// agreement, and the sum of the excesses above the allowed one.
 PatchSurfaces::Fit SurfaceEditor::misfit_around(Index vertex) const {
   PatchSurfaces::Fit all;
   const auto add = [&](double excess) { all.excess += std::max(0.0, excess - most_excess_); };
@@ -412,7 +414,8 @@ bool SurfaceEditor::slide(Index vertex, double at, double least) {
   if (!around || ends_tip(vertex)) return false;
   auto& before = complex_.edges[(*around)[0]];
   auto& behind = complex_.edges[(*around)[1]];
-  const double shift = behind.at[0] - before.at[1];  // by the length of a closed curve
+  const double shift = behind.at[0] - before.at[1];  // the length of a closed curve, if the vertex is where
+                                                     // its parameter wraps around
   const Index curve = before.curve;
   if (!(at > before.at[0]) || !(at < behind.at[1] - shift)) return false;
   if (sag_between(plc_, paths_, tolerance_, curve, before.at[0], at) > most_excess_ ||

@@ -13,45 +13,46 @@
 
 namespace collarmesh::shells {
 
-/// Local operations on the triangles of a complex. Each keeps its topology, and the triangles within the
-/// tolerance of their patch and turned like it, or at least as near to it and as well turned as before.
+/// Local operations on the triangles of a complex. Each operation keeps the topology. Triangles stay within
+/// the tolerance of their patch and oriented like it, or at least fit as well as before.
 class SurfaceEditor {
  public:
-  /// Keeps all by reference. `most_excess`: share of the tolerance that triangles and edges may take.
+  /// Keeps references to all arguments. `most_excess`: share of the tolerance that triangles and edges may
+  /// use.
   SurfaceEditor(SurfaceComplex& complex, const Plc& plc, const CurvePaths& paths,
                 const PatchSurfaces& surfaces, const SurfaceSizes& sizes, SurfaceTolerance tolerance,
                 double most_excess);
 
-  /// Which contractions are wanted.
+  /// Conditions for a contraction.
   struct Contraction {
-    double longest = INFINITY;  ///< edge afterwards, relative to the target edge length
-    double least_shape = 0;     ///< afterwards, or not less than before
-    bool better = false;        ///< the least shape must become larger
+    double longest = INFINITY;  ///< longest edge afterwards, relative to the target edge length
+    double least_shape = 0;     ///< least shape afterwards, or the one before if that is less
+    bool better = false;        ///< the least shape must increase
   };
 
-  /// Replaces the edge ab inside a patch by the other diagonal, if the least shape becomes larger.
+  /// Replaces the edge ab inside a patch by the other diagonal, if the least shape increases.
   bool flip(Index a, Index b);
-  /// Contracts the edge to its vertex `to`.
+  /// Contracts the edge to its vertex `to`. Returns false if that is not possible.
   bool contract(Index from, Index to, const Contraction& rule);
-  /// Divides an edge inside a patch in its middle. Returns the new vertex, none if that is not possible.
+  /// Divides an edge inside a patch in its middle. Returns the new vertex, or none if that is not possible.
   Index divide(Index a, Index b);
-  /// Divides the edge of a curve at an arc length, in all patches there.
+  /// Divides the edge of a curve at an arc length, in all patches there. Returns the new vertex, or none.
   Index divide_curve_edge(Index edge, double at);
   Index divide_curve_edge(Index edge) {
     const auto& [from, to] = complex_.edges[edge].at;
     return divide_curve_edge(edge, 0.5 * (from + to));
   }
-  /// Puts a vertex near p into a triangle or, where p is near a side, onto that.
+  /// Inserts a vertex near p into a triangle or, if p is near a side, into that side. Returns it, or none.
   Index insert(Index triangle, const Point& p);
-  /// Flips edges opposite to a new vertex, and so on.
+  /// Flips edges opposite a new vertex, and then those opposite it in the new triangles.
   void flip_around(Index vertex);
-  /// Moves a vertex in its patch to near p, if the least shape around it does not fall below `least`.
+  /// Moves a vertex within its patch to near p, if the least shape around it stays at least `least`.
   bool move(Index vertex, const Point& p, double least);
-  /// Moves a vertex along its curve.
+  /// Moves a vertex along its curve to an arc length, under the same condition.
   bool slide(Index vertex, double at, double least);
-  /// Puts a vertex exactly at p, which is on the exact geometry of its feature.
+  /// Moves a vertex exactly to p, which lies on the exact geometry of its feature, under the same condition.
   bool put(Index vertex, const Point& p, double least);
-  /// The place on the curve of a vertex, by arc length. Precondition: it is on one curve alone.
+  /// Returns the point at an arc length of a vertex's curve. Precondition: the vertex is on one curve only.
   Point place_on_curve(Index vertex, double at) const {
     return paths_.point(complex_.vertices[vertex].feature.feature, at);
   }
@@ -59,12 +60,13 @@ class SurfaceEditor {
   void set_most_excess(double share) { most_excess_ = share; }
 
   double shape(Index triangle) const { return complex_.triangles[triangle].shape; }
-  /// Of its triangles; ends early where one is below a bound.
+  /// Returns the least shape of a vertex's triangles; ends early if one is below `bound`.
   double least_shape_at(Index vertex, double bound = 0) const;
-  /// Returns the side of a triangle, by its first corner's place, to divide where the triangle is farther
-  /// from its patch than it may be; 3 where it is not.
+  /// If a triangle is farther from its patch than allowed, returns the side to divide (the place of its first
+  /// corner), else 3.
   unsigned side_too_far(Index triangle) const;
-  /// Points of smooth patches that are too far from the triangles, and the triangles to divide there.
+  /// Returns points of smooth patches that are too far from the triangles, with the triangles to divide
+  /// there.
   std::vector<std::pair<Index, Point>> far_points() const;
   double size_of_edge(Index a, Index b) const {
     return 0.5 * (complex_.vertices[a].size + complex_.vertices[b].size);
@@ -72,9 +74,9 @@ class SurfaceEditor {
   double length(Index a, Index b) const {
     return distance(complex_.vertices[a].point, complex_.vertices[b].point);
   }
-  /// The edges of a vertex's curve, before and behind it. Precondition: it is on one curve alone.
+  /// Returns the edges of a vertex's curve, before and behind it. Precondition: it is on one curve only.
   std::optional<std::array<Index, 2>> edges_around(Index vertex) const;
-  /// Is the vertex the end of a tip? Such vertices stay where they are.
+  /// Returns whether the vertex is the end of a tip. Such vertices stay where they are.
   bool ends_tip(Index vertex) const {
     const auto& v = complex_.vertices[vertex];
     return v.feature.dimension == 1 && std::any_of(v.edges.begin(), v.edges.end(),

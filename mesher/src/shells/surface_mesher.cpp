@@ -14,7 +14,8 @@ namespace collarmesh::shells {
 
 namespace {
 
-// Edges are divided above, and contracted below these lengths, relative to the target edge length.
+// Edges longer than the first of these lengths, relative to the target, are divided; edges shorter than the
+// second are contracted.
 constexpr double long_edge = 1.35, short_edge = 0.74;
 
 }  // namespace
@@ -72,10 +73,10 @@ void SurfaceMesher::take_complex() {
   grade(complex_, sizes_.gradation());
 }
 
-/// For points of the complex, the tolerance or, where curves are near to each other, so much less that their
-/// edges do not cross.
+/// Returns the allowed distance of chords from each point of the complex: the tolerance or, where curves are
+/// near each other, so much less that their edges do not cross.
 std::vector<double> SurfaceMesher::sag_limits() const {
-  constexpr double share = 0.1, least = 1e-3;  // of the width, of the tolerance
+  constexpr double share = 0.1, least = 1e-3;  // relative to the width, and to the tolerance
   std::vector<double> limits(plc_.points.size());
   for (Index p = 0; p < limits.size(); ++p) limits[p] = tolerance_.at_point(p);
   for_narrow_triangles(complex_, [&](const NarrowTriangle& narrow) {
@@ -88,7 +89,7 @@ std::vector<double> SurfaceMesher::sag_limits() const {
   return limits;
 }
 
-/// Puts vertices where the curve is divided. `edges` are those of the curve, in order.
+/// Inserts vertices where the curve is divided. `edges` are the curve's edges in order.
 void SurfaceMesher::divide_curve_at(Index curve, std::vector<Index>& edges, const std::array<double, 2>& tips,
                                     const std::vector<double>& limits) {
   constexpr double same = 1e-6;
@@ -125,7 +126,7 @@ void SurfaceMesher::divide_curves(const SharpCorners& corners) {
     if (!edges[curve].empty()) divide_curve_at(curve, edges[curve], corners.tips(curve), limits);
 }
 
-/// Removes the vertices of curves where these are not divided.
+/// Removes the vertices of curves at which these are not divided.
 void SurfaceMesher::contract_on_curves() {
   constexpr unsigned rounds = 3;
   const SurfaceEditor::Contraction rule{.longest = INFINITY, .least_shape = 0};
@@ -193,7 +194,7 @@ void SurfaceMesher::contract_short(double least_shape) {
   }
 }
 
-/// Where something changed since the last time.
+/// Flips edges where triangles have changed since the last call.
 void SurfaceMesher::flip_all() {
   constexpr unsigned rounds = 20;
   flipped_.resize(complex_.vertices.size(), 0);
@@ -208,7 +209,7 @@ void SurfaceMesher::flip_all() {
     for (const Index v : changed) {
       waiting[v] = false;
       for (const Index n : complex_.neighbours(v)) {
-        if (waiting[n]) continue;  // it looks at the edge
+        if (waiting[n]) continue;  // n will look at this edge
         const auto two = complex_.two_triangles_at(v, n);
         if (!two) continue;
         const Index c = complex_.triangles[(*two)[0]].third(v, n),
@@ -225,7 +226,7 @@ void SurfaceMesher::flip_all() {
 }
 
 void SurfaceMesher::smooth() {
-  constexpr double least_way = 0.03;  // of the target edge length
+  constexpr double least_way = 0.03;  // relative to the target edge length
   for (Index v = 0; v < complex_.vertices.size(); ++v) {
     if (complex_.vertices[v].triangles.empty() || complex_.vertices[v].feature.dimension != 2) continue;
     Point sum{};
@@ -271,7 +272,8 @@ void SurfaceMesher::run() {
     flip_all();
     smooth();
   }
-  // Where features of the input are very near to each other, more would be many times what the sizes ask for.
+  // Limit on new vertices: where features of the input are very near each other, good shapes would need many
+  // times more than the sizes ask for.
   std::size_t used = 0;
   for (const auto& vertex : complex_.vertices) used += vertex.triangles.empty() ? 0 : 1;
   const std::size_t limit = complex_.vertices.size() + 8'000 + used / 2;
@@ -288,7 +290,8 @@ void SurfaceMesher::run() {
   for (unsigned round = 0; round < last_rounds && repair_.approach(rest()); ++round) repair_.run(rest());
 }
 
-/// Unless an angle falls below its bound, or below what it was if that is less.
+/// Moves a vertex to its place on the exact geometry, unless an angle would fall below its bound or, if it
+/// was below before, below its old value.
 bool SurfaceMesher::project_vertex(Index vertex, const Point& target) {
   const Point before = complex_.vertices[vertex].point;
   std::vector<double> least;

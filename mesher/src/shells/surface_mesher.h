@@ -16,27 +16,27 @@ namespace collarmesh::shells {
 
 class SharpCorners;
 
-/// Meshes the patches of a complex, in steps: the triangles of the complex become editable; curves are
-/// divided by size; long edges are divided and short ones contracted; triangles with poor angles are refined
-/// by circumcentres; what that made too fine is coarsened.
+/// Meshes the patches of a complex in steps. Makes the triangles of the complex editable; divides curves by
+/// size; divides long edges and contracts short ones; refines triangles with poor angles by circumcentres;
+/// coarsens places that became too fine.
 class SurfaceMesher {
  public:
   /// Keeps all but the tolerance by reference. The mesh takes the share `most_excess` of the tolerance.
   SurfaceMesher(const Plc& plc, const MeshOptions& options, SurfaceTolerance tolerance, double most_excess,
                 const Execution& execution);
 
-  /// Ends early where the execution is cancelled.
+  /// Runs all steps. Ends early if the execution is cancelled.
   void run();
 
   /// Moves vertices onto the exact geometry, as far as the angles permit. Precondition: run() was called.
   ProjectReport project(const ExactGeometry& exact, double most_excess);
 
-  /// The mesh, with triangles turned like their patches. Its vertices are numbered anew.
+  /// Returns the mesh, with triangles oriented like their patches. Its vertices get new numbers.
   TetMesh mesh();
 
-  /// For mid-edge nodes.
+  /// Returns the place of a patch nearest to p, for mid-edge nodes.
   Point place_on_patch(Index patch, const Point& p) const { return surfaces_.nearest(patch, p).point; }
-  /// Precondition: an edge of the result of mesh().
+  /// Returns the middle of an edge along its curve. `edge` is the number of an edge of the result of mesh().
   Point middle_of_curve_edge(std::size_t edge) const { return middles_[edge]; }
 
  private:
@@ -61,10 +61,11 @@ class SurfaceMesher {
   SurfaceComplex complex_;
   SurfaceEditor editor_;
   ShapeRepair repair_;
-  std::vector<Point> middles_;   // of the edges of mesh()
-  std::vector<Index> point_of_;  // of the complex, of the first vertices
-  std::vector<Index> flipped_;   // changes of each vertex, and 1, when no edge there was to flip
-  std::vector<bool> kept_;       // vertices on curves, where these are divided
+  std::vector<Point> middles_;   // middles of the edges of mesh()
+  std::vector<Index> point_of_;  // by vertex: the point of the complex that it was made from
+  std::vector<Index> flipped_;   // by vertex: its number of changes, plus 1, when no edge there had to be
+                                 // flipped
+  std::vector<bool> kept_;       // by vertex on a curve: whether the curve is divided there
 };
 
 }  // namespace collarmesh::shells

@@ -9,7 +9,7 @@ namespace collarmesh::shells {
 
 namespace {
 
-// Where none is asked for. A smallest angle of 20 degrees permits about as much.
+// Gradation if none is given. A smallest angle of 20 degrees permits about this much.
 constexpr double default_gradation = 0.8;
 
 }  // namespace

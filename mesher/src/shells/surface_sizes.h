@@ -9,19 +9,19 @@
 
 namespace collarmesh::shells {
 
-/// Target edge lengths on curves and patches. They grow by at most the gradation per unit length away from
-/// where they are small, and from curves that are shorter.
+/// Target edge lengths on curves and patches. They grow by at most the gradation per unit length with the
+/// distance from small ones, and from curves that are shorter than them.
 class SurfaceSizes {
  public:
   /// Keeps all by reference.
   SurfaceSizes(const Plc& plc, const CurvePaths& paths, const MeshOptions& options);
 
   double gradation() const { return gradation_; }
-  /// What is asked for at a place of a patch, on a triangle of the complex.
+  /// Returns the target edge length at a place of a patch, on a triangle of the complex.
   double on_patch(Index patch, Index triangle, const Point& p) const {
     return sizing_.triangle_size(patch, triangle, p);
   }
-  /// What is asked for on a curve, and what the lengths of curves at its ends permit.
+  /// Returns the target edge length on a curve, considering the lengths of the curves at its ends.
   double on_curve(Index curve, double parameter) const;
   double at_vertex(Index vertex) const { return at_vertex_[vertex]; }
 
@@ -35,7 +35,7 @@ class SurfaceSizes {
   std::vector<double> at_vertex_;
 };
 
-/// Makes the sizes at vertices keep the gradation along edges. Cost: n log n.
+/// Reduces the sizes at vertices until they keep the gradation along all edges. Cost: n log n.
 void grade(SurfaceComplex& complex, double gradation);
 
 }  // namespace collarmesh::shells

@@ -12,13 +12,13 @@ namespace collarmesh::shells {
 
 using Corners = std::array<Point, 3>;
 
-/// The bounds on the angles of triangles, degrees, and what improvement aims at.
+/// The lower bound on the angles of triangles, and the shape that improvement aims at, degrees.
 inline constexpr double least_angle = 20, wanted_shape = 28;
 
 inline Vector area_vector(const Corners& t) { return 0.5 * cross(t[1] - t[0], t[2] - t[0]); }
 
-/// Returns the angle of the vector (x, y), y >= 0, in degrees, with an error below 0.001. No call of a
-/// library: it takes most of the time.
+/// Returns the angle of the vector (x, y), y >= 0, in degrees, with an error below 0.001. Avoids the
+/// library's function, which would take most of the time.
 inline double angle_of(double x, double y) {
   const double u = std::fabs(x), z = u > y ? y / u : u / std::max(y, 1e-300), w = z * z;
   constexpr double degrees = 180 / std::numbers::pi;
@@ -28,8 +28,9 @@ inline double angle_of(double x, double y) {
   return x < 0 ? 180 - steep : steep;
 }
 
-/// Returns the smaller of the smallest angle and a third of what the largest one lacks from 180 degrees: 20
-/// where the angles are at the bounds 20 or 120; 40 in an equilateral triangle, 0 in a flat one.
+/// Returns the quality of a triangle: the smaller of its smallest angle and a third of the difference between
+/// 180 degrees and its largest angle. It is 20 if an angle is at its bound (20 or 120), 40 in an equilateral
+/// triangle, 0 in a flat one.
 inline double shape_of(const Corners& t) {
   double a = squared_distance(t[1], t[2]), b = squared_distance(t[2], t[0]), c = squared_distance(t[0], t[1]);
   if (a > b) std::swap(a, b);

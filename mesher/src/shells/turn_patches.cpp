@@ -19,7 +19,7 @@ struct Side {
 
 struct Neighbour {
   Index patch;
-  bool alike;  // its triangles need not be turned
+  bool alike;  // whether their triangles agree already
 };
 
 std::vector<std::vector<Neighbour>> neighbours_of(const TetMesh& mesh, std::size_t patches) {

@@ -5,9 +5,9 @@
 
 namespace collarmesh::shells {
 
-/// Turns the triangles of whole patches: faces of a region look out of it, those of an open surface like
-/// their neighbours across edges of two triangles, as far as it is orientable; the first patch of each keeps
-/// its orientation.
+/// Orients the triangles of whole patches. Faces of a region point out of it; faces of an open surface agree
+/// with their neighbours across edges of two triangles, as far as the surface is orientable. The first patch
+/// of each surface keeps its orientation.
 void turn_patches(TetMesh& mesh, const Plc& plc);
 
 }  // namespace collarmesh::shells

@@ -8,7 +8,7 @@
 
 namespace collarmesh::shells {
 
-/// The triangles around a vertex, for trying many places of it before it is moved.
+/// The triangles around a vertex, for trying many places before the vertex is moved.
 class VertexFan {
  public:
   VertexFan(const SurfaceComplex& complex, Index vertex) : at_(complex.vertices[vertex].point) {
@@ -29,34 +29,34 @@ class VertexFan {
     }
   }
 
-  /// The mean of the triangles' normals; zero if they have none.
+  /// Returns the mean of the triangles' normals; zero if they have none.
   const Vector& normal() const { return normal_; }
-  /// Returns a unit vector across the normal. Precondition: there is a normal.
+  /// Returns a unit vector orthogonal to the normal. Precondition: there is a normal.
   Vector across() const {
     const Vector& n = normal_;
     const Vector least = std::fabs(n.x) < 0.6 ? Vector{1, 0, 0} : Vector{0, 1, 0};
     const Vector u = least - dot(least, n) * n;
     return u / norm(u);
   }
-  /// The middle of the other ends of the vertex's edges, from the vertex.
+  /// Returns the vector from the vertex to the mean of its neighbours.
   const Vector& centre() const { return centre_; }
-  /// The distance of the farthest one.
+  /// Returns the distance to the farthest neighbour.
   double reach() const { return reach_; }
-  /// Returns the place so far from the vertex, on a surface as bent as the triangles are.
+  /// Returns the place at this step from the vertex, on a surface as curved as the triangles are.
   Point place(const Vector& step) const {
     const Vector flat = step - dot(step, normal_) * normal_;
     return at_ + flat + bend_ * squared_norm(flat) * normal_;
   }
 
-  /// Returns the least shape of the triangles if the vertex were at p; any number below the bound if it is
-  /// below.
+  /// Returns the least shape of the triangles if the vertex were at p; if it is below `bound`, any number
+  /// below that.
   double least_shape(const Point& p, double bound) const {
     double least = INFINITY;
     for (const auto& [a, b] : sides_)
       if ((least = std::min(least, shape_of({p, a, b}))) < bound) break;
     return least;
   }
-  /// The same; 0 where a triangle would be turned over.
+  /// Returns the least shape as above, but 0 if a triangle would be turned over.
   double least_turned_shape(const Point& p, double bound) const {
     for (const auto& [a, b] : sides_)
       if (!(dot(cross(a - p, b - p), normal_) > 0)) return 0;

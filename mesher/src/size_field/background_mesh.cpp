@@ -31,7 +31,8 @@ class BackgroundMesh {
     return place;
   }
 
-  /// Interpolates numbers at the points: linear in the tets, the nearest point's value outside them.
+  /// Interpolates numbers given at the points: linearly in the tets; outside them, returns the value at the
+  /// nearest point.
   double value_at(const Point& p, const std::vector<double>& values) const {
     const MeshPlace place = place_of(p);
     if (place.tet == none) return values[place.nearest];
@@ -57,7 +58,7 @@ class BackgroundMesh {
     return triangles;
   }
 
-  /// Computes the shares of a tet's corners at p. Returns false if p is outside.
+  /// Computes the barycentric coordinates of p in a tet. Returns false if p is outside.
   bool shares_in(Index tet, const Point& p, std::array<double, 4>& shares) const {
     const auto& v = tets_[tet];
     std::array<Point, 4> corners;

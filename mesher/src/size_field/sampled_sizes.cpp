@@ -17,11 +17,11 @@ namespace {
 
 constexpr double coarsest = 1.0 / 64;  // size of cells, relative to the box's longest side
 constexpr unsigned finer_cells = 8;    // cells along each side of a cell that gets its own grid
-constexpr double finest = 1e-12;       // relative to the box's longest side: shorter cells are not divided
+constexpr double finest = 1e-12;       // shortest cells that are divided, relative to the box's longest side
 
 using Counts = std::array<unsigned, 3>;
 
-/// Nodes of a grid of cells, with a size at each.
+/// The nodes of a grid of cells, with a size at each node.
 class Grid {
  public:
   Grid(const Point& low, const Point& high, const Counts& cells) : low_(low), high_(high), cells_(cells) {
@@ -37,7 +37,7 @@ class Grid {
   }
   void set_sizes(std::vector<double> sizes) { sizes_ = std::move(sizes); }
 
-  /// A cell: its corners, and the position of a place in it, by shares of its sides.
+  /// A cell: its corners, and the position of a place in it, relative to its sides.
   struct Cell {
     Counts at;
     std::array<double, 3> shares;
@@ -127,7 +127,7 @@ class SampledSizes {
   }
 
  private:
-  /// Returns the grid in a cell; the first thread that asks makes it.
+  /// Returns the grid in a cell; the first thread that needs it makes it.
   Grid& finer(Grid& grid, const Grid::Cell& cell) {
     std::atomic<Grid*>& place = grid.finer(cell);
     if (Grid* const there = place.load(std::memory_order_acquire)) return *there;
@@ -140,8 +140,8 @@ class SampledSizes {
     return *grids_.back();
   }
 
-  /// Interpolates linearly along each axis. Beside finite sizes infinite ones count as the largest finite
-  /// one.
+  /// Interpolates linearly along each axis. If some sizes are finite, infinite ones count as the largest
+  /// finite one.
   static double between(const std::array<double, 8>& corners, const std::array<double, 3>& shares) {
     double largest = 0;
     for (const double size : corners)

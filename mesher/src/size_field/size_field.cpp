@@ -22,7 +22,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr double default_growth = 0.3;
-constexpr double right_angle = 1e-6;  // largest cosine
+constexpr double right_angle = 1e-6;  // largest cosine that counts as a right angle
 constexpr int deepest = 16;           // levels of JSON; deeper nesting could exhaust the stack
 const std::array<std::string, 5> kinds{"ball", "box", "cylinder", "curves", "patches"};
 
@@ -71,7 +71,7 @@ Distance distance_from_ball(const Json& ball, const std::string& place) {
   return [=](const Point& p) { return std::max(distance(p, centre) - radius, 0.0); };
 }
 
-// Makes a box in its own frame: a corner and three edges from there, at right angles.
+// Returns the distance from a box given by a corner and three edges at right angles.
 Distance distance_from_turned_box(const Json& box, const std::string& place) {
   allow_only(box, place, {"corner", "edges"});
   const Point corner = point(box, place, "corner");
@@ -124,7 +124,7 @@ Distance distance_from_cylinder(const Json& cylinder, const std::string& place) 
   };
 }
 
-// Returns the distance from the features with these tags; a curve's segments are triangles without an area.
+// Returns the distance from the features with these tags; segments of curves are triangles without area.
 template <class Features, class Add>
 Distance distance_from_features(const Json& tags, const std::string& place, const std::string& kind,
                                 const Plc& plc, const Features& features, const Add& add) {
@@ -171,12 +171,12 @@ Distance distance_of(const Json& source, const std::string& place, const Plc& pl
 struct Source {
   Distance distance;
   double size, growth, within;
-  std::size_t number;  // in SizeFieldUse
+  std::size_t number;  // number of the source in SizeFieldUse
 
   double at(const Point& p) const { return size + growth * std::max(distance(p) - within, 0.0); }
 };
 
-/// Returns the name of a source in messages: "sources[2] (ball)".
+/// Returns the name of a source for messages, as in "sources[2] (ball)".
 std::string called(std::size_t number, const Json& source) {
   for (const std::string& kind : kinds)
     if (source.contains(kind)) return fmt::format("sources[{}] ({})", number, kind);

@@ -20,13 +20,13 @@ struct NodeOfTet {
 
 /// Divides the tets at each node into sectors: tets that share a side at the node are in one sector unless
 /// the side is split. For each sector but the first, in the order of regions and tets, calls `copy(node,
-/// members)`. Tets that met at the node without a common side before the split still share it in their first
-/// sectors. Cost: n log n.
+/// members)`. Tets that met at the node without a common side before the split still share the node in their
+/// first sectors. Cost: n log n.
 void for_each_further_sector(const TetMesh& mesh, std::vector<NodeOfTet> nodes,
                              const std::function<bool(const Key&)>& is_split,
                              const std::function<void(Index, const std::vector<NodeOfTet>&)>& copy);
 
-/// The corners between which a mid-edge node of a tet lies, by its place among the six.
+/// The corners of a tet between which each of its six mid-edge nodes lies.
 inline constexpr std::array<std::array<std::uint8_t, 2>, 6> mid_node_ends{
     {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
 

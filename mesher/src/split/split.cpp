@@ -21,7 +21,7 @@ namespace {
 
 using namespace splitting;
 
-/// The tets beside a triangle of the mesh.
+/// The tets on both sides of a triangle of the mesh.
 struct Beside {
   Index behind = none, front = none;
   Index any() const { return behind == none ? front : behind; }
@@ -287,12 +287,12 @@ class Splitter {
 
   TetMesh& mesh_;
   const SplitOptions& options_;
-  io::FaceFinder finder_;                      // of the faces before the split
+  io::FaceFinder finder_;                      // finds faces by corners, from before the split
   std::vector<std::array<Index, 4>> tets_;     // after the split
   std::vector<std::array<Index, 6>> mids_;     // after the split
   std::vector<bool> chosen_;                   // by face
   std::vector<bool> marked_;                   // nodes of chosen faces
-  std::vector<Beside> beside_;                 // of faces with a marked corner, as tet numbers
+  std::vector<Beside> beside_;                 // by face with a marked corner: the tets beside it
   std::vector<Index> copies_;                  // by node
   std::map<Tag, SplitReport::Patch> patches_;  // by tag before the split
   std::vector<SidePair> pairs_;

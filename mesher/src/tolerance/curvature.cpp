@@ -25,8 +25,8 @@ class PatchCurvature {
     }
   }
 
-  /// Returns for each triangle, from its corners, the largest of the larger curvatures and the mean of the
-  /// sums.
+  /// Returns the curvatures of each triangle, from those at its corners: the maximum of the larger curvatures
+  /// and the mean of the sums.
   std::vector<Curvature> by_triangle() const {
     std::vector<AtPoint> smooth(points_.size());
     for (Index i = 0; i < patch_.triangle_count; ++i) {
@@ -72,7 +72,7 @@ class PatchCurvature {
     return points_[entry->second];
   }
 
-  // Adds an edge; the second triangle at the edge completes its bend.
+  // Adds an edge. When the second triangle at the edge is added, its bend is known.
   void add_edge(Index a, Index b, const Vector& n) {
     const auto [entry, fresh] = normal_at_.try_emplace(edge_key(a, b), n);
     if (fresh) return;
@@ -98,7 +98,7 @@ class PatchCurvature {
   std::unordered_map<std::uint64_t, Vector> normal_at_;  // by edge: the first triangle's normal
 };
 
-// Returns by segment the larger curvature of its ends.
+// Returns for each segment of a curve the larger curvature of its ends.
 std::vector<double> largest_by_segment(const Plc& plc, const Plc::Curve& curve) {
   const auto& p = curve.points;
   const std::size_t count = p.size(), segments = curve.closed ? count : count - 1;

@@ -6,16 +6,16 @@
 
 namespace collarmesh {
 
-/// The curvature of a smooth patch at a triangle, per length unit.
+/// The curvature of a smooth patch at a triangle, in inverse input units.
 struct Curvature {
   double largest = 0;  ///< the larger of the principal curvatures' absolute values
-  double sum = 0;      ///< sum of both: positive where the surface bends away from the side that its normals
-                       ///< point to
+  double sum = 0;      ///< sum of both principal curvatures: positive if the surface bends away from the side
+                       ///< that its normals point to
 };
 
-/// Returns the curvatures of a patch by its triangles: those of the curvature tensor of its tessellation,
-/// averaged over the triangles around a point (Cohen-Steiner and Morvan: Restricted Delaunay triangulations
-/// and normal cycle, 2003). Cost: linear.
+/// Returns the curvatures of a patch by its triangles, from the curvature tensor of its tessellation averaged
+/// over the triangles around each point (Cohen-Steiner and Morvan: Restricted Delaunay triangulations and
+/// normal cycle, 2003). Cost: linear.
 std::vector<Curvature> curvatures(const Plc& plc, const Plc::Patch& patch);
 
 /// Target edge lengths, absolute, that put N elements on a full circle of the curvature.
@@ -24,8 +24,8 @@ struct CurvatureSizes {
   std::vector<std::vector<double>> curve_segment;  ///< of every segment of every curve's polyline
 };
 
-/// Returns the sizes. The curvature of a smooth patch is the larger principal one; that of a curve is the
-/// turning angle of its polyline by its length. Cost: linear.
+/// Returns the sizes. For a smooth patch the larger principal curvature counts; for a curve, the turning
+/// angle of its polyline divided by its length. Cost: linear.
 CurvatureSizes curvature_sizes(const Plc& plc, double elements_per_circle);
 
 }  // namespace collarmesh

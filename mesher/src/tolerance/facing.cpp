@@ -6,7 +6,7 @@ namespace collarmesh {
 
 namespace {
 
-bool share(const std::vector<Index>& a, const std::vector<Index>& b) {  // sorted
+bool share(const std::vector<Index>& a, const std::vector<Index>& b) {  // both sorted
   for (auto i = a.begin(), j = b.begin(); i != a.end() && j != b.end();) {
     if (*i == *j) return true;
     *i < *j ? ++i : ++j;
@@ -57,7 +57,7 @@ FacingSurfaces::Facing FacingSurfaces::from(const Point& x, Index triangle, unsi
   normal = normal / length;
   const Vector way = side == 0 ? -1 * normal : normal;
   const Index root = triangles_.root(), patch = plc_.triangles[triangle].patch;
-  // Start off the plane of its own triangle, which would cause ties.
+  // Starts off the plane of the triangle, which would cause ties.
   triangles_.crossings(x + 1e-6 * widest * way, x + widest * way, {&root, 1}, crossings);
   for (const auto& [other, direction] : crossings) {
     const double distance = facing_distance(plc_, patch, x, normal, way, other, triangles_.corners(other));

@@ -10,20 +10,20 @@
 namespace collarmesh {
 
 std::vector<std::array<Index, 3>> corners_of_triangles(const Plc& plc);
-/// Returns whether they are the same patch, or have a curve or a vertex in common.
+/// Returns whether two patches are the same, or have a curve or a vertex in common.
 bool are_neighbours(const Plc& plc, Index patch, Index other);
-/// Returns the least cosine between a direction and the normal of a surface that faces it: larger for
+/// Returns the least cosine between a direction and the normal of a surface that faces it. It is larger for
 /// neighbours, because they may form a wedge.
 double least_facing(bool neighbours);
 
 /// Returns the distance of the point x of a patch, along a unit normal of the patch, from the plane of a
-/// triangle that the ray from x in the direction `way` (the normal or its opposite) crosses; infinite where
-/// the triangle does not face the patch. Patches that meet elsewhere face each other only where they are
-/// almost parallel, because otherwise gaps would close in wedges.
+/// triangle that the ray from x in the direction `way` (the normal or its opposite) crosses; infinite if the
+/// triangle does not face the patch. Patches that meet elsewhere face each other only if they are almost
+/// parallel, because otherwise gaps would close in wedges.
 double facing_distance(const Plc& plc, Index patch, const Point& x, const Vector& normal, const Vector& way,
                        Index triangle, const std::array<Point, 3>& corners);
 
-/// The surface that faces a point of the surface, across a region, a gap or a cavity.
+/// Finds the surface that faces a point of the surface, across a region, a gap or a cavity.
 class FacingSurfaces {
  public:
   /// Keeps the complex by reference.
@@ -36,8 +36,8 @@ class FacingSurfaces {
   /// Scratch space of a thread.
   using Crossings = std::vector<TriangleHierarchy::Crossing>;
 
-  /// Finds the surface that faces a point x of a triangle on the patch's side 0 (behind) or 1 (in front), not
-  /// farther than `widest`.
+  /// Finds the surface that faces a point x of a triangle on side 0 (behind) or 1 (in front) of its patch, at
+  /// a distance of at most `widest`.
   Facing from(const Point& x, Index triangle, unsigned side, double widest, Crossings& crossings) const;
 
   const TriangleHierarchy& triangles() const { return triangles_; }

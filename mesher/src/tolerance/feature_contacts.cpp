@@ -9,7 +9,7 @@ namespace collarmesh {
 
 namespace {
 
-// At a vertex with more patches, these are not listed as neighbours of each other.
+// If a vertex has more patches than this, they are not listed as neighbours of each other.
 constexpr std::size_t patches_at_hub = 64;
 
 }  // namespace

@@ -6,15 +6,15 @@
 
 namespace collarmesh {
 
-/// Knows which features of a complex have a point in common. Only the input determines the distance of
-/// features that have none.
+/// Knows which features of a complex have a point in common. The distance between features without a common
+/// point depends on the input alone, not on the mesh.
 class FeatureContacts {
  public:
   /// Keeps the complex by reference. Cost: near linear in the complex.
   explicit FeatureContacts(const Plc& plc);
 
-  /// Returns whether the two features, of dimensions 0 to 2, are the same or have a point in common. Cost:
-  /// logarithmic, except where many patches meet in a vertex.
+  /// Returns whether two features, of dimensions 0 to 2, are the same or have a point in common. Cost:
+  /// logarithmic, except if many patches meet in a vertex.
   bool touch(unsigned dimension, Index feature, unsigned other_dimension, Index other) const;
 
  private:
@@ -22,7 +22,8 @@ class FeatureContacts {
 
   const Plc& plc_;
   std::vector<std::vector<Index>> neighbours_;  // by patch: other patches that it meets, sorted
-  std::vector<bool> at_hub_;  // by patch: it has a vertex with many patches, which are not in that list
+  std::vector<bool> at_hub_;  // by patch: whether it has a vertex with many patches, which are not in that
+                              // list
 };
 
 }  // namespace collarmesh

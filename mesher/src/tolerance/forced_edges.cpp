@@ -9,14 +9,14 @@ namespace collarmesh {
 
 namespace {
 
-// Returns the distance across; infinite unless each corner of one group is joined to all corners of the other
-// group and to none of its own.
+// Returns the distance between two groups of corners; infinite unless each corner of one group is joined to
+// all corners of the other group and to none of its own group.
 double distance_across(const std::array<Point, 4>& p, const std::array<unsigned, 4>& across) {
   constexpr unsigned all = 15;
   const unsigned other = across[0], own = all & ~other;
   for (unsigned i = 0; i < 4; ++i)
     if (across[i] != ((own >> i & 1U) != 0 ? other : own)) return INFINITY;
-  std::array<Point, 4> q{};  // corners of one group first
+  std::array<Point, 4> q{};  // the corners, with those of one group first
   unsigned first = 0, last = 4;
   for (unsigned i = 0; i < 4; ++i) q[(own >> i & 1U) != 0 ? first++ : --last] = p[i];
   const Vector across_both = first == 2   ? cross(q[1] - q[0], q[3] - q[2])
@@ -50,7 +50,7 @@ ForcedEdges::ForcedEdges(const Plc& plc, std::vector<TetMesh::VertexFeature> fea
       least_cosine_(least_cosine) {
   for (Index f = 0; f < faces.size(); ++f) {
     const auto& [a, b, c] = faces[f];
-    if (a == none) continue;  // removed from a mesh under improvement
+    if (a == none) continue;  // the tet was removed from a mesh under improvement
     const Vector normal = cross(points[b] - points[a], points[c] - points[a]);
     for (const Index v : faces[f])
       if (features_[v].dimension == 2 && features_[v].feature == face_patch[f])

@@ -10,9 +10,9 @@
 namespace collarmesh {
 
 /// Returns the width that short edges leave to a tet, relative to its longest edge: the length of the
-/// shortest edge that `forces` names by its corners. If these edges are all that joins two groups of its
-/// corners, returns the distance between the spans of the groups: a corner and a plane, or two lines. 1 if
-/// there is none.
+/// shortest edge that `forces` accepts (given by its corners). If exactly these edges join two groups of
+/// corners, returns the distance between the planes or lines through the groups: between a corner and a
+/// plane, or between two lines. 1 if there is no such edge.
 double narrowness_of(const std::array<Point, 4>& p, const std::array<unsigned, 4>& across);
 template <class Forces>
 double narrowness_of(const std::array<Point, 4>& p, const Forces& forces) {
@@ -26,23 +26,24 @@ double narrowness_of(const std::array<Point, 4>& p, const Forces& forces) {
   return narrowness_of(p, across);
 }
 
-/// The edges of a mesh whose lengths the input forces: they join features that have no point in common, or
-/// places of one patch that face opposite ways. If these are near to each other, as on the two sides of a
-/// thin wall, at a step or at a strip, no tet can have both long edges and large angles.
+/// The edges of a mesh that the input forces to be short: they join features that have no point in common, or
+/// places of one patch that face opposite ways. If these are near each other, as on the two sides of a thin
+/// wall, at a step or at a strip, no tet can have both long edges and large angles.
 class ForcedEdges {
  public:
-  /// Finds the edges between the current vertices. Keeps the complex by reference. `features`: by point, the
-  /// one of lowest dimension; the others as in a TetMesh. `least_cosine`: of the angle between normals, below
-  /// which they face opposite ways.
+  /// Finds the edges between the current vertices. Keeps a reference to the complex. `features`: by point,
+  /// the feature of lowest dimension; other arguments as in a TetMesh. `least_cosine`: two sides of a patch
+  /// face opposite ways if the cosine between their normals is below this.
   ForcedEdges(const Plc& plc, std::vector<TetMesh::VertexFeature> features, const std::vector<Point>& points,
               const std::vector<std::array<Index, 3>>& faces, const std::vector<Index>& face_patch,
               double least_cosine);
 
-  /// Returns whether the input forces an edge. Vertices inserted later lie on no feature.
+  /// Returns whether the input forces an edge to be short. False for vertices inserted later, which lie on no
+  /// feature.
   bool forces(Index a, Index b) const;
-  /// Returns the width that forced edges leave to a tet (narrowness_of).
+  /// Returns the width that forced edges leave to a tet, relative to its longest edge (narrowness_of).
   double narrowness(const std::array<Point, 4>& p, const std::array<Index, 4>& corners) const;
-  /// Returns the smallest dihedral angle that a tet of that narrowness must have, degrees: half of the angle
+  /// Returns the smallest dihedral angle that a tet of this narrowness must have, degrees: half of the angle
   /// whose tangent is the narrowness.
   static double smallest_angle(double narrowness);
 

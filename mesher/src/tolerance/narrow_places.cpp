@@ -25,7 +25,7 @@ NarrowPlaces::NarrowPlaces(const Plc& plc, std::vector<TetMesh::VertexFeature> f
   for (const Crease& crease : find_creases(plc, crease_angle)) {
     const auto [first, second] = dimensions_of(crease.kind);
     const Feature a{first, crease.features[0]}, b{second, crease.features[1]};
-    if (a == b) continue;  // a fold, whose sides face each other
+    if (a == b) continue;  // the crease is a fold: sides of one patch face each other
     in_creases_.emplace(a, b);
     in_creases_.emplace(b, a);
   }
@@ -35,7 +35,8 @@ bool NarrowPlaces::contain(const std::array<Point, 4>& p, const std::array<Index
   return narrowness_of(p, [&](unsigned i, unsigned j) { return across(corners[i], corners[j]); }) < share_;
 }
 
-// Returns whether an edge leads across. Vertices inserted later lie on no feature.
+// Returns whether an edge leads across a narrow place. False for vertices inserted later, which lie on no
+// feature.
 bool NarrowPlaces::across(Index a, Index b) const {
   if (forced_.forces(a, b)) return true;
   if (in_creases_.empty() || std::max(a, b) >= features_.size()) return false;

@@ -15,15 +15,15 @@ namespace collarmesh {
 /// crease, if their distance is below a share of the longest edge there.
 class NarrowPlaces {
  public:
-  /// Keeps the complex by reference. `forced` must be made of this mesh. Features that meet below
-  /// `crease_angle`, degrees, form a crease.
+  /// Keeps a reference to the complex. `forced` must be made of this mesh. Features that meet below
+  /// `crease_angle` (degrees) form a crease.
   NarrowPlaces(const Plc& plc, std::vector<TetMesh::VertexFeature> features, ForcedEdges forced,
                double crease_angle, double share);
 
   bool contain(const std::array<Point, 4>& p, const std::array<Index, 4>& corners) const;
 
  private:
-  using Feature = std::pair<std::uint8_t, Index>;  // dimension and index
+  using Feature = std::pair<std::uint8_t, Index>;  // dimension and index of a feature
 
   bool across(Index a, Index b) const;
   std::vector<Feature> all_that_contain(const TetMesh::VertexFeature& feature) const;
@@ -31,7 +31,8 @@ class NarrowPlaces {
   const Plc& plc_;
   std::vector<TetMesh::VertexFeature> features_;  // by vertex
   ForcedEdges forced_;
-  std::set<std::pair<Feature, Feature>> in_creases_;  // pairs in both orders
+  std::set<std::pair<Feature, Feature>> in_creases_;  // pairs of features that meet in a crease, in both
+                                                      // orders
   double share_;
 };
 

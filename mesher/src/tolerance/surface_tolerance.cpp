@@ -19,32 +19,33 @@ namespace collarmesh {
 
 namespace {
 
-// The largest distance from the surface, as a share (doc/architecture/tolerance.md has the measurements) of
-// the thickness of the material where its opposite sides bend away from each other (a rod) or in the same way
-// (a shell), and likewise of the width of gaps.
+// The largest distance from the surface, relative to the thickness of the material: if its opposite sides
+// bend away from each other (a rod), and if they bend the same way (a shell); and relative to the width of
+// gaps. doc/architecture/tolerance.md has the measurements.
 constexpr double share_of_rod = 0.05, share_of_shell = 0.15, share_of_hole = 0.1, share_of_slot = 0.5;
-// The share of a region's volume that chords may remove or add, by the estimate below; where they would
-// remove less, the shares of its thickness may be larger by this factor.
+// The share of a region's volume that chords may remove or add, by the estimate below. If they would remove
+// less, the shares of its thickness may be larger by up to this factor.
 constexpr double share_of_volume = 0.015, largest_factor = 2;
 // The share of the volume below a patch in a wedge that chords may remove, if they would otherwise remove
-// much of it.
+// more than `much_of_wedge`.
 constexpr double share_of_wedge = 0.035, much_of_wedge = 0.25;
-// The smallest tolerance in wedges, relative to the largest one: triangles of CAD faces are hardly nearer.
+// The smallest tolerance in wedges, relative to the largest one: triangles of CAD faces are hardly ever
+// closer to their surface.
 constexpr double least_share_in_wedges = 0.018;
-// The growth of the tolerance with the distance from wedges: collars need a continuous tolerance.
+// The growth of the tolerance per unit of distance from wedges: collars need a continuous tolerance.
 constexpr double slope_beside_wedges = 0.1;
 // The smallest tolerance, relative to the largest one: finer details are not resolved.
 constexpr double least_share = 5e-4;
-// The mean loss by chords as a share of the tolerance; most chords are nearer than the tolerance allows.
+// The mean deviation of chords, relative to the tolerance; most chords are nearer than it allows.
 constexpr double mean_of_sagitta = 0.42;
-constexpr double sizes_per_diagonal = 20;  // of the default size, as in refine/sizing.cpp
+constexpr double sizes_per_diagonal = 20;  // as for the default size, see refine/sizing.cpp
 
 class LocalTolerance {
  public:
   enum class Volumes {
-    kept,    // judged by the triangles between corners
-    curved,  // judged by the volume that curved elements enclose
-    any      // for everything unknown about a mesh
+    kept,    // first order: judged by the triangles between corners
+    curved,  // second order: judged by the volume that curved elements enclose
+    any      // the largest tolerance over all sizes and orders
   };
   LocalTolerance(const Plc& plc, double size)
       : plc_(plc),
@@ -93,9 +94,9 @@ class LocalTolerance {
     }
   }
 
-  // Keeps the volume of wedges. Where a patch meets the other side of a thin place in a crease, a share of
-  // the thickness would vanish towards the crease, but a share of the volume below the patch in that place
-  // does not.
+  // Keeps the volume of wedges. Where a patch and the opposite side of a thin place meet in a crease, a share
+  // of the thickness would go to zero towards the crease. So this limits the share of the volume below the
+  // patch there instead.
   void keep_wedges() {
     std::vector<double> at_points(plc_.points.size(), INFINITY);
     bool any = false;
@@ -114,7 +115,8 @@ class LocalTolerance {
       for (const Index p : plc_.triangles[t].points) of_gap_[t] = std::min(of_gap_[t], at_points[p]);
   }
 
-  // Returns the tolerance that wedges allow; infinite if a wedge is a small part of a patch, as at a fold.
+  // Returns the tolerance that wedges allow; infinite if a wedge is only a small part of a patch, as at a
+  // fold.
   double allowed_in_wedges(const Plc::Patch& patch) const {
     double all = 0, area = 0, volume = 0;
     for (Index t = patch.first_triangle; t < patch.first_triangle + patch.triangle_count; ++t) {
@@ -129,7 +131,7 @@ class LocalTolerance {
     return largest_ * std::max(share_of_wedge * volume / lost, least_share_in_wedges);
   }
 
-  // Lets values at points grow with the distance along edges of triangles, at most by this slope.
+  // Lowers values at points until they grow along edges of triangles by at most this slope.
   void grow(std::vector<double>& at_points) const {
     using Item = std::pair<double, Index>;
     std::priority_queue<Item, std::vector<Item>, std::greater<>> next;
@@ -153,28 +155,28 @@ class LocalTolerance {
     return 0.5 * norm(cross(plc_.points[b] - plc_.points[a], plc_.points[c] - plc_.points[a]));
   }
 
-  /// Returns the tolerance with shares of the material's thickness larger by these factors.
+  /// Returns the tolerance of a triangle, with the shares of the material's thickness multiplied by a factor.
   double at(Index triangle, double factor) const {
     return std::max(std::min({of_gap_[triangle], factor * of_material_[triangle], largest_}),
                     least_share * largest_);
   }
 
-  // Returns how material on this side bends; the sum is positive for convex material.
+  // Returns how the surface bends as seen from the material on this side; positive for convex material.
   double bend(Index triangle, unsigned side) const {
     return side == 0 ? curvature_[triangle].sum : -curvature_[triangle].sum;
   }
 
-  /// Returns the share of this side's loss that the opposite side does not gain.
+  /// Returns the share of this side's volume loss that the opposite side does not gain.
   double lost_by(Index triangle, unsigned side, const Thickness::Opposite& opposite) const {
     const double own = bend(triangle, side), other = bend(opposite.triangle, opposite.side);
     return own == 0 ? 1 : std::clamp(1 + other / own, 0.0, 1.0);
   }
 
-  // The loss of a region's volume at a part of its surface.
+  // A part of a region's surface where chords change the region's volume.
   struct Loss {
     Index triangle;
-    double area;     // negative where chords add to the volume
-    double sagitta;  // largest distance of chords of the target length in both directions
+    double area;     // negative if chords add to the volume
+    double sagitta;  // largest distance of chords of the target length from the surface
   };
 
   double volume_of(const Loss& loss, double factor) const {
@@ -192,7 +194,7 @@ class LocalTolerance {
     return boundaries;
   }
 
-  // Returns the places where chords change the volume that these patches enclose, on their side of a region.
+  // Returns the parts where chords change the volume that these patches enclose, on their side of a region.
   std::vector<Loss> losses_on(const std::vector<Index>& patches, Index region) const {
     std::vector<Loss> losses;
     for (const Index p : patches) {
@@ -208,7 +210,7 @@ class LocalTolerance {
     return losses;
   }
 
-  // Returns a factor for the shares of thickness with which these losses stay small beside the volume.
+  // Returns the factor on the shares of thickness with which these losses stay small relative to the volume.
   double factor_by_volume(const std::vector<Loss>& losses, double volume) const {
     const auto lost = [&](double factor) {
       double sum = 0;
@@ -222,7 +224,7 @@ class LocalTolerance {
     return factor;
   }
 
-  // Returns factors for the shares of thickness, by patch, with which regions and shells keep their volumes.
+  // Returns by patch the factors on the shares of thickness with which regions and shells keep their volumes.
   std::vector<double> factors_by_volumes() const {
     std::vector<double> factors(plc_.patches.size(), largest_factor);
     const auto keep = [&](const std::vector<Index>& patches, Index region, double volume) {
@@ -234,7 +236,7 @@ class LocalTolerance {
     std::vector<double> of_regions(plc_.regions.size(), largest_factor);
     for (Index r = 1; r < plc_.regions.size(); ++r)
       of_regions[r] = keep(boundaries[r], r, std::fabs(plc_.regions[r].volume));
-    for (Index p = 0; p < plc_.patches.size(); ++p)  // including sheets inside a region
+    for (Index p = 0; p < plc_.patches.size(); ++p)  // includes sheets inside a region
       factors[p] = std::min(factors[p], of_regions[plc_.patches[p].regions[0]]);
     const std::vector<Shell> shells = shells_of(plc_);
     const std::vector<double> enclosed = measures_of(plc_).shells;
@@ -291,7 +293,7 @@ bool triangles_resolve(const Plc& plc, const Plc::Patch& patch, const SurfaceTol
     Vector normal;
     double height;  // height of the triangle above the edge
   };
-  // A chord of this length between turns of that angle is off its arc by an eighth of their product.
+  // A chord of this length between two turns of this angle is off its arc by an eighth of their product.
   const auto resolved = [&](const Side& side, double turn) {
     return side.height * turn / 8 <= share_of_triangles * tolerance.at_triangle(side.triangle);
   };

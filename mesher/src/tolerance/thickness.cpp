@@ -15,8 +15,8 @@ Vector unit(const Vector& v) {
   return length > 0 ? v / length : Vector{};
 }
 
-// Returns for each triangle the sum of the normals at its corners, each of which is the sum of the normals of
-// the patch's triangles there, weighted by area.
+// Returns for each triangle the sum of the normals at its corners. The normal at a corner is the sum of the
+// normals of the patch's triangles there, weighted by area.
 std::vector<Vector> smooth_normals(const Plc& plc) {
   std::vector<Vector> normals(plc.triangles.size()), at_point(plc.points.size());
   for (const Plc::Patch& patch : plc.patches) {
@@ -62,7 +62,7 @@ Thickness::Opposites Thickness::at(Index triangle, unsigned side, Crossings& cro
   const Index patch = plc_.triangles[triangle].patch, region = plc_.patches[patch].regions[side];
   const double reach = plc_.bounds.diagonal();
   const Index root = triangles_.root();
-  // Starts off the plane of its own triangle, which would cause ties.
+  // Starts off the plane of the triangle, which would cause ties.
   triangles_.crossings(centre + 1e-9 * reach * way, centre + reach * way, {&root, 1}, crossings);
   for (const auto& [other, direction] : crossings) {
     const Index opposite_patch = plc_.triangles[other].patch;

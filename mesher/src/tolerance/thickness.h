@@ -9,8 +9,8 @@
 
 namespace collarmesh {
 
-/// The thickness of a region, or of the outside between two parts of the surface, at the triangles of its
-/// surface: along the normal to the end of the region.
+/// The thickness of a region, or of the outside between two parts of the surface, at each triangle of the
+/// surface: the distance along the normal to the end of the region.
 class Thickness {
  public:
   /// Keeps the complex by reference. Cost: near linear in the triangles.
@@ -19,32 +19,33 @@ class Thickness {
   /// A ray from the centre of a triangle along its smooth normal.
   struct Ray {
     Point from;
-    Vector way;  ///< unit; zero where the normal is not known
+    Vector way;  ///< unit vector; zero if the normal is unknown
   };
   struct Opposite {
     double distance = INFINITY;
-    Index triangle = none;  ///< where the region ends; none if it has no end, or ends at a slant
+    Index triangle = none;  ///< triangle where the region ends; none if it has no end, or ends at a slant
     unsigned side = 0;      ///< side of that triangle on which the region lies
     double facing = 0;      ///< cosine of the angle between the ray and that triangle's normal
   };
   struct Opposites {
     Opposite apart;         ///< nearest end at a patch that does not meet the triangle's patch in a crease
-    Opposite first;         ///< first end of the region, at any patch and slant
-    bool is_wedge = false;  ///< the patches meet in a crease there
+    Opposite first;         ///< first end of the region, at any patch and any slant
+    bool is_wedge = false;  ///< whether the two patches meet in a crease there
   };
   /// Scratch space of a thread.
   using Crossings = std::vector<TriangleHierarchy::Crossing>;
 
-  /// Casts a ray to side 0 (behind) or 1 (in front).
+  /// Casts a ray to the triangle's side 0 (behind) or 1 (in front).
   Ray ray(Index triangle, unsigned side) const;
   Opposites at(Index triangle, unsigned side, Crossings& crossings) const;
 
  private:
   const Plc& plc_;
   TriangleHierarchy triangles_;
-  std::set<std::pair<Index, Index>> creases_;  // pairs of patches that meet in a crease: a wedge may be thin
-  std::vector<Vector>
-      normals_;  // by triangle: unit normals of the smooth surface, not of needles of its tessellation
+  std::set<std::pair<Index, Index>> creases_;  // pairs of patches that meet in a crease, because wedges may
+                                               // be thin
+  std::vector<Vector> normals_;  // by triangle: unit normals of the smooth surface, which needles of its
+                                 // tessellation do not disturb
 };
 
 }  // namespace collarmesh

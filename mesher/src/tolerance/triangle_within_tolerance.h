@@ -4,10 +4,10 @@
 
 namespace collarmesh {
 
-/// Returns a triangle from which p is no farther than the tolerance there: the `hint`, if p is near enough to
-/// it; otherwise any triangle within the `least` tolerance, or else the nearest one; none if there is no such
-/// triangle. `at` gives the tolerance of a triangle, from `least` to `most`; `counts` tells which triangles
-/// count, the hint included.
+/// Returns a triangle whose distance from p is within the tolerance there: the `hint`, if it is such a
+/// triangle; else any triangle within the `least` tolerance; else the nearest one; none if there is no such
+/// triangle. `at` returns the tolerance of a triangle, from `least` to `most`; `counts` returns whether a
+/// triangle counts, the hint included.
 template <class At, class Counts>
 Index triangle_within_tolerance(const TriangleHierarchy& triangles, const Point& p, double least, double most,
                                 const At& at, Index hint, const Counts& counts) {

@@ -8,7 +8,7 @@
 
 namespace {
 
-// The library has no CAD shapes, and says who has.
+// Checks that the library, which reads no CAD shapes, says which one does.
 bool cad_is_told() {
   try {
     collarmesh::io::read_soup("part.STEP");
@@ -20,7 +20,7 @@ bool cad_is_told() {
 
 }  // namespace
 
-// consumer SURFACE MESH: mesh a file, certify the result and write it in every format.
+// consumer SURFACE MESH: meshes a file, certifies the result and writes it in every format.
 int main(int argc, char** argv) {
   if (argc != 3) return 2;
   if (!cad_is_told()) return 3;
@@ -29,7 +29,7 @@ int main(int argc, char** argv) {
   const collarmesh::TetMesh& mesh = made.result.mesh;
   collarmesh::io::write_tet_mesh(argv[2], mesh);
   for (const std::string& format : collarmesh::io::written_tet_mesh_formats())
-    if (format != ".polymesh")  // files of their own names
+    if (format != ".polymesh")  // except the format with fixed file names
       collarmesh::io::write_tet_mesh(argv[2] + format, mesh);
   std::printf("%zu tets, %zu findings\n", mesh.tets.size(), made.check.findings_total);
   return made.guarantees_hold() ? 0 : 1;

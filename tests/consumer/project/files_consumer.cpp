@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <string>
 
-// files_consumer MODEL MESH: mesh a file of any format, certify the result and write it; a file that is not
-// there is an error that names it.
+// files_consumer MODEL MESH: meshes a file of any format, certifies the result and writes it. A missing file
+// must raise an error that names it.
 int main(int argc, char** argv) {
   if (argc != 3) return 2;
   try {
@@ -22,7 +22,7 @@ int main(int argc, char** argv) {
     const collarmesh::FilesResult made = collarmesh::mesh_files({argv[1]}, options);
     collarmesh::io::write_tet_mesh(argv[2], made.result.mesh);
     std::printf("%zu tets, %zu notes\n", made.result.mesh.tets.size(), made.notes.size());
-    // Nodes on the exact shape: the volume of a mesh of its triangles is farther off.
+    // Nodes lie on the exact shape: a mesh on the triangles would have a volume farther from the exact one.
     const double volume = made.check.of_mesh.volumes.at(1), exact = made.check.of_input.volumes.at(1);
     if (!(std::fabs(volume / exact - 1) < 1e-3)) return 5;
     return made.guarantees_hold() && made.result.mesh.order() == 2 ? 0 : 1;

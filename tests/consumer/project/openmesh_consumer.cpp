@@ -1,7 +1,7 @@
 #include <collarmesh/error.h>
 #include <collarmesh/openmesh_io.h>
 
-// A file that is not there is an error that names it.
+// A missing file must raise an error that names it.
 int main() {
   try {
     collarmesh::openmesh_io::read_om("missing.om");

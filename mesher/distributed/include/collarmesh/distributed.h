@@ -20,34 +20,36 @@
 /// their cells and points.
 namespace collarmesh::distributed {
 
-/// The shape that the mesh approximates. Every rank has it; the references are kept.
+/// The shape that the mesh approximates. Every rank must have it. References to it are kept.
 struct Shape {
   const Plc& plc;
-  ExactGeometry exact;  ///< if empty or without a point, the polylines and triangles of the complex are used
+  ExactGeometry exact;  ///< without it, or where it returns no point, the polylines and triangles of the
+                        ///< complex are used
   double distance = 0;  ///< surface distance tolerance, absolute, input units
 };
 
-/// Bounds of dihedral angles, degrees: outside collars [0] and in collars [1].
+/// Bounds on dihedral angles, degrees: [0] outside collars, [1] in collars.
 struct AngleBounds {
   std::array<double, 2> least{180, 180}, most{0, 0};
 };
 
-/// The result of one level of refinement, over all ranks.
+/// The result of one level of refinement, summed over all ranks.
 struct LevelReport {
   std::int64_t tets = 0;         ///< tets after the refinement
   std::int64_t on_features = 0;  ///< vertices with a place on a smooth or exact feature
-  std::int64_t spoilt = 0;       ///< tets that this made invalid or poor
-  std::int64_t made_room = 0;    ///< moves of vertices inside regions, in planes and along straight curves
-  std::int64_t drawn_back = 0;   ///< vertices that did not move all the way
-  double farthest_off = 0;       ///< largest distance of those from their places, absolute
+  std::int64_t spoilt = 0;       ///< tets that placing these vertices made invalid or poor
+  std::int64_t made_room = 0;    ///< moves that made room: of vertices inside regions, in planes and along
+                                 ///< straight curves
+  std::int64_t drawn_back = 0;   ///< vertices that did not reach their place
+  double farthest_off = 0;       ///< largest distance of these vertices from their places, absolute
   double seconds = 0;            ///< time of the slowest rank
 };
 
-/// The result of `raise_order`, over all ranks.
+/// The result of `raise_order`, summed over all ranks.
 struct OrderReport {
   std::int64_t nodes = 0, curved = 0, straightened = 0;  ///< mid-edge nodes
-  double farthest_off = 0;                               ///< largest distance of straightened ones from their
-                                                         ///< places, absolute
+  double farthest_off = 0;                               ///< largest distance of straightened nodes from
+                                                         ///< their places, absolute
 };
 
 /// A guarantee that does not hold.
@@ -60,13 +62,13 @@ struct Finding {
 struct Certificate {
   static constexpr std::size_t listed = 20;  ///< maximum number of findings per guarantee and rank
   std::vector<Finding> findings;
-  std::int64_t findings_total = 0;                            ///< including those not listed
+  std::int64_t findings_total = 0;                            ///< number of findings, listed or not
   std::int64_t tets = 0, vertices = 0, faces = 0, edges = 0;  ///< faces on patches, edges on curves
   AngleBounds angles;
-  double largest_distance = 0;  ///< of vertices from their smooth patches and curves
+  double largest_distance = 0;  ///< largest distance of vertices from their smooth patches and curves
   std::map<Tag, double> region_volumes, patch_areas, curve_lengths;
   std::vector<std::int64_t> tets_of_ranks;  ///< by rank
-  /// A hash of all cells with their labels and exact coordinates, whatever their order: equal for equal
+  /// A hash of all cells with their labels and exact coordinates, independent of their order: equal for equal
   /// meshes.
   std::array<std::uint64_t, 2> fingerprint{};
 
@@ -90,13 +92,13 @@ class ParallelMesh {
 
   /// Cuts every tet into eight by Bey's rule, the first time at the diagonal that makes the best angles, and
   /// moves the vertices on features onto the shape. If that spoils tets, vertices inside regions and on
-  /// planar or straight features make room; if that does not help, vertices on smooth or exact features move
-  /// back. Precondition: first order.
+  /// planar or straight features move to make room; if that does not help, vertices on smooth or exact
+  /// features move back. Precondition: first order.
   LevelReport refine(const Shape& shape);
 
-  /// Adds a mid-edge node to every edge, on the shape if the edge is on a feature, so that every tet stays
-  /// valid (`jacobian_exceeds` by 0.1). The coordinates of the DMPlex become those of Lagrange elements of
-  /// order 2.
+  /// Adds a mid-edge node to every edge, on the shape if the edge is on a feature, so that every tet is valid
+  /// (`jacobian_exceeds` with `least` 0.1). The coordinates of the DMPlex become those of Lagrange elements
+  /// of order 2.
   OrderReport raise_order(const Shape& shape);
 
   /// Recomputes every guarantee. Angles may exceed those of the coarse mesh by `slack` degrees.
@@ -115,7 +117,8 @@ class ParallelMesh {
   DM dm() const { return dm_; }
   MPI_Comm communicator() const { return communicator_; }
   int order() const { return order_; }
-  /// Returns the angles of the distributed mesh; in collars at least the given bound.
+  /// Returns the extreme angles of the coarse mesh when it was distributed; in collars, the given bound if
+  /// that is larger.
   const AngleBounds& coarse_angles() const { return coarse_angles_; }
   /// Returns PETSc's name of the partitioner.
   const std::string& partitioner() const { return partitioner_; }

@@ -8,14 +8,15 @@
 
 namespace collarmesh::io {
 
-/// Writes a mesh whose patches were split, with the elements and conditions between their sides. In .inp: a
-/// `*TIE` for each pair of sides; or a `*CONTACT PAIR`, to the interaction that the job defines by the name
-/// CONTACT; and cohesive elements (COH3D6), in the element set COHESIVE and one for each patch.
-/// Throws WriteError, also where the format has no place for them.
+/// Writes a mesh with split patches, with the elements and conditions between their sides. Format .inp: a
+/// `*TIE` for each pair of sides, or a `*CONTACT PAIR` with the interaction that the job defines by the name
+/// CONTACT; cohesive elements (COH3D6) are in the element set COHESIVE and in one set for each patch. Throws
+/// WriteError, also if the format has no place for them.
 void write_tet_mesh(const std::string& path, const TetMesh& mesh, const Interfaces& interfaces,
                     std::string_view format = {}, GhostCells ghost_cells = GhostCells::none);
 
-/// Throws WriteError if the format has no place for what the options ask for between sides.
+/// Throws WriteError if the format cannot express the conditions or elements between sides that the options
+/// ask for.
 void require_place_for_interfaces(const std::string& path, const SplitOptions& options,
                                   std::string_view format = {});
 

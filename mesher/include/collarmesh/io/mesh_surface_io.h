@@ -10,11 +10,12 @@
 namespace collarmesh::io {
 
 /// Reads the tagged triangles and lines of a mesh file, with the names of their groups, as a surface: .msh
-/// .mesh .vtu .vtp, by extension or as `format` says. Tetrahedra in the file are left out, but their tags
-/// name the regions; mid-edge nodes are left out, too. Throws ReadError.
+/// .mesh .vtu .vtp, by extension or as `format` says. Leaves out tetrahedra, but their tags name the regions;
+/// leaves out mid-edge nodes, too. Throws ReadError.
 PolygonSoup read_mesh_surface(const std::string& path, std::string_view format = {});
 
-/// Reads the cells of such a file as a mesh, with or without tetrahedra. Throws ReadError.
+/// Reads the cells of a .msh, .mesh, .vtu or .vtp file as a mesh, with or without tetrahedra. Throws
+/// ReadError.
 TetMesh read_mesh_cells(const std::string& path, std::string_view format = {});
 
 /// Returns whether `read_mesh_surface` knows this extension or format.

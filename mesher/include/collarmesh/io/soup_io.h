@@ -16,15 +16,15 @@ namespace collarmesh::io {
 PolygonSoup read_soup(const std::string& path, std::string_view format = {});
 
 /// Writes a surface or PLC by the extension or format. Only .poly holds facets of several polygons or with
-/// holes, only .poly and .smesh region and hole points; .stl holds triangles in 32-bit numbers.
-/// `merge_soups` cuts facets as a format needs it.
-/// Throws WriteError.
+/// holes, and only .poly and .smesh hold region and hole points; .stl holds triangles with 32-bit
+/// coordinates.
+/// `merge_soups` cuts facets as a format needs it. Throws WriteError.
 void write_soup(const std::string& path, const PolygonSoup& soup, std::string_view format = {});
 
 /// Returns whether `read_soup` and `write_soup` know this extension or format.
 bool is_soup_format(const std::string& path, std::string_view format = {});
 
-/// Returns the extensions.
+/// Returns the extensions that `read_soup` and `write_soup` know.
 std::vector<std::string> soup_formats();
 
 }  // namespace collarmesh::io

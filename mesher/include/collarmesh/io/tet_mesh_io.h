@@ -8,13 +8,13 @@
 
 namespace collarmesh::io {
 
-/// Whether each partition of a file comes with the tets of others that share a vertex with it.
+/// Whether the file of each partition also has the tets of other partitions that share a vertex with it.
 enum class GhostCells { none, one_layer };
 
 /// Writes a mesh by the extension of `path`, or as `format` (an extension with its dot, lower case) says.
-/// Each file is written under another name and renamed: a reader never sees half a file. Formats keep
-/// the data that they can hold, as described in their sources (src/io/*_writer.cpp).
-/// Throws WriteError, also for ghost cells where the format has no place for them.
+/// Writes each file under another name and renames it, so a reader never sees half a file. The sources of the
+/// formats say which data each of them keeps (src/io/*_writer.cpp). Throws WriteError, also for ghost cells
+/// where the format has no place for them.
 void write_tet_mesh(const std::string& path, const TetMesh& mesh, std::string_view format = {},
                     GhostCells ghost_cells = GhostCells::none);
 
@@ -23,12 +23,12 @@ void write_tet_mesh(const std::string& path, const TetMesh& mesh, std::string_vi
 /// Throws ReadError (path, line or byte).
 TetMesh read_tet_mesh(const std::string& path, std::string_view format = {});
 
-/// Returns the extensions: .vtu (VTK), .pvtu (the same, with a .vtu beside it for each partition), .vtk (its
-/// legacy format), .msh (Gmsh; 4.1 is written), .mesh (Medit), .inp (Abaqus, CalculiX), .unv (I-DEAS), .ele
-/// (TetGen, with .node, .face and .edge beside it). Formats that are only written: .bdf (Nastran), .cdb
-/// (Ansys), .mfem (MFEM), .exo (Exodus II), .su2 (SU2), .polymesh (OpenFOAM: the file
-/// constant/polyMesh/boundary, with the others beside it). Optional formats: .xdmf (XDMF 3, with .h5 beside
-/// it), .med (SALOME) and, only written, .cgns.
+/// Returns the extensions of the formats that this program can write: .vtu (VTK), .pvtu (the same, with a
+/// .vtu beside it for each partition), .vtk (its legacy format), .msh (Gmsh; 4.1 is written), .mesh (Medit),
+/// .inp (Abaqus, CalculiX), .unv (I-DEAS), .ele (TetGen, with .node, .face and .edge beside it). Formats that
+/// are only written: .bdf (Nastran), .cdb (Ansys), .mfem (MFEM), .exo (Exodus II), .su2 (SU2), .polymesh
+/// (OpenFOAM: the file constant/polyMesh/boundary, with the others beside it). Optional formats: .xdmf (XDMF
+/// 3, with .h5 beside it), .med (SALOME) and, only written, .cgns.
 std::vector<std::string> written_tet_mesh_formats();
 std::vector<std::string> read_tet_mesh_formats();
 /// Returns the extensions of formats that can hold partitions, and ghost cells.

@@ -1,4 +1,4 @@
-// Calls Scotch (www.labri.fr/perso/pelegrin/scotch) as ../partition.cpp needs it.
+// Calls Scotch (www.labri.fr/perso/pelegrin/scotch) for ../partition.cpp.
 #include <cstdint>
 #include <cstdio>
 
@@ -32,7 +32,7 @@ struct Work {
   Work& operator=(const Work&) = delete;
 
   /// Sets up one thread with its own random numbers from this seed, so that the result is the same
-  /// everywhere: by default all contexts share one sequence.
+  /// everywhere. By default all contexts share one sequence.
   bool make_repeatable(int seed) {
     if (SCOTCH_contextRandomClone(&context) != 0) return false;
     SCOTCH_contextRandomSeed(&context, seed);

@@ -13,7 +13,8 @@ namespace collarmesh::openmesh_io {
 
 /// Selects triangles of a tetrahedral mesh. Regions are TetMesh::tet_region, 0 is the outside.
 struct SurfaceSelection {
-  /// Triangles with `back` behind them and `front` in front, in either order; `any` stands for any region.
+  /// Selects triangles with region `back` behind them and `front` in front, or the other way round. `any`
+  /// stands for any region.
   Index back = any, front = 0;
   static constexpr Index any = none;
 
@@ -21,16 +22,15 @@ struct SurfaceSelection {
   static SurfaceSelection boundary() { return {any, 0}; }
   /// Selects all triangles around a region, seen from outside it.
   static SurfaceSelection region(Index region) { return {region, any}; }
-  /// Selects triangles between two regions, seen from the second.
+  /// Selects triangles between two regions, seen from the second one.
   static SurfaceSelection interface(Index back, Index front) { return {back, front}; }
 };
 
-/// Selected triangles in a form that OpenMesh can hold: around each vertex they form one fan. If more than
-/// two meet in an edge, or several fans in a vertex, vertices are copied.
+/// Selected triangles in a form that OpenMesh can represent: around each vertex they form one fan. Vertices
+/// are copied if more than two triangles meet in an edge, or several fans in a vertex.
 struct SelectedSurface {
   std::vector<Index> points;                       ///< index in TetMesh::points, by vertex
-  std::vector<std::array<Index, 3>> triangles;     ///< vertices; the order makes each triangle touch earlier
-                                                   ///< ones
+  std::vector<std::array<Index, 3>> triangles;     ///< vertices; each triangle touches earlier ones
   std::vector<Index> faces;                        ///< index in TetMesh::faces, by triangle
   std::vector<std::array<Index, 2>> face_regions;  ///< regions behind and in front, by triangle
   struct Edge {
@@ -44,8 +44,8 @@ struct SelectedSurface {
 /// Selects triangles. Throws OptionError for a selection without triangles.
 SelectedSurface select_surface(const TetMesh& mesh, const SurfaceSelection& selection);
 
-/// Returns a surface of a tetrahedral mesh as an OpenMesh mesh of any traits; its properties are those of
-/// properties.h, and edges on curves have the feature bit of their status. `to_plc` turns it back into the
+/// Returns a surface of a tetrahedral mesh as an OpenMesh mesh of any traits. Its properties are those of
+/// properties.h, and edges on curves have the feature bit in their status. `to_plc` turns it back into the
 /// complex it came from: copied vertices are welded, tags kept. Precondition: the mesh has its boundary
 /// triangles, as meshes from `generate` do. Throws OptionError for a selection without triangles.
 template <class Mesh>

@@ -11,8 +11,8 @@
 
 namespace collarmesh::openmesh_io {
 
-// Names of the properties that `boundary_surface` writes and that are read unless others are named.
-// Tags are std::int64_t.
+// Names of the properties that `boundary_surface` writes, and that are read by default. Tags are
+// std::int64_t.
 inline constexpr const char* patch_tag = "collarmesh:patch_tag";      ///< of faces
 inline constexpr const char* curve_tag = "collarmesh:curve_tag";      ///< of edges
 inline constexpr const char* vertex_tag = "collarmesh:vertex_tag";    ///< of vertices
@@ -24,7 +24,7 @@ inline constexpr const char* mesh_face = "collarmesh:mesh_face";  ///< of faces:
 
 namespace detail {
 
-/// A property of integers of one of several types, found by its name.
+/// A property with integers of one of several types, found by its name.
 template <class Mesh, template <class> class Handle>
 class TagProperty {
  public:

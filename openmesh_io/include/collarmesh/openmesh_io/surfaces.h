@@ -16,49 +16,53 @@
 namespace collarmesh::openmesh_io {
 
 /// Options for reading an OpenMesh mesh. Properties are of type int, unsigned, std::int64_t or std::uint64_t
-/// and are named as in OpenMesh. A missing property is an OptionError, unless it is one of the defaults,
+/// and have the names given here. A missing property throws OptionError, unless it is one of the defaults,
 /// which `boundary_surface` writes.
 struct SurfaceOptions {
-  std::string name = {};                     ///< for messages
-  std::optional<Tag> region = {};            ///< tag of the regions this surface bounds; none: their number
+  std::string name = {};                     ///< name in messages
+  std::optional<Tag> region = {};            ///< tag of the regions that this surface bounds; none: their
+                                             ///< number
   std::string region_property = {};          ///< of faces: faces with the same value form a separate surface,
-                                             ///< and the value is the tag of its regions; empty: one surface
+                                             ///< and the value becomes the tag of its regions; empty: one
+                                             ///< surface
   std::string patch_property = patch_tag;    ///< of faces: tag of the patch
   std::string curve_property = curve_tag;    ///< of edges: a value other than 0 makes a curve with that tag
-  std::string vertex_property = vertex_tag;  ///< of vertices: tag of the vertex, where it becomes a feature
+  std::string vertex_property = vertex_tag;  ///< of vertices: where it is not 0, the vertex becomes a feature
+                                             ///< with this tag
   bool feature_edges = true;                 ///< edges with the feature bit of their status are curves
 };
 
-/// The contents of an OpenMesh mesh. None of them is an error by itself: `build_plc` decides.
+/// Counts of the contents of an OpenMesh mesh. None of them is an error by itself: `build_plc` decides.
 struct SurfaceReport {
   std::string name;
   std::size_t faces = 0;                  ///< faces used
-  std::size_t deleted_faces = 0;          ///< faces marked as deleted, not collected yet: left out
+  std::size_t deleted_faces = 0;          ///< faces that are marked as deleted but not collected yet: left
+                                          ///< out
   std::size_t isolated_vertices = 0;      ///< vertices without a face: left out
   std::size_t non_manifold_vertices = 0;  ///< vertices where several fans of faces meet
   std::size_t border_edges = 0;           ///< edges with one face; coincident ones are welded
-  /// faces to which OpenMesh gave vertices of their own, because of an edge or vertex that it cannot
-  /// represent: they are welded to their neighbours again
+  /// Faces to which OpenMesh gave separate vertices, because it cannot represent an edge or vertex there;
+  /// they are welded to their neighbours again.
   std::size_t detached_faces = 0;
 };
 
 struct SurfacesPlc {
-  Plc plc;  ///< plc.cleanup lists what was welded and dropped
+  Plc plc;  ///< plc.cleanup counts what was welded and dropped
   std::vector<SurfaceReport> surfaces;
-  /// Remarks for the user, one sentence each; empty if everything was used as it was.
+  /// Remarks for the user, one sentence each; empty if everything was used unchanged.
   std::vector<std::string> notes;
 };
 
 /// Collects OpenMesh meshes, also of different types, into one complex.
 class Surfaces {
  public:
-  /// Adds a TriMesh or PolyMesh of any traits. The mesh is not changed and not referred to later. Throws
+  /// Adds a TriMesh or PolyMesh of any traits. Does not change the mesh, and keeps no reference to it. Throws
   /// OptionError for a missing property.
   template <class Mesh>
   void add(const Mesh& mesh, const SurfaceOptions& options = {});
 
-  /// Builds one complex of all meshes; its regions are numbered in the order of the meshes. Throws PlcError
-  /// like `build_plc`: a border that stays open after welding is such a fault.
+  /// Builds one complex of all meshes, with regions numbered in the order of the meshes. Throws PlcError like
+  /// `build_plc`, for example if a border stays open after welding.
   SurfacesPlc to_plc(const PlcOptions& options = {}) const;
 
   const std::vector<PolygonSoup>& soups() const { return soups_; }

@@ -6,8 +6,8 @@
 
 namespace collarmesh::openmesh_io {
 
-/// Writes a surface in OpenMesh's own format (.om), in doubles. The format has no place for tags and
-/// segments. Throws WriteError, also for data that OpenMesh cannot hold: facets with holes or of several
+/// Writes a surface in OpenMesh's own format (.om), in double precision. The format cannot store tags and
+/// segments. Throws WriteError, also for data that OpenMesh cannot represent: facets with holes or of several
 /// polygons, and edges of more than two faces.
 void write_om(const std::string& path, const PolygonSoup& soup);
 

@@ -10,8 +10,8 @@ namespace collarmesh::brep {
 
 /// Names and colours that a CAD file gives to sub-shapes, by their numbers.
 struct CadLabels {
-  std::map<Tag, std::string> solid_names;  ///< as in the file, possibly repeated
-  TagColours colours;                      ///< of faces and solids
+  std::map<Tag, std::string> solid_names;  ///< spelled as in the file, possibly repeated
+  TagColours colours;                      ///< colours of faces and solids
 };
 
 }  // namespace collarmesh::brep

@@ -20,27 +20,27 @@ namespace collarmesh::brep {
 
 /// The owner of the common part of several solids.
 enum class Overlap {
-  first,  ///< the first solid in the order of their numbers, or one that lies wholly inside the first
-  region  ///< a region of its own, one for each set of solids, numbered after the solids
+  first,  ///< the first solid in the order of their numbers, or another one that lies wholly inside it
+  region  ///< a region of its own for each set of solids, numbered after the solids
 };
 
-/// Options of reading a shape.
+/// Options for reading a shape.
 struct CadOptions {
   Overlap overlap = Overlap::first;
 };
 
-/// How closely the triangles follow the faces.
+/// Bounds on the distance and angle between triangles and faces.
 struct TessellationOptions {
   double deflection = 0;  ///< largest distance from curved edges and faces, absolute; 0: 1e-4 of the diagonal
   double angle = 20;      ///< degrees; largest turn between neighbouring chords and triangles
-  std::vector<Tag> finer_faces{};  ///< numbers of faces with finer triangles
-  double finer = 1;                ///< factor by which these are finer, in both bounds
+  std::vector<Tag> finer_faces{};  ///< numbers of faces that get finer triangles
+  double finer = 1;                ///< factor by which these are finer; it applies to both bounds
 };
 
-/// A length, area or volume.
+/// A length, area or volume of the exact shape and of its tessellation.
 struct CadMeasure {
   double exact = 0;
-  double cut = 0;  ///< measure of the chords or triangles that replace it
+  double cut = 0;  ///< measure of the chords or triangles that replace the exact edge or face
 };
 
 /// Measures of a shape and of its tessellation. A measure is missing if OpenCASCADE finds no plausible number
@@ -52,18 +52,15 @@ struct CadMeasures {
 
 /// The solids of a shape, with the faces that belong to none, and the edges and vertices inside that belong
 /// to no face. Its sub-shapes have FreeCAD's numbers (the order of TopExp::MapShapes): FaceN has the tag N.
-///
-/// Solids that touch are made to share the faces there. Pieces of faces and edges that are cut for this keep
-/// the number of the original; new edges get the next free numbers. The common part of several solids is
-/// given to one of them. Edges of no face are cut where they meet faces or one another, and are left out
-/// where they lie outside the solids, on faces, or too near to faces or to one another; notes list these. A
+/// Solids that touch are changed so that they share faces there. Pieces of faces and edges that are cut for
+/// this keep the number of the original; new edges get the next free numbers. The common part of several
+/// solids is given to one of them. Edges of no face are cut where they meet faces or one another. Pieces that
+/// lie outside the solids, on faces, or too near to faces or to one another are left out; notes list these. A
 /// shape of faces alone is sewn and becomes a solid if it is closed; the same happens to the faces of an open
 /// solid.
-///
 /// Failures of OpenCASCADE are listed in `notes`, and the builder of the complex must handle them: solids
 /// that cannot be fused may intersect, solids that stay open have holes, and a face that cannot be
 /// triangulated may have points along its edges that its neighbours lack, or may be missing.
-///
 /// The functions are virtual, so that a program without OpenCASCADE can use a model that the module has made
 /// (module.cpp).
 class CadModel {
@@ -80,32 +77,32 @@ class CadModel {
   virtual double diagonal() const;  ///< Returns the diagonal of its bounding box.
   virtual const CadLabels& labels() const;
 
-  /// Triangulates all faces: returns one soup for each solid, one for the faces that belong to none, and one
-  /// of chords and points for the edges and vertices inside a solid that belong to no face. The number of
+  /// Triangulates all faces. Returns one soup for each solid, one for the faces that belong to no solid, and
+  /// one of chords and points for the edges and vertices inside solids that belong to no face. The number of
   /// soups does not depend on the options. Neighbouring faces share the points of their edges. Vertices,
   /// edges and faces of the shape are features with their numbers as tags; seams and degenerate edges are no
   /// features. Throws PlcError if OpenCASCADE fails, or no face can be triangulated.
   virtual std::vector<PolygonSoup> tessellate(const TessellationOptions& options);
 
-  /// Returns the changes to the shape (sewn faces, overlaps, mended faces, ...), for people.
+  /// Returns the changes to the shape (sewn faces, overlaps, mended faces, ...), as sentences.
   virtual std::vector<std::string> notes() const;
 
-  /// Returns faces that were merged where solids touch or were sewn: the number that is gone and the one in
-  /// its place.
+  /// Returns faces that were merged where solids touch or were sewn: pairs of the number that is gone and the
+  /// number that replaces it.
   virtual const std::vector<std::pair<Tag, Tag>>& replaced_faces() const;
 
-  /// Returns false if solids that touch or overlap were left as they are; their soups then intersect, however
-  /// fine.
+  /// Returns false if solids that touch or overlap were left unchanged. Their soups then intersect, even with
+  /// fine triangles.
   virtual bool fused() const;
 
-  /// Returns which solids are open, at which edges and where, and a remedy; empty if all are closed. For the
-  /// message when no complex can be made of the soups.
+  /// Returns text on which solids are open, at which edges and where, with a remedy; empty if all are closed.
+  /// It is for the message when no complex can be made of the soups.
   virtual const std::string& open_edges_text() const;
 
-  /// Returns the nearest point of EdgeN (dimension 1), or of the surface of FaceN (dimension 2), to a point
-  /// that is about as near to it as the tessellation; nothing if there is no such sub-shape or OpenCASCADE
-  /// finds no point. Precondition: tessellated. Cost: constant for simple surfaces, logarithmic in the face's
-  /// triangles for others.
+  /// Returns the point of EdgeN (dimension 1), or of the surface of FaceN (dimension 2), that is nearest to
+  /// `p`. The point `p` must not be much farther from it than the tessellation is. Returns nothing if there
+  /// is no such sub-shape or OpenCASCADE finds no point. Precondition: tessellated. Cost: constant for simple
+  /// surfaces, logarithmic in the face's triangles for others.
   virtual std::optional<Point> nearest(unsigned dimension, Tag number, const Point& p) const;
 
   /// Returns the faces nearest to a place, as "Face3 and Face7". Precondition: tessellated.
@@ -118,7 +115,7 @@ class CadModel {
   /// Precondition: tessellated. Cost: a small part of reading the shape.
   virtual CadMeasures measures() const;
 
-  /// Returns the sub-shapes that OpenCASCADE's own check finds invalid, with places; empty: none.
+  /// Returns the sub-shapes that OpenCASCADE's own check finds invalid, with places; empty if there are none.
   virtual std::string invalid_parts() const;
 
   struct Parts;
