@@ -9,8 +9,8 @@ namespace collarmesh::periodicity {
 
 namespace {
 
-constexpr double growth = 0.5;   // of lengths by the distance from the border
-constexpr double nearest = 0.4;  // distance that two nodes keep, by the length there
+constexpr double growth = 0.5;    // of lengths by the distance from the border
+constexpr double nearest = 0.15;  // distance that two nodes keep, relative to the length there
 
 class PatchNodes {
  public:
