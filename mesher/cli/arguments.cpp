@@ -380,7 +380,7 @@ void check_convert_arguments(const MeshArguments& a) {
   check_standard_input(a);
   check_partitions(a, io::is_tet_mesh_format(a.inputs.front(), a.input_format));
   if (a.output == "-" && files::is_of_several_files(a.output_format))
-    throw CLI::ValidationError("--format", "is of several files, which standard output cannot take");
+    throw CLI::ValidationError("--format", "writes several files, so the output cannot be standard output");
   check_run_arguments(a);
 }
 

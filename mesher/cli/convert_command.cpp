@@ -68,8 +68,7 @@ void divide(const MeshArguments& a, TetMesh& mesh) {
 
 void convert_mesh(const MeshArguments& a, TetMesh& mesh) {
   if (a.inputs.size() > 1)
-    throw OptionError(
-        fmt::format("{} is a mesh, of which one at a time is converted; name it alone", a.inputs.front()));
+    throw OptionError(fmt::format("{} is a mesh; convert takes a mesh as its only input", a.inputs.front()));
   if (files::is_surface_format(a.output, a.output_format)) {
     write_soup(a, {files::surface_of(mesh, a.inputs.front())});
     return;

@@ -107,8 +107,7 @@ ExitCode info_command(const InfoArguments& arguments) {
   else if (arguments.inputs.size() == 1)
     print_mesh(*mesh, arguments.json);
   else
-    throw OptionError(
-        fmt::format("{} is a mesh, of which info tells about one at a time; name it alone", first));
+    throw OptionError(fmt::format("{} is a mesh; info takes a mesh as its only input", first));
   return ExitCode::success;
 }
 

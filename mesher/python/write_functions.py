@@ -15,9 +15,10 @@ TYPES = {"flag": "bool", "count": "int", "number": "float", "text": "str", "size
 # Options whose types in Python differ from those on the command line.
 OTHER_TYPES = {"size_field": "SizeField", "names": "Union[Path, Mapping[str, Any]]", "max_memory": "Union[int, str]"}
 MORE = {
-    "size_field": "a path of these; a dict as in such a .json; a tuple (mesh, values) or (points, tets, values), a "
-                  "mesh with a length for each point or each tet; a callable of one argument, places of shape (n, 3), that gives lengths of "
-                  "shape (n,); or a callable of x, y, z that gives a length, which takes longer",
+    "size_field": "the path of such a file; a dict with the content of such a .json file; a tuple (mesh, values) or "
+                  "(points, tets, values), a mesh with a length for each point or each tet; a callable that takes an "
+                  "array of places of shape (n, 3) and returns lengths of shape (n,); or a callable of x, y, z that "
+                  "returns a length, which takes longer",
     "names": 'the path of a JSON file, or its content, {"patches": {"inlet": 3, "walls": [1, {"at": [0, 0, 1]}]}}',
     "partitions": "`Mesh.tet_partition` tells them",
 }

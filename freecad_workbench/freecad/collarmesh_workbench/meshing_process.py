@@ -179,7 +179,7 @@ class MeshingProcess(QtCore.QObject):
 
 @contextlib.contextmanager
 def _told_in_report_view():
-    """Reports a failure of what follows the mesh in the report view; the mesh itself is not affected."""
+    """Reports failures after meshing in the report view, because they do not affect the finished mesh."""
     try:
         yield
     except Exception:

@@ -406,9 +406,8 @@ void BoundaryRecovery::divide_facet(Index facet, const std::vector<Ends>& pierci
 void BoundaryRecovery::fail(Index at, const char* what) const {
   const Point& p = mesh_.point(at);
   const std::string message = fmt::format(
-      "{} at ({:.9g}, {:.9g}, {:.9g}) could not be made a part of a mesh: what is there is too narrow for "
-      "the "
-      "numbers of a computer; raise the repair tolerance.",
+      "{} at ({:.9g}, {:.9g}, {:.9g}) could not be made a part of a mesh: features there are too near "
+      "to each other for double precision; raise the repair tolerance.",
       what, p.x, p.y, p.z);
   throw PlcError(message, {{PlcFault::Kind::intersection, message, {at}, p}});
 }

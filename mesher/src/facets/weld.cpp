@@ -84,8 +84,8 @@ void require_range(const Box& box, Faults& faults) {
     faults.add(
         PlcFault::Kind::bad_point,
         fmt::format(
-            "The input is {:.2g} times its extent away from the origin, at {}: numbers are so coarse there "
-            "that no mesh of it can be told; move it towards the origin.",
+            "The input is {:.2g} times its extent away from the origin, at {}: coordinates are too coarse "
+            "there for a mesh; move it towards the origin.",
             farthest / extent, text(box.min)),
         {}, box.min);
   const bool large = farthest > largest_coordinate;

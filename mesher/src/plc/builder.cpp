@@ -75,18 +75,17 @@ void report_nothing_solid(const Draft& draft, std::span<const PolygonSoup> soups
     }
   const Point at = draft.points.empty() ? Point{} : draft.points.front();
   if (draft.triangles.empty() && !draft.segments.empty()) {
-    faults.add(
-        PlcFault::Kind::empty,
-        fmt::format("The input has lines, of which the first begins near {}, but no facets, and encloses no "
-                    "region; add facets, or mesh its curves with lines (--dimension 1).",
-                    text(at)),
-        {}, at);
+    faults.add(PlcFault::Kind::empty,
+               fmt::format("The input has lines (the first begins near {}) but no facets, so it encloses no "
+                           "region; add facets, or mesh its curves with lines (--dimension 1).",
+                           text(at)),
+               {}, at);
     return;
   }
   faults.add(
       PlcFault::Kind::empty,
-      fmt::format("The {} triangles of the input, of which the first point is {}, enclose no region; add the "
-                  "facets that close it.",
+      fmt::format("The {} triangles of the input, which begin at {}, enclose no region; add the facets "
+                  "that close the surface.",
                   draft.triangles.size(), text(at)),
       {}, at);
 }

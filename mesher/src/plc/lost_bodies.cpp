@@ -115,9 +115,9 @@ std::vector<Plc::Warning> lost_bodies(std::span<const PolygonSoup> soups, const 
     if (triangles.any_in(body.box, 2 * distance)) continue;
     if (warnings.size() < listed)
       warnings.push_back(
-          {fmt::format("The body of {} facets at {}, {:.3g} across, is lost, because that is less than what "
-                       "is welded or "
-                       "repaired here, {:.3g}; mesh it by itself, or lower --weld and --repair-tolerance.",
+          {fmt::format("The body of {} facets at {}, {:.3g} across, is lost: it is smaller than the "
+                       "distance within which points are welded or repaired here, {:.3g}; mesh it by itself, "
+                       "or lower --weld and --repair-tolerance.",
                        body.facets, text(body.box.centre()), body.box.diagonal(), distance),
            body.box.centre()});
     else

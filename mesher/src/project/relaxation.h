@@ -104,7 +104,8 @@ class Relaxation {
   mutable std::vector<Wanted> wanted_;  // by tet
   std::vector<std::size_t> changed_;    // by vertex: the last commit that moved it; 0: none
   std::size_t commits_ = 0;
-  // By vertex: the number of all moves when it last moved, and when no better place for it was found.
+  // By vertex: its last move, and the last attempt without a better place, as numbers of all moves until
+  // then.
   std::vector<std::size_t> moved_, stuck_;
   std::size_t moves_ = 0;
   std::vector<std::pair<double, Index>> worst_first_;

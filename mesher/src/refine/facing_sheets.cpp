@@ -12,8 +12,8 @@ namespace {
 
 // Bytes per entry of a hash set: a node and its slot in the table.
 constexpr std::size_t bytes_per_pair = 32;
-// Largest width of a gap, relative to the radius of the ball to split. In wider gaps samples are about as
-// dense as the gap is narrow anyway.
+// Largest width of a gap, relative to the radius of the ball to split. In wider gaps the distance of samples
+// is already about the width of the gap.
 constexpr double widest_gap_per_radius = 0.9;
 // Least distance of a new vertex from all vertices on its own side, relative to that radius.
 constexpr double least_spacing_per_radius = 0.35;

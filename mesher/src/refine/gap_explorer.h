@@ -79,7 +79,7 @@ class GapExplorer final : public GapSize {
   const RefinedMesh& mesh_;
   const SurfaceNodes& nodes_;
   std::vector<Border> borders_;             // of elements that have a border
-  std::vector<Index> border_of_;            // by element; none: the element is only a triangle
+  std::vector<Index> border_of_;            // by element: index in borders_; none: no border
   std::vector<Index> patch_below_;          // by node: the patch of all elements below, if none has a border
   std::vector<Witness> witnesses_;          // last witnesses of vertices, then of curves
   std::vector<std::uint32_t> interviewed_;  // by node: the number of the last exploration that visited it

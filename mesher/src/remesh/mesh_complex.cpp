@@ -239,8 +239,8 @@ class ComplexBuilder {
         if (regions_at(t) != patch.regions) {
           const Point& at = plc_.points[plc_.triangles[t].points[0]];
           refuse(PlcFault::Kind::not_orientable,
-                 fmt::format("The faces around {} have one side only, so that no region can be told behind "
-                             "them; remove those inside a region.",
+                 fmt::format("The faces around {} form a one-sided surface, so they separate no regions; "
+                             "remove those inside a region.",
                              text(at)),
                  {}, at);
         }

@@ -60,8 +60,8 @@ std::vector<std::string> describe(const RepairReport& r) {
         r.flakes.count, plural(r.flakes.count), r.tolerance, r.flakes.size, first_place(r.flakes)));
   if (r.second_sides > 0)
     lines.push_back(
-        fmt::format("{} triangle{} dropped that lay on others turned the other way: the surface had "
-                    "two sides everywhere, one of which stays",
+        fmt::format("{} triangle{} dropped that coincided with others of opposite orientation: the surface "
+                    "was double everywhere, and one layer is kept",
                     r.second_sides, plural(r.second_sides)));
   if (r.merged.count > 0)
     lines.push_back(
@@ -77,7 +77,7 @@ std::vector<std::string> describe(const RepairReport& r) {
   if (r.thin_chambers.count > 0)
     lines.push_back(fmt::format(
         "{} chamber{} thinner than the tolerance of {:.3g} between facets that nearly coincide added to "
-        "what surrounds {}, a volume of {:.3g}{}",
+        "the regions around {}, a volume of {:.3g}{}",
         r.thin_chambers.count, plural(r.thin_chambers.count), r.tolerance,
         r.thin_chambers.count == 1 ? "it" : "them", r.thin_chambers.size, first_place(r.thin_chambers)));
   if (r.vanished.count > 0)
@@ -87,10 +87,10 @@ std::vector<std::string> describe(const RepairReport& r) {
         r.vanished.count, plural(r.vanished.count), r.tolerance, r.vanished.size, first_place(r.vanished),
         r.vanished.count == 1 ? "it" : "them"));
   if (r.united.count > 0)
-    lines.push_back(fmt::format(
-        "{} region{} less than before, as what parted regions is narrower than the tolerance of {:.3g}{}; a "
-        "smaller --repair-tolerance keeps them apart",
-        r.united.count, plural(r.united.count), r.tolerance, first_place(r.united)));
+    lines.push_back(
+        fmt::format("{} region{} less than before, because regions nearer to each other than the tolerance "
+                    "of {:.3g} were merged{}; a smaller --repair-tolerance keeps them apart",
+                    r.united.count, plural(r.united.count), r.tolerance, first_place(r.united)));
   if (r.kept.count > 0)
     lines.push_back(fmt::format("{} place{} left as before, as creases there would become sharper{}",
                                 r.kept.count, plural(r.kept.count), first_place(r.kept)));

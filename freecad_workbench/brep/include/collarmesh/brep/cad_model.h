@@ -21,7 +21,7 @@ namespace collarmesh::brep {
 /// The owner of the common part of several solids.
 enum class Overlap {
   first,  ///< the first solid in the order of their numbers, or another one that lies wholly inside it
-  region  ///< a region of its own for each set of solids, numbered after the solids
+  region  ///< a new region for each set of solids that overlap, numbered after the solids
 };
 
 /// Options for reading a shape.
