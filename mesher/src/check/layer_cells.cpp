@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -11,8 +13,10 @@
 
 #include "check/findings.h"
 #include "collarmesh/curved_tet.h"
+#include "collarmesh/plc_builder.h"
 #include "common/layer_jacobians.h"
 #include "common/tet_sides.h"
+#include "tolerance/forced_edges.h"
 
 namespace collarmesh::checks {
 
@@ -317,6 +321,124 @@ void check_layer_cells(const TetMesh& mesh, CheckReport& report, std::size_t fin
   LayerCheck(mesh, findings).run();
 }
 
+namespace {
+
+/// The bounds on the angles of tets beside layers. A node that layers pushed away counts as on the features of
+/// its wall.
+class CoreAngles {
+ public:
+  CoreAngles(const TetMesh& mesh, const std::vector<Index>& walls, const Plc& plc, const Bounds& bounds)
+      : mesh_(mesh), walls_(walls), bounds_(bounds), features_(mesh.features) {
+    for (Index v = 0; v < features_.size(); ++v)
+      if (v < walls.size() && walls[v] != none) features_[v] = mesh.features[walls[v]];
+    find_surface();
+    if (bounds.lower_where_forced)
+      forced_.emplace(plc, features_, mesh.points, faces_, patches_, least_cosine_of_sides);
+    find_creases_at_points(plc);
+  }
+
+  double smallest(Index tet) const {
+    const auto& corners = mesh_.tets[tet];
+    double least = bounds_.thin_angle;
+    if (!at_point_.empty())
+      for (const Index v : corners) least = std::min(least, at_point_[v]);
+    if (!forced_) return least;
+    const auto& p = mesh_.points;
+    const std::array<Point, 4> places{p[corners[0]], p[corners[1]], p[corners[2]], p[corners[3]]};
+    return std::min(least, ForcedEdges::smallest_angle(forced_->narrowness(places, corners)) /
+                               bounds_.tets_across());
+  }
+
+ private:
+  static constexpr double least_cosine_of_sides = -0.9;  // as for other thin tets
+
+  Index wall_of(Index v) const { return v < walls_.size() && walls_[v] != none ? walls_[v] : v; }
+
+  /// Finds the sides of the core, with the patches of their walls.
+  void find_surface() {
+    std::vector<Side> sides;
+    for (Index t = 0; t < mesh_.tets.size(); ++t)
+      if (mesh_.layers.tet_layer.empty() || mesh_.layers.tet_layer[t] == 0)
+        for (unsigned corner = 0; corner < 4; ++corner)
+          sides.push_back(side_of(side_corners(mesh_.tets[t], corner), t, Kind::tet));
+    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.corners < b.corners; });
+    std::vector<std::pair<std::array<Index, 4>, Index>> patches;
+    for (Index f = 0; f < mesh_.faces.size(); ++f)
+      patches.emplace_back(side_of(mesh_.faces[f], f, Kind::face).corners, mesh_.face_patch[f]);
+    std::sort(patches.begin(), patches.end());
+    for (std::size_t first = 0, last = 0; first < sides.size(); first = last) {
+      const auto& corners = sides[first].corners;
+      for (last = first; last < sides.size() && sides[last].corners == corners;) ++last;
+      const std::array<Index, 3> below{wall_of(corners[0]), wall_of(corners[1]), wall_of(corners[2])};
+      const auto key = side_of(below, 0, Kind::face).corners;
+      const auto found = std::lower_bound(patches.begin(), patches.end(), std::pair(key, Index{0}));
+      const bool listed = found != patches.end() && found->first == key;
+      if (last - first > 1 && !listed) continue;
+      std::array<Index, 3> face{corners[0], corners[1], corners[2]};
+      if (sides[first].turned) std::swap(face[1], face[2]);
+      faces_.push_back(face);
+      patches_.push_back(listed ? found->second : none);
+    }
+  }
+
+  void find_creases_at_points(const Plc& plc) {
+    std::vector<double> of_curve(plc.curves.size(), bounds_.thin_angle),
+        of_vertex(plc.vertices.size(), bounds_.thin_angle);
+    bool any = false;
+    for (const Crease& crease : find_creases(plc, 2 * bounds_.tets_across() * bounds_.thin_angle)) {
+      any = true;
+      const double bound = 0.5 * crease.angle / bounds_.tets_across();
+      const auto lower = [bound](double& least) { least = std::min(least, bound); };
+      if (crease.vertex != none) lower(of_vertex[crease.vertex]);
+      if (crease.curve == none) continue;
+      lower(of_curve[crease.curve]);
+      for (const Index end : plc.curves[crease.curve].ends)
+        if (end != none) lower(of_vertex[end]);
+    }
+    if (!any) return;
+    at_point_.assign(mesh_.points.size(), bounds_.thin_angle);
+    for (Index v = 0; v < features_.size(); ++v) {
+      const auto& [dimension, feature] = features_[v];
+      if (feature == none || dimension > 1) continue;
+      at_point_[v] = dimension == 1 ? of_curve[feature] : of_vertex[feature];
+    }
+  }
+
+  const TetMesh& mesh_;
+  const std::vector<Index>& walls_;
+  const Bounds& bounds_;
+  std::vector<TetMesh::VertexFeature> features_;
+  std::vector<std::array<Index, 3>> faces_;
+  std::vector<Index> patches_;
+  std::optional<ForcedEdges> forced_;
+  std::vector<double> at_point_;  // empty where nothing meets that sharply
+};
+
+}  // namespace
+
+void check_core_angles(const TetMesh& mesh, const std::vector<Index>& walls, const Plc& plc,
+                       const Bounds& bounds, CheckReport& report) {
+  constexpr std::size_t listed = 20;
+  constexpr double largest = 150, slack = 1e-9;
+  Findings findings(report, listed);
+  const CoreAngles angles(mesh, walls, plc, bounds);
+  for (Index t = 0; t < mesh.tets.size(); ++t) {
+    if (!mesh.layers.tet_layer.empty() && mesh.layers.tet_layer[t] != 0) continue;
+    const auto& [a, b, c, d] = mesh.tets[t];
+    const auto& p = mesh.points;
+    const TetQuality quality = measure(p[a], p[b], p[c], p[d]);
+    const double widest = std::max(quality.max_dihedral, largest_face_angle(p[a], p[b], p[c], p[d]));
+    if (widest <= largest * (1 + slack) && quality.min_dihedral >= bounds.thin_angle) continue;
+    const double least = angles.smallest(t);
+    if (widest <= largest * (1 + slack) && quality.min_dihedral >= least * (1 - slack)) continue;
+    findings.add(guarantee::core_angles, p[a], {t},
+                 "Tet {} beside the layers at {} has dihedral angles from {:.4g} to {:.4g} degrees and face angles "
+                 "up to {:.4g}; allowed are {:.4g} to {}.",
+                 t, At{p[a]}, quality.min_dihedral, quality.max_dihedral,
+                 largest_face_angle(p[a], p[b], p[c], p[d]), least, largest);
+  }
+}
+
 std::map<Index, double> volumes_with_layers(const TetMesh& mesh) {
   std::map<Index, double> volumes;
   const auto& p = mesh.points;
@@ -334,6 +456,22 @@ std::map<Index, double> volumes_with_layers(const TetMesh& mesh) {
     volumes[layers.pyramid_region[i]] += volume_of(PyramidCorners{p[a], p[b], p[c], p[d], p[e]});
   }
   return volumes;
+}
+
+void check_layer_volumes(const std::map<Index, double>& before, const TetMesh& mesh, CheckReport& report) {
+  constexpr std::size_t listed = 20;
+  // Relative: rounding in flat regions, and the sag of curved faces along which layers end.
+  constexpr double allowed = 1e-9, allowed_where_curved = 0.01;
+  Findings findings(report, listed);
+  const bool curved = !mesh.layers.quads.empty();
+  const auto now = volumes_with_layers(mesh);
+  for (const auto& [region, volume] : before) {
+    const auto found = now.find(region);
+    const double reached = found == now.end() ? 0 : found->second;
+    if (std::fabs(reached - volume) <= (curved ? allowed_where_curved : allowed) * std::fabs(volume)) continue;
+    findings.add(guarantee::layer_volume, {}, {region},
+                 "The volume of region {} was {:.12g} before the layers and is {:.12g}.", region, volume, reached);
+  }
 }
 
 }  // namespace collarmesh::checks
