@@ -9,6 +9,7 @@
 #include "collarmesh/improve.h"
 #include "collarmesh/plc.h"
 #include "collarmesh/progress.h"
+#include "collarmesh/second_order.h"
 #include "collarmesh/tet_mesh.h"
 
 /// Boundary layers: thin cells along walls, in which flow, heat or currents change fast across the wall.
@@ -54,7 +55,8 @@ struct LayersReport {
   std::vector<Patch> patches;
   std::vector<Reduction> reductions;
   std::size_t prisms = 0, pyramids = 0, tets = 0;  ///< cells in the layers
-  std::vector<Index> walls;        ///< by point of the mesh: that of the wall below it; none
+  /// By corner of the mesh: the node of the wall below it, or itself on a wall; none elsewhere.
+  std::vector<Index> walls;
   double largest_step = 1;  ///< largest ratio of the heights of neighbours that have layers
   double seconds = 0;
   bool cancelled = false;
@@ -76,10 +78,11 @@ void require_known_walls(const LayerOptions& options, const Plc& plc);
 /// Layers are lower where there is little room: in gaps, where prisms would fold, and where tets would miss
 /// their bounds (`improvement.bounds`). Heights of neighbours differ by at most a factor of 2. They are 0 where
 /// no direction leads away from all walls at a node, and where layers end. There, prisms become pyramids and
-/// tets. Preconditions: `mesh` comes from `generate` for `plc`, first order. Same mesh and options: same
-/// result, with any number of threads. If cancelled, the mesh is as before. Throws OptionError as
+/// tets. In second order the edges of walls keep their nodes, and their bulges fade towards the tets.
+/// Precondition: `mesh` comes from `generate` for `plc`. Same mesh and options: same result, with any number of threads. If cancelled, the mesh is as before. Throws OptionError as
 /// `require_known_walls`. Cost: near linear in the tets.
 LayersReport make_layers(TetMesh& mesh, const Plc& plc, const LayerOptions& options,
-                         const ImproveOptions& improvement, const Execution& execution = {});
+                         const ImproveOptions& improvement, const SecondOrderOptions& second_order = {},
+                         const Execution& execution = {});
 
 }  // namespace collarmesh

@@ -25,6 +25,8 @@ constexpr double least_jacobian_share = 0.15;
 constexpr double largest_step_of_neighbours = 2, rounding = 1e-9;
 // Lower stacks than this share of what is asked are left out.
 constexpr double least_share = 0.01;
+// The part of the layers' height above which edges of the wall may not bulge.
+constexpr double most_bulging = 0.4;
 constexpr double lowering = 0.8;
 constexpr unsigned most_lowerings = 24;
 constexpr std::size_t nodes_at_once = 64;
@@ -144,6 +146,18 @@ void Heights::fit_gaps() {
   });
   for (Index n = 0; n < size(); ++n)
     if (room[n] < length_[n]) lower(n, room[n], Cause::gap);
+}
+
+void Heights::fit_bulges(const Bulges& bulges) {
+  if (bulges.empty()) return;
+  for (const WallSide& side : front_.sides)
+    for (unsigned i = 0; i < 3; ++i) {
+      const Index a = side.nodes[i], b = side.nodes[(i + 1) % 3];
+      const Vector bulge = bulges(side.corners[i], side.corners[(i + 1) % 3]);
+      for (const Index n : {a, b})
+        if (dot(bulge, front_.nodes[n].direction) > most_bulging * std::max(length_[a], length_[b]))
+          lower(n, 0, Cause::fold);
+    }
 }
 
 /// Returns the least Jacobian in the stack on a side, relative to the largest one; 1 if there is no stack.

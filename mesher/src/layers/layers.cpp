@@ -9,6 +9,7 @@
 #include "common/thread_limit.h"
 #include "improve/cell_bounds.h"
 #include "layers/core.h"
+#include "layers/curving.h"
 #include "layers/front.h"
 #include "layers/heights.h"
 #include "layers/stack.h"
@@ -25,45 +26,61 @@ constexpr unsigned most_tries = 4;
 class LayerMaker {
  public:
   LayerMaker(TetMesh& mesh, const Plc& plc, const LayerOptions& options, const ImproveOptions& improvement,
-             const Execution& execution)
+             const SecondOrderOptions& second_order, const Execution& execution)
       : mesh_(mesh),
         plc_(plc),
         options_(options),
         improvement_(improvement),
+        second_order_(second_order),
         execution_(execution),
         walls_(options, plc),
+        bulges_(mesh),
+        is_second_order_(straightened(mesh)),
         complex_(mesh),
         front_(complex_, plc, walls_) {}
 
   LayersReport run() {
+    if (!make()) report_.cancelled = true;
+    return report_;
+  }
+
+ private:
+  /// Makes a mesh one of first order. Returns whether it was one of second order.
+  static bool straightened(TetMesh& mesh) {
+    if (mesh.order() == 1) return false;
+    straighten(mesh);
+    return true;
+  }
+
+  bool make() {
     Heights heights(front_, mesh_, plc_, walls_);
     heights.fit_gaps();
+    heights.fit_bulges(bulges_);
     heights.settle();
     for (unsigned attempt = 0; attempt < most_tries; ++attempt) {
       Heights reached = heights;
       Core core(mesh_, plc_, front_, reached, improvement_, execution_);
       const bool done = core.push(reached);
-      if (core.cancelled()) {
-        report_.cancelled = true;
-        return report_;
-      }
-      if (done) {
-        Stack stack(mesh_, front_, reached, core, options_.tets);
-        TetMesh made = stack.build();
-        report_.walls = std::move(stack).walls();
-        describe(reached, made);
-        mesh_ = std::move(made);
-        return report_;
-      }
+      if (core.cancelled()) return false;
+      if (done) return take(reached, core);
       for (const Index n : core.failed()) heights.lower(n, 0, Cause::core);
       heights.settle();
     }
     for (Index n = 0; n < heights.size(); ++n) heights.lower(n, 0, Cause::core);
-    describe(heights, mesh_);
-    return report_;
+    return take(heights, Core(mesh_, plc_, front_, heights, improvement_, execution_));
   }
 
- private:
+  bool take(const Heights& heights, const Core& core) {
+    Stack stack(mesh_, front_, heights, core, options_.tets);
+    TetMesh made = stack.build();
+    if (is_second_order_ && !curve(made, plc_, bulges_, stack.places(), second_order_, execution_))
+      return false;
+    describe(heights, made);
+    report_.walls = stack.places().wall;
+    mesh_ = std::move(made);
+    return true;
+  }
+
   double area_of(const WallSide& side) const {
     const auto& p = mesh_.points;
     const auto& [a, b, c] = side.corners;
@@ -133,8 +150,11 @@ class LayerMaker {
   const Plc& plc_;
   const LayerOptions& options_;
   const ImproveOptions& improvement_;
+  const SecondOrderOptions& second_order_;
   const Execution& execution_;
   WallChoice walls_;
+  Bulges bulges_;
+  bool is_second_order_;
   improvement::TetComplex complex_;
   Front front_;
   LayersReport report_;
@@ -153,14 +173,15 @@ double LayersReport::coverage() const {
 }
 
 LayersReport make_layers(TetMesh& mesh, const Plc& plc, const LayerOptions& options,
-                         const ImproveOptions& improvement, const Execution& execution) {
+                         const ImproveOptions& improvement, const SecondOrderOptions& second_order,
+                         const Execution& execution) {
   const auto started = std::chrono::steady_clock::now();
   ImproveOptions with_tolerance = improvement;
   if (!with_tolerance.bounds.tolerance)
     with_tolerance.bounds.tolerance = tolerance_of_any_size(plc, improvement.bounds);
   LayersReport report;
   ThreadLimit(improvement.threads).run([&] {
-    report = layering::LayerMaker(mesh, plc, options, with_tolerance, execution).run();
+    report = layering::LayerMaker(mesh, plc, options, with_tolerance, second_order, execution).run();
     if (!report.cancelled && with_tolerance.bounds.thin_angle > 0)
       improvement::mark_cells(mesh, plc, with_tolerance.bounds);
   });

@@ -51,6 +51,11 @@ void Stack::number_nodes() {
   merged_.resize(mesh_.points.size());
   std::iota(merged_.begin(), merged_.end(), Index{0});
   first_inner_.assign(front_.nodes.size(), none);
+  places_.wall.assign(mesh_.points.size(), none);
+  places_.share.assign(mesh_.points.size(), 0);
+  places_.is_raised.assign(mesh_.points.size(), false);
+  for (Index v = 0; v < front_.on_wall.size(); ++v)
+    if (front_.on_wall[v]) places_.wall[v] = v;
   for (Index n = 0; n < front_.nodes.size(); ++n) {
     const FrontNode& at = front_.nodes[n];
     const Index top = core_.vertex_of(n);
@@ -66,9 +71,13 @@ void Stack::number_nodes() {
       mesh_.points.push_back(heights_.place(n, share_below(layers, k) * heights_[n]));
       mesh_.features.push_back(at.slides_on);
     }
-    walls_.resize(mesh_.points.size(), none);
-    walls_[top] = at.vertex;
-    for (unsigned k = 1; k < layers.count; ++k) walls_[node(n, k)] = at.vertex;
+    places_.wall.resize(mesh_.points.size(), none);
+    places_.share.resize(mesh_.points.size(), 0);
+    places_.is_raised[at.vertex] = true;
+    for (unsigned k = 1; k <= layers.count; ++k) {
+      places_.wall[node(n, k)] = at.vertex;
+      places_.share[node(n, k)] = k == layers.count ? 1 : share_below(layers, k);
+    }
   }
 }
 
@@ -264,18 +273,20 @@ void Stack::drop_unused_points() {
       for (const Index v : cell) number[v] = 0;
   });
   Index kept = 0;
-  walls_.resize(number.size(), none);
+  places_.is_raised.resize(number.size(), false);
   for (Index v = 0; v < number.size(); ++v) {
     if (number[v] == none) continue;
-    walls_[kept] = walls_[v];
+    places_.wall[kept] = places_.wall[v];
+    places_.share[kept] = places_.share[v];
+    places_.is_raised[kept] = places_.is_raised[v];
     mesh_.points[kept] = mesh_.points[v];
     mesh_.features[kept] = mesh_.features[v];
     number[v] = kept++;
   }
   mesh_.points.resize(kept);
   mesh_.features.resize(kept);
-  walls_.resize(kept);
-  for (Index& v : walls_)
+  places_.wall.resize(kept), places_.share.resize(kept), places_.is_raised.resize(kept);
+  for (Index& v : places_.wall)
     if (v != none) v = number[v];
   for_all([&](auto& cells) {
     for (auto& cell : cells)

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <array>
-#include <utility>
 #include <vector>
 
 #include "layers/core.h"
+#include "layers/curving.h"
 
 namespace collarmesh::layering {
 
@@ -16,8 +16,8 @@ class Stack {
         bool tets);
 
   TetMesh build();
-  /// Returns, by point of that mesh, the point of the wall below it; none.
-  std::vector<Index> walls() && { return std::move(walls_); }
+  /// Where the points of that mesh lie.
+  const PlacesInLayers& places() const { return places_; }
 
  private:
   void number_nodes();
@@ -48,7 +48,7 @@ class Stack {
   TetMesh mesh_;
   std::vector<Index> first_inner_;  // by node of the front: its node above the first layer; none
   std::vector<Index> merged_;       // by vertex of the core: the vertex that it is in the mesh
-  std::vector<Index> walls_;        // by point: the wall's below it; none
+  PlacesInLayers places_;
   std::vector<Tag> tag_of_region_;
 };
 
