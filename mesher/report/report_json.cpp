@@ -7,6 +7,7 @@
 #include "report/options_json.h"
 #include "report/periodic_report.h"
 #include "report/report.h"
+#include "report/layers_report.h"
 #include "report/split_report.h"
 
 namespace collarmesh::report {
@@ -425,6 +426,7 @@ Json run_json(const RequestedRun& arguments, const MeshRun& run) {
             {"second_order", arguments.order == 2 ? second_order_json(run.second_order) : Json(nullptr)},
             {"interior_nodes", run.interior_nodes ? interior_json(*run.interior_nodes) : Json(nullptr)},
             {"periodic", run.periodic ? periodic_json(*run.periodic, run.result.mesh) : Json(nullptr)},
+            {"layers", run.layers ? layers_json(*run.layers) : Json(nullptr)},
             {"split", run.split ? split_json(*run.split) : Json(nullptr)},
             {"seconds", std::move(seconds)}};
   if (run.remeshing) json["remeshing"] = remeshing_json(*run.remeshing);

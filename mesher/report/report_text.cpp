@@ -9,6 +9,7 @@
 #include "report/mesh_groups.h"
 #include "report/periodic_report.h"
 #include "report/report.h"
+#include "report/layers_report.h"
 #include "report/split_report.h"
 
 namespace collarmesh::report {
@@ -343,6 +344,7 @@ std::string run_text(const RequestedRun& arguments, const MeshRun& run) {
         run.interior_nodes->found, run.interior_nodes->inserted_nodes, run.interior_nodes->removed_edges,
         run.interior_nodes->remaining);
   if (run.periodic) text += periodic_text(*run.periodic);
+  if (run.layers) text += layers_text(*run.layers);
   if (run.split) text += split_text(*run.split);
   if (run.guarantees_hold()) text += "  every guarantee holds\n";
   fmt::format_to(Out(text), "  {:.2f} s ({})\n", run.times.total(), times_text(run.times));
