@@ -6,10 +6,10 @@
 #include <map>
 
 #include "report/conversion_report.h"
+#include "report/layers_report.h"
 #include "report/mesh_groups.h"
 #include "report/periodic_report.h"
 #include "report/report.h"
-#include "report/layers_report.h"
 #include "report/split_report.h"
 
 namespace collarmesh::report {
@@ -200,13 +200,28 @@ std::string surface_text(const TetMesh& mesh, const CheckReport* judged) {
 
 }  // namespace
 
+namespace {
+
+std::string layers_text(std::size_t prisms, std::size_t pyramids) {
+  return (prisms > 0 ? fmt::format("{} prisms, ", prisms) : "") +
+         (pyramids > 0 ? fmt::format("{} pyramids, ", pyramids) : "");
+}
+
+std::string quads_text(std::size_t quads) {
+  return quads > 0 ? fmt::format("{} quadrangles, ", quads) : std::string();
+}
+
+}  // namespace
+
 std::string mesh_text(const TetMesh& mesh, const MeshMeasures& m, const CheckReport* judged) {
   if (mesh.is_surface()) return surface_text(mesh, judged);
   if (mesh.is_curves())
     return fmt::format("{} lines on curves, {} points\n", mesh.edges.size(), mesh.points.size());
   std::string text;
-  fmt::format_to(Out(text), "{} tets, {} points, {} boundary and interface triangles, {} curve edges\n",
-                 mesh.tets.size(), mesh.points.size(), mesh.faces.size(), mesh.edges.size());
+  const LayerCells& layers = mesh.layers;
+  fmt::format_to(Out(text), "{} tets, {}{} points, {} boundary and interface triangles, {}{} curve edges\n",
+                 mesh.tets.size(), layers_text(layers.prisms.size(), layers.pyramids.size()),
+                 mesh.points.size(), mesh.faces.size(), quads_text(layers.quads.size()), mesh.edges.size());
   const char* const ratio = m.max_radius_edge > 0 ? "" : "radius-edge ";
   fmt::format_to(
       Out(text), "  {}{}{}\n", shape_text(m.min_dihedral, m.max_dihedral, m.max_radius_edge),
@@ -245,8 +260,9 @@ std::string check_text(const CheckReport& r) {
   else if (r.tets == 0 && r.faces == 0)
     fmt::format_to(Out(text), "{} lines on curves, {} points\n", r.edges, r.points);
   else
-    fmt::format_to(Out(text), "{} tets, {} points, {} faces, {} edges; {}\n", r.tets, r.points, r.faces,
-                   r.edges, shape_text(r.min_dihedral, r.max_dihedral, r.max_radius_edge));
+    fmt::format_to(Out(text), "{} tets, {}{} points, {} faces, {}{} edges; {}\n", r.tets,
+                   layers_text(r.prisms, r.pyramids), r.points, r.faces, quads_text(r.quads), r.edges,
+                   shape_text(r.min_dihedral, r.max_dihedral, r.max_radius_edge));
   if (r.thin_tets > 0)
     fmt::format_to(Out(text), "thin: {} tets, radius-edge to {:.4g}\n", r.thin_tets, r.max_thin_radius_edge);
   text += forced_text(r);

@@ -220,9 +220,10 @@ void write_abaqus(const std::string& path, const TetMesh& mesh) { write_abaqus(p
 void write_abaqus(const std::string& path, const TetMesh& mesh, const Interfaces& interfaces) {
   const bool without_tets = mesh.is_surface() || mesh.is_curves();
   if (mesh.order() == 2 && !mesh.layers.pyramids.empty())
-    throw WriteError(path +
-                     ": neither CalculiX nor Abaqus has pyramids of second order; write a mesh of first order, or "
-                     "layers of tetrahedra");
+    throw WriteError(
+        path +
+        ": neither CalculiX nor Abaqus has pyramids of second order; write a mesh of first order, or "
+        "layers of tetrahedra");
   if (mesh.is_surface() && mesh.triangle_elements != TriangleElements::shell) require_plane(path, mesh);
   FileWriter out(path);
   out << "*HEADING\nWritten by collarmesh.\n";

@@ -123,7 +123,8 @@ auto& tags_of(Mesh& mesh, CellKind kind) {
     default: return mesh.edge_tag;
   }
 }
-/// Returns the regions of the cells of volumes, the patches of triangles and quadrangles, the curves of edges.
+/// Returns the regions of the cells of volumes, the patches of triangles and quadrangles, the curves of
+/// edges.
 template <class Mesh>
 auto& features_of(Mesh& mesh, CellKind kind) {
   switch (kind) {
@@ -162,7 +163,7 @@ inline std::uint16_t layer_of(const TetMesh& mesh, CellKind kind, std::size_t i)
 
 /// Our node at each place of a prism in formats that list the mid-edge nodes between the triangles before
 /// those of the second triangle: CGNS, Exodus and Nastran.
-inline constexpr std::array<std::uint8_t, 15> prism_between_before_top{0, 1, 2,  3,  4,  5, 6, 7,
+inline constexpr std::array<std::uint8_t, 15> prism_between_before_top{0, 1,  2,  3,  4, 5,  6, 7,
                                                                        8, 12, 13, 14, 9, 10, 11};
 inline CellNodes with_between_before_top(CellKind kind, const CellNodes& nodes) {
   return kind == CellKind::prism ? nodes.in_order(prism_between_before_top) : nodes;
