@@ -6,6 +6,7 @@
 #include <map>
 
 #include "report/conversion_report.h"
+#include "report/layer_counts.h"
 #include "report/layers_report.h"
 #include "report/mesh_groups.h"
 #include "report/periodic_report.h"
@@ -200,19 +201,6 @@ std::string surface_text(const TetMesh& mesh, const CheckReport* judged) {
 
 }  // namespace
 
-namespace {
-
-std::string layers_text(std::size_t prisms, std::size_t pyramids) {
-  return (prisms > 0 ? fmt::format("{} prisms, ", prisms) : "") +
-         (pyramids > 0 ? fmt::format("{} pyramids, ", pyramids) : "");
-}
-
-std::string quads_text(std::size_t quads) {
-  return quads > 0 ? fmt::format("{} quadrangles, ", quads) : std::string();
-}
-
-}  // namespace
-
 std::string mesh_text(const TetMesh& mesh, const MeshMeasures& m, const CheckReport* judged) {
   if (mesh.is_surface()) return surface_text(mesh, judged);
   if (mesh.is_curves())
@@ -260,9 +248,8 @@ std::string check_text(const CheckReport& r) {
   else if (r.tets == 0 && r.faces == 0)
     fmt::format_to(Out(text), "{} lines on curves, {} points\n", r.edges, r.points);
   else
-    fmt::format_to(Out(text), "{} tets, {}{} points, {} faces, {}{} edges; {}\n", r.tets,
-                   layers_text(r.prisms, r.pyramids), r.points, r.faces, quads_text(r.quads), r.edges,
-                   shape_text(r.min_dihedral, r.max_dihedral, r.max_radius_edge));
+    fmt::format_to(Out(text), "{} tets, {} points, {} faces, {} edges; {}\n", r.tets, r.points, r.faces,
+                   r.edges, shape_text(r.min_dihedral, r.max_dihedral, r.max_radius_edge));
   if (r.thin_tets > 0)
     fmt::format_to(Out(text), "thin: {} tets, radius-edge to {:.4g}\n", r.thin_tets, r.max_thin_radius_edge);
   text += forced_text(r);

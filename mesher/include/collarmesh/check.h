@@ -50,9 +50,8 @@ struct CheckReport {
   std::vector<std::string> warnings;  ///< sentences: volumes and thin places that changed noticeably
   // Measurements:
   std::size_t tets = 0, points = 0, faces = 0, edges = 0, collar_tets = 0, thin_tets = 0;
-  std::size_t prisms = 0, pyramids = 0, quads = 0;  ///< cells of boundary layers, and their quadrangles
-  double max_radius_edge = 0;                       ///< of tets outside collars that are not thin
-  double max_thin_radius_edge = 0;                  ///< of thin tets
+  double max_radius_edge = 0;       ///< of tets outside collars that are not thin
+  double max_thin_radius_edge = 0;  ///< of thin tets
   std::size_t forced_tets = 0;  ///< thin tets within their bounds only because the input forces short edges
   double min_forced_dihedral = 180;             ///< smallest dihedral angle of those tets
   double min_dihedral = 180, max_dihedral = 0;  ///< dihedral angles outside collars, degrees
@@ -80,10 +79,7 @@ struct CheckReport {
 /// Walls keep half of their thickness, and gaps of their width, in the mean of a patch. A mesh read from a
 /// file (no feature indices) is matched to the complex by tags and position; if its tags are not the
 /// complex's, or it has no boundary triangles or curve edges, by position alone. Tets count as cells of a
-/// collar only at creases of the complex. Cells of boundary layers have positive Jacobians and conform; the
-/// guarantees of the mesh's shape are judged with prisms and pyramids cut into tets, whose angles are not
-/// bounded, and those of the other tets are bounded by `thin_angle` and 150 degrees. Cancellation takes
-/// effect between groups of guarantees.
+/// collar only at creases of the complex. Cancellation takes effect between groups of guarantees.
 CheckReport check(const TetMesh& mesh, const Plc& plc, const CheckOptions& options = {},
                   const Execution& execution = {});
 

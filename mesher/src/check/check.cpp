@@ -1,6 +1,8 @@
 // The certificate: each guarantee recomputed from the mesh and the complex alone.
 #include "collarmesh/check.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -124,9 +126,14 @@ void count_cells(const TetMesh& mesh, CheckReport& report) {
   report.points = mesh.points.size();
   report.faces = mesh.faces.size();
   report.edges = mesh.edges.size();
-  report.prisms = mesh.layers.prisms.size();
-  report.pyramids = mesh.layers.pyramids.size();
-  report.quads = mesh.layers.quads.size();
+}
+
+void note_layers(const TetMesh& mesh, CheckReport& report) {
+  const LayerCells& layers = mesh.layers;
+  report.notes.push_back(
+      fmt::format("the mesh has {} prisms, {} pyramids and {} quadrangles, which have positive Jacobians and "
+                  "conform; the other guarantees were judged with these cut into tets and triangles",
+                  layers.prisms.size(), layers.pyramids.size(), layers.quads.size()));
 }
 
 /// Judges the angles of the tets beside layers. `subject`: the mesh with its layers cut into tets.
@@ -172,6 +179,7 @@ CheckReport check_by_all_threads(const TetMesh& mesh, const Plc& plc, const Chec
   if (report.findings_total > 0) return report;
   check_tet_mesh(tets_of_layers(mesh), &mesh, plc, options, execution, report, findings);
   count_cells(mesh, report);
+  note_layers(mesh, report);
   return report;
 }
 
