@@ -105,8 +105,9 @@ def convert(
             return
         polygons, tags = found._surface()
         by_tag = numpy.argsort(tags, kind="stable")  # for formats that number patches
-        source = (found.points, found.faces[by_tag], tags[by_tag])
-        if len(found.quads) > 0:
+        if len(found.quads) == 0:
+            source = (found.points, found.faces[by_tag], tags[by_tag])
+        else:
             source = Complex(found.points, [polygons[i] for i in by_tag], facet_tags=tags[by_tag])
     surfaces: Sequence[Any] = source if isinstance(source, list) else [source]
     if to_surface:
