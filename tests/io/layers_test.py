@@ -182,7 +182,8 @@ def with_vtk(folder):
                 grid = join.GetOutput()
             types = vtk_to_numpy(grid.GetCellTypesArray())
             for number, kind in zip(numbers[order], ("tetra", "wedge", "pyramid")):
-                expect((types == number).sum() == sample.count[kind], f"{label}: {(types == number).sum()} cells {kind}")
+                expect((types == number).sum() == sample.count[kind],
+                       f"{label}: {(types == number).sum()} cells {kind}")
             sizes = vtk.vtkCellSizeFilter()
             sizes.SetInputData(grid)
             sizes.Update()
@@ -348,7 +349,8 @@ def with_calculix(folder):
             if len(fields) == 4 and int(fields[0]) in free:
                 moved += 1
                 u = np.array(list(map(float, fields[1:])))
-                expect(np.allclose(u, gradient @ points[int(fields[0])], atol=1e-8), f"{label}: node {fields[0]} moved {u}")
+                expect(np.allclose(u, gradient @ points[int(fields[0])],
+                       atol=1e-8), f"{label}: node {fields[0]} moved {u}")
         expect(moved == len(free), f"{label}: {moved} of {len(free)} free nodes")
         stresses = np.array([list(map(float, line.split()[2:])) for line in
                              dat.split("stresses", 1)[1].splitlines()[1:] if len(line.split()) == 8])
@@ -396,7 +398,8 @@ def with_freecad(folder):
         if found is None:
             continue
         wanted = [sample.count[kind] for kind in ("points", "tetra", "triangle", "line", "wedge", "pyramid", "quad")]
-        expect(list(map(int, found[1].split())) == wanted, f".unv of order {order} by FreeCAD: {found[1]}, not {wanted}")
+        expect(list(map(int, found[1].split())) == wanted,
+               f".unv of order {order} by FreeCAD: {found[1]}, not {wanted}")
 
 
 def with_convert(folder):

@@ -99,7 +99,8 @@ class Layers(unittest.TestCase):
     def test_pickled(self):
         mesh = pickle.loads(pickle.dumps(layers(2)))
         self.assertEqual(mesh.prisms.tolist(), [list(PRISM)])
-        state = {name: value for name, value in layers().__getstate__().items() if not name.startswith(("prism", "pyramid"))}
+        state = {name: value for name, value in layers().__getstate__().items()
+                 if not name.startswith(("prism", "pyramid"))}
         earlier = collarmesh.Mesh.__new__(collarmesh.Mesh)
         earlier.__setstate__(state)
         self.assertEqual(earlier.prisms.shape, (0, 6))
