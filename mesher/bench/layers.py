@@ -129,8 +129,7 @@ def run(name: str, path: Path, program: str, arguments, folder: Path) -> Row:
     row = Row(name)
     surface = subprocess.run([program, "info", str(path), "--json"], capture_output=True, text=True)
     try:
-        box = json.loads(surface.stdout)["bounds"]
-        size = math.dist(box["min"], box["max"]) / arguments.size_share
+        size = json.loads(surface.stdout)["complex"]["diagonal"] / arguments.size_share
     except (ValueError, KeyError):
         row.outcome = (surface.stderr.strip().splitlines() or ["no information"])[-1][:60]
         return row
@@ -155,8 +154,7 @@ def run(name: str, path: Path, program: str, arguments, folder: Path) -> Row:
     row.coverage, row.step = 100 * layers["coverage"], layers["largest_step"]
     area = sum(p["area"] for p in layers["patches"])
     row.full = 100 * sum(p["area_by_tenth_of_thickness"][9] for p in layers["patches"]) / area
-    total = sum(told["seconds"].values()) if isinstance(told["seconds"], dict) else row.seconds
-    row.share = 100 * layers["seconds"] / total
+    row.share = 100 * told["seconds"].get("layers", 0) / row.seconds
     row.why = "; ".join(f"{r['nodes']} {r['why'].split(',')[0][:40]}" for r in layers["reductions"])
     measure(row, out, first)
     return row

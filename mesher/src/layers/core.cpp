@@ -21,6 +21,8 @@ constexpr unsigned rings_moved = 5, sweeps = 12;
 constexpr unsigned most_halvings = 6;
 // A move leaves a tet at least this share of its quality, unless it stays above the second number.
 constexpr double quality_left = 0.2, good_quality = 0.15;
+// While the front moves, tets are improved up to this factor above the bound on angles, at last as far as asked.
+constexpr double above_bound = 1.25;
 constexpr unsigned most_advances = 6, most_rounds = 12;
 // Heights count as reached within this share.
 constexpr double precision = 1e-9;
@@ -150,13 +152,14 @@ void Core::fix_wall() {
 
 bool Core::push(Heights& heights) {
   failed_.clear();
+  const double enough = above_bound * options_.bounds.thin_angle;
   double share = 0.7;
   for (unsigned round = 0; round < most_rounds; ++round) {
     for (unsigned k = 0; k < most_advances && !advance(heights); ++k) {
-      improve_tets();
+      improve_tets(enough);
       if (cancelled_) return true;
     }
-    improve_tets();
+    improve_tets(enough);
     if (cancelled_) return true;
     bool lowered = false, reached = true;
     for (Index n = 0; n < heights.size(); ++n) {
@@ -173,7 +176,10 @@ bool Core::push(Heights& heights) {
     }
     lowered = heights.settle() || lowered;
     if (!lowered && reached) {
-      if (poor.size() <= poor_at_first_) return true;
+      if (poor.size() <= poor_at_first_) {
+        improve_tets(options_.min_dihedral);
+        return true;
+      }
       failed_ = nodes_near(poor, 2);
       return false;
     }
@@ -330,8 +336,10 @@ std::vector<double> Core::shares_of(const std::vector<Vector>& moves, const std:
   }
 }
 
-void Core::improve_tets() {
+/// Improves tets below this angle.
+void Core::improve_tets(double angle) {
   ImproveOptions options = options_;
+  options.min_dihedral = std::min(angle, options.min_dihedral);
   options.bounds.radius_edge = any_ratio;
   options.bounds.thin_in_narrow_places_only = false;
   options.thin_above = any_ratio;
