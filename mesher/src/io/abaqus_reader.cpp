@@ -280,30 +280,32 @@ class AbaqusReader {
   }
 
   void add_element(const ElementType& type, const std::vector<std::int64_t>& numbers, std::size_t set) {
-    CellNodes nodes;
+    std::vector<Index> listed;
     for (std::size_t k = 1; k < numbers.size(); ++k) {
-      const Index node = nodes_.find(numbers[k]);
-      if (node == none)
+      listed.push_back(nodes_.find(numbers[k]));
+      if (listed.back() == none)
         lines_.fail(
             fmt::format("element {} has the node {}, but no node has that number", numbers[0], numbers[k]));
-      nodes.add(node);
     }
     const Place place{type.kind, static_cast<Index>(count_of(mesh_, type.kind))};
-    if (type.is_hexahedron()) nodes = pyramid_of(nodes, numbers[0]);
-    // The mid-edge node is the second of three.
-    if (type.kind == CellKind::edge) nodes = nodes.in_order(std::array<std::uint8_t, 3>{0, 2, 1});
-    add_cell(type.kind, nodes, mesh_);
+    add_cell(type.kind, nodes_of_element(type, listed, numbers[0]), mesh_);
     elements_.add(numbers[0]);
     places_.push_back(place);
     if (set != none) sets_[set].members.push_back(numbers[0]);
   }
 
-  /// Returns the pyramid that a hexahedron is whose last four corners are one.
-  CellNodes pyramid_of(const CellNodes& nodes, std::int64_t number) const {
-    if (!nodes.has_order(abaqus_pyramid_order))
+  CellNodes nodes_of_element(const ElementType& type, const std::vector<Index>& listed,
+                             std::int64_t number) const {
+    if (type.is_hexahedron()) {
+      const std::optional<CellNodes> pyramid = CellNodes::gathered(listed, abaqus_pyramid_order);
+      if (pyramid) return *pyramid;
       lines_.fail(fmt::format(
           "element {} is a hexahedron, which is not supported, unless its last four nodes are one", number));
-    return nodes.from_order(abaqus_pyramid_order);
+    }
+    CellNodes nodes;
+    for (const Index node : listed) nodes.add(node);
+    // The mid-edge node is the second of three.
+    return type.kind == CellKind::edge ? nodes.in_order(std::array<std::uint8_t, 3>{0, 2, 1}) : nodes;
   }
 
   void sort_elements() {

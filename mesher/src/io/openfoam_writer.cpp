@@ -96,7 +96,9 @@ struct Sides {
       return sorted;
     };
     std::sort(all.begin(), all.end(), [&](const Side& a, const Side& b) {
-      return std::pair(key(a), a.owner) < std::pair(key(b), b.owner);
+      if (a.corners[0] != b.corners[0]) return a.corners[0] < b.corners[0];
+      const Corners first = key(a), second = key(b);
+      return first != second ? first < second : a.owner < b.owner;
     });
     for (std::size_t i = 0; i < all.size(); ++i) {
       Side side = all[i];
