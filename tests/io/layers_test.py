@@ -115,7 +115,7 @@ def with_meshio(folder):
     volumes, faces = ("tetra", "wedge", "pyramid"), ("triangle", "quad")
     # What meshio finds, and the kinds that turn the other way there. It turns VTK's prisms of first order alone.
     formats = {".vtu": (volumes, ("wedge",)), ".vtk": (everything, ("wedge",)), ".msh": (everything, ()),
-               ".msh2": (everything, ()), ".mesh": (everything, ()), ".inp": (("tetra", "wedge"), ()),
+               ".msh2": (everything, ()), ".mesh": (everything, ()), ".inp": (("wedge",), ()),
                ".bdf": ((*volumes, *faces), ()), ".su2": (volumes, ("wedge",)),
                ".med": (everything, volumes)}
     try:
@@ -124,7 +124,7 @@ def with_meshio(folder):
         del formats[".med"]
     for order in (1, 2):
         for extension, (kinds, turned) in formats.items():
-            if order == 2 and extension in (".mesh", ".inp", ".su2"):
+            if order == 2 and extension in (".mesh", ".su2"):
                 continue
             if subprocess.run([sys.argv[1], "1", "1", os.path.join(folder, "try" + extension)],
                               capture_output=True).returncode != 0:
@@ -314,7 +314,8 @@ def with_calculix(folder):
     modulus, poisson = 2.0, 0.3
     stress = modulus / (1 + poisson) * (strain + poisson / (1 - 2 * poisson) * np.trace(strain) * np.eye(3))
     wanted = stress[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
-    for kind, order in (("layers", 1), ("prisms", 1), ("prisms", 2)):
+    # In second order a pyramid's base that is no parallelogram is not exact.
+    for kind, order, exact in (("layers", 1, 1e-5), ("prisms", 1, 1e-5), ("prisms", 2, 1e-5), ("layers", 2, 1e-2)):
         label = f"ccx of {kind} of order {order}"
         sample = Sample(folder, order, ".inp", kind=kind)
         with open(sample.files[".inp"]) as file:
@@ -322,12 +323,11 @@ def with_calculix(folder):
         points, elements = nodes_and_elements(text)
         kinds = {name for name, _ in elements}
         expect(kinds == {("layers", 1): {"C3D4", "C3D6", "C3D8"}, ("prisms", 1): {"C3D4", "C3D6"},
-                         ("prisms", 2): {"C3D10", "C3D15"}}[kind, order], f"{label}: elements {kinds}")
+                         ("prisms", 2): {"C3D10", "C3D15"}, ("layers", 2): {"C3D10", "C3D15"}}[kind, order], f"{label}: elements {kinds}")
         outside = set()
-        for match in re.finditer(r"\*NSET, NSET=PATCH_\S+?_NODES\n([^*]*)", text):
-            outside |= {int(number) for number in match[1].replace("\n", " ").split(",") if number.strip()}
-        if kind == "layers":  # the interface's inner node is free
-            outside -= {number for number, p in points.items() if np.allclose(p, (0.1, -0.07, 0))}
+        for match in re.finditer(r"\*NSET, NSET=PATCH_(\S+?)_NODES\n([^*]*)", text):
+            if match[1] != "7":  # nodes on the interface are free
+                outside |= {int(number) for number in match[2].replace("\n", " ").split(",") if number.strip()}
         free = set(points) - outside
         expect(len(free) > 0, f"{label}: there are free nodes")
         name = os.path.join(folder, f"{kind}_patch{order}")
@@ -350,11 +350,11 @@ def with_calculix(folder):
                 moved += 1
                 u = np.array(list(map(float, fields[1:])))
                 expect(np.allclose(u, gradient @ points[int(fields[0])],
-                       atol=1e-8), f"{label}: node {fields[0]} moved {u}")
+                       atol=1e-3 * exact), f"{label}: node {fields[0]} moved {u}")
         expect(moved == len(free), f"{label}: {moved} of {len(free)} free nodes")
         stresses = np.array([list(map(float, line.split()[2:])) for line in
                              dat.split("stresses", 1)[1].splitlines()[1:] if len(line.split()) == 8])
-        expect(len(stresses) > 0 and np.abs(stresses - wanted).max() < 1e-5 * np.abs(wanted).max(),
+        expect(len(stresses) > 0 and np.abs(stresses - wanted).max() < exact * np.abs(wanted).max(),
                f"{label}: stresses off by {np.abs(stresses - wanted).max()}")
 
 
@@ -420,7 +420,7 @@ def with_convert(folder):
     expect("every guarantee holds" in said and "6 prisms" in said, f"check: {said}")
     # Files in turn, and back.
     for start, formats in ((path, (".msh", ".msh2", ".unv", ".mesh", ".inp", ".vtk")),
-                           (second.files[".vtu"], (".msh", ".msh2", ".unv", ".vtk"))):
+                           (second.files[".vtu"], (".msh", ".msh2", ".inp", ".unv", ".vtk"))):
         before, at = collarmesh("info", start), start
         for number, extension in enumerate(formats):
             out = os.path.join(folder, f"chain{number}{extension}")
@@ -432,8 +432,8 @@ def with_convert(folder):
     for target in ("a.xdmf", "a.pvtu", "a.ele"):
         said = collarmesh("convert", path, "-o", os.path.join(folder, target), code=8)
         expect("prisms and pyramids" in said and not os.path.exists(os.path.join(folder, target)), f"{target}: {said}")
-    said = collarmesh("convert", second.files[".vtu"], "-o", os.path.join(folder, "second.inp"), code=8)
-    expect("pyramids of second order" in said, f"second.inp: {said}")
+    said = collarmesh("convert", second.files[".vtu"], "-o", os.path.join(folder, "second.su2"), code=8)
+    expect("pyramids of second order" in said, f"second.su2: {said}")
     said = collarmesh("convert", path, "-o", os.path.join(folder, "a.msh"), "--partitions", "2", code=2)
     expect("prisms" in said, f"partitions: {said}")
 

@@ -15,6 +15,7 @@
 
 #include "collarmesh/error.h"
 #include "io/abaqus_format.h"
+#include "io/abaqus_pyramids.h"
 #include "io/cell_nodes.h"
 #include "io/cell_orientation.h"
 #include "io/complete_mesh.h"
@@ -162,6 +163,7 @@ struct Set {
 struct Place {
   CellKind kind = CellKind::tet;
   Index index = 0;
+  std::optional<unsigned> half = {};  ///< of a pyramid of second order that the file has as two tets
 };
 
 class AbaqusReader {
@@ -178,6 +180,7 @@ class AbaqusReader {
       read_block(keyword);
     }
     sort_elements();
+    join_halves();
     if (mesh_.tets.empty()) lines_.fail("expected tetrahedra (C3D4, C3D10), found none");
     tag_cells();
     add_surfaces();
@@ -313,6 +316,28 @@ class AbaqusReader {
       lines_.fail(fmt::format("two elements have the number {}", *twice));
   }
 
+  /// Joins the halves of our pyramids of second order.
+  void join_halves() {
+    const auto set = set_index_.find(abaqus_halves);
+    if (set == set_index_.end()) return;
+    std::vector<Index> elements;
+    for (const std::int64_t number : sets_[set->second].members) elements.push_back(elements_.find(number));
+    std::vector<std::array<Index, 2>> pairs;
+    for (std::size_t k = 0; k + 1 < elements.size(); k += 2) {
+      for (const std::size_t each : {k, k + 1})
+        if (elements[each] == none || places_[elements[each]].kind != CellKind::tet) return;
+      pairs.push_back({places_[elements[k]].index, places_[elements[k + 1]].index});
+    }
+    const auto before = static_cast<Index>(mesh_.layers.pyramids.size());
+    const auto numbers = join_pyramids(pairs, mesh_);
+    if (!numbers) lines_.fail(fmt::format("the elements of {} are no halves of pyramids", abaqus_halves));
+    for (Place& place : places_)
+      if (place.kind == CellKind::tet) place.index = (*numbers)[place.index];
+    for (Index k = 0; k < pairs.size(); ++k)
+      for (unsigned half = 0; half < 2; ++half)
+        places_[elements[2 * std::size_t{k} + half]] = {CellKind::pyramid, before + k, half};
+  }
+
   std::size_t index_of_set(std::string_view name) {
     const auto [found, added] = set_index_.try_emplace(lower_case(name), sets_.size());
     if (added) sets_.push_back({lower_case(name), std::string(name), {}, false});
@@ -430,7 +455,8 @@ class AbaqusReader {
       if (is_ours(set.name)) tag_members(set, tagged);
     for (const bool named_apart : {true, false})
       for (const Set& set : sets_)
-        if (set.named_apart == named_apart && !is_ours(set.name) && set.name != abaqus_everything)
+        if (set.named_apart == named_apart && !is_ours(set.name) && set.name != abaqus_everything &&
+            set.name != abaqus_halves)
           tag_members(set, tagged);
     for (const Set& set : sets_)
       if (set.name == abaqus_everything) tag_members(set, tagged);
@@ -445,7 +471,7 @@ class AbaqusReader {
     for (const std::int64_t number : set.members) {
       const Index element = elements_.find(number);
       if (element == none) continue;  // sets may name missing elements
-      const auto [kind, index] = places_[element];
+      const auto [kind, index, half] = places_[element];
       std::vector<bool>& of_kind = tagged[static_cast<std::size_t>(kind)];
       if (of_kind[index]) continue;
       of_kind[index] = true;
@@ -492,15 +518,25 @@ class AbaqusReader {
     }
   }
 
+  /// Returns which of our cell's sides S1 and so on are; nothing for a face without area, and for the second
+  /// part of a base.
+  static std::optional<std::size_t> side_of(const Place& place, unsigned number) {
+    if (place.half) return side_of_pyramid(*place.half, number);
+    const auto numbers = abaqus_faces(place.kind);
+    const auto found = std::find(numbers.begin(), numbers.end(), number);
+    if (found == numbers.end()) return std::nullopt;
+    return static_cast<std::size_t>(found - numbers.begin());
+  }
+
   /// Adds a side, turned outwards.
   void add_side(const Side& side, Tag tag) {
     const Index element = elements_.find(side.element);
     if (element == none || shape_of(places_[element].kind).dimension != 3) return;
-    const auto [kind, cell] = places_[element];
-    const auto numbers = abaqus_faces(kind);
-    const auto found = std::find(numbers.begin(), numbers.end(), side.number);
-    if (found == numbers.end()) return;  // a face without area
-    const auto place = static_cast<std::size_t>(found - numbers.begin());
+    const std::optional<std::size_t> found = side_of(places_[element], side.number);
+    if (!found) return;
+    const CellKind kind = places_[element].kind;
+    const Index cell = places_[element].index;
+    const std::size_t place = *found;
     const CellKind of_side =
         shape_of(kind).sides[place].corners == 3 ? CellKind::triangle : CellKind::quadrangle;
     const CellNodes nodes = nodes_of_side(kind, nodes_of(kind)(mesh_, cell), place);

@@ -37,8 +37,7 @@ std::vector<std::string> formats_with_ghost_cells();
 /// Returns the extensions of formats that have no elements of second order.
 std::vector<std::string> formats_of_first_order();
 
-/// Returns the extensions of formats that hold prisms and pyramids of an order, 1 or 2. Neither Abaqus nor
-/// CalculiX has pyramids of second order: `write_tet_mesh` refuses those in .inp.
+/// Returns the extensions of formats that hold prisms and pyramids of an order, 1 or 2.
 std::vector<std::string> formats_with_layers(int order);
 
 /// Returns the extensions of formats that hold meshes of triangles alone, and of curve edges alone.
