@@ -47,11 +47,19 @@ PolygonSoup surface_of(const TetMesh& mesh, const std::string& name) {
   PolygonSoup soup;
   soup.name = name;
   soup.points = mesh.points;
-  std::vector<std::size_t> order(mesh.faces.size());
+  const LayerCells& layers = mesh.layers;
+  const std::size_t triangles = mesh.faces.size();
+  const auto tag = [&](std::size_t f) {
+    return f < triangles ? mesh.face_tag[f] : layers.quad_tag[f - triangles];
+  };
+  std::vector<std::size_t> order(triangles + layers.quads.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return mesh.face_tag[a] < mesh.face_tag[b]; });
-  for (const std::size_t f : order) soup.add_facet(mesh.faces[f], mesh.face_tag[f]);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return tag(a) < tag(b); });
+  for (const std::size_t f : order)
+    if (f < triangles)
+      soup.add_facet(mesh.faces[f], tag(f));
+    else
+      soup.add_facet(layers.quads[f - triangles], tag(f));
   for (std::size_t e = 0; e < mesh.edges.size(); ++e)
     soup.segments.push_back({mesh.edges[e][0], mesh.edges[e][1], mesh.edge_tag[e]});
   soup.tag_names = mesh.names;

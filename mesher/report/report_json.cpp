@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "report/colour_text.h"
+#include "report/layers_report.h"
 #include "report/mesh_groups.h"
 #include "report/options_json.h"
 #include "report/periodic_report.h"
@@ -260,6 +261,9 @@ Json measures_json(const TetMesh& mesh, const MeshMeasures& m) {
           {"tets", mesh.tets.size()},
           {"faces", mesh.faces.size()},
           {"edges", mesh.edges.size()},
+          {"prisms", mesh.layers.prisms.size()},
+          {"pyramids", mesh.layers.pyramids.size()},
+          {"quads", mesh.layers.quads.size()},
           {"min_dihedral", m.min_dihedral},
           {"max_dihedral", m.max_dihedral},
           {"max_radius_edge", number_json(m.max_radius_edge)},
@@ -425,6 +429,7 @@ Json run_json(const RequestedRun& arguments, const MeshRun& run) {
             {"second_order", arguments.order == 2 ? second_order_json(run.second_order) : Json(nullptr)},
             {"interior_nodes", run.interior_nodes ? interior_json(*run.interior_nodes) : Json(nullptr)},
             {"periodic", run.periodic ? periodic_json(*run.periodic, run.result.mesh) : Json(nullptr)},
+            {"layers", run.layers ? layers_json(*run.layers) : Json(nullptr)},
             {"split", run.split ? split_json(*run.split) : Json(nullptr)},
             {"seconds", std::move(seconds)}};
   if (run.remeshing) json["remeshing"] = remeshing_json(*run.remeshing);

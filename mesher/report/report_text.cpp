@@ -6,6 +6,8 @@
 #include <map>
 
 #include "report/conversion_report.h"
+#include "report/layer_counts.h"
+#include "report/layers_report.h"
 #include "report/mesh_groups.h"
 #include "report/periodic_report.h"
 #include "report/report.h"
@@ -204,8 +206,10 @@ std::string mesh_text(const TetMesh& mesh, const MeshMeasures& m, const CheckRep
   if (mesh.is_curves())
     return fmt::format("{} lines on curves, {} points\n", mesh.edges.size(), mesh.points.size());
   std::string text;
-  fmt::format_to(Out(text), "{} tets, {} points, {} boundary and interface triangles, {} curve edges\n",
-                 mesh.tets.size(), mesh.points.size(), mesh.faces.size(), mesh.edges.size());
+  const LayerCells& layers = mesh.layers;
+  fmt::format_to(Out(text), "{} tets, {}{} points, {} boundary and interface triangles, {}{} curve edges\n",
+                 mesh.tets.size(), layers_text(layers.prisms.size(), layers.pyramids.size()),
+                 mesh.points.size(), mesh.faces.size(), quads_text(layers.quads.size()), mesh.edges.size());
   const char* const ratio = m.max_radius_edge > 0 ? "" : "radius-edge ";
   fmt::format_to(
       Out(text), "  {}{}{}\n", shape_text(m.min_dihedral, m.max_dihedral, m.max_radius_edge),
@@ -343,6 +347,7 @@ std::string run_text(const RequestedRun& arguments, const MeshRun& run) {
         run.interior_nodes->found, run.interior_nodes->inserted_nodes, run.interior_nodes->removed_edges,
         run.interior_nodes->remaining);
   if (run.periodic) text += periodic_text(*run.periodic);
+  if (run.layers) text += layers_text(*run.layers);
   if (run.split) text += split_text(*run.split);
   if (run.guarantees_hold()) text += "  every guarantee holds\n";
   fmt::format_to(Out(text), "  {:.2f} s ({})\n", run.times.total(), times_text(run.times));

@@ -27,9 +27,21 @@ inline TetMesh second_order(TetMesh mesh) {
     }
     return found->second;
   };
+  LayerCells& layers = mesh.layers;
+  for (std::size_t f = 0; f < layers.quads.size(); ++f)
+    for (std::size_t k = 0; k < 4; ++k)
+      features[key(layers.quads[f][k], layers.quads[f][(k + 1) % 4])] = {2, layers.quad_patch[f]};
   for (const auto& [a, b, c, d] : mesh.tets)
     mesh.tet_mid_nodes.push_back(
         {middle(a, b), middle(b, c), middle(c, a), middle(a, d), middle(b, d), middle(c, d)});
+  for (const auto& [a, b, c, d, e, f] : layers.prisms)
+    layers.prism_mid_nodes.push_back({middle(a, b), middle(b, c), middle(c, a), middle(d, e), middle(e, f),
+                                      middle(f, d), middle(a, d), middle(b, e), middle(c, f)});
+  for (const auto& [a, b, c, d, e] : layers.pyramids)
+    layers.pyramid_mid_nodes.push_back({middle(a, b), middle(b, c), middle(c, d), middle(d, a), middle(a, e),
+                                        middle(b, e), middle(c, e), middle(d, e)});
+  for (const auto& [a, b, c, d] : layers.quads)
+    layers.quad_mid_nodes.push_back({middle(a, b), middle(b, c), middle(c, d), middle(d, a)});
   for (const auto& [a, b, c] : mesh.faces)
     mesh.face_mid_nodes.push_back({middle(a, b), middle(b, c), middle(c, a)});
   for (const auto& [a, b] : mesh.edges) mesh.edge_mid_nodes.push_back(middle(a, b));

@@ -6,7 +6,10 @@
 #include <vector>
 
 #include "collarmesh/geometry.h"
+#include "collarmesh/improve.h"
 #include "collarmesh/plc.h"
+#include "collarmesh/progress.h"
+#include "collarmesh/second_order.h"
 #include "collarmesh/tet_mesh.h"
 
 /// Boundary layers: thin cells along walls, in which flow, heat or currents change fast across the wall.
@@ -52,10 +55,34 @@ struct LayersReport {
   std::vector<Patch> patches;
   std::vector<Reduction> reductions;
   std::size_t prisms = 0, pyramids = 0, tets = 0;  ///< cells in the layers
+  /// By corner of the mesh: the node of the wall below it, or itself on a wall; none elsewhere.
+  std::vector<Index> walls;
+  double largest_step = 1;  ///< largest ratio of the heights of neighbours that have layers
   double seconds = 0;
+  bool cancelled = false;
 
   /// Returns the share of the walls' area beside cells of all layers, 0 to 1.
   double coverage() const;
 };
+
+/// Reads the walls that the options name. Throws OptionError for text that is none.
+std::vector<WallLayers> read_walls(const LayerOptions& options);
+
+/// Throws OptionError, with the known names, if a wall does not exist or two texts name one wall.
+void require_known_walls(const LayerOptions& options, const Plc& plc);
+
+/// Puts layers of prisms on walls, on the inner sides of boundaries and on both sides of interfaces and of
+/// facets inside regions. The tets there are pushed inwards and improved; the triangles and edges of the walls
+/// stay. Nodes that also lie on other patches slide along these.
+///
+/// Layers are lower where there is little room: in gaps, where prisms would fold, and where tets would miss
+/// their bounds (`improvement.bounds`). Heights of neighbours differ by at most a factor of 2. They are 0 where
+/// no direction leads away from all walls at a node, and where layers end. There, prisms become pyramids and
+/// tets. In second order the edges of walls keep their nodes, and their bulges fade towards the tets.
+/// Precondition: `mesh` comes from `generate` for `plc`. Same mesh and options: same result, with any number of threads. If cancelled, the mesh is as before. Throws OptionError as
+/// `require_known_walls`. Cost: near linear in the tets.
+LayersReport make_layers(TetMesh& mesh, const Plc& plc, const LayerOptions& options,
+                         const ImproveOptions& improvement, const SecondOrderOptions& second_order = {},
+                         const Execution& execution = {});
 
 }  // namespace collarmesh

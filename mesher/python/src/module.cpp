@@ -24,6 +24,7 @@
 #include "files/surface_files.h"
 #include "io/complete_mesh.h"
 #include "options.h"
+#include "report/layers_report.h"
 #include "report/report.h"
 #include "report/soup_output.h"
 #include "report/split_report.h"
@@ -140,6 +141,7 @@ py::dict mesh_of(const py::list& inputs, const py::dict& options, const py::obje
   arrays["status_message"] = call->run.result.message;
   arrays["check"] = parsed(report::check_json(call->run.check));
   arrays["repairs"] = describe(call->run.repair);
+  if (call->run.layers) arrays["boundary_layers"] = parsed(report::layers_json(*call->run.layers));
   if (call->run.split) arrays["split"] = parsed(report::split_json(*call->run.split));
   arrays["notes"] = call->input->notes(call->options.dimension);
   arrays["colours"] = colours_of(call->input->colours());

@@ -42,6 +42,11 @@ struct Subject {
   std::vector<std::uint8_t> collar;  ///< by tet, as TetMesh::tet_collar: cells that the complex's creases
                                      ///< allow as collars
   bool coarsened = false;            ///< cells of collars keep the bounds of other tets and may be thin, too
+  /// The first tet that is a part of a prism or pyramid, which are judged as a whole elsewhere.
+  Index first_part = none;
+
+  /// Returns whether the mesh has layers; the angles of its tets are then judged elsewhere.
+  bool has_layers() const { return !mesh.layers.tet_layer.empty(); }
 
   const Point& point(Index i) const { return mesh.points[i]; }
   Point centroid(const std::array<Index, 3>& f) const {
@@ -86,6 +91,10 @@ class ThinCells {
   std::optional<ForcedEdges> forced_;   // none if no tet may be thin
   std::optional<NarrowPlaces> narrow_;  // none if thin tets may be anywhere
 };
+
+/// Returns the feature of lowest dimension that the mesh shows each point to be on.
+/// Precondition: subject.match is filled in.
+std::vector<TetMesh::VertexFeature> features_of(const Subject& subject);
 
 /// Items in groups by a key below `groups`; leaves out items whose key is none.
 class Grouping {

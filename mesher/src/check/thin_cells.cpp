@@ -14,8 +14,8 @@ constexpr double slack = 1e-9;  // relative tolerance
 // 25 degrees of opposite.
 constexpr double least_cosine_of_sides = -0.9;
 
-// Returns for each point the feature of lowest dimension that the mesh's faces, edges and vertices place it
-// on.
+}  // namespace
+
 std::vector<TetMesh::VertexFeature> features_of(const Subject& subject) {
   std::vector<TetMesh::VertexFeature> features(subject.mesh.points.size());
   for (Index f = 0; f < subject.mesh.faces.size(); ++f)
@@ -28,8 +28,6 @@ std::vector<TetMesh::VertexFeature> features_of(const Subject& subject) {
     if (const Index p = subject.match.vertex_point[v]; p != none) features[p] = {0, v};
   return features;
 }
-
-}  // namespace
 
 ThinCells::ThinCells(const Subject& subject)
     : mesh_(subject.mesh),

@@ -53,6 +53,13 @@ class Workpiece {
   /// Returns whether the triangles of this patch must stay, like those of periodic faces.
   bool keeps(Index patch) const { return !kept_.empty() && patch != none && kept_[patch]; }
 
+  /// Keeps the triangles of further patches, by patch.
+  void keep_triangles_of(const std::vector<bool>& patches) {
+    kept_.resize(patches.size(), false);
+    for (std::size_t patch = 0; patch < patches.size(); ++patch)
+      if (patches[patch]) kept_[patch] = true;
+  }
+
   /// Fixes these vertices at their places.
   void fix(const std::vector<Index>& vertices) {
     for (const Index v : vertices) {

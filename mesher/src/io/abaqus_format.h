@@ -2,17 +2,24 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
+
+#include "common/cell_shapes.h"
 
 /// The conventions that the writer and the reader of .inp files share; Abaqus Keywords Reference Manual.
 namespace collarmesh::io {
 
-/// The corners of the faces S1 to S4 of C3D4 and C3D10, and their mid-edge nodes.
-constexpr std::array<std::array<std::uint8_t, 3>, 4> abaqus_faces{
-    {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}}};
-constexpr std::array<std::array<std::uint8_t, 3>, 4> abaqus_face_mid_nodes{
-    {{0, 1, 2}, {3, 4, 0}, {4, 5, 1}, {5, 3, 2}}};
-/// The numbers of these faces, by the opposite corner.
-constexpr std::array<unsigned, 4> abaqus_face_opposite{3, 4, 2, 1};
+/// The numbers of the faces of elements (S1, S2, ...), by the side of our cell. A pyramid is the hexahedron
+/// whose last four corners are one: CalculiX has no pyramids.
+constexpr std::array<unsigned, 4> abaqus_tet_faces{3, 4, 2, 1};
+constexpr std::array<unsigned, 5> abaqus_prism_faces{1, 2, 3, 4, 5};
+constexpr std::array<unsigned, 5> abaqus_pyramid_faces{1, 3, 4, 5, 6};
+constexpr std::span<const unsigned> abaqus_faces(CellKind kind) {
+  if (kind == CellKind::prism) return abaqus_prism_faces;
+  if (kind == CellKind::pyramid) return abaqus_pyramid_faces;
+  return abaqus_tet_faces;
+}
+constexpr std::array<std::uint8_t, 8> abaqus_pyramid_order{0, 1, 2, 3, 4, 4, 4, 4};
 
 /// Prefix of our element sets by region of the complex; the region's number follows.
 constexpr const char* abaqus_volume_prefix = "VOLUME_";

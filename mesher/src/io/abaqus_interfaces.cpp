@@ -56,7 +56,7 @@ std::vector<std::array<Index, 6>> straight_prisms(const Interfaces& interfaces, 
 void write_prisms(FileWriter& out, const TetMesh& mesh, const Interfaces& interfaces, const Names& names) {
   std::map<Tag, std::vector<std::size_t>> prisms;
   for (std::size_t i = 0; i < interfaces.prisms.size(); ++i) prisms[interfaces.prism_tag[i]].push_back(i);
-  std::size_t number = mesh.tets.size();
+  std::size_t number = count_of_dimension(mesh, 3);
   for (const auto& [tag, members] : prisms) {
     out << "*ELEMENT, TYPE=COH3D6, ELSET=COHESIVE_" << names.at(tag) << '\n';
     for (const std::size_t i : members)

@@ -1,6 +1,7 @@
-// Reads the input format of Abaqus and CalculiX (.inp): tetrahedra of solids (C3D4, C3D10 and their
-// variants), triangles and lines of shells, membranes, beams and trusses, surfaces of element sides. Tags
-// come from element sets and surfaces: from our own names, or else from their order in the file.
+// Reads the input format of Abaqus and CalculiX (.inp): tetrahedra, prisms and pyramids of solids (C3D4,
+// C3D10, C3D6 and their variants), triangles, quadrangles and lines of shells, membranes, beams and trusses,
+// surfaces of element sides. Tags come from element sets and surfaces: from our own names, or else from their
+// order in the file.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,7 +15,9 @@
 
 #include "collarmesh/error.h"
 #include "io/abaqus_format.h"
+#include "io/abaqus_pyramids.h"
 #include "io/cell_nodes.h"
+#include "io/cell_orientation.h"
 #include "io/complete_mesh.h"
 #include "io/file_bytes.h"
 #include "io/label_names.h"
@@ -100,19 +103,43 @@ struct Keyword {
   }
 };
 
-/// The number of nodes of a type of elements that becomes a tet, face or edge.
+/// A type of elements. Some hexahedra are pyramids (`abaqus_pyramid_order`).
 struct ElementType {
   std::string_view prefix;
-  std::size_t dimension, nodes;
+  CellKind kind;
+  int order;
+
+  bool is_hexahedron() const { return prefix.ends_with("3d8"); }
+  std::size_t nodes() const {
+    return is_hexahedron() ? abaqus_pyramid_order.size() : shape_of(kind).nodes(order);
+  }
 };
 /// The longest prefix counts: c3d10m is a c3d10, c3d20 is not a c3d2.
 constexpr ElementType element_types[] = {
-    {"c3d4", 3, 4},   {"c3d10", 3, 10},  {"dc3d4", 3, 4}, {"dc3d10", 3, 10}, {"f3d4", 3, 4},
-    {"ac3d4", 3, 4},  {"ac3d10", 3, 10}, {"cps3", 2, 3},  {"cps6", 2, 6},    {"cpe3", 2, 3},
-    {"cpe6", 2, 6},   {"cax3", 2, 3},    {"cax6", 2, 6},  {"s3", 2, 3},      {"s6", 2, 6},
-    {"stri3", 2, 3},  {"stri65", 2, 6},  {"m3d3", 2, 3},  {"m3d6", 2, 6},    {"sfm3d3", 2, 3},
-    {"sfm3d6", 2, 6}, {"r3d3", 2, 3},    {"ds3", 2, 3},   {"ds6", 2, 6},     {"t3d2", 1, 2},
-    {"t3d3", 1, 3},   {"b31", 1, 2},     {"b32", 1, 3},   {"t2d2", 1, 2}};
+    {"c3d4", CellKind::tet, 1},          {"c3d10", CellKind::tet, 2},
+    {"dc3d4", CellKind::tet, 1},         {"dc3d10", CellKind::tet, 2},
+    {"f3d4", CellKind::tet, 1},          {"ac3d4", CellKind::tet, 1},
+    {"ac3d10", CellKind::tet, 2},        {"c3d6", CellKind::prism, 1},
+    {"c3d15", CellKind::prism, 2},       {"dc3d6", CellKind::prism, 1},
+    {"dc3d15", CellKind::prism, 2},      {"f3d6", CellKind::prism, 1},
+    {"ac3d6", CellKind::prism, 1},       {"ac3d15", CellKind::prism, 2},
+    {"c3d5", CellKind::pyramid, 1},      {"c3d8", CellKind::pyramid, 1},
+    {"dc3d8", CellKind::pyramid, 1},     {"f3d8", CellKind::pyramid, 1},
+    {"ac3d8", CellKind::pyramid, 1},     {"cps3", CellKind::triangle, 1},
+    {"cps6", CellKind::triangle, 2},     {"cpe3", CellKind::triangle, 1},
+    {"cpe6", CellKind::triangle, 2},     {"cax3", CellKind::triangle, 1},
+    {"cax6", CellKind::triangle, 2},     {"s3", CellKind::triangle, 1},
+    {"s6", CellKind::triangle, 2},       {"stri3", CellKind::triangle, 1},
+    {"stri65", CellKind::triangle, 2},   {"m3d3", CellKind::triangle, 1},
+    {"m3d6", CellKind::triangle, 2},     {"sfm3d3", CellKind::triangle, 1},
+    {"sfm3d6", CellKind::triangle, 2},   {"r3d3", CellKind::triangle, 1},
+    {"ds3", CellKind::triangle, 1},      {"ds6", CellKind::triangle, 2},
+    {"s4", CellKind::quadrangle, 1},     {"s8", CellKind::quadrangle, 2},
+    {"m3d4", CellKind::quadrangle, 1},   {"m3d8", CellKind::quadrangle, 2},
+    {"r3d4", CellKind::quadrangle, 1},   {"sfm3d4", CellKind::quadrangle, 1},
+    {"sfm3d8", CellKind::quadrangle, 2}, {"t3d2", CellKind::edge, 1},
+    {"t3d3", CellKind::edge, 2},         {"b31", CellKind::edge, 1},
+    {"b32", CellKind::edge, 2},          {"t2d2", CellKind::edge, 1}};
 
 const ElementType* find_type(std::string_view name) {
   const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
@@ -134,8 +161,9 @@ struct Set {
 
 /// The place of an element in the mesh: which list, and its index there.
 struct Place {
-  std::size_t dimension = 3;
+  CellKind kind = CellKind::tet;
   Index index = 0;
+  std::optional<unsigned> half = {};  ///< of a pyramid of second order that the file has as two tets
 };
 
 class AbaqusReader {
@@ -152,6 +180,7 @@ class AbaqusReader {
       read_block(keyword);
     }
     sort_elements();
+    join_halves();
     if (mesh_.tets.empty()) lines_.fail("expected tetrahedra (C3D4, C3D10), found none");
     tag_cells();
     add_surfaces();
@@ -232,8 +261,9 @@ class AbaqusReader {
     const ElementType* type = find_type(keyword["type"]);
     if (type == nullptr)
       lines_.fail(
-          fmt::format("elements of type {} are not supported, only tetrahedra (C3D4, C3D10), "
-                      "triangles (S3, S6, CPS3, ...) and lines (T3D2, B31, ...)",
+          fmt::format("elements of type {} are not supported, only tetrahedra (C3D4, C3D10), prisms (C3D6, "
+                      "C3D15), pyramids (C3D5), triangles (S3, S6, CPS3, ...), quadrangles (S4, S8, ...) and "
+                      "lines (T3D2, B31, ...)",
                       quoted(keyword["type"])));
     const std::size_t set_index = keyword.set.empty() ? none : index_of_set(keyword.set);
     // An element may continue over several lines.
@@ -242,44 +272,70 @@ class AbaqusReader {
       for (const std::string_view field : fields) {
         if (field.empty()) continue;
         numbers.push_back(integer(field, "the number of an element or node"));
-        if (numbers.size() < type->nodes + 1) continue;
+        if (numbers.size() < type->nodes() + 1) continue;
         add_element(*type, numbers, set_index);
         numbers.clear();
       }
     });
     if (!numbers.empty())
-      lines_.fail(fmt::format("expected an element of {} nodes, found {}", type->nodes, numbers.size() - 1));
+      lines_.fail(
+          fmt::format("expected an element of {} nodes, found {}", type->nodes(), numbers.size() - 1));
   }
 
   void add_element(const ElementType& type, const std::vector<std::int64_t>& numbers, std::size_t set) {
-    CellNodes nodes;
+    std::vector<Index> listed;
     for (std::size_t k = 1; k < numbers.size(); ++k) {
-      const Index node = nodes_.find(numbers[k]);
-      if (node == none)
+      listed.push_back(nodes_.find(numbers[k]));
+      if (listed.back() == none)
         lines_.fail(
             fmt::format("element {} has the node {}, but no node has that number", numbers[0], numbers[k]));
-      nodes.add(node);
     }
-    Place place{type.dimension, 0};
-    if (type.dimension == 3) {
-      place.index = static_cast<Index>(mesh_.tets.size());
-      add_tet(nodes, mesh_);
-    } else if (type.dimension == 2) {
-      place.index = static_cast<Index>(mesh_.faces.size());
-      add_face(nodes, mesh_);
-    } else {
-      place.index = static_cast<Index>(mesh_.edges.size());
-      // The mid-edge node is the second of three.
-      add_edge(nodes.in_order(std::array<std::uint8_t, 3>{0, 2, 1}), mesh_);
-    }
+    const Place place{type.kind, static_cast<Index>(count_of(mesh_, type.kind))};
+    add_cell(type.kind, nodes_of_element(type, listed, numbers[0]), mesh_);
     elements_.add(numbers[0]);
     places_.push_back(place);
     if (set != none) sets_[set].members.push_back(numbers[0]);
   }
 
+  CellNodes nodes_of_element(const ElementType& type, const std::vector<Index>& listed,
+                             std::int64_t number) const {
+    if (type.is_hexahedron()) {
+      const std::optional<CellNodes> pyramid = CellNodes::gathered(listed, abaqus_pyramid_order);
+      if (pyramid) return *pyramid;
+      lines_.fail(fmt::format(
+          "element {} is a hexahedron, which is not supported, unless its last four nodes are one", number));
+    }
+    CellNodes nodes;
+    for (const Index node : listed) nodes.add(node);
+    // The mid-edge node is the second of three.
+    return type.kind == CellKind::edge ? nodes.in_order(std::array<std::uint8_t, 3>{0, 2, 1}) : nodes;
+  }
+
   void sort_elements() {
     if (const auto twice = elements_.sort())
       lines_.fail(fmt::format("two elements have the number {}", *twice));
+  }
+
+  /// Joins the halves of our pyramids of second order.
+  void join_halves() {
+    const auto set = set_index_.find(abaqus_halves);
+    if (set == set_index_.end()) return;
+    std::vector<Index> elements;
+    for (const std::int64_t number : sets_[set->second].members) elements.push_back(elements_.find(number));
+    std::vector<std::array<Index, 2>> pairs;
+    for (std::size_t k = 0; k + 1 < elements.size(); k += 2) {
+      for (const std::size_t each : {k, k + 1})
+        if (elements[each] == none || places_[elements[each]].kind != CellKind::tet) return;
+      pairs.push_back({places_[elements[k]].index, places_[elements[k + 1]].index});
+    }
+    const auto before = static_cast<Index>(mesh_.layers.pyramids.size());
+    const auto numbers = join_pyramids(pairs, mesh_);
+    if (!numbers) lines_.fail(fmt::format("the elements of {} are no halves of pyramids", abaqus_halves));
+    for (Place& place : places_)
+      if (place.kind == CellKind::tet) place.index = (*numbers)[place.index];
+    for (Index k = 0; k < pairs.size(); ++k)
+      for (unsigned half = 0; half < 2; ++half)
+        places_[elements[2 * std::size_t{k} + half]] = {CellKind::pyramid, before + k, half};
   }
 
   std::size_t index_of_set(std::string_view name) {
@@ -352,8 +408,8 @@ class AbaqusReader {
       if (fields.size() < 2) lines_.fail("expected an element or element set and its side");
       Side side;
       const std::string name = lower_case(fields[1]);
-      if (name.size() != 2 || name[0] != 's' || name[1] < '1' || name[1] > '4') return;  // a face of a shell
-      side.side = static_cast<std::size_t>(name[1] - '1');
+      if (name.size() != 2 || name[0] != 's' || name[1] < '1' || name[1] > '6') return;  // a face of a shell
+      side.number = static_cast<unsigned>(name[1] - '0');
       if (parse(fields[0], side.element))
         surfaces_.back().second.push_back(side);
       else
@@ -363,7 +419,7 @@ class AbaqusReader {
 
   struct Side {
     std::int64_t element = 0;
-    std::size_t side = 0;
+    unsigned number = 1;  ///< 1: S1
   };
 
   void add_sides(const std::string& set, Side side) {
@@ -390,18 +446,17 @@ class AbaqusReader {
   /// Sets the tags of cells. If a cell is in several sets, one with a name of ours counts, or else the first
   /// one of an *ELSET (but not the set of everything), or else that of its *ELEMENT.
   void tag_cells() {
-    mesh_.tet_tag.assign(mesh_.tets.size(), 0);
-    mesh_.face_tag.assign(mesh_.faces.size(), 0);
-    mesh_.edge_tag.assign(mesh_.edges.size(), 0);
-    std::array<std::vector<bool>, 4> tagged{{{},
-                                             std::vector<bool>(mesh_.edges.size()),
-                                             std::vector<bool>(mesh_.faces.size()),
-                                             std::vector<bool>(mesh_.tets.size())}};
+    Tagged tagged;
+    for (const CellKind kind : all_cell_kinds) {
+      tags_of(mesh_, kind).assign(count_of(mesh_, kind), 0);
+      tagged[static_cast<std::size_t>(kind)].resize(count_of(mesh_, kind));
+    }
     for (const Set& set : sets_)
       if (is_ours(set.name)) tag_members(set, tagged);
     for (const bool named_apart : {true, false})
       for (const Set& set : sets_)
-        if (set.named_apart == named_apart && !is_ours(set.name) && set.name != abaqus_everything)
+        if (set.named_apart == named_apart && !is_ours(set.name) && set.name != abaqus_everything &&
+            set.name != abaqus_halves)
           tag_members(set, tagged);
     for (const Set& set : sets_)
       if (set.name == abaqus_everything) tag_members(set, tagged);
@@ -411,15 +466,16 @@ class AbaqusReader {
   static bool is_ours(const std::string& name) {
     return tag_of_group_name(3, name) || tag_of_group_name(2, name) || tag_of_group_name(1, name);
   }
-  void tag_members(const Set& set, std::array<std::vector<bool>, 4>& tagged) {
+  using Tagged = std::array<std::vector<bool>, cell_kinds>;
+  void tag_members(const Set& set, Tagged& tagged) {
     for (const std::int64_t number : set.members) {
       const Index element = elements_.find(number);
       if (element == none) continue;  // sets may name missing elements
-      const auto [dimension, index] = places_[element];
-      if (tagged[dimension][index]) continue;
-      tagged[dimension][index] = true;
-      const Tag tag = tag_of(dimension, set.written);
-      (dimension == 3 ? mesh_.tet_tag : dimension == 2 ? mesh_.face_tag : mesh_.edge_tag)[index] = tag;
+      const auto [kind, index, half] = places_[element];
+      std::vector<bool>& of_kind = tagged[static_cast<std::size_t>(kind)];
+      if (of_kind[index]) continue;
+      of_kind[index] = true;
+      tags_of(mesh_, kind)[index] = tag_of(shape_of(kind).dimension, set.written);
     }
   }
 
@@ -433,18 +489,25 @@ class AbaqusReader {
 
   /// Reads our own sets by region.
   void read_volumes() {
-    std::vector<Index> regions(mesh_.tets.size(), none);
+    std::array<std::vector<Index>, cell_kinds> regions;
+    for (const CellKind kind : all_cell_kinds)
+      if (shape_of(kind).dimension == 3)
+        regions[static_cast<std::size_t>(kind)].assign(count_of(mesh_, kind), none);
     for (const Set& set : sets_) {
       Index region = 0;
       if (!set.name.starts_with(volume_prefix_) ||
           !parse(std::string_view(set.name).substr(volume_prefix_.size()), region))
         continue;
       for (const std::int64_t number : set.members)
-        if (const Index element = elements_.find(number); element != none && places_[element].dimension == 3)
-          regions[places_[element].index] = region;
+        if (const Index element = elements_.find(number);
+            element != none && shape_of(places_[element].kind).dimension == 3)
+          regions[static_cast<std::size_t>(places_[element].kind)][places_[element].index] = region;
     }
-    if (std::find(regions.begin(), regions.end(), none) == regions.end())
-      mesh_.tet_region = std::move(regions);
+    for (const std::vector<Index>& of_kind : regions)
+      if (std::find(of_kind.begin(), of_kind.end(), none) != of_kind.end()) return;
+    for_each_kind(mesh_, 3, [&](CellKind kind) {
+      features_of(mesh_, kind) = std::move(regions[static_cast<std::size_t>(kind)]);
+    });
   }
 
   void add_surfaces() {
@@ -455,21 +518,30 @@ class AbaqusReader {
     }
   }
 
-  /// Adds a side. Abaqus orients faces inwards.
+  /// Returns which of our cell's sides S1 and so on are; nothing for a face without area, and for the second
+  /// part of a base.
+  static std::optional<std::size_t> side_of(const Place& place, unsigned number) {
+    if (place.half) return side_of_pyramid(*place.half, number);
+    const auto numbers = abaqus_faces(place.kind);
+    const auto found = std::find(numbers.begin(), numbers.end(), number);
+    if (found == numbers.end()) return std::nullopt;
+    return static_cast<std::size_t>(found - numbers.begin());
+  }
+
+  /// Adds a side, turned outwards.
   void add_side(const Side& side, Tag tag) {
     const Index element = elements_.find(side.element);
-    if (element == none || places_[element].dimension != 3) return;
-    const Index t = places_[element].index;
-    const auto& [i, j, k] = abaqus_faces[side.side];
-    const auto& tet = mesh_.tets[t];
-    const bool positive = six_volume(mesh_.points[tet[0]], mesh_.points[tet[1]], mesh_.points[tet[2]],
-                                     mesh_.points[tet[3]]) > 0;
-    mesh_.faces.push_back({tet[i], tet[positive ? k : j], tet[positive ? j : k]});
-    mesh_.face_tag.push_back(tag);
-    if (mesh_.order() == 1) return;
-    const auto& [ij, jk, ki] = abaqus_face_mid_nodes[side.side];
-    const auto& mid = mesh_.tet_mid_nodes[t];
-    mesh_.face_mid_nodes.push_back({mid[positive ? ki : ij], mid[jk], mid[positive ? ij : ki]});
+    if (element == none || shape_of(places_[element].kind).dimension != 3) return;
+    const std::optional<std::size_t> found = side_of(places_[element], side.number);
+    if (!found) return;
+    const CellKind kind = places_[element].kind;
+    const Index cell = places_[element].index;
+    const std::size_t place = *found;
+    const CellKind of_side =
+        shape_of(kind).sides[place].corners == 3 ? CellKind::triangle : CellKind::quadrangle;
+    const CellNodes nodes = nodes_of_side(kind, nodes_of(kind)(mesh_, cell), place);
+    add_cell(of_side, six_volume_of(mesh_, kind, cell) > 0 ? nodes : turned(of_side, nodes), mesh_);
+    tags_of(mesh_, of_side).push_back(tag);
   }
 
   const std::string& path_;

@@ -1,5 +1,7 @@
-// Abaqus' and CalculiX's input format (.inp): nodes, C3D4 or C3D10, an element set for each region of the
-// complex (VOLUME_1) and for each of their tags (REGION_7), a surface for each tag of patches (PATCH_7: faces
+// Abaqus' and CalculiX's input format (.inp): nodes, C3D4 or C3D10, of boundary layers C3D6 or
+// C3D15 and pyramids as C3D8 whose last four nodes are one
+// (of second order: abaqus_pyramids.h), an element set for each region of the complex
+// (VOLUME_1) and for each of their tags (REGION_7), a surface for each tag of patches (PATCH_7: faces
 // of the tets behind it), a node set for each tag of patches and curves (PATCH_7_NODES, CURVE_7_NODES).
 // Conditions for periodic faces are in a separate file beside it. EALL and NALL contain everything. Triangles
 // without tets are S3 or S6, or in the plane z = 0 CPS3, CPE6 and so on, with an element set for each tag of
@@ -19,6 +21,7 @@
 #include "io/abaqus_format.h"
 #include "io/abaqus_interfaces.h"
 #include "io/abaqus_periodic.h"
+#include "io/abaqus_pyramids.h"
 #include "io/cell_nodes.h"
 #include "io/label_names.h"
 #include "io/node_groups.h"
@@ -66,9 +69,11 @@ bool is_volume(std::string_view name) {
 Names names_of_regions(const TetMesh& mesh) {
   DistinctNames known(std::string::npos);
   known.add(capital_word(abaqus_everything));
-  for (const auto& each : numbered_tags(mesh.tet_tag))
+  known.add(capital_word(abaqus_halves));
+  const std::vector<Tag> tags = all_tags(mesh, 3);
+  for (const auto& each : numbered_tags(tags))
     if (const std::string name = capital_name(mesh, 3, each.first); is_volume(name)) known.add(name);
-  return names_of(mesh, 3, mesh.tet_tag, known);
+  return names_of(mesh, 3, tags, known);
 }
 
 void write_node_sets(FileWriter& out, const Groups& groups, const Names& names) {
@@ -78,29 +83,77 @@ void write_node_sets(FileWriter& out, const Groups& groups, const Names& names) 
   }
 }
 
-void write_nodes(FileWriter& out, const TetMesh& mesh) {
+void write_nodes(FileWriter& out, const TetMesh& mesh, const std::vector<Point>& more) {
   out << "*NODE, NSET=NALL\n";
-  write_each(out, mesh.points.size(), [&](TextBuffer& text, std::size_t i) {
-    const Point& p = mesh.points[i];
+  const std::size_t points = mesh.points.size();
+  write_each(out, points + more.size(), [&](TextBuffer& text, std::size_t i) {
+    const Point& p = i < points ? mesh.points[i] : more[i - points];
     text << i + 1 << ", " << fitted(p.x) << ", " << fitted(p.y) << ", " << fitted(p.z) << '\n';
   });
 }
 
-void write_elements(FileWriter& out, const TetMesh& mesh) {
-  std::map<Index, std::vector<Index>> volumes;
+const char* type_of(CellKind kind, int order) {
+  if (kind == CellKind::tet) return order == 2 ? "C3D10" : "C3D4";
+  if (kind == CellKind::prism) return order == 2 ? "C3D15" : "C3D6";
+  return "C3D8";
+}
+
+/// Writes the elements of one kind.
+void write_elements_of(FileWriter& out, const TetMesh& mesh, const HalvedPyramids& halved, CellKind kind,
+                       Index region, const std::vector<Index>& cells) {
+  if (cells.empty()) return;
+  const bool halves = kind == CellKind::pyramid && halved.any();
+  out << "*ELEMENT, TYPE=" << type_of(halves ? CellKind::tet : kind, mesh.order())
+      << ", ELSET=" << abaqus_volume_prefix << region << '\n';
+  const std::size_t before = count_before(mesh, kind);
+  const auto write = [](TextBuffer& text, std::size_t number, const auto& nodes) {
+    text << number;
+    for (const Index v : nodes) text << ", " << v + 1;
+    text << '\n';
+  };
+  write_each(out, cells.size(), [&](TextBuffer& text, std::size_t i) {
+    if (halves) {
+      for (std::size_t k = 0; k < 2; ++k)
+        write(text, before + 2 * std::size_t{cells[i]} + k + 1, halved.half(cells[i], k));
+      return;
+    }
+    const CellNodes nodes = nodes_of(kind)(mesh, cells[i]);
+    if (kind != CellKind::pyramid) {
+      write(text, before + cells[i] + 1, nodes);
+      return;
+    }
+    std::array<Index, abaqus_pyramid_order.size()> as_hexahedron{};
+    for (std::size_t k = 0; k < as_hexahedron.size(); ++k) as_hexahedron[k] = nodes[abaqus_pyramid_order[k]];
+    write(text, before + cells[i] + 1, as_hexahedron);
+  });
+}
+
+/// Writes the set of the halves of pyramids, and how the nodes amid their bases follow others.
+void write_halves(FileWriter& out, const TetMesh& mesh, const HalvedPyramids& halved) {
+  if (!halved.any()) return;
+  out << "*ELSET, ELSET=" << capital_word(abaqus_halves) << '\n';
+  std::vector<Index> numbers;
+  for (std::size_t i = 0; i < 2 * mesh.layers.pyramids.size(); ++i)
+    numbers.push_back(static_cast<Index>(count_before(mesh, CellKind::pyramid) + i + 1));
+  write_numbers(out, numbers);
+  halved.write_equations(out);
+}
+
+void write_elements(FileWriter& out, const TetMesh& mesh, const HalvedPyramids& halved) {
+  std::map<Index, std::array<std::vector<Index>, cell_kinds>> volumes;
+  std::map<Index, Tag> tag_of_region;
+  for_each_kind(mesh, 3, [&](CellKind kind) {
+    const std::vector<Index>& regions = features_of(mesh, kind);
+    for (std::size_t i = 0; i < regions.size(); ++i) {
+      volumes[regions[i]][static_cast<std::size_t>(kind)].push_back(static_cast<Index>(i));
+      tag_of_region.try_emplace(regions[i], tags_of(mesh, kind)[i]);
+    }
+  });
   std::map<Tag, std::vector<Index>> regions_of_tag;
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
-    volumes[mesh.tet_region[t]].push_back(static_cast<Index>(t));
-  for (const auto& [region, tets_of_region] : volumes) {
-    const std::vector<Index>& tets = tets_of_region;  // compilers differ in capturing a structured binding
-    regions_of_tag[mesh.tet_tag[tets.front()]].push_back(region);
-    out << "*ELEMENT, TYPE=" << (mesh.order() == 2 ? "C3D10" : "C3D4") << ", ELSET=" << abaqus_volume_prefix
-        << region << '\n';
-    write_each(out, tets.size(), [&](TextBuffer& text, std::size_t i) {
-      text << tets[i] + 1;
-      for (const Index v : nodes_of_tet(mesh, tets[i])) text << ", " << v + 1;
-      text << '\n';
-    });
+  for (const auto& [region, cells] : volumes) {
+    regions_of_tag[tag_of_region.at(region)].push_back(region);
+    for (const CellKind kind : all_cell_kinds)
+      write_elements_of(out, mesh, halved, kind, region, cells[static_cast<std::size_t>(kind)]);
   }
   out << "*ELSET, ELSET=EALL\n";
   for (const auto& volume : volumes) out << abaqus_volume_prefix << volume.first << ",\n";
@@ -175,15 +228,23 @@ void write_beams(FileWriter& out, const TetMesh& mesh, const Names& names) {
 }
 
 /// Writes for each face the element behind it, and that element's side.
-void write_surfaces(FileWriter& out, const TetMesh& mesh, const Names& names) {
-  std::map<Tag, std::vector<SideOfTet>> surfaces;
-  const std::vector<SideOfTet> sides = sides_of_faces(mesh);
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f)
-    if (sides[f].tet != none) surfaces[mesh.face_tag[f]].push_back(sides[f]);
+void write_surfaces(FileWriter& out, const TetMesh& mesh, const HalvedPyramids& halved, const Names& names) {
+  std::map<Tag, std::vector<SideOfCell>> surfaces;
+  for_each_kind(mesh, 2, [&](CellKind kind) {
+    const std::vector<SideOfCell> sides = sides_of_faces(mesh, kind);
+    for (std::size_t f = 0; f < sides.size(); ++f)
+      if (sides[f].cell != none) surfaces[tags_of(mesh, kind)[f]].push_back(sides[f]);
+  });
   for (const auto& [tag, members] : surfaces) {
     out << "*SURFACE, NAME=" << names.at(tag) << ", TYPE=ELEMENT\n";
-    for (const SideOfTet& side : members)
-      out << side.tet + 1 << ", S" << abaqus_face_opposite[side.opposite] << '\n';
+    for (const auto& [kind, cell, side] : members) {
+      const std::size_t before = count_before(mesh, kind);
+      if (kind == CellKind::pyramid && halved.any())
+        for (const auto& [half, number] : halved.sides(cell, side))
+          out << before + 2 * std::size_t{cell} + half + 1 << ", S" << number << '\n';
+      else
+        out << before + cell + 1 << ", S" << abaqus_faces(kind)[side] << '\n';
+    }
   }
 }
 
@@ -196,22 +257,24 @@ void write_abaqus(const std::string& path, const TetMesh& mesh, const Interfaces
   if (mesh.is_surface() && mesh.triangle_elements != TriangleElements::shell) require_plane(path, mesh);
   FileWriter out(path);
   out << "*HEADING\nWritten by collarmesh.\n";
-  write_nodes(out, mesh);
+  const HalvedPyramids halved(mesh);
+  write_nodes(out, mesh, halved.nodes());
   DistinctNames known(std::string::npos);
   if (without_tets)
     known.add(capital_word(abaqus_everything));
   else
-    write_elements(out, mesh);
-  const Names patches = names_of(mesh, 2, mesh.face_tag, known),
+    write_elements(out, mesh, halved);
+  const Names patches = names_of(mesh, 2, all_tags(mesh, 2), known),
               curves = names_of(mesh, 1, mesh.edge_tag, known);
   if (mesh.is_curves())
     write_beams(out, mesh, curves);
   else if (mesh.is_surface())
     write_triangles(out, mesh, patches);
   else
-    write_surfaces(out, mesh, patches);
-  write_node_sets(out, nodes_by_tag(mesh, nodes_of_face, mesh.face_tag), patches);
-  write_node_sets(out, nodes_by_tag(mesh, nodes_of_edge, mesh.edge_tag), curves);
+    write_surfaces(out, mesh, halved, patches);
+  write_node_sets(out, nodes_by_tag(mesh, 2), patches);
+  write_node_sets(out, nodes_by_tag(mesh, 1), curves);
+  write_halves(out, mesh, halved);
   write_abaqus_interfaces(out, mesh, interfaces, patches);
   out.commit();
   if (!mesh.periodic.empty()) write_abaqus_periodic(abaqus_periodic_path(path), mesh);

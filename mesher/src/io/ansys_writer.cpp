@@ -1,10 +1,14 @@
 // Ansys' archive format (.cdb; Mechanical APDL, "Guide to Interfacing with ANSYS", NBLOCK, EBLOCK and
-// CMBLOCK): nodes, SOLID285 or SOLID187 with the region as material, a component of elements for each tag of
+// CMBLOCK): nodes, SOLID285 or SOLID187, for prisms and pyramids SOLID185 or SOLID186, with the
+// region as material, a component of elements for each tag of
 // regions and of nodes for each tag of patches and curves.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -39,20 +43,37 @@ void write_nodes(FileWriter& out, const TetMesh& mesh) {
   out << "N,R5.3,LOC,       -1,\n";
 }
 
+/// Elements of a kind of cells: Ansys has prisms and pyramids as hexahedra of which nodes are one.
+struct AnsysType {
+  CellKind kind;
+  int number;                           ///< by ET
+  std::array<std::size_t, 2> nodes;     ///< by order
+  std::array<std::uint8_t, 20> places;  ///< our node at each place
+};
+constexpr std::array<AnsysType, 3> ansys_types{
+    {{CellKind::tet, 1, {4, 10}, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}},
+     {CellKind::prism, 2, {8, 20}, {0, 1, 2, 2, 3, 4, 5, 5, 6, 7, 2, 8, 9, 10, 5, 11, 12, 13, 14, 14}},
+     {CellKind::pyramid, 2, {8, 20}, {0, 1, 2, 3, 4, 4, 4, 4, 5, 6, 7, 8, 4, 4, 4, 4, 9, 10, 11, 12}}}};
+
 /// Writes elements: material, type, further fields that are 1 or 0, the number of nodes, 0, the number of the
 /// element, the nodes.
 void write_elements(FileWriter& out, const TetMesh& mesh) {
-  out << fmt::format("EBLOCK,19,SOLID,{0:10},{0:10}\n(19i9)\n", mesh.tets.size());
-  write_each(out, mesh.tets.size(), [&](TextBuffer& text, std::size_t i) {
-    const CellNodes nodes = nodes_of_tet(mesh, i);
-    std::string line = fmt::format("{:9}{:9}{:9}{:9}{:9}{:9}{:9}{:9}{:9}{:9}{:9}", mesh.tet_region[i], 1, 1,
-                                   1, 0, 0, 0, 0, nodes.size(), 0, i + 1);
-    for (std::size_t k = 0; k < nodes.size(); ++k) {
-      if (k == nodes_on_line) line += '\n';
-      line += fmt::format("{:9}", nodes[k] + 1);
-    }
-    text << std::string_view(line) << '\n';
-  });
+  out << fmt::format("EBLOCK,19,SOLID,{0:10},{0:10}\n(19i9)\n", count_of_dimension(mesh, 3));
+  for (const AnsysType& type : ansys_types) {
+    const std::span order(type.places.data(), type.nodes[mesh.order() == 2 ? 1 : 0]);
+    const std::size_t before = count_before(mesh, type.kind);
+    write_each(out, count_of(mesh, type.kind), [&](TextBuffer& text, std::size_t i) {
+      const CellNodes nodes = nodes_of(type.kind)(mesh, i);
+      std::string line =
+          fmt::format("{:9}{:9}{:9}{:9}{:9}{:9}{:9}{:9}{:9}{:9}{:9}", features_of(mesh, type.kind)[i],
+                      type.number, 1, 1, 0, 0, 0, 0, order.size(), 0, before + i + 1);
+      for (std::size_t k = 0; k < order.size(); ++k) {
+        if (k == nodes_on_line) line += '\n';
+        line += fmt::format("{:9}", nodes[order[k]] + 1);
+      }
+      text << std::string_view(line) << '\n';
+    });
+  }
   out << "       -1\n";
 }
 
@@ -79,15 +100,20 @@ void write_components(FileWriter& out, const TetMesh& mesh, std::size_t dimensio
 void write_ansys(const std::string& path, const TetMesh& mesh) {
   FileWriter out(path);
   out << "/COM,Written by collarmesh.\n/PREP7\nET,1," << (mesh.order() == 2 ? 187 : 285) << '\n';
+  if (!mesh.layers.prisms.empty() || !mesh.layers.pyramids.empty())
+    out << "ET,2," << (mesh.order() == 2 ? 186 : 185) << '\n';
   write_nodes(out, mesh);
   write_elements(out, mesh);
   DistinctNames known(longest_name);
   Groups regions;
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
-    regions[mesh.tet_tag[t]].push_back(static_cast<Index>(t + 1));
+  for_each_kind(mesh, 3, [&](CellKind kind) {
+    const std::vector<Tag>& tags = tags_of(mesh, kind);
+    for (std::size_t i = 0; i < tags.size(); ++i)
+      regions[tags[i]].push_back(static_cast<Index>(count_before(mesh, kind) + i + 1));
+  });
   write_components(out, mesh, 3, regions, known);
-  write_components(out, mesh, 2, nodes_by_tag(mesh, nodes_of_face, mesh.face_tag), known);
-  write_components(out, mesh, 1, nodes_by_tag(mesh, nodes_of_edge, mesh.edge_tag), known);
+  write_components(out, mesh, 2, nodes_by_tag(mesh, 2), known);
+  write_components(out, mesh, 1, nodes_by_tag(mesh, 1), known);
   out << "FINISH\n";
   out.commit();
 }

@@ -1,15 +1,19 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <vector>
 
 #include "collarmesh/tet_mesh.h"
+#include "common/cell_shapes.h"
 
 namespace collarmesh::io {
 
-/// The nodes of a cell of either order: its corners, then its mid-edge nodes in the order of TetMesh (ab, bc,
-/// ca, ad, bd, cd). VTK, Abaqus and Medit number them in the same way.
+/// The nodes of a cell of either order: its corners, then its mid-edge nodes in the order of TetMesh and
+/// LayerCells (of a tet ab, bc, ca, ad, bd, cd). VTK, Abaqus and Medit number those of tets in the same way.
 class CellNodes {
  public:
   template <std::size_t corners, std::size_t mid_nodes>
@@ -23,11 +27,29 @@ class CellNodes {
   }
 
   void add(Index node) { nodes_[count_++] = node; }
-  /// Returns a cell whose k-th node is this one's node order[k]; unchanged in first order.
+  /// Returns a cell whose k-th node is this one's node order[k]; unchanged if the order is of other cells.
   CellNodes in_order(std::span<const std::uint8_t> order) const {
     if (order.size() != count_) return *this;
     CellNodes result;
     for (const std::uint8_t k : order) result.add(nodes_[k]);
+    return result;
+  }
+  /// Returns the cell whose node order[k] is this one's k-th node; unchanged if the order is of other cells.
+  CellNodes from_order(std::span<const std::uint8_t> order) const {
+    if (order.size() != count_) return *this;
+    CellNodes result = *this;
+    for (std::size_t k = 0; k < count_; ++k) result.nodes_[order[k]] = nodes_[k];
+    return result;
+  }
+  /// Returns the cell whose node order[k] is listed[k]. The order may name a node several times, as that of a
+  /// pyramid does that a format has as a hexahedron; nothing if those differ.
+  static std::optional<CellNodes> gathered(std::span<const Index> listed,
+                                           std::span<const std::uint8_t> order) {
+    CellNodes result;
+    for (const std::uint8_t k : order) result.count_ = std::max<std::uint8_t>(result.count_, k + 1);
+    for (std::size_t k = 0; k < order.size(); ++k) result.nodes_[order[k]] = listed[k];
+    for (std::size_t k = 0; k < order.size(); ++k)
+      if (result.nodes_[order[k]] != listed[k]) return std::nullopt;
     return result;
   }
 
@@ -37,8 +59,8 @@ class CellNodes {
   Index operator[](std::size_t k) const { return nodes_[k]; }
 
  private:
-  std::array<Index, 10> nodes_{};
-  std::size_t count_ = 0;
+  std::array<Index, most_nodes_of_cell> nodes_{};
+  std::uint8_t count_ = 0;
 };
 
 inline CellNodes nodes_of_tet(const TetMesh& mesh, std::size_t i) {
@@ -53,19 +75,163 @@ inline CellNodes nodes_of_edge(const TetMesh& mesh, std::size_t i) {
   if (mesh.order() == 2) result.add(mesh.edge_mid_nodes[i]);
   return result;
 }
+inline CellNodes nodes_of_prism(const TetMesh& mesh, std::size_t i) {
+  return CellNodes::of(mesh.layers.prisms[i], mesh.layers.prism_mid_nodes, i);
+}
+inline CellNodes nodes_of_pyramid(const TetMesh& mesh, std::size_t i) {
+  return CellNodes::of(mesh.layers.pyramids[i], mesh.layers.pyramid_mid_nodes, i);
+}
+inline CellNodes nodes_of_quadrangle(const TetMesh& mesh, std::size_t i) {
+  return CellNodes::of(mesh.layers.quads[i], mesh.layers.quad_mid_nodes, i);
+}
 
-/// Adds a cell of either order to a mesh that is being read.
-inline void add_tet(const CellNodes& n, TetMesh& mesh) {
-  mesh.tets.push_back({n[0], n[1], n[2], n[3]});
-  if (n.size() == 10) mesh.tet_mid_nodes.push_back({n[4], n[5], n[6], n[7], n[8], n[9]});
+// The arrays of a mesh by the kind of cells. A format's writer and reader go over the kinds.
+
+inline std::size_t count_of(const TetMesh& mesh, CellKind kind) {
+  switch (kind) {
+    case CellKind::tet: return mesh.tets.size();
+    case CellKind::prism: return mesh.layers.prisms.size();
+    case CellKind::pyramid: return mesh.layers.pyramids.size();
+    case CellKind::triangle: return mesh.faces.size();
+    case CellKind::quadrangle: return mesh.layers.quads.size();
+    default: return mesh.edges.size();
+  }
 }
-inline void add_face(const CellNodes& n, TetMesh& mesh) {
-  mesh.faces.push_back({n[0], n[1], n[2]});
-  if (n.size() == 6) mesh.face_mid_nodes.push_back({n[3], n[4], n[5]});
+
+using NodesOf = CellNodes (*)(const TetMesh&, std::size_t);
+constexpr NodesOf nodes_of(CellKind kind) {
+  constexpr std::array<NodesOf, cell_kinds> of_kind{nodes_of_tet,  nodes_of_prism,      nodes_of_pyramid,
+                                                    nodes_of_face, nodes_of_quadrangle, nodes_of_edge};
+  return of_kind[static_cast<std::size_t>(kind)];
 }
+
+/// Returns the tags of the cells of a kind; of a const mesh const ones, as in the following functions.
+template <class Mesh>
+auto& tags_of(Mesh& mesh, CellKind kind) {
+  switch (kind) {
+    case CellKind::tet: return mesh.tet_tag;
+    case CellKind::prism: return mesh.layers.prism_tag;
+    case CellKind::pyramid: return mesh.layers.pyramid_tag;
+    case CellKind::triangle: return mesh.face_tag;
+    case CellKind::quadrangle: return mesh.layers.quad_tag;
+    default: return mesh.edge_tag;
+  }
+}
+/// Returns the regions of the cells of volumes, the patches of triangles and quadrangles, the curves of
+/// edges.
+template <class Mesh>
+auto& features_of(Mesh& mesh, CellKind kind) {
+  switch (kind) {
+    case CellKind::tet: return mesh.tet_region;
+    case CellKind::prism: return mesh.layers.prism_region;
+    case CellKind::pyramid: return mesh.layers.pyramid_region;
+    case CellKind::triangle: return mesh.face_patch;
+    case CellKind::quadrangle: return mesh.layers.quad_patch;
+    default: return mesh.edge_curve;
+  }
+}
+/// Returns the regions behind and in front of triangles or quadrangles.
+template <class Mesh>
+auto& regions_beside(Mesh& mesh, CellKind kind) {
+  return kind == CellKind::quadrangle ? mesh.layers.quad_regions : mesh.face_regions;
+}
+/// Returns the numbers of the layers of cells of volumes; those of tets may be missing.
+template <class Mesh>
+auto& layers_of(Mesh& mesh, CellKind kind) {
+  switch (kind) {
+    case CellKind::prism: return mesh.layers.prism_layer;
+    case CellKind::pyramid: return mesh.layers.pyramid_layer;
+    default: return mesh.layers.tet_layer;
+  }
+}
+
+/// Numbers of layers that are read must be below this.
+constexpr std::int64_t most_layers = 0x10000;
+
+/// Returns the number of a cell's layer, 0 for a cell of none.
+inline std::uint16_t layer_of(const TetMesh& mesh, CellKind kind, std::size_t i) {
+  if (shape_of(kind).dimension < 3) return 0;
+  const std::vector<std::uint16_t>& layers = layers_of(mesh, kind);
+  return layers.empty() ? 0 : layers[i];
+}
+
+/// Our node at each place of a prism in formats that list the mid-edge nodes between the triangles before
+/// those of the second triangle: CGNS, Exodus and Nastran.
+inline constexpr std::array<std::uint8_t, 15> prism_between_before_top{0, 1,  2,  3,  4, 5,  6, 7,
+                                                                       8, 12, 13, 14, 9, 10, 11};
+inline CellNodes with_between_before_top(CellKind kind, const CellNodes& nodes) {
+  return kind == CellKind::prism ? nodes.in_order(prism_between_before_top) : nodes;
+}
+
+/// Calls `call(kind)` for each kind of cells of a dimension that the mesh has.
+template <class Call>
+void for_each_kind(const TetMesh& mesh, std::size_t dimension, const Call& call) {
+  for (const CellKind kind : all_cell_kinds)
+    if (shape_of(kind).dimension == dimension && count_of(mesh, kind) > 0) call(kind);
+}
+
+/// Returns the number of cells of a dimension.
+inline std::size_t count_of_dimension(const TetMesh& mesh, std::size_t dimension) {
+  std::size_t count = 0;
+  for_each_kind(mesh, dimension, [&](CellKind kind) { count += count_of(mesh, kind); });
+  return count;
+}
+/// Returns the tags of all cells of a dimension, in the order of the kinds.
+inline std::vector<Tag> all_tags(const TetMesh& mesh, std::size_t dimension) {
+  std::vector<Tag> tags;
+  for_each_kind(mesh, dimension, [&](CellKind kind) {
+    tags.insert(tags.end(), tags_of(mesh, kind).begin(), tags_of(mesh, kind).end());
+  });
+  return tags;
+}
+/// Returns the number of cells of the kinds before this one.
+inline std::size_t count_before(const TetMesh& mesh, CellKind kind) {
+  std::size_t count = 0;
+  for (const CellKind before : all_cell_kinds) {
+    if (before == kind) break;
+    count += count_of(mesh, before);
+  }
+  return count;
+}
+
+/// Appends the nodes of a cell of either order to a mesh that is being read.
+template <std::size_t corners, std::size_t mid_nodes>
+void add_nodes(const CellNodes& nodes, std::vector<std::array<Index, corners>>& cells,
+               std::vector<std::array<Index, mid_nodes>>& middle) {
+  auto& cell = cells.emplace_back();
+  for (std::size_t k = 0; k < corners; ++k) cell[k] = nodes[k];
+  if (nodes.size() == corners) return;
+  auto& mids = middle.emplace_back();
+  for (std::size_t k = 0; k < mid_nodes; ++k) mids[k] = nodes[corners + k];
+}
+inline void add_tet(const CellNodes& n, TetMesh& mesh) { add_nodes(n, mesh.tets, mesh.tet_mid_nodes); }
+inline void add_face(const CellNodes& n, TetMesh& mesh) { add_nodes(n, mesh.faces, mesh.face_mid_nodes); }
 inline void add_edge(const CellNodes& n, TetMesh& mesh) {
   mesh.edges.push_back({n[0], n[1]});
   if (n.size() == 3) mesh.edge_mid_nodes.push_back(n[2]);
+}
+inline void add_cell(CellKind kind, const CellNodes& nodes, TetMesh& mesh) {
+  LayerCells& layers = mesh.layers;
+  switch (kind) {
+    case CellKind::tet: add_tet(nodes, mesh); break;
+    case CellKind::prism: add_nodes(nodes, layers.prisms, layers.prism_mid_nodes); break;
+    case CellKind::pyramid: add_nodes(nodes, layers.pyramids, layers.pyramid_mid_nodes); break;
+    case CellKind::triangle: add_face(nodes, mesh); break;
+    case CellKind::quadrangle: add_nodes(nodes, layers.quads, layers.quad_mid_nodes); break;
+    default: add_edge(nodes, mesh);
+  }
+}
+
+/// The nodes of a side of a cell, counterclockwise as seen from outside, mid-edge nodes after the corners.
+inline CellNodes nodes_of_side(CellKind kind, const CellNodes& cell, std::size_t side) {
+  const CellShape shape = shape_of(kind);
+  const auto& [corners, places] = shape.sides[side];
+  CellNodes result;
+  for (std::size_t k = 0; k < corners; ++k) result.add(cell[places[k]]);
+  if (cell.size() == shape.corners) return result;
+  for (std::size_t k = 0; k < corners; ++k)
+    result.add(cell[mid_node_place(shape, places[k], places[(k + 1) % corners])]);
+  return result;
 }
 
 }  // namespace collarmesh::io

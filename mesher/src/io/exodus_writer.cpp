@@ -1,5 +1,6 @@
 // Exodus II (Sandia, "EXODUS II: A Finite Element Data Model", SAND92-2137, and the names of seacas'
-// exodusII_int.h) in NetCDF's classic format: a block of elements for each region, a side set for each tag of
+// exodusII_int.h) in NetCDF's classic format: a block of elements for each region and kind of cells, a
+// side set for each tag of
 // patches and a node set for each tag of curves, with their names.
 #include <fmt/format.h>
 
@@ -23,12 +24,26 @@ namespace {
 
 constexpr std::size_t longest_name = 255, usual_name = 32;
 
-/// Exodus' numbers of the sides of a tetrahedron, by the opposite corner.
-constexpr std::array<std::int32_t, 4> side_opposite{2, 3, 1, 4};
+/// Exodus' names of a kind of cells, and numbers of the sides, by our side.
+struct ExodusType {
+  CellKind kind;
+  std::array<const char*, 2> names;  ///< by order
+  std::array<std::int32_t, 5> sides;
+};
+constexpr std::array<ExodusType, 3> exodus_types{
+    {{CellKind::tet, {"TETRA4", "TETRA10"}, {2, 3, 1, 4, 0}},
+     {CellKind::prism, {"WEDGE6", "WEDGE15"}, {4, 5, 1, 2, 3}},
+     {CellKind::pyramid, {"PYRAMID5", "PYRAMID13"}, {5, 1, 2, 3, 4}}}};
 
+const ExodusType& type_of(CellKind kind) { return exodus_types[static_cast<std::size_t>(kind)]; }
+
+/// The cells of a kind in a region.
 struct Block {
+  CellKind kind = CellKind::tet;
+  Index region = 0;
+  std::size_t id = 0;
   Tag tag = 0;
-  std::vector<Index> tets;
+  std::vector<Index> cells;
 };
 
 /// Returns whether the tag can be the value of a property.
@@ -39,20 +54,13 @@ bool fits(Tag tag) {
 class ExodusFile {
  public:
   ExodusFile(const std::string& path, const TetMesh& mesh) : mesh_(mesh), out_(path) {
-    for (Index t = 0; t < mesh.tets.size(); ++t) {
-      Block& block = blocks_[mesh.tet_region[t]];
-      block.tag = mesh.tet_tag[t];
-      block.tets.push_back(t);
-    }
-    tags_fit_ = std::all_of(mesh.tet_tag.begin(), mesh.tet_tag.end(), fits);
-    number_in_file_.resize(mesh.tets.size());
-    std::int32_t number = 0;
-    for (const auto& [region, block] : blocks_)
-      for (const Index t : block.tets) number_in_file_[t] = ++number;
-    const std::vector<SideOfTet> found = sides_of_faces(mesh);
-    for (Index f = 0; f < found.size(); ++f)
-      if (found[f].tet != none) side_sets_[mesh.face_tag[f]].push_back(found[f]);
-    node_sets_ = nodes_by_tag(mesh, nodes_of_edge, mesh.edge_tag);
+    make_blocks();
+    for_each_kind(mesh, 2, [&](CellKind kind) {
+      const std::vector<SideOfCell> found = sides_of_faces(mesh, kind);
+      for (Index f = 0; f < found.size(); ++f)
+        if (found[f].cell != none) side_sets_[tags_of(mesh, kind)[f]].push_back(found[f]);
+    });
+    node_sets_ = nodes_by_tag(mesh, 1);
     name_all();
   }
 
@@ -62,8 +70,10 @@ class ExodusFile {
     write_blocks();
     write_sets(side_sets_, side_numbers_, side_names_);
     for (const auto& [tag, members] : side_sets_) {
-      write_wholes(members, [&](const SideOfTet& each) { return number_in_file_[each.tet]; });
-      write_wholes(members, [](const SideOfTet& each) { return side_opposite[each.opposite]; });
+      write_wholes(members, [&](const SideOfCell& each) {
+        return number_in_file_[static_cast<std::size_t>(each.kind)][each.cell];
+      });
+      write_wholes(members, [](const SideOfCell& each) { return type_of(each.kind).sides[each.side]; });
     }
     write_sets(node_sets_, node_numbers_, node_names_);
     for (const auto& [tag, members] : node_sets_) write_wholes(members, [](Index node) { return node; });
@@ -73,17 +83,42 @@ class ExodusFile {
   }
 
  private:
+  /// Makes a block for each region and kind of cells. The first one of a region has the region's number,
+  /// others have numbers above.
+  void make_blocks() {
+    std::map<std::pair<Index, CellKind>, Block> blocks;
+    for_each_kind(mesh_, 3, [&](CellKind kind) {
+      number_in_file_[static_cast<std::size_t>(kind)].resize(count_of(mesh_, kind));
+      for (Index i = 0; i < count_of(mesh_, kind); ++i) {
+        const Index region = features_of(mesh_, kind)[i];
+        Block& block = blocks[{region, kind}];
+        block.kind = kind;
+        block.region = region;
+        block.tag = tags_of(mesh_, kind)[i];
+        tags_fit_ = tags_fit_ && fits(block.tag);
+        block.cells.push_back(i);
+      }
+    });
+    std::size_t last = blocks.empty() ? 0 : blocks.rbegin()->first.first;
+    std::int32_t number = 0;
+    for (auto& [key, block] : blocks) {
+      const bool first = blocks_.empty() || blocks_.back().region != block.region;
+      block.id = first ? block.region : ++last;
+      for (const Index i : block.cells) number_in_file_[static_cast<std::size_t>(block.kind)][i] = ++number;
+      blocks_.push_back(std::move(block));
+    }
+  }
+
   void name_all() {
     DistinctNames blocks(longest_name), side_sets(longest_name), node_sets(longest_name);
-    for (const auto& [region, block] : blocks_)
-      block_names_.push_back(blocks.add(group_name(mesh_, 3, block.tag)));
+    for (const Block& block : blocks_) block_names_.push_back(blocks.add(group_name(mesh_, 3, block.tag)));
     for (const auto& [tag, members] : side_sets_)
       side_names_.push_back(side_sets.add(group_name(mesh_, 2, tag)));
     for (const auto& [tag, members] : node_sets_)
       node_names_.push_back(node_sets.add(group_name(mesh_, 1, tag)));
     for (const auto* names : {&block_names_, &side_names_, &node_names_})
       for (const std::string& name : *names) name_length_ = std::max(name_length_, name.size());
-    side_numbers_ = positive_numbers(mesh_.face_tag);
+    side_numbers_ = positive_numbers(all_tags(mesh_, 2));
     node_numbers_ = positive_numbers(mesh_.edge_tag);
   }
 
@@ -102,7 +137,7 @@ class ExodusFile {
     const std::size_t time = out_.add_unlimited_dimension("time_step");
     axes_ = out_.add_dimension("num_dim", 3);
     nodes_ = out_.add_dimension("num_nodes", mesh_.points.size());
-    out_.add_dimension("num_elem", mesh_.tets.size());
+    out_.add_dimension("num_elem", count_of_dimension(mesh_, 3));
     out_.add_real("time_whole", {time});
     const std::size_t count = out_.add_dimension("num_el_blk", blocks_.size());
     out_.add_whole("eb_status", {count});
@@ -137,12 +172,13 @@ class ExodusFile {
 
   void describe_cells() {
     std::size_t k = 0;
-    for (const auto& [region, block] : blocks_) {
-      const std::size_t length = out_.add_dimension(fmt::format("num_el_in_blk{}", ++k), block.tets.size()),
+    for (const Block& block : blocks_) {
+      const std::size_t length = out_.add_dimension(fmt::format("num_el_in_blk{}", ++k), block.cells.size()),
                         nodes = out_.add_dimension(fmt::format("num_nod_per_el{}", k),
-                                                   mesh_.order() == 2 ? 10 : 4);
-      out_.add_whole(fmt::format("connect{}", k), {length, nodes},
-                     {NetcdfWriter::text("elem_type", mesh_.order() == 2 ? "TETRA10" : "TETRA4")});
+                                                   shape_of(block.kind).nodes(mesh_.order()));
+      out_.add_whole(
+          fmt::format("connect{}", k), {length, nodes},
+          {NetcdfWriter::text("elem_type", type_of(block.kind).names[mesh_.order() == 2 ? 1 : 0])});
     }
   }
 
@@ -158,9 +194,9 @@ class ExodusFile {
   }
 
   void write_blocks() {
-    write_wholes(blocks_, [](const auto&) { return 1; });
-    write_wholes(blocks_, [](const auto& each) { return each.first; });
-    if (tags_fit_) write_wholes(blocks_, [](const auto& each) { return each.second.tag; });
+    write_wholes(blocks_, [](const Block&) { return 1; });
+    write_wholes(blocks_, [](const Block& each) { return each.id; });
+    if (tags_fit_) write_wholes(blocks_, [](const Block& each) { return each.tag; });
     write_names(block_names_);
   }
 
@@ -182,19 +218,20 @@ class ExodusFile {
   }
 
   void write_cells() {
-    for (const auto& [region, block] : blocks_) {
-      for (const Index t : block.tets)
-        for (const Index node : nodes_of_tet(mesh_, t)) out_.write(static_cast<std::int32_t>(node + 1));
+    for (const Block& block : blocks_) {
+      for (const Index i : block.cells)
+        for (const Index node : with_between_before_top(block.kind, nodes_of(block.kind)(mesh_, i)))
+          out_.write(static_cast<std::int32_t>(node + 1));
       out_.end_variable();
     }
   }
 
   const TetMesh& mesh_;
   NetcdfWriter out_;
-  std::map<Index, Block> blocks_;
+  std::vector<Block> blocks_;
   bool tags_fit_ = true;
-  std::vector<std::int32_t> number_in_file_;  // number of each tet, block by block
-  std::map<Tag, std::vector<SideOfTet>> side_sets_;
+  std::array<std::vector<std::int32_t>, cell_kinds> number_in_file_;  // of each cell, block by block
+  std::map<Tag, std::vector<SideOfCell>> side_sets_;
   Groups node_sets_;
   std::map<Tag, std::size_t> side_numbers_, node_numbers_;
   std::vector<std::string> block_names_, side_names_, node_names_;

@@ -10,43 +10,45 @@
 
 namespace collarmesh::io {
 
-/// Finds the faces of a mesh by their corners in any order. Cost: constant per face, expected.
-class FaceFinder {
+/// Finds triangles or quadrangles of a mesh by their corners in any order. Cost: constant per face, expected.
+template <std::size_t n>
+class PolygonFinder {
  public:
-  using Triangle = std::array<Index, 3>;
+  using Polygon = std::array<Index, n>;
 
-  explicit FaceFinder(const std::vector<Triangle>& faces) : slots_(64, none) {
+  explicit PolygonFinder(const std::vector<Polygon>& faces) : slots_(64, none) {
     while (slots_.size() < 2 * faces.size()) slots_.resize(2 * slots_.size(), none);
-    for (const Triangle& face : faces) {
+    for (const Polygon& face : faces) {
       keys_.push_back(sorted(face));
       slot(keys_.back()) = static_cast<Index>(keys_.size() - 1);
     }
   }
 
   /// Returns the last face with these corners; none if there is no such face.
-  Index find(const Triangle& corners) { return slot(sorted(corners)); }
+  Index find(const Polygon& corners) { return slot(sorted(corners)); }
 
-  /// Returns whether two triangles with the same corners have the same orientation.
-  static bool alike(const Triangle& a, const Triangle& b) {
+  /// Returns whether two polygons with the same corners have the same orientation.
+  static bool alike(const Polygon& a, const Polygon& b) {
     const auto at = static_cast<std::size_t>(std::find(b.begin(), b.end(), a[0]) - b.begin());
-    return b[(at + 1) % 3] == a[1];
+    return b[(at + 1) % n] == a[1];
   }
 
  private:
-  static Triangle sorted(Triangle t) {
+  static Polygon sorted(Polygon t) {
     std::sort(t.begin(), t.end());
     return t;
   }
-  Index& slot(const Triangle& key) {
+  Index& slot(const Polygon& key) {
     std::uint64_t h = key[0];
-    h = (h * 0x9e3779b97f4a7c15ULL) ^ key[1];
-    h = (h * 0x9e3779b97f4a7c15ULL) ^ key[2];
+    for (std::size_t k = 1; k < n; ++k) h = (h * 0x9e3779b97f4a7c15ULL) ^ key[k];
     h *= 0x9e3779b97f4a7c15ULL;
     return find_slot(slots_, h ^ (h >> 31), [&](Index face) { return keys_[face] == key; });
   }
 
-  std::vector<Triangle> keys_;
+  std::vector<Polygon> keys_;
   std::vector<Index> slots_;
 };
+
+using FaceFinder = PolygonFinder<3>;
 
 }  // namespace collarmesh::io

@@ -2,9 +2,24 @@
 
 #include <string_view>
 
+#include "common/cell_shapes.h"
+
 namespace collarmesh::io {
 
 /// The first line of our own files, in which the reference of a tet is the index of its region.
 constexpr std::string_view medit_signature = "# Written by collarmesh.\n";
+
+/// The keyword of a kind of cells of first order. Those of second order have P2 behind it, except that P2 of
+/// prisms and pyramids, and Q2 of quadrilaterals, have nodes on their faces, too.
+constexpr std::string_view medit_keyword(CellKind kind) {
+  switch (kind) {
+    case CellKind::tet: return "Tetrahedra";
+    case CellKind::prism: return "Prisms";
+    case CellKind::pyramid: return "Pyramids";
+    case CellKind::triangle: return "Triangles";
+    case CellKind::quadrangle: return "Quadrilaterals";
+    default: return "Edges";
+  }
+}
 
 }  // namespace collarmesh::io

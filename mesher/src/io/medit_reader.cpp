@@ -1,5 +1,5 @@
-// Reads Medit's text format: vertices, tetrahedra, triangles and edges with their references; skips other
-// keywords.
+// Reads Medit's text format: vertices, tetrahedra, prisms, pyramids, triangles, quadrilaterals and edges with
+// their references; skips other keywords.
 #include <fmt/format.h>
 
 #include <string_view>
@@ -34,23 +34,38 @@ void read_vertices(TextScanner& scan, TetMesh& mesh) {
   }
 }
 
-/// Reads cells of this many nodes, which `add` puts into the mesh.
-template <class Add>
-void read_cells(TextScanner& scan, std::string_view what, std::size_t node_count, Add add,
-                std::vector<Tag>& references, TetMesh& mesh) {
-  const Index n = scan.count(fmt::format("the number of {}", what), 2 * (node_count + 1));
-  references.reserve(references.size() + n);
+/// Reads the cells of a kind with their references.
+void read_cells(TextScanner& scan, CellKind kind, int order, TetMesh& mesh) {
+  const std::size_t node_count = shape_of(kind).nodes(order);
+  const Index n = scan.count(fmt::format("the number of {}", medit_keyword(kind)), 2 * (node_count + 1));
   for (Index i = 0; i < n; ++i) {
     CellNodes nodes;
     for (std::size_t k = 0; k < node_count; ++k) nodes.add(scan.index("a corner", 1, mesh.points.size()));
-    add(nodes, mesh);
-    references.push_back(scan.integer("a reference"));
+    add_cell(kind, nodes, mesh);
+    tags_of(mesh, kind).push_back(scan.integer("a reference"));
   }
+}
+
+/// Reads cells if the keyword is of a kind that is supported. Returns whether it is.
+bool read_cells(TextScanner& scan, std::string_view keyword, TetMesh& mesh) {
+  for (const CellKind kind : all_cell_kinds) {
+    const bool simplex = kind == CellKind::tet || kind == CellKind::triangle || kind == CellKind::edge;
+    for (const int order : {1, 2}) {
+      if (order == 2 && !simplex) continue;
+      if (keyword != fmt::format("{}{}", medit_keyword(kind), order == 2 ? "P2" : "")) continue;
+      read_cells(scan, kind, order, mesh);
+      return true;
+    }
+  }
+  return false;
 }
 
 void refuse_cells(TextScanner& scan, std::string_view keyword) {
   if (scan.count("the number of cells", 2) > 0)
-    scan.fail(fmt::format("{} are not supported, only tetrahedra and their triangles and edges", keyword));
+    scan.fail(
+        fmt::format("{} are not supported, only tetrahedra, prisms and pyramids, their triangles, "
+                    "quadrilaterals and edges",
+                    keyword));
 }
 
 void require_three_dimensions(TextScanner& scan) {
@@ -59,7 +74,7 @@ void require_three_dimensions(TextScanner& scan) {
 }
 
 bool is_unsupported_cell(std::string_view keyword) {
-  for (const std::string_view kind : {"Hexahedra", "Hexaedra", "Prisms", "Pyramids", "Quadrilaterals"})
+  for (const std::string_view kind : {"Hexahedra", "Hexaedra", "PrismsP2", "PyramidsP2", "QuadrilateralsQ2"})
     if (keyword == kind) return true;
   return false;
 }
@@ -75,12 +90,8 @@ bool read_section(TextScanner& scan, TetMesh& mesh) {
     require_three_dimensions(scan);
   else if (keyword == "Vertices")
     read_vertices(scan, mesh);
-  else if (keyword == "Tetrahedra" || keyword == "TetrahedraP2")
-    read_cells(scan, "tetrahedra", keyword == "Tetrahedra" ? 4 : 10, add_tet, mesh.tet_tag, mesh);
-  else if (keyword == "Triangles" || keyword == "TrianglesP2")
-    read_cells(scan, "triangles", keyword == "Triangles" ? 3 : 6, add_face, mesh.face_tag, mesh);
-  else if (keyword == "Edges" || keyword == "EdgesP2")
-    read_cells(scan, "edges", keyword == "Edges" ? 2 : 3, add_edge, mesh.edge_tag, mesh);
+  else if (read_cells(scan, keyword, mesh))
+    return true;
   else if (is_unsupported_cell(keyword))
     refuse_cells(scan, keyword);
   else
@@ -102,7 +113,10 @@ TetMesh read(const std::string& path, bool needs_tets) {
   }
   if (needs_tets && mesh.tets.empty()) scan.fail("expected tetrahedra, found none");
   // In our files references are region indices; in others only their order is known.
-  if (text.starts_with(medit_signature)) mesh.tet_region.assign(mesh.tet_tag.begin(), mesh.tet_tag.end());
+  if (text.starts_with(medit_signature))
+    for_each_kind(mesh, 3, [&](CellKind kind) {
+      features_of(mesh, kind).assign(tags_of(mesh, kind).begin(), tags_of(mesh, kind).end());
+    });
   complete_mesh(path, mesh);
   return mesh;
 }

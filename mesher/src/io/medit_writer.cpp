@@ -1,6 +1,6 @@
 // Medit's text format (.mesh; P. Frey, "MEDIT: an interactive mesh visualization software", 2001). The
-// reference of a vertex is the dimension of its feature (0 if unknown), of a tet the region, of triangles and
-// edges the tag. Corners are the vertices that are features, for remeshers to keep.
+// reference of a vertex is the dimension of its feature (0 if unknown), of a volume the region, of
+// faces and edges the tag. Corners are the vertices that are features, for remeshers to keep.
 #include <algorithm>
 #include <string_view>
 #include <vector>
@@ -14,14 +14,18 @@ namespace collarmesh::io {
 
 namespace {
 
-template <class NodesOf, class Reference>
-void write_cells(FileWriter& out, const TetMesh& mesh, std::string_view keyword, NodesOf nodes_of,
-                 const std::vector<Reference>& references) {
-  if (references.empty()) return;
-  out << '\n' << keyword << (mesh.order() == 2 ? "P2\n" : "\n") << references.size() << '\n';
-  write_each(out, references.size(), [&](TextBuffer& text, std::size_t i) {
-    for (const Index v : nodes_of(mesh, i)) text << std::size_t{v} + 1 << ' ';
-    text << references[i] << '\n';
+/// Writes the cells of a kind with their regions or tags.
+void write_cells(FileWriter& out, const TetMesh& mesh, CellKind kind) {
+  if (count_of(mesh, kind) == 0) return;
+  out << '\n' << medit_keyword(kind) << (mesh.order() == 2 ? "P2\n" : "\n") << count_of(mesh, kind) << '\n';
+  const bool volume = shape_of(kind).dimension == 3;
+  write_each(out, count_of(mesh, kind), [&](TextBuffer& text, std::size_t i) {
+    for (const Index v : nodes_of(kind)(mesh, i)) text << std::size_t{v} + 1 << ' ';
+    if (volume)
+      text << features_of(mesh, kind)[i];
+    else
+      text << tags_of(mesh, kind)[i];
+    text << '\n';
   });
 }
 
@@ -49,9 +53,7 @@ void write_medit(const std::string& path, const TetMesh& mesh) {
   FileWriter out(path);
   out << medit_signature << "MeshVersionFormatted 2\n\nDimension 3\n";
   write_vertices(out, mesh);
-  write_cells(out, mesh, "Tetrahedra", nodes_of_tet, mesh.tet_region);
-  write_cells(out, mesh, "Triangles", nodes_of_face, mesh.face_tag);
-  write_cells(out, mesh, "Edges", nodes_of_edge, mesh.edge_tag);
+  for (const CellKind kind : all_cell_kinds) write_cells(out, mesh, kind);
   write_corners(out, mesh);
   out << "\nEnd\n";
   out.commit();

@@ -78,7 +78,7 @@ TetMesh read_mesh_cells(const std::string& path, std::string_view format) {
 
 PolygonSoup read_mesh_surface(const std::string& path, std::string_view format) {
   const TetMesh mesh = read_mesh_cells(path, format);
-  if (mesh.faces.empty())
+  if (mesh.faces.empty() && mesh.layers.quads.empty())
     throw ReadError(fmt::format("{}: expected triangles of a surface, found none", path));
   PolygonSoup soup;
   soup.name = path;
@@ -93,6 +93,10 @@ PolygonSoup read_mesh_surface(const std::string& path, std::string_view format) 
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     const auto& [a, b, c] = mesh.faces[f];
     soup.add_facet(std::array{point(a), point(b), point(c)}, mesh.face_tag[f]);
+  }
+  for (std::size_t f = 0; f < mesh.layers.quads.size(); ++f) {
+    const auto& [a, b, c, d] = mesh.layers.quads[f];
+    soup.add_facet(std::array{point(a), point(b), point(c), point(d)}, mesh.layers.quad_tag[f]);
   }
   for (std::size_t e = 0; e < mesh.edges.size(); ++e)
     soup.segments.push_back({point(mesh.edges[e][0]), point(mesh.edges[e][1]), mesh.edge_tag[e]});

@@ -1,11 +1,10 @@
-// MFEM's mesh format v1.0 (mfem.org/mesh-format-v1.0): tetrahedra with the number of their region as
-// attribute, triangles with their tags, or numbered from 1 if not all tags are positive. Comments give the
+// MFEM's mesh format v1.0 (mfem.org/mesh-format-v1.0): volumes with the number of their region as
+// attribute, faces with their tags, or numbered from 1 if not all tags are positive. Comments give the
 // name of each attribute. Curved elements are a function of second order on the vertices and edges.
 #include <fmt/format.h>
 
 #include <array>
 #include <map>
-#include <numeric>
 #include <string>
 #include <vector>
 
@@ -19,7 +18,16 @@ namespace collarmesh::io {
 
 namespace {
 
-constexpr int triangle = 2, tetrahedron = 4;
+/// MFEM's number of a kind of cells.
+constexpr int geometry_of(CellKind kind) {
+  switch (kind) {
+    case CellKind::tet: return 4;
+    case CellKind::prism: return 6;
+    case CellKind::pyramid: return 7;
+    case CellKind::quadrangle: return 3;
+    default: return 2;
+  }
+}
 
 /// The order of nodes: corners first, then mid-edge nodes in the order in which MFEM numbers edges: as they
 /// appear, element by element.
@@ -28,10 +36,8 @@ struct Order {
   std::vector<Index> corners, mid_nodes;
 
   explicit Order(const TetMesh& mesh) : corner_number(mesh.points.size(), none) {
-    for (const auto& tet : mesh.tets)
-      for (const Index v : tet) corner_number[v] = 0;
-    for (const auto& face : mesh.faces)
-      for (const Index v : face) corner_number[v] = 0;
+    for (const std::size_t dimension : {2, 3})
+      for_each_kind(mesh, dimension, [&](CellKind kind) { mark_corners(mesh, kind); });
     for (Index v = 0; v < corner_number.size(); ++v)
       if (corner_number[v] == 0) {
         corner_number[v] = static_cast<Index>(corners.size());
@@ -47,6 +53,15 @@ struct Order {
           mid_nodes.push_back(middle[k]);
         }
   }
+
+ private:
+  void mark_corners(const TetMesh& mesh, CellKind kind) {
+    const std::size_t corners_of_cell = shape_of(kind).corners;
+    for (std::size_t i = 0; i < count_of(mesh, kind); ++i) {
+      const CellNodes nodes = nodes_of(kind)(mesh, i);
+      for (std::size_t k = 0; k < corners_of_cell; ++k) corner_number[nodes[k]] = 0;
+    }
+  }
 };
 
 void write_points(FileWriter& out, const TetMesh& mesh, const std::vector<Index>& which) {
@@ -57,22 +72,27 @@ void write_points(FileWriter& out, const TetMesh& mesh, const std::vector<Index>
 }
 
 void write_names(FileWriter& out, const TetMesh& mesh, const std::map<Tag, std::size_t>& attributes) {
-  std::map<Index, Tag> regions;
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t) regions.try_emplace(mesh.tet_region[t], mesh.tet_tag[t]);
-  for (const auto& [region, tag] : regions)
+  for (const auto& [region, tag] : tags_of_regions(mesh))
     out << fmt::format("# attribute {}: {}\n", region, group_name(mesh, 3, tag));
   for (const auto& [tag, attribute] : attributes)
     out << fmt::format("# boundary attribute {}: {}\n", attribute, group_name(mesh, 2, tag));
 }
 
-/// Writes the elements with these numbers.
-template <std::size_t n>
-void write_cells(FileWriter& out, const std::vector<std::array<Index, n>>& cells,
-                 const std::vector<Index>& which, const Order& order, int kind, const auto& attribute_of) {
-  out << which.size() << '\n';
-  write_each(out, which.size(), [&](TextBuffer& text, std::size_t i) {
-    text << attribute_of(which[i]) << ' ' << kind;
-    for (const Index v : cells[which[i]]) text << ' ' << order.corner_number[v];
+/// A cell of an attribute.
+struct Attributed {
+  CellKind kind;
+  Index cell;
+  std::size_t attribute;
+};
+
+void write_cells(FileWriter& out, const TetMesh& mesh, const std::vector<Attributed>& cells,
+                 const Order& order) {
+  out << cells.size() << '\n';
+  write_each(out, cells.size(), [&](TextBuffer& text, std::size_t i) {
+    const auto& [kind, cell, attribute] = cells[i];
+    text << attribute << ' ' << geometry_of(kind);
+    const CellNodes nodes = nodes_of(kind)(mesh, cell);
+    for (std::size_t k = 0; k < shape_of(kind).corners; ++k) text << ' ' << order.corner_number[nodes[k]];
     text << '\n';
   });
 }
@@ -81,19 +101,23 @@ void write_cells(FileWriter& out, const std::vector<std::array<Index, n>>& cells
 
 void write_mfem(const std::string& path, const TetMesh& mesh) {
   const Order order(mesh);
-  std::vector<Index> tets(mesh.tets.size()), faces;
-  std::iota(tets.begin(), tets.end(), Index{0});
-  for (Index f = 0; f < mesh.faces.size(); ++f)  // other faces bound nothing
-    if (mesh.face_regions[f] != std::array<Index, 2>{0, 0}) faces.push_back(f);
-  const std::map<Tag, std::size_t> attributes = positive_numbers(mesh.face_tag);
+  const std::map<Tag, std::size_t> attributes = positive_numbers(all_tags(mesh, 2));
+  std::vector<Attributed> volumes, faces;
+  for_each_kind(mesh, 3, [&](CellKind kind) {
+    for (Index i = 0; i < count_of(mesh, kind); ++i) volumes.push_back({kind, i, features_of(mesh, kind)[i]});
+  });
+  for_each_kind(mesh, 2, [&](CellKind kind) {
+    for (Index f = 0; f < count_of(mesh, kind); ++f)  // other faces bound nothing
+      if (regions_beside(mesh, kind)[f] != std::array<Index, 2>{0, 0})
+        faces.push_back({kind, f, attributes.at(tags_of(mesh, kind)[f])});
+  });
   FileWriter out(path);
   out << "MFEM mesh v1.0\n\n# Written by collarmesh.\n";
   write_names(out, mesh, attributes);
   out << "\ndimension\n3\n\nelements\n";
-  write_cells(out, mesh.tets, tets, order, tetrahedron, [&](std::size_t i) { return mesh.tet_region[i]; });
+  write_cells(out, mesh, volumes, order);
   out << "\nboundary\n";
-  write_cells(out, mesh.faces, faces, order, triangle,
-              [&](std::size_t i) { return attributes.at(mesh.face_tag[i]); });
+  write_cells(out, mesh, faces, order);
   out << "\nvertices\n" << order.corners.size() << '\n';
   if (mesh.order() == 1) {
     out << "3\n";

@@ -39,9 +39,8 @@ void number_group(const std::vector<Tag>& tags, std::map<Tag, int>& numbers, std
 Numbers number_groups(const TetMesh& mesh) {
   Numbers numbers;
   std::set<int> taken;
-  number_group(mesh.face_tag, numbers[2], taken);
-  number_group(mesh.tet_tag, numbers[3], taken);
-  number_group(mesh.edge_tag, numbers[1], taken);
+  for (const std::size_t dimension : {2, 3, 1})
+    number_group(all_tags(mesh, dimension), numbers[dimension], taken);
   return numbers;
 }
 
@@ -83,30 +82,28 @@ void write_msh2(const std::string& path, const TetMesh& mesh) {
     const Point& p = mesh.points[i];
     out << i + 1 << ' ' << p.x << ' ' << p.y << ' ' << p.z << '\n';
   }
-  out << "$EndNodes\n$Elements\n" << mesh.tets.size() + mesh.faces.size() + mesh.edges.size() << '\n';
+  out << "$EndNodes\n$Elements\n" << count_before(mesh, CellKind::edge) + mesh.edges.size() << '\n';
   std::size_t number = 0;
   const bool partitioned = !mesh.tet_partition.empty();
-  const std::vector<Index> none_given;
-  const std::vector<Index> of_faces = partitioned ? partitions_of_faces(mesh) : none_given,
-                           of_edges = partitioned ? partitions_of_edges(mesh) : none_given;
-  const auto write = [&](const GmshType& type, Tag tag, std::size_t elementary,
-                         const std::vector<Index>& partition, std::size_t i, const CellNodes& nodes) {
-    out << ++number << ' ' << type.number << (partitioned ? " 4 " : " 2 ") << numbers[type.dimension].at(tag)
-        << ' ' << elementary;
-    if (partitioned) out << " 1 " << partition[i] + 1;  // number of partitions, then the partition
-    for (const Index v : nodes.in_order({type.order.data(), type.nodes})) out << ' ' << std::size_t{v} + 1;
-    out << '\n';
-  };
-  const std::size_t second = mesh.order() == 2 ? 1 : 0;
-  for (std::size_t i = 0; i < mesh.edges.size(); ++i)
-    write(gmsh_types[second], mesh.edge_tag[i], entity(mesh.edge_curve[i]), of_edges, i,
-          nodes_of_edge(mesh, i));
-  for (std::size_t i = 0; i < mesh.faces.size(); ++i)
-    write(gmsh_types[2 + second], mesh.face_tag[i], entity(mesh.face_patch[i]), of_faces, i,
-          nodes_of_face(mesh, i));
-  for (std::size_t i = 0; i < mesh.tets.size(); ++i)
-    write(gmsh_types[4 + second], mesh.tet_tag[i], mesh.tet_region[i], mesh.tet_partition, i,
-          nodes_of_tet(mesh, i));
+  // Only tets, triangles and edges have partitions.
+  std::array<std::vector<Index>, 4> partitions;
+  if (partitioned)
+    partitions = {{{}, partitions_of_edges(mesh), partitions_of_faces(mesh), mesh.tet_partition}};
+  for (const CellKind kind : {CellKind::edge, CellKind::triangle, CellKind::quadrangle, CellKind::tet,
+                              CellKind::prism, CellKind::pyramid}) {
+    const GmshType& type = gmsh_type(kind, mesh.order());
+    for (std::size_t i = 0; i < count_of(mesh, kind); ++i) {
+      const Index feature = features_of(mesh, kind)[i];
+      out << ++number << ' ' << type.number << (partitioned ? " 4 " : " 2 ")
+          << numbers[type.dimension()].at(tags_of(mesh, kind)[i]) << ' '
+          << (type.dimension() == 3 ? std::size_t{feature} : entity(feature));
+      if (partitioned)
+        out << " 1 " << partitions[type.dimension()][i] + 1;  // their number, then the partition
+      for (const Index v : nodes_of(kind)(mesh, i).in_order(type.node_order()))
+        out << ' ' << std::size_t{v} + 1;
+      out << '\n';
+    }
+  }
   out << "$EndElements\n";
   write_links(out, mesh);
   out.commit();

@@ -10,6 +10,7 @@
 
 #include "common/note_last.h"
 #include "common/parallel_for.h"
+#include "io/cell_nodes.h"
 #include "io/cell_partitions.h"
 
 namespace collarmesh::io {
@@ -81,64 +82,73 @@ Index number_of(Index feature) { return feature == none ? 0 : feature + 1; }
 
 using Tables = std::array<EntityTable, 4>;
 
-constexpr std::size_t tets_at_once = 16384;
+constexpr std::size_t cells_at_once = 16384;
 
-std::size_t ranges_of(std::size_t count) { return (count + tets_at_once - 1) / tets_at_once; }
+std::size_t ranges_of(std::size_t count) { return (count + cells_at_once - 1) / cells_at_once; }
 
-/// Assigns tets to entities, numbered in the order of their first tets.
-void assign_tets(const TetMesh& mesh, EntityTable& table, std::vector<Index>& of_tet) {
+/// Assigns cells of volumes to entities, numbered in the order of their first cells.
+void assign_volumes(const TetMesh& mesh, CellKind kind, EntityTable& table, std::vector<Index>& of_cell) {
   using Key = std::pair<Index, Tag>;
-  const auto key_of = [&](std::size_t tet) { return Key(mesh.tet_region[tet], mesh.tet_tag[tet]); };
+  const std::vector<Index>& regions = features_of(mesh, kind);
+  const std::vector<Tag>& tags = tags_of(mesh, kind);
   struct Run {
     Key key;
     std::size_t first;
     Index entity = none;
   };
-  std::vector<std::vector<Run>> runs(ranges_of(mesh.tets.size()));
-  parallel_for_ranges(mesh.tets.size(), tets_at_once, [&](std::size_t first, std::size_t last) {
-    std::vector<Run>& found = runs[first / tets_at_once];
+  std::vector<std::vector<Run>> runs(ranges_of(tags.size()));
+  parallel_for_ranges(tags.size(), cells_at_once, [&](std::size_t first, std::size_t last) {
+    std::vector<Run>& found = runs[first / cells_at_once];
     for (std::size_t i = first; i < last; ++i)
-      if (const Key key = key_of(i); found.empty() || found.back().key != key) found.push_back({key, i});
+      if (const Key key(regions[i], tags[i]); found.empty() || found.back().key != key)
+        found.push_back({key, i});
   });
   for (std::vector<Run>& of_range : runs)
     for (Run& run : of_range) run.entity = table.find(run.key.first, run.key.second);
-  of_tet.resize(mesh.tets.size());
-  parallel_for_ranges(mesh.tets.size(), tets_at_once, [&](std::size_t first, std::size_t last) {
-    const std::vector<Run>& found = runs[first / tets_at_once];
+  of_cell.resize(tags.size());
+  parallel_for_ranges(tags.size(), cells_at_once, [&](std::size_t first, std::size_t last) {
+    const std::vector<Run>& found = runs[first / cells_at_once];
     for (std::size_t r = 0; r < found.size(); ++r)
       std::fill(
-          of_tet.begin() + static_cast<std::ptrdiff_t>(found[r].first),
-          of_tet.begin() + static_cast<std::ptrdiff_t>(r + 1 < found.size() ? found[r + 1].first : last),
+          of_cell.begin() + static_cast<std::ptrdiff_t>(found[r].first),
+          of_cell.begin() + static_cast<std::ptrdiff_t>(r + 1 < found.size() ? found[r + 1].first : last),
           found[r].entity);
   });
 }
 
 void assign_cells(const TetMesh& mesh, Tables& tables, MshEntities& result) {
-  assign_tets(mesh, tables[3], result.of_tet);
-  for (std::size_t i = 0; i < mesh.faces.size(); ++i)
-    result.of_face.push_back(tables[2].find(number_of(mesh.face_patch[i]), mesh.face_tag[i]));
-  for (std::size_t i = 0; i < mesh.edges.size(); ++i)
-    result.of_edge.push_back(tables[1].find(number_of(mesh.edge_curve[i]), mesh.edge_tag[i]));
+  for (const CellKind kind : all_cell_kinds) {
+    const std::size_t dimension = shape_of(kind).dimension;
+    if (dimension == 3)
+      assign_volumes(mesh, kind, tables[3], result.of(kind));
+    else
+      for (std::size_t i = 0; i < count_of(mesh, kind); ++i)
+        result.of(kind).push_back(
+            tables[dimension].find(number_of(features_of(mesh, kind)[i]), tags_of(mesh, kind)[i]));
+  }
 }
 
-template <class Cells>
-void place_corners(const Cells& cells, const std::vector<Index>& entities, std::uint8_t dimension,
-                   MshEntities& result) {
-  for (std::size_t i = 0; i < cells.size(); ++i)
-    for (const Index v : cells[i]) result.of_point[v] = {dimension, entities[i]};
+/// Places nodes by the last cell at them; those of a kind `from` a place on.
+void place_nodes(const TetMesh& mesh, CellKind kind, std::size_t from, MshEntities& result) {
+  const auto dimension = static_cast<std::uint8_t>(shape_of(kind).dimension);
+  for (std::size_t i = 0; i < count_of(mesh, kind); ++i) {
+    const CellNodes nodes = nodes_of(kind)(mesh, i);
+    for (std::size_t k = from; k < nodes.size(); ++k)
+      result.of_point[nodes[k]] = {dimension, result.of(kind)[i]};
+  }
 }
 
-/// Does the same as place_corners for all tets: a point is placed by its last tet.
+/// Does the same for the corners of all tets, in parallel.
 void place_corners_of_tets(const TetMesh& mesh, MshEntities& result) {
   const bool alone = tbb::this_task_arena::max_concurrency() == 1;
   std::vector<Index> last_tet(mesh.points.size(), none);
-  parallel_for_ranges(mesh.tets.size(), tets_at_once, [&](std::size_t first, std::size_t last) {
+  parallel_for_ranges(mesh.tets.size(), cells_at_once, [&](std::size_t first, std::size_t last) {
     for (std::size_t t = first; t < last; ++t)
       for (const Index v : mesh.tets[t]) note_last(last_tet[v], static_cast<Index>(t), alone);
   });
-  parallel_for_ranges(mesh.points.size(), tets_at_once, [&](std::size_t first, std::size_t last) {
+  parallel_for_ranges(mesh.points.size(), cells_at_once, [&](std::size_t first, std::size_t last) {
     for (std::size_t v = first; v < last; ++v)
-      if (last_tet[v] != none) result.of_point[v] = {3, result.of_tet[last_tet[v]]};
+      if (last_tet[v] != none) result.of_point[v] = {3, result.of(CellKind::tet)[last_tet[v]]};
   });
 }
 
@@ -147,12 +157,9 @@ void place_points(const TetMesh& mesh, Tables& tables, MshEntities& result) {
   if (mesh.tets.empty()) tables[3].find(1);
   result.of_point.resize(mesh.points.size());
   place_corners_of_tets(mesh, result);
-  place_corners(mesh.tet_mid_nodes, result.of_tet, 3, result);
-  place_corners(mesh.faces, result.of_face, 2, result);
-  place_corners(mesh.face_mid_nodes, result.of_face, 2, result);
-  place_corners(mesh.edges, result.of_edge, 1, result);
-  for (std::size_t i = 0; i < mesh.edge_mid_nodes.size(); ++i)
-    result.of_point[mesh.edge_mid_nodes[i]] = {1, result.of_edge[i]};
+  if (mesh.order() == 2) place_nodes(mesh, CellKind::tet, shape_of(CellKind::tet).corners, result);
+  for (const CellKind kind : all_cell_kinds)
+    if (kind != CellKind::tet) place_nodes(mesh, kind, 0, result);
   for (std::size_t v = 0; v < mesh.features.size(); ++v) {
     const auto [dimension, feature] = mesh.features[v];
     if (dimension < 3 && feature != none)
@@ -160,17 +167,20 @@ void place_points(const TetMesh& mesh, Tables& tables, MshEntities& result) {
   }
 }
 
-void find_boxes_of_tets(const TetMesh& mesh, MshEntities& result) {
+void find_boxes_of_volumes(const TetMesh& mesh, CellKind kind, MshEntities& result) {
   struct Run {
     Index entity;
     Box box;
   };
-  std::vector<std::vector<Run>> runs(ranges_of(mesh.tets.size()));
-  parallel_for_ranges(mesh.tets.size(), tets_at_once, [&](std::size_t first, std::size_t last) {
-    std::vector<Run>& found = runs[first / tets_at_once];
-    for (std::size_t t = first; t < last; ++t) {
-      if (found.empty() || found.back().entity != result.of_tet[t]) found.push_back({result.of_tet[t], {}});
-      for (const Index v : mesh.tets[t]) found.back().box.add(mesh.points[v]);
+  const std::vector<Index>& entities = result.of(kind);
+  std::vector<std::vector<Run>> runs(ranges_of(entities.size()));
+  const std::size_t corners = shape_of(kind).corners;
+  parallel_for_ranges(entities.size(), cells_at_once, [&](std::size_t first, std::size_t last) {
+    std::vector<Run>& found = runs[first / cells_at_once];
+    for (std::size_t i = first; i < last; ++i) {
+      if (found.empty() || found.back().entity != entities[i]) found.push_back({entities[i], {}});
+      const CellNodes nodes = nodes_of(kind)(mesh, i);
+      for (std::size_t k = 0; k < corners; ++k) found.back().box.add(mesh.points[nodes[k]]);
     }
   });
   for (const std::vector<Run>& of_range : runs)
@@ -178,13 +188,18 @@ void find_boxes_of_tets(const TetMesh& mesh, MshEntities& result) {
 }
 
 void find_boxes(const TetMesh& mesh, MshEntities& result) {
-  const auto add = [&](const auto& cells, const std::vector<Index>& entities, std::size_t dimension) {
-    for (std::size_t i = 0; i < cells.size(); ++i)
-      for (const Index v : cells[i]) result.of_dimension[dimension][entities[i]].box.add(mesh.points[v]);
-  };
-  find_boxes_of_tets(mesh, result);
-  add(mesh.faces, result.of_face, 2);
-  add(mesh.edges, result.of_edge, 1);
+  for (const CellKind kind : all_cell_kinds) {
+    const CellShape shape = shape_of(kind);
+    if (shape.dimension == 3) {
+      find_boxes_of_volumes(mesh, kind, result);
+      continue;
+    }
+    for (std::size_t i = 0; i < count_of(mesh, kind); ++i) {
+      const CellNodes nodes = nodes_of(kind)(mesh, i);
+      Box& box = result.of_dimension[shape.dimension][result.of(kind)[i]].box;
+      for (std::size_t k = 0; k < shape.corners; ++k) box.add(mesh.points[nodes[k]]);
+    }
+  }
   for (std::size_t v = 0; v < mesh.points.size(); ++v) {
     const MshEntities::Place& place = result.of_point[v];
     result.of_dimension[place.dimension][place.entity].box.add(mesh.points[v]);
@@ -197,11 +212,13 @@ void find_boundaries(const TetMesh& mesh, MshEntities& result) {
     if (region != 0 && (pairs.empty() || pairs.back() != std::pair(region, surface)))
       pairs.emplace_back(region, surface);
   };
-  for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
-    const int surface = result.of_dimension[2][result.of_face[i]].number;
-    add(mesh.face_regions[i][0], surface);
-    add(mesh.face_regions[i][1], -surface);
-  }
+  for_each_kind(mesh, 2, [&](CellKind kind) {
+    for (std::size_t i = 0; i < count_of(mesh, kind); ++i) {
+      const int surface = result.of_dimension[2][result.of(kind)[i]].number;
+      add(regions_beside(mesh, kind)[i][0], surface);
+      add(regions_beside(mesh, kind)[i][1], -surface);
+    }
+  });
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   for (MshEntity& volume : result.of_dimension[3]) {
@@ -302,9 +319,13 @@ MshParts divide_entities(const TetMesh& mesh, const MshEntities& whole) {
   result.partitions = std::size_t{result.numbers.back()} + 1;
   MshEntities& parts = result.entities;
   Divider divider(mesh, whole, result);
-  divider.divide(3, mesh.tets, whole.of_tet, mesh.tet_partition, parts.of_tet);
-  divider.divide(2, mesh.faces, whole.of_face, partitions_of_faces(mesh), parts.of_face);
-  divider.divide(1, mesh.edges, whole.of_edge, partitions_of_edges(mesh), parts.of_edge);
+  const auto divide = [&](CellKind kind, const auto& cells, const std::vector<Index>& partitions) {
+    divider.divide(static_cast<std::uint8_t>(shape_of(kind).dimension), cells, whole.of(kind), partitions,
+                   parts.of(kind));
+  };
+  divide(CellKind::tet, mesh.tets, mesh.tet_partition);
+  divide(CellKind::triangle, mesh.faces, partitions_of_faces(mesh));
+  divide(CellKind::edge, mesh.edges, partitions_of_edges(mesh));
   std::vector<Index> no_cells;
   divider.divide(0, std::vector<std::array<Index, 1>>(), {}, {}, no_cells);
   return result;

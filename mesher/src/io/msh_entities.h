@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "collarmesh/tet_mesh.h"
+#include "common/cell_shapes.h"
 
 namespace collarmesh::io {
 
@@ -20,8 +21,8 @@ struct MshEntity {
 
 struct MshEntities {
   std::array<std::vector<MshEntity>, 4> of_dimension;
-  /// The entity (position in of_dimension[3], [2], [1]) of every tet, face, edge.
-  std::vector<Index> of_tet, of_face, of_edge;
+  /// The entity (position in of_dimension) of every cell, by kind.
+  std::array<std::vector<Index>, cell_kinds> of_cell;
   struct Place {
     std::uint8_t dimension = 3;
     Index entity = 0;
@@ -29,6 +30,9 @@ struct MshEntities {
   std::vector<Place> of_point;
   std::array<std::map<Tag, int>, 4> physicals;  ///< number by tag
   bool numbers_are_features = false;
+
+  std::vector<Index>& of(CellKind kind) { return of_cell[static_cast<std::size_t>(kind)]; }
+  const std::vector<Index>& of(CellKind kind) const { return of_cell[static_cast<std::size_t>(kind)]; }
 };
 
 MshEntities find_entities(const TetMesh& mesh);

@@ -61,26 +61,27 @@ class PairLinks {
 
   void find_surfaces() {
     FaceFinder finder(mesh_.faces);
+    const std::vector<Index>& surfaces = entities_.of(CellKind::triangle);
     for (Index f = 0; f < mesh_.faces.size(); ++f) {
       if (!contains(pair_.first, mesh_.face_tag[f])) continue;
       const auto& [a, b, c] = mesh_.faces[f];
       for (const auto& [p, q] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)})
         sides_.insert(sorted(p, q));
       const Index g = finder.find({image_of(a), image_of(b), image_of(c)});
-      if (g != none) add(2, entities_.of_face[g], entities_.of_face[f], nodes_of_face(mesh_, f));
+      if (g != none) add(2, surfaces[g], surfaces[f], nodes_of_face(mesh_, f));
     }
   }
 
   void find_curves() {
     std::map<std::array<Index, 2>, Index> edges;
+    const std::vector<Index>& curves = entities_.of(CellKind::edge);
     for (Index e = 0; e < mesh_.edges.size(); ++e)
       edges.emplace(sorted(mesh_.edges[e][0], mesh_.edges[e][1]), e);
     for (Index e = 0; e < mesh_.edges.size(); ++e) {
       const auto& [a, b] = mesh_.edges[e];
       if (!sides_.contains(sorted(a, b))) continue;
       const auto found = edges.find(sorted(image_of(a), image_of(b)));
-      if (found != edges.end())
-        add(1, entities_.of_edge[found->second], entities_.of_edge[e], nodes_of_edge(mesh_, e));
+      if (found != edges.end()) add(1, curves[found->second], curves[e], nodes_of_edge(mesh_, e));
     }
   }
 

@@ -1,6 +1,6 @@
-// Reads Gmsh's formats 4.1 and 2 (text and binary) and 4.0 (text): tetrahedra, triangles and lines of
-// first and second order. Tags are physical groups, or entities where there is none. Skips the
-// ghost elements of partitioned files and the elements between partitions.
+// Reads Gmsh's formats 4.1 and 2 (text and binary) and 4.0 (text): tetrahedra, prisms, pyramids,
+// triangles, quadrangles and lines of first and second order. Tags are physical groups, or entities where
+// there is none. Skips the ghost elements of partitioned files and the elements between partitions.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -32,6 +32,7 @@ struct Node {
 
 struct Cell {
   std::uint64_t number = 0;
+  CellKind kind = CellKind::tet;
   CellNodes nodes;  ///< positions in Contents::nodes
   int entity = 0;
   Tag tag = 0;
@@ -58,9 +59,11 @@ struct Contents {
   std::array<std::vector<Cell>, 4> cells;                ///< by dimension
   std::array<std::map<int, Tag>, 4> physical_of_entity;  ///< the first physical group
   std::array<std::map<int, PartitionEntity>, 4> partition_entities;
-  std::array<std::map<Tag, Tag>, 4> tag_of_physical;                   ///< where its name determines it
-  std::vector<std::pair<std::uint64_t, double>> collar, crease, thin;  ///< cell number and value
-  TagNames names;                                                      ///< names of tags, where given
+  std::array<std::map<Tag, Tag>, 4> tag_of_physical;  ///< where its name determines it
+  /// Data of cells by name: cell number and value.
+  std::map<std::string, std::vector<std::pair<std::uint64_t, double>>, std::less<>> data{
+      {"collar", {}}, {"crease", {}}, {"thin", {}}, {"layer", {}}};
+  TagNames names;  ///< names of tags, where given
   std::vector<SurfaceLink> links;
   bool numbers_are_features = false;
 };
@@ -117,11 +120,9 @@ Index read_corner(Values& values, const Contents& contents) {
 
 template <class Values>
 CellNodes read_cell_nodes(Values& values, const Contents& contents, const GmshType& type) {
-  std::array<Index, 10> nodes{};
-  for (std::size_t k = 0; k < type.nodes; ++k) nodes[type.order[k]] = read_corner(values, contents);
-  CellNodes result;
-  for (std::size_t k = 0; k < type.nodes; ++k) result.add(nodes[k]);
-  return result;
+  CellNodes nodes;
+  for (std::size_t k = 0; k < type.nodes(); ++k) nodes.add(read_corner(values, contents));
+  return nodes.from_order(type.node_order());
 }
 
 template <class Values>
@@ -131,17 +132,15 @@ std::size_t read_dimension(Values& values) {
   return static_cast<std::size_t>(dimension);
 }
 
-/// The type of points, elements of dimension 0, which are skipped.
-constexpr GmshType point_type{gmsh_point, 0, 1, {0}};
-
+/// Returns the type of elements; null: they are points, which are skipped.
 template <class Values>
-const GmshType& find_type(Values& values, int number) {
-  if (number == gmsh_point) return point_type;
+const GmshType* find_type(Values& values, int number) {
+  if (number == gmsh_point) return nullptr;
   for (const GmshType& type : gmsh_types)
-    if (type.number == number) return type;
+    if (type.number == number) return &type;
   values.fail(
-      fmt::format("elements of type {} are not supported, only tetrahedra (4, 11), triangles (2, 9) "
-                  "and lines (1, 8)",
+      fmt::format("elements of type {} are not supported, only tetrahedra (4, 11), prisms (6, 18), pyramids "
+                  "(7, 19), triangles (2, 9), quadrangles (3, 16) and lines (1, 8)",
                   number));
 }
 
@@ -236,24 +235,36 @@ void read_nodes(Values values, Contents& contents) {
   sort_nodes(values, contents);
 }
 
+/// Reads an element that is a point, which is skipped.
 template <class Values>
-void read_cells_of_block(Values& values, const GmshType& type, int entity, Tag tag, Index count,
+void read_point(Values& values, const Contents& contents) {
+  values.number("the number of an element");
+  read_corner(values, contents);
+}
+
+template <class Values>
+void read_cells_of_block(Values& values, const GmshType* type, int entity, Tag tag, Index count,
                          Contents& contents) {
+  if (type == nullptr) {
+    for (Index i = 0; i < count; ++i) read_point(values, contents);
+    return;
+  }
   Cell cell;
+  cell.kind = type->kind;
   cell.entity = entity;
   cell.tag = tag;
   bool between_partitions = false;  // elements that Gmsh made between partitions; they are not part of the
                                     // mesh
-  const auto& parts = contents.partition_entities[type.dimension];
+  const auto& parts = contents.partition_entities[type->dimension()];
   if (const auto part = parts.find(entity); part != parts.end()) {
     cell.entity = part->second.parent;
     cell.partition = part->second.partition;
-    between_partitions = part->second.parent_dimension != type.dimension;
+    between_partitions = part->second.parent_dimension != type->dimension();
   }
   for (Index i = 0; i < count; ++i) {
     cell.number = values.number("the number of an element");
-    cell.nodes = read_cell_nodes(values, contents, type);
-    if (type.dimension > 0 && !between_partitions) contents.cells[type.dimension].push_back(cell);
+    cell.nodes = read_cell_nodes(values, contents, *type);
+    if (!between_partitions) contents.cells[type->dimension()].push_back(cell);
   }
 }
 
@@ -267,7 +278,7 @@ void read_elements(Values values, Contents& contents) {
   for (Index b = 0; b < blocks; ++b) {
     const std::size_t entity_dimension = read_dimension(values);
     const int entity = values.integer("the number of an entity");
-    const GmshType& type = find_type(values, values.integer("the type of elements"));
+    const GmshType* type = find_type(values, values.integer("the type of elements"));
     const Index n = values.count("the number of elements of a block", 2);
     found += n;
     read_cells_of_block(values, type, entity, tag_of_entity(contents, entity_dimension, entity), n, contents);
@@ -332,7 +343,7 @@ void read_elements_40(MshText values, Contents& contents) {
   for (Index b = 0; b < blocks; ++b) {
     const int entity = values.integer("the number of an entity");
     const std::size_t entity_dimension = read_dimension(values);
-    const GmshType& type = find_type(values, values.integer("the type of elements"));
+    const GmshType* type = find_type(values, values.integer("the type of elements"));
     const Index n = values.count("the number of elements of a block", 2);
     read_cells_of_block(values, type, entity, tag_of_entity(contents, entity_dimension, entity), n, contents);
   }
@@ -355,7 +366,7 @@ void read_nodes_2(Values values, Contents& contents) {
 
 /// Reads the tags of an element: its physical group, its entity and partitions.
 template <class Values>
-void read_element_2(Values& values, const GmshType& type, std::uint64_t number, int tags,
+void read_element_2(Values& values, const GmshType* type, std::uint64_t number, int tags,
                     Contents& contents) {
   Cell cell;
   cell.number = number;
@@ -366,17 +377,21 @@ void read_element_2(Values& values, const GmshType& type, std::uint64_t number, 
     if (k == 1) cell.entity = tag;
     if (k == 3 && tag > 0) cell.partition = static_cast<Index>(tag) - 1;  // k == 2: the number of partitions
   }
-  cell.nodes = read_cell_nodes(values, contents, type);
-  if (type.dimension == 0) return;
-  cell.tag = physical != 0 ? tag_of_physical(contents, type.dimension, physical) : cell.entity;
-  contents.cells[type.dimension].push_back(cell);
+  if (type == nullptr) {
+    read_corner(values, contents);
+    return;
+  }
+  cell.kind = type->kind;
+  cell.nodes = read_cell_nodes(values, contents, *type);
+  cell.tag = physical != 0 ? tag_of_physical(contents, type->dimension(), physical) : cell.entity;
+  contents.cells[type->dimension()].push_back(cell);
 }
 
 void read_elements_2(MshText values, Contents& contents) {
   const Index n = values.count("the number of elements", 4);
   for (Index i = 0; i < n; ++i) {
     const std::uint64_t number = values.number("the number of an element");
-    const GmshType& type = find_type(values, values.integer("the type of an element"));
+    const GmshType* type = find_type(values, values.integer("the type of an element"));
     const auto tags = static_cast<int>(values.count("the number of tags", 1));
     read_element_2(values, type, number, tags, contents);
   }
@@ -386,7 +401,7 @@ void read_elements_2(MshText values, Contents& contents) {
 void read_elements_2(MshBinary2 values, Contents& contents) {
   const Index n = values.count("the number of elements", 4);
   for (Index i = 0; i < n;) {
-    const GmshType& type = find_type(values, values.integer("the type of elements"));
+    const GmshType* type = find_type(values, values.integer("the type of elements"));
     const int of_block = values.integer("the number of elements of a block"),
               tags = values.integer("the number of tags");
     if (of_block < 1 || static_cast<Index>(of_block) > n - i || tags < 0)
@@ -425,15 +440,13 @@ DataHead read_data_head(MshText& values) {
 
 void read_data(MshText values, Contents& contents) {
   const DataHead head = read_data_head(values);
-  if (head.name != "collar" && head.name != "crease" && head.name != "thin") return;
+  const auto data = contents.data.find(head.name);
+  if (data == contents.data.end()) return;
   if (head.components != 1)
     values.fail(fmt::format("{} has {} components, but has to have 1", head.name, head.components));
-  auto& data = head.name == "collar"   ? contents.collar
-               : head.name == "crease" ? contents.crease
-                                       : contents.thin;
   for (int i = 0; i < head.count; ++i) {
     const std::uint64_t number = values.number("the number of an element");
-    data.emplace_back(number, values.real("a value for an element"));
+    data->second.emplace_back(number, values.real("a value for an element"));
   }
 }
 
@@ -515,21 +528,19 @@ void read_section(const std::string& path, const MshSection& section, const Form
     read_data(MshText(path, section), contents);
 }
 
-template <class Add>
-void add_cells(const std::vector<Cell>& cells, Add add, std::vector<Tag>& tags, TetMesh& mesh) {
-  tags.reserve(cells.size());
+void add_cells(const std::vector<Cell>& cells, TetMesh& mesh) {
   for (const Cell& cell : cells) {
-    add(cell.nodes, mesh);
-    tags.push_back(cell.tag);
+    add_cell(cell.kind, cell.nodes, mesh);
+    tags_of(mesh, cell.kind).push_back(cell.tag);
   }
 }
 
 Index feature_of(int entity) { return static_cast<Index>(entity) - 1; }
 
-/// Adds partitions if all tets have one.
-void add_partitions(const std::vector<Cell>& tets, TetMesh& mesh) {
-  for (const Cell& cell : tets) {
-    if (cell.partition == none) {
+/// Adds partitions if all cells of volumes are tets and have one.
+void add_partitions(const std::vector<Cell>& volumes, TetMesh& mesh) {
+  for (const Cell& cell : volumes) {
+    if (cell.partition == none || cell.kind != CellKind::tet) {
       mesh.tet_partition.clear();
       return;
     }
@@ -538,20 +549,23 @@ void add_partitions(const std::vector<Cell>& tets, TetMesh& mesh) {
 }
 
 void add_features(const Contents& contents, TetMesh& mesh) {
-  for (const Cell& cell : contents.cells[3]) mesh.tet_region.push_back(static_cast<Index>(cell.entity));
-  for (const Cell& cell : contents.cells[2]) mesh.face_patch.push_back(feature_of(cell.entity));
-  for (const Cell& cell : contents.cells[1]) mesh.edge_curve.push_back(feature_of(cell.entity));
+  for (std::size_t dimension = 1; dimension <= 3; ++dimension)
+    for (const Cell& cell : contents.cells[dimension])
+      features_of(mesh, cell.kind)
+          .push_back(dimension == 3 ? static_cast<Index>(cell.entity) : feature_of(cell.entity));
   for (const Node& node : contents.nodes)
     mesh.features.push_back({node.dimension, node.dimension == 3 ? none : feature_of(node.entity)});
 }
 
-/// Returns one value for each tet, 0 where the file gives none, within these bounds.
+/// Adds one value for each cell of a kind, 0 where the file gives none, within these bounds.
 template <class T>
-void add_data(std::vector<std::pair<std::uint64_t, double>>& values, double least, double most,
-              const std::vector<Cell>& tets, std::vector<T>& data) {
+void add_data(Contents& contents, std::string_view name, CellKind kind, double least, double most,
+              std::vector<T>& data) {
+  auto& values = contents.data.find(name)->second;
   if (values.empty()) return;
   if (!std::is_sorted(values.begin(), values.end())) std::sort(values.begin(), values.end());
-  for (const Cell& cell : tets) {
+  for (const Cell& cell : contents.cells[3]) {
+    if (cell.kind != kind) continue;
     const auto found = std::lower_bound(values.begin(), values.end(),
                                         std::pair(cell.number, -std::numeric_limits<double>::infinity()));
     const bool given = found != values.end() && found->first == cell.number;
@@ -598,17 +612,17 @@ TetMesh make_mesh(const std::string& path, Contents& contents) {
   TetMesh mesh;
   for (const Node& node : contents.nodes) mesh.points.push_back(node.point);
   for (std::vector<Cell>& cells : contents.cells) sort_by_number(cells);
-  add_cells(contents.cells[3], add_tet, mesh.tet_tag, mesh);
-  add_cells(contents.cells[2], add_face, mesh.face_tag, mesh);
-  add_cells(contents.cells[1], add_edge, mesh.edge_tag, mesh);
+  for (const std::size_t dimension : {3, 2, 1}) add_cells(contents.cells[dimension], mesh);
   if (contents.numbers_are_features) {
     add_features(contents, mesh);
     add_periodic(contents, mesh);
   }
-  add_data(contents.collar, 0, 2, contents.cells[3], mesh.tet_collar);
+  add_data(contents, "collar", CellKind::tet, 0, 2, mesh.tet_collar);
   constexpr double most = 0x1p52;  // integers up to here are exact in doubles
-  add_data(contents.crease, -most, most, contents.cells[3], mesh.tet_crease);
-  if (!contents.thin.empty()) add_data(contents.thin, 0, 1, contents.cells[3], mesh.tet_thin);
+  add_data(contents, "crease", CellKind::tet, -most, most, mesh.tet_crease);
+  add_data(contents, "thin", CellKind::tet, 0, 1, mesh.tet_thin);
+  for (const CellKind kind : {CellKind::tet, CellKind::prism, CellKind::pyramid})
+    add_data(contents, "layer", kind, 0, most_layers - 1, layers_of(mesh, kind));
   add_partitions(contents.cells[3], mesh);
   mesh.names = contents.names;
   complete_mesh(path, mesh);

@@ -1,10 +1,10 @@
 // Gmsh's format 4.1 as text (Gmsh's reference manual, "MSH file format"). Entities are the features: a volume
 // per region, a surface per patch, a curve per curve, a point per vertex. All entities with one tag form a
-// physical group. Cells are numbered in the order tets, faces, edges; $ElementData "collar" and "crease"
-// covers all of them in the order of the file, as meshio needs it. In a partitioned mesh the cells and nodes
-// of an entity are divided among its parts, one entity for each partition: otherwise Gmsh would lose data
-// when it writes such a mesh again. $Periodic has a link for each point, curve and surface on the second
-// sides of periodic faces.
+// physical group. Cells are numbered in the order of their kinds, tets first; $ElementData "collar" and
+// "crease" covers all of them in the order of the file, as meshio needs it. In a partitioned mesh the cells
+// and nodes of an entity are divided among its parts, one entity for each partition: otherwise Gmsh would
+// lose data when it writes such a mesh again. $Periodic has a link for each point, curve and surface on the
+// second sides of periodic faces.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -185,61 +185,68 @@ void write_nodes(FileWriter& out, const TetMesh& mesh, const MshEntities& entiti
   out << "$EndNodes\n";
 }
 
-template <class NodesOf>
-void write_cells(FileWriter& out, const TetMesh& mesh, const std::vector<MshEntity>& entities,
-                 const Groups& groups, const GmshType& type, std::size_t first_number, NodesOf nodes_of) {
+/// Writes the cells of a kind, numbered from `first_number`.
+void write_cells(FileWriter& out, const TetMesh& mesh, CellKind kind, const std::vector<MshEntity>& entities,
+                 const Groups& groups, std::size_t first_number) {
+  const GmshType& type = gmsh_type(kind, mesh.order());
   for (std::size_t e = 0; e < entities.size(); ++e) {
     const std::span<const Index> members = groups.of(e);
     if (members.empty()) continue;
-    out << type.dimension << ' ' << entities[e].number << ' ' << type.number << ' ' << members.size() << '\n';
+    out << type.dimension() << ' ' << entities[e].number << ' ' << type.number << ' ' << members.size()
+        << '\n';
     write_each(out, members.size(), [&](TextBuffer& text, std::size_t i) {
       text << first_number + members[i];
-      for (const Index v : nodes_of(mesh, members[i]).in_order({type.order.data(), type.nodes}))
+      for (const Index v : nodes_of(kind)(mesh, members[i]).in_order(type.node_order()))
         text << ' ' << std::size_t{v} + 1;
       text << '\n';
     });
   }
 }
 
-/// The three kinds of cells by entity, and the number of the first cell of each kind.
+/// The kinds of cells by entity, and the number of the first cell of each kind.
 struct CellGroups {
-  Groups tets, faces, edges;
-  std::size_t first_face, first_edge, count;
+  std::vector<Groups> of_kind;
+  std::array<std::size_t, cell_kinds> first;
+  std::size_t count, filled = 0;
 
-  CellGroups(const TetMesh& mesh, const MshEntities& entities)
-      : tets(entities.of_dimension[3].size(), entities.of_tet),
-        faces(entities.of_dimension[2].size(), entities.of_face),
-        edges(entities.of_dimension[1].size(), entities.of_edge),
-        first_face(mesh.tets.size() + 1),
-        first_edge(first_face + mesh.faces.size()),
-        count(first_edge - 1 + mesh.edges.size()) {}
+  CellGroups(const TetMesh& mesh, const MshEntities& entities) {
+    for (const CellKind kind : all_cell_kinds) {
+      of_kind.emplace_back(entities.of_dimension[shape_of(kind).dimension].size(), entities.of(kind));
+      first[static_cast<std::size_t>(kind)] = count_before(mesh, kind) + 1;
+      filled += of_kind.back().filled();
+    }
+    count = count_before(mesh, CellKind::edge) + mesh.edges.size();
+  }
 };
 
 void write_elements(FileWriter& out, const TetMesh& mesh, const MshEntities& entities,
                     const CellGroups& groups) {
   out << "$Elements\n"
-      << groups.tets.filled() + groups.faces.filled() + groups.edges.filled() << ' ' << groups.count << ' '
-      << (groups.count > 0 ? 1 : 0) << ' ' << groups.count << '\n';
-  const std::size_t second = mesh.order() == 2 ? 1 : 0;
-  const auto& entity = entities.of_dimension;
-  write_cells(out, mesh, entity[3], groups.tets, gmsh_types[4 + second], 1, nodes_of_tet);
-  write_cells(out, mesh, entity[2], groups.faces, gmsh_types[2 + second], groups.first_face, nodes_of_face);
-  write_cells(out, mesh, entity[1], groups.edges, gmsh_types[second], groups.first_edge, nodes_of_edge);
+      << groups.filled << ' ' << groups.count << ' ' << (groups.count > 0 ? 1 : 0) << ' ' << groups.count
+      << '\n';
+  for (std::size_t k = 0; k < cell_kinds; ++k)
+    write_cells(out, mesh, all_cell_kinds[k], entities.of_dimension[shape_of(all_cell_kinds[k]).dimension],
+                groups.of_kind[k], groups.first[k]);
   out << "$EndElements\n";
 }
 
-// Writes values of tets, and 0 for other cells.
-template <class T>
-void write_data(FileWriter& out, std::string_view name, const std::vector<T>& values,
-                const CellGroups& groups) {
+/// Writes a value of each cell, `value_of(kind, cell)`.
+template <class ValueOf>
+void write_data(FileWriter& out, std::string_view name, const CellGroups& groups, const ValueOf& value_of) {
   out << "$ElementData\n1\n\"" << name << "\"\n1\n0\n3\n0\n1\n" << groups.count << '\n';
-  write_each(out, groups.tets.members.size(), [&](TextBuffer& text, std::size_t i) {
-    const Index tet = groups.tets.members[i];
-    text << std::size_t{tet} + 1 << ' ' << values[tet] << '\n';
-  });
-  for (const Index i : groups.faces.members) out << groups.first_face + i << " 0\n";
-  for (const Index i : groups.edges.members) out << groups.first_edge + i << " 0\n";
+  for (std::size_t k = 0; k < cell_kinds; ++k) {
+    const std::vector<Index>& members = groups.of_kind[k].members;
+    write_each(out, members.size(), [&](TextBuffer& text, std::size_t i) {
+      text << groups.first[k] + members[i] << ' ' << value_of(all_cell_kinds[k], members[i]) << '\n';
+    });
+  }
   out << "$EndElementData\n";
+}
+
+/// Returns the values of tets, and 0 for other cells.
+template <class T>
+auto of_tets(const std::vector<T>& values) {
+  return [&values](CellKind kind, Index i) { return kind == CellKind::tet ? values[i] : T{0}; };
 }
 
 /// Returns numbers for volumes that Gmsh fills with the ghosts of each partition.
@@ -269,10 +276,12 @@ void write(const std::string& path, const TetMesh& mesh, bool with_ghosts) {
   write_msh_links(out, find_msh_links(mesh, entities), 4);
   if (parts && with_ghosts) write_ghost_elements(out, mesh, *parts);
   if (!mesh.tets.empty()) {
-    write_data(out, "collar", mesh.tet_collar, groups);
-    write_data(out, "crease", mesh.tet_crease, groups);
+    write_data(out, "collar", groups, of_tets(mesh.tet_collar));
+    write_data(out, "crease", groups, of_tets(mesh.tet_crease));
   }
-  if (!mesh.tet_thin.empty()) write_data(out, "thin", mesh.tet_thin, groups);
+  if (!mesh.tet_thin.empty()) write_data(out, "thin", groups, of_tets(mesh.tet_thin));
+  if (!mesh.layers.empty())
+    write_data(out, "layer", groups, [&](CellKind kind, Index i) { return layer_of(mesh, kind, i); });
   out.commit();
 }
 

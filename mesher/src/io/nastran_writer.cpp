@@ -1,10 +1,11 @@
-// Nastran's bulk data (.bdf; MSC Nastran Quick Reference Guide): nodes in large fields, CTETRA of 4 or 10
-// nodes, CTRIA3 or CTRIA6 of the faces. Each region and then each tag of faces has a property number;
-// comments give its name, as HyperMesh does. The user adds properties and materials, and deletes faces that
-// need none.
+// Nastran's bulk data (.bdf; MSC Nastran Quick Reference Guide): nodes in large fields, CTETRA, CPENTA
+// and CPYRAM of both orders, CTRIA3 or CTRIA6 and CQUAD4 or CQUAD8 of the faces. Each region and then each
+// tag of faces has a property number; comments give its name, as HyperMesh does. The user adds properties and
+// materials, and deletes faces that need none.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <string>
 
@@ -39,14 +40,25 @@ void write_nodes(FileWriter& out, const TetMesh& mesh) {
   });
 }
 
+/// The names of elements by order.
+constexpr std::array<const char*, 2> names_of(CellKind kind) {
+  switch (kind) {
+    case CellKind::tet: return {"CTETRA", "CTETRA"};
+    case CellKind::prism: return {"CPENTA", "CPENTA"};
+    case CellKind::pyramid: return {"CPYRAM", "CPYRAM"};
+    case CellKind::quadrangle: return {"CQUAD4", "CQUAD8"};
+    default: return {"CTRIA3", "CTRIA6"};
+  }
+}
+
 /// Writes fields of eight characters, on continuation lines if there are more than eight.
-template <class NodesOf>
-void write_elements(FileWriter& out, const TetMesh& mesh, const char* name, std::size_t count,
-                    std::size_t first, const NodesOf& nodes_of, const auto& property_of) {
-  write_each(out, count, [&](TextBuffer& text, std::size_t i) {
+void write_elements(FileWriter& out, const TetMesh& mesh, CellKind kind, const auto& property_of) {
+  const char* const name = names_of(kind)[mesh.order() == 2 ? 1 : 0];
+  const std::size_t first = count_before(mesh, kind) + 1;
+  write_each(out, count_of(mesh, kind), [&](TextBuffer& text, std::size_t i) {
     std::string line = fmt::format("{:8}{:8}{:8}", name, first + i, property_of(i));
     std::size_t fields = 2;
-    for (const Index v : nodes_of(mesh, i)) {
+    for (const Index v : with_between_before_top(kind, nodes_of(kind)(mesh, i))) {
       if (fields == fields_on_line) {
         line += "+\n+       ";
         fields = 0;
@@ -61,10 +73,9 @@ void write_elements(FileWriter& out, const TetMesh& mesh, const char* name, std:
 }  // namespace
 
 void write_nastran(const std::string& path, const TetMesh& mesh) {
-  std::map<Index, Tag> regions;
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t) regions.try_emplace(mesh.tet_region[t], mesh.tet_tag[t]);
+  const std::map<Index, Tag> regions = tags_of_regions(mesh);
   const std::size_t last = regions.empty() ? 0 : regions.rbegin()->first;
-  const std::map<Tag, std::size_t> patches = numbered_tags(mesh.face_tag, last + 1);
+  const std::map<Tag, std::size_t> patches = numbered_tags(all_tags(mesh, 2), last + 1);
   FileWriter out(path);
   out << "$ Written by collarmesh.\nBEGIN BULK\n";
   for (const auto& [region, tag] : regions)
@@ -72,10 +83,12 @@ void write_nastran(const std::string& path, const TetMesh& mesh) {
   for (const auto& [tag, number] : patches)
     out << fmt::format("$HMNAME PROP {:>19}\"{}\"\n", number, group_name(mesh, 2, tag));
   write_nodes(out, mesh);
-  write_elements(out, mesh, "CTETRA", mesh.tets.size(), 1, nodes_of_tet,
-                 [&](std::size_t i) { return mesh.tet_region[i]; });
-  write_elements(out, mesh, mesh.order() == 2 ? "CTRIA6" : "CTRIA3", mesh.faces.size(), mesh.tets.size() + 1,
-                 nodes_of_face, [&](std::size_t i) { return patches.at(mesh.face_tag[i]); });
+  for_each_kind(mesh, 3, [&](CellKind kind) {
+    write_elements(out, mesh, kind, [&](std::size_t i) { return features_of(mesh, kind)[i]; });
+  });
+  for_each_kind(mesh, 2, [&](CellKind kind) {
+    write_elements(out, mesh, kind, [&](std::size_t i) { return patches.at(tags_of(mesh, kind)[i]); });
+  });
   out << "ENDDATA\n";
   out.commit();
 }

@@ -8,23 +8,37 @@
 #include <vector>
 
 #include "collarmesh/tet_mesh.h"
+#include "io/cell_nodes.h"
 
 namespace collarmesh::io {
 
 /// Members of each group, by the group's tag.
 using Groups = std::map<Tag, std::vector<Index>>;
 
-/// Returns the nodes of the cells of each tag, numbered from 1, ascending.
-template <class Cells>
-Groups nodes_by_tag(const TetMesh& mesh, const Cells& nodes_of, const std::vector<Tag>& tags) {
+/// Returns the nodes of the cells of a dimension with each tag, numbered from 1, ascending.
+inline Groups nodes_by_tag(const TetMesh& mesh, std::size_t dimension) {
   Groups groups;
-  for (std::size_t i = 0; i < tags.size(); ++i)
-    for (const Index v : nodes_of(mesh, i)) groups[tags[i]].push_back(v + 1);
+  for_each_kind(mesh, dimension, [&](CellKind kind) {
+    const std::vector<Tag>& tags = tags_of(mesh, kind);
+    for (std::size_t i = 0; i < tags.size(); ++i)
+      for (const Index v : nodes_of(kind)(mesh, i)) groups[tags[i]].push_back(v + 1);
+  });
   for (auto& [tag, nodes] : groups) {
     std::sort(nodes.begin(), nodes.end());
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   }
   return groups;
+}
+
+/// Returns the tag of each region.
+inline std::map<Index, Tag> tags_of_regions(const TetMesh& mesh) {
+  std::map<Index, Tag> regions;
+  for_each_kind(mesh, 3, [&](CellKind kind) {
+    const std::vector<Index>& of_cells = features_of(mesh, kind);
+    for (std::size_t i = 0; i < of_cells.size(); ++i)
+      regions.try_emplace(of_cells[i], tags_of(mesh, kind)[i]);
+  });
+  return regions;
 }
 
 /// Numbers the tags from `first`, in their order: for formats whose numbers are positive.

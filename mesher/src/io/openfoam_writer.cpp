@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "collarmesh/error.h"
+#include "io/cell_nodes.h"
 #include "io/face_finder.h"
 #include "io/label_names.h"
 #include "io/node_groups.h"
@@ -24,20 +25,29 @@ namespace collarmesh::io {
 
 namespace {
 
-using Triangle = std::array<Index, 3>;
+/// The cells of volumes are numbered in the order of their kinds.
+std::size_t number_of_cell(const TetMesh& mesh, CellKind kind, std::size_t cell) {
+  return count_before(mesh, kind) + cell;
+}
 
-/// A side of a tet, with its corners as seen from outside, and the tet in front of it, or none.
+/// Corners of a triangle or quadrangle, the smallest first; a triangle's fourth one is `none`.
+using Corners = std::array<Index, 4>;
+
+std::size_t count_corners(const Corners& corners) { return corners[3] == none ? 3 : 4; }
+
+/// A side of a cell, with its corners as seen from outside, and the cell in front of it, or none.
 struct Side {
-  Triangle corners;
+  Corners corners;
   Index owner = none, neighbour = none;
-  Index face = none;  ///< index among the faces of the mesh
+  Index face = none;  ///< index among the triangles or quadrangles of the mesh
+
+  bool is_triangle() const { return corners[3] == none; }
+  std::array<Index, 3> triangle() const { return {corners[0], corners[1], corners[2]}; }
+  CellKind kind() const { return is_triangle() ? CellKind::triangle : CellKind::quadrangle; }
 };
 
-/// Rotates a triangle so that its smallest corner comes first; its orientation stays.
-Triangle turned(Triangle t) {
-  std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
-  return t;
-}
+/// Returns the tag of a side that is a face of the mesh.
+Tag tag_of(const TetMesh& mesh, const Side& side) { return tags_of(mesh, side.kind())[side.face]; }
 
 /// Inner sides by owner and neighbour, then sides on the boundary by tag.
 struct Sides {
@@ -45,13 +55,15 @@ struct Sides {
 
   explicit Sides(const TetMesh& mesh) {
     collect(mesh);
-    FaceFinder finder(mesh.faces);
+    FaceFinder triangles(mesh.faces);
+    PolygonFinder<4> quadrangles(mesh.layers.quads);
     for (auto* sides : {&inside, &outside})
-      for (Side& side : *sides) side.face = finder.find(side.corners);
+      for (Side& side : *sides)
+        side.face = side.is_triangle() ? triangles.find(side.triangle()) : quadrangles.find(side.corners);
     std::sort(inside.begin(), inside.end(), [](const Side& a, const Side& b) {
       return std::pair(a.owner, a.neighbour) < std::pair(b.owner, b.neighbour);
     });
-    const auto tag = [&](const Side& side) { return side.face == none ? Tag{0} : mesh.face_tag[side.face]; };
+    const auto tag = [&](const Side& side) { return side.face == none ? Tag{0} : tag_of(mesh, side); };
     std::stable_sort(outside.begin(), outside.end(),
                      [&](const Side& a, const Side& b) { return tag(a) < tag(b); });
   }
@@ -59,25 +71,38 @@ struct Sides {
  private:
   void collect(const TetMesh& mesh) {
     std::vector<Side> all;
-    all.reserve(4 * mesh.tets.size());
-    constexpr std::array<std::array<std::size_t, 3>, 4> outward{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
-    for (std::size_t t = 0; t < mesh.tets.size(); ++t)
-      for (const auto& [i, j, k] : outward)
-        all.push_back({turned({mesh.tets[t][i], mesh.tets[t][j], mesh.tets[t][k]}), static_cast<Index>(t)});
-    // The two sides of a face come one after the other, the owner's first.
+    all.reserve(4 * mesh.tets.size() + 5 * (mesh.layers.prisms.size() + mesh.layers.pyramids.size()));
+    for_each_kind(mesh, 3, [&](CellKind kind) {
+      for (std::size_t i = 0; i < count_of(mesh, kind); ++i) {
+        const CellNodes nodes = nodes_of(kind)(mesh, i);
+        for (const auto& [count, places] : shape_of(kind).sides) {
+          Corners corners{none, none, none, none};
+          for (std::size_t k = 0; k < count; ++k) corners[k] = nodes[places[k]];
+          const auto end = corners.begin() + static_cast<std::ptrdiff_t>(count);
+          std::rotate(corners.begin(), std::min_element(corners.begin(), end), end);
+          all.push_back({corners, static_cast<Index>(number_of_cell(mesh, kind, i))});
+        }
+      }
+    });
+    pair_up(all);
+  }
+
+  /// Joins the two sides of each face: the owner has the smaller number.
+  void pair_up(std::vector<Side>& all) {
     const auto key = [](const Side& side) {
-      const auto& [a, b, c] = side.corners;
-      return std::array{a, std::min(b, c), std::max(b, c), side.owner};
+      const auto& [a, b, c, d] = side.corners;  // a is the smallest, d often none
+      Corners sorted{a, std::min(b, c), std::max(b, c), d};
+      if (d != none) std::sort(sorted.begin() + 1, sorted.end());
+      return sorted;
     };
-    std::sort(all.begin(), all.end(), [&](const Side& a, const Side& b) { return key(a) < key(b); });
-    const auto alike = [&](std::size_t i) {
-      if (i + 1 == all.size()) return false;
-      const auto a = key(all[i]), b = key(all[i + 1]);
-      return std::equal(a.begin(), a.begin() + 3, b.begin());
-    };
+    std::sort(all.begin(), all.end(), [&](const Side& a, const Side& b) {
+      if (a.corners[0] != b.corners[0]) return a.corners[0] < b.corners[0];
+      const Corners first = key(a), second = key(b);
+      return first != second ? first < second : a.owner < b.owner;
+    });
     for (std::size_t i = 0; i < all.size(); ++i) {
       Side side = all[i];
-      if (alike(i)) side.neighbour = all[++i].owner;
+      if (i + 1 < all.size() && key(all[i]) == key(all[i + 1])) side.neighbour = all[++i].owner;
       (side.neighbour == none ? outside : inside).push_back(side);
     }
   }
@@ -125,7 +150,7 @@ void write_boundary(FileWriter& out, const TetMesh& mesh, const Sides& sides) {
   std::vector<std::string> order;
   for (std::size_t i = 0; i < sides.outside.size(); ++i) {
     const Index face = sides.outside[i].face;
-    const std::string name = face == none ? "untagged" : word_name(mesh, 2, mesh.face_tag[face]);
+    const std::string name = face == none ? "untagged" : word_name(mesh, 2, tag_of(mesh, sides.outside[i]));
     const auto [patch, added] = patches.try_emplace(name, Patch{sides.inside.size() + i, 0});
     if (added) order.push_back(name);
     ++patch->second.count;
@@ -147,7 +172,11 @@ void write_labels(FileWriter& out, const char* what, const std::vector<Index>& l
 
 void write_cell_zones(FileWriter& out, const TetMesh& mesh) {
   Groups zones;
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t) zones[mesh.tet_tag[t]].push_back(static_cast<Index>(t));
+  for_each_kind(mesh, 3, [&](CellKind kind) {
+    const std::vector<Tag>& tags = tags_of(mesh, kind);
+    for (std::size_t i = 0; i < tags.size(); ++i)
+      zones[tags[i]].push_back(static_cast<Index>(number_of_cell(mesh, kind, i)));
+  });
   out << zones.size() << "\n(\n";
   for (const auto& [tag, cells] : zones) {
     out << word_name(mesh, 3, tag) << "\n{\n        type            cellZone;\n";
@@ -157,19 +186,22 @@ void write_cell_zones(FileWriter& out, const TetMesh& mesh) {
   out << ")\n";
 }
 
+bool is_flipped(const TetMesh& mesh, const Side& side) {
+  return side.is_triangle() ? !FaceFinder::alike(mesh.faces[side.face], side.triangle())
+                            : !PolygonFinder<4>::alike(mesh.layers.quads[side.face], side.corners);
+}
+
 /// Writes zones of faces. A face is flipped if its zone's normal points to the owner.
 void write_face_zones(FileWriter& out, const TetMesh& mesh, const Sides& sides) {
   Groups zones;
   for (std::size_t i = 0; i < sides.inside.size(); ++i)
-    if (sides.inside[i].face != none)
-      zones[mesh.face_tag[sides.inside[i].face]].push_back(static_cast<Index>(i));
+    if (sides.inside[i].face != none) zones[tag_of(mesh, sides.inside[i])].push_back(static_cast<Index>(i));
   out << zones.size() << "\n(\n";
   for (const auto& [tag, faces] : zones) {
     out << word_name(mesh, 2, tag) << "\n{\n        type            faceZone;\n";
     write_labels(out, "faceLabels", faces);
     out << fmt::format("        flipMap         List<bool>\n{}\n(\n", faces.size());
-    for (const Index i : faces)
-      out << (FaceFinder::alike(mesh.faces[sides.inside[i].face], sides.inside[i].corners) ? "0\n" : "1\n");
+    for (const Index i : faces) out << (is_flipped(mesh, sides.inside[i]) ? "1\n" : "0\n");
     out << ")\n;\n}\n";
   }
   out << ")\n";
@@ -189,7 +221,7 @@ void write_openfoam(const std::string& path, const TetMesh& mesh) {
     return i < inside ? sides.inside[i] : sides.outside[i - inside];
   };
   const std::string note = fmt::format("nPoints:{} nCells:{} nFaces:{} nInternalFaces:{}", mesh.points.size(),
-                                       mesh.tets.size(), all, inside);
+                                       count_of_dimension(mesh, 3), all, inside);
   List points(folder, "points", "vectorField"), faces(folder, "faces", "faceList"),
       owner(folder, "owner", "labelList", note), neighbour(folder, "neighbour", "labelList", note),
       cell_zones(folder, "cellZones", "regIOobject"), face_zones(folder, "faceZones", "regIOobject"),
@@ -199,8 +231,11 @@ void write_openfoam(const std::string& path, const TetMesh& mesh) {
     text << '(' << p.x << ' ' << p.y << ' ' << p.z << ")\n";
   });
   faces.write(all, [&](TextBuffer& text, std::size_t i) {
-    const auto& [a, b, c] = side(i).corners;
-    text << "3(" << a << ' ' << b << ' ' << c << ")\n";
+    const Corners& corners = side(i).corners;
+    const std::size_t count = count_corners(corners);
+    text << count;
+    for (std::size_t k = 0; k < count; ++k) text << (k == 0 ? '(' : ' ') << corners[k];
+    text << ")\n";
   });
   owner.write(all, [&](TextBuffer& text, std::size_t i) { text << side(i).owner << '\n'; });
   neighbour.write(inside, [&](TextBuffer& text, std::size_t i) { text << side(i).neighbour << '\n'; });

@@ -1,12 +1,14 @@
-// SU2's mesh format (.su2; su2code.github.io/docs_v7/Mesh-File): tetrahedra, points, and a marker for each
-// tag of faces on the boundary. The format has no place for faces inside, regions, edges and second order.
+// SU2's mesh format (.su2; su2code.github.io/docs_v7/Mesh-File): volumes, points, and a marker for each tag
+// of faces on the boundary. The format has no place for faces inside, regions, edges and second order.
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "collarmesh/error.h"
+#include "io/cell_nodes.h"
+#include "io/cell_orientation.h"
 #include "io/label_names.h"
-#include "io/node_groups.h"
 #include "io/tet_mesh_formats.h"
 #include "io/write_each.h"
 
@@ -14,19 +16,37 @@ namespace collarmesh::io {
 
 namespace {
 
-constexpr int tetrahedron = 10, triangle = 5;  // VTK's numbers
+/// VTK's number of a kind of cells.
+constexpr int number_of(CellKind kind) {
+  switch (kind) {
+    case CellKind::tet: return 10;
+    case CellKind::prism: return 13;
+    case CellKind::pyramid: return 14;
+    case CellKind::quadrangle: return 9;
+    default: return 5;
+  }
+}
+
+/// Returns the nodes in VTK's order: the first triangle of a prism turns its normal away from the second one.
+CellNodes vtk_nodes(const TetMesh& mesh, CellKind kind, std::size_t cell) {
+  const CellNodes nodes = nodes_of(kind)(mesh, cell);
+  return kind == CellKind::prism ? turned(kind, nodes) : nodes;
+}
 
 void write_markers(FileWriter& out, const TetMesh& mesh) {
-  Groups markers;
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f)
-    if ((mesh.face_regions[f][0] == 0) != (mesh.face_regions[f][1] == 0))
-      markers[mesh.face_tag[f]].push_back(static_cast<Index>(f));
+  std::map<Tag, std::vector<std::pair<CellKind, Index>>> markers;
+  for_each_kind(mesh, 2, [&](CellKind kind) {
+    for (Index f = 0; f < count_of(mesh, kind); ++f) {
+      const auto& regions = regions_beside(mesh, kind)[f];
+      if ((regions[0] == 0) != (regions[1] == 0)) markers[tags_of(mesh, kind)[f]].emplace_back(kind, f);
+    }
+  });
   out << "NMARK= " << markers.size() << '\n';
   for (const auto& [tag, faces] : markers) {
     out << "MARKER_TAG= " << word_name(mesh, 2, tag) << "\nMARKER_ELEMS= " << faces.size() << '\n';
-    for (const Index f : faces) {
-      out << triangle;
-      for (const Index v : mesh.faces[f]) out << ' ' << v;
+    for (const auto& [kind, f] : faces) {
+      out << number_of(kind);
+      for (const Index v : nodes_of(kind)(mesh, f)) out << ' ' << v;
       out << '\n';
     }
   }
@@ -38,11 +58,14 @@ void write_su2(const std::string& path, const TetMesh& mesh) {
   if (mesh.order() == 2)
     throw WriteError(path + ": SU2's format has no elements of second order; write those of first order");
   FileWriter out(path);
-  out << "% Written by collarmesh.\nNDIME= 3\nNELEM= " << mesh.tets.size() << '\n';
-  write_each(out, mesh.tets.size(), [&](TextBuffer& text, std::size_t i) {
-    text << tetrahedron;
-    for (const Index v : mesh.tets[i]) text << ' ' << v;
-    text << ' ' << i << '\n';
+  out << "% Written by collarmesh.\nNDIME= 3\nNELEM= " << count_of_dimension(mesh, 3) << '\n';
+  for_each_kind(mesh, 3, [&](CellKind kind) {
+    const std::size_t before = count_before(mesh, kind);
+    write_each(out, count_of(mesh, kind), [&](TextBuffer& text, std::size_t i) {
+      text << number_of(kind);
+      for (const Index v : vtk_nodes(mesh, kind, i)) text << ' ' << v;
+      text << ' ' << before + i << '\n';
+    });
   });
   out << "NPOIN= " << mesh.points.size() << '\n';
   write_each(out, mesh.points.size(), [&](TextBuffer& text, std::size_t i) {

@@ -22,7 +22,8 @@ struct TetMeshFormat {
   bool partitions = false;                   ///< has a place for partitions
   void (*write_with_ghost_cells)(const std::string& path, const TetMesh& mesh) = nullptr;
   bool second_order = true;
-  bool surfaces = false;  ///< has a place for meshes of triangles alone, and of curve edges alone
+  bool surfaces = false;    ///< has a place for meshes of triangles alone, and of curve edges alone
+  int order_of_layers = 0;  ///< the highest order of prisms and pyramids; 0: there is no place for them
 };
 
 constexpr TetMeshFormat of_surfaces(TetMeshFormat format) {
@@ -30,28 +31,33 @@ constexpr TetMeshFormat of_surfaces(TetMeshFormat format) {
   return format;
 }
 
+constexpr TetMeshFormat with_layers(TetMeshFormat format, int order = 2) {
+  format.order_of_layers = order;
+  return format;
+}
+
 constexpr std::array tet_mesh_formats{
-    of_surfaces(TetMeshFormat{".vtu", write_vtu, read_vtu, true}),
+    with_layers(of_surfaces(TetMeshFormat{".vtu", write_vtu, read_vtu, true})),
     TetMeshFormat{".pvtu", write_pvtu, read_pvtu, true, write_pvtu_with_ghost_cells},
-    of_surfaces(TetMeshFormat{".vtk", write_vtk, read_vtk, true}),
-    of_surfaces(TetMeshFormat{".msh", write_msh, read_msh, true, write_msh_with_ghost_cells}),
-    of_surfaces(TetMeshFormat{".msh2", write_msh2, read_msh, true}),
-    of_surfaces(TetMeshFormat{".mesh", write_medit, read_medit}),
-    of_surfaces(TetMeshFormat{".inp", write_abaqus, read_abaqus}),
-    of_surfaces(TetMeshFormat{".unv", write_unv, read_unv}),
+    with_layers(of_surfaces(TetMeshFormat{".vtk", write_vtk, read_vtk, true})),
+    with_layers(of_surfaces(TetMeshFormat{".msh", write_msh, read_msh, true, write_msh_with_ghost_cells})),
+    with_layers(of_surfaces(TetMeshFormat{".msh2", write_msh2, read_msh, true})),
+    with_layers(of_surfaces(TetMeshFormat{".mesh", write_medit, read_medit}), 1),
+    with_layers(of_surfaces(TetMeshFormat{".inp", write_abaqus, read_abaqus})),
+    with_layers(of_surfaces(TetMeshFormat{".unv", write_unv, read_unv})),
     TetMeshFormat{".ele", write_tetgen, read_tetgen},
-    TetMeshFormat{".bdf", write_nastran, nullptr},
-    TetMeshFormat{".cdb", write_ansys, nullptr},
-    TetMeshFormat{".mfem", write_mfem, nullptr},
-    TetMeshFormat{".exo", write_exodus, nullptr},
-    TetMeshFormat{".su2", write_su2, nullptr, false, nullptr, false},
-    TetMeshFormat{".polymesh", write_openfoam, nullptr, false, nullptr, false},
+    with_layers(TetMeshFormat{".bdf", write_nastran, nullptr}),
+    with_layers(TetMeshFormat{".cdb", write_ansys, nullptr}),
+    with_layers(TetMeshFormat{".mfem", write_mfem, nullptr}, 1),
+    with_layers(TetMeshFormat{".exo", write_exodus, nullptr}),
+    with_layers(TetMeshFormat{".su2", write_su2, nullptr, false, nullptr, false}, 1),
+    with_layers(TetMeshFormat{".polymesh", write_openfoam, nullptr, false, nullptr, false}, 1),
 #ifdef COLLARMESH_XDMF
     of_surfaces(TetMeshFormat{".xdmf", write_xdmf, read_xdmf, true}),
-    TetMeshFormat{".cgns", write_cgns, nullptr},
+    with_layers(TetMeshFormat{".cgns", write_cgns, nullptr}),
 #endif
 #ifdef COLLARMESH_MED
-    of_surfaces(TetMeshFormat{".med", write_med, read_med, true}),
+    with_layers(of_surfaces(TetMeshFormat{".med", write_med, read_med, true})),
 #endif
 };
 
@@ -78,6 +84,22 @@ std::vector<std::string> extensions(bool (*wanted)(const TetMeshFormat&)) {
 
 }  // namespace
 
+namespace {
+
+/// Rejects prisms and pyramids for which the format has no place.
+void require_place_for_layers(const std::string& path, const TetMesh& mesh, const TetMeshFormat& format) {
+  const LayerCells& layers = mesh.layers;
+  if (layers.prisms.empty() && layers.pyramids.empty() && layers.quads.empty()) return;
+  if (format.order_of_layers < mesh.order())
+    throw WriteError(fmt::format("{}: {} has no place for prisms and pyramids{}; write {}", path,
+                                 format.extension, format.order_of_layers > 0 ? " of second order" : "",
+                                 fmt::join(formats_with_layers(mesh.order()), " ")));
+  if (!mesh.tet_partition.empty())
+    throw WriteError(path + ": a mesh with prisms or pyramids is not written in partitions; leave them out");
+}
+
+}  // namespace
+
 void write_tet_mesh(const std::string& path, const TetMesh& mesh, std::string_view format,
                     GhostCells ghost_cells) {
   const TetMeshFormat* found = find_format(path, format);
@@ -86,6 +108,7 @@ void write_tet_mesh(const std::string& path, const TetMesh& mesh, std::string_vi
     throw WriteError(fmt::format("{}: {} has no place for a mesh of {} alone; write {}", path,
                                  found->extension, mesh.is_curves() ? "lines" : "triangles",
                                  fmt::join(formats_of_surfaces(), " ")));
+  require_place_for_layers(path, mesh, *found);
   const bool with_ghosts = ghost_cells == GhostCells::one_layer;
   if (with_ghosts && found->write_with_ghost_cells == nullptr)
     throw WriteError(
@@ -114,6 +137,11 @@ std::vector<std::string> formats_of_first_order() {
 
 std::vector<std::string> formats_of_surfaces() {
   return extensions([](const TetMeshFormat& format) { return format.surfaces; });
+}
+
+std::vector<std::string> formats_with_layers(int order) {
+  return order == 2 ? extensions([](const TetMeshFormat& format) { return format.order_of_layers >= 2; })
+                    : extensions([](const TetMeshFormat& format) { return format.order_of_layers >= 1; });
 }
 
 std::vector<std::string> formats_with_ghost_cells() {

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -124,22 +126,21 @@ class UnvReader {
     const auto* known =
         std::find_if(unv_types.begin(), unv_types.end(), [&](const UnvType& t) { return t.number == type; });
     if (known == unv_types.end() || known->nodes != count)
-      scan_.fail(
-          fmt::format("elements of type {} with {} nodes are not supported, only tetrahedra (111, 118), "
-                      "triangles (91, 92, 41, 42) and lines (21, 24, 11)",
-                      type, count));
-    std::array<Index, 10> nodes{};
-    for (std::size_t k = 0; k < count; ++k) nodes[known->order[k]] = read_node();
-    CellNodes cell;
-    for (std::size_t k = 0; k < count; ++k) cell.add(nodes[k]);
-    if (known->dimension == 3)
-      add_tet(cell, mesh_);
-    else if (known->dimension == 2)
-      add_face(cell, mesh_);
-    else
-      add_edge(cell, mesh_);
+      scan_.fail(fmt::format(
+          "elements of type {} with {} nodes are not supported, only tetrahedra (111, 118), prisms "
+          "(112, 113), triangles (91, 92, 41, 42), quadrangles (94, 95, 44, 45) and lines (21, 24, "
+          "11)",
+          type, count));
+    std::array<Index, 20> listed{};
+    for (std::size_t k = 0; k < count; ++k) listed[k] = read_node();
+    const std::optional<CellNodes> nodes =
+        CellNodes::gathered(std::span(listed).first(count), known->node_order());
+    if (!nodes)
+      scan_.fail(fmt::format("element {} is a brick, which is not supported, unless its upper nodes are one",
+                             number));
+    add_cell(known->kind, *nodes, mesh_);
     element_numbers_.add(number);
-    elements_.push_back({known->dimension, material, 0, false});
+    elements_.push_back({known->kind, material, 0, false});
   }
 
   Index read_node() {
@@ -175,10 +176,12 @@ class UnvReader {
     std::int64_t element;
   };
   struct Element {
-    std::size_t dimension;
+    CellKind kind;
     std::int64_t material;
     Tag tag;
     bool tagged;
+
+    std::size_t dimension() const { return shape_of(kind).dimension; }
   };
 
   std::size_t name_index(const std::string& name) {
@@ -196,23 +199,20 @@ class UnvReader {
       if (found == none || elements_[found].tagged) continue;
       Element& element = elements_[found];
       element.tagged = true;
-      element.tag = tags.find(element.dimension, names_[group]);
-      if (names_[group] != group_name(GroupNames::complex, element.dimension, element.tag))
-        mesh_.names.set(element.dimension, element.tag, names_[group]);
+      element.tag = tags.find(element.dimension(), names_[group]);
+      if (names_[group] != group_name(GroupNames::complex, element.dimension(), element.tag))
+        mesh_.names.set(element.dimension(), element.tag, names_[group]);
     }
     bool by_material = true;
     for (const Element& element : elements_) {
-      const Tag tag = members_.empty() ? element.material : element.tag;
-      if (element.dimension == 3) {
-        mesh_.tet_tag.push_back(tag);
+      tags_of(mesh_, element.kind).push_back(members_.empty() ? element.material : element.tag);
+      if (element.dimension() == 3)
         by_material = by_material && element.material > 0 && element.material < none;
-      } else {
-        (element.dimension == 2 ? mesh_.face_tag : mesh_.edge_tag).push_back(tag);
-      }
     }
     if (!by_material) return;
     for (const Element& element : elements_)
-      if (element.dimension == 3) mesh_.tet_region.push_back(static_cast<Index>(element.material));
+      if (element.dimension() == 3)
+        features_of(mesh_, element.kind).push_back(static_cast<Index>(element.material));
   }
 
   const std::string& path_;

@@ -1,5 +1,5 @@
 // The universal file format of I-DEAS (.unv): nodes (2411), elements (2412) and groups (2467). The
-// material of a tet is its region; groups are named as in label_names.h.
+// material of a volume is its region; groups are named as in label_names.h.
 #include <fmt/format.h>
 
 #include <iterator>
@@ -39,9 +39,9 @@ void write_nodes(FileWriter& out, const TetMesh& mesh) {
   end_dataset(out);
 }
 
-const UnvType& type_of(std::size_t dimension, std::size_t nodes) {
+const UnvType& type_of(CellKind kind, int order) {
   for (const UnvType& type : unv_types)
-    if (type.dimension == dimension && type.nodes == nodes) return type;
+    if (type.kind == kind && type.order == order) return type;
   return unv_types.front();
 }
 
@@ -49,21 +49,22 @@ class ElementWriter {
  public:
   ElementWriter(FileWriter& out, const TetMesh& mesh) : out_(out), mesh_(mesh) {}
 
-  template <class NodesOf>
-  void write(std::size_t dimension, const std::vector<Tag>& tags, const std::vector<Index>* materials,
-             NodesOf nodes_of) {
+  void write(CellKind kind) {
+    const UnvType& type = type_of(kind, mesh_.order());
+    const std::size_t dimension = shape_of(kind).dimension;
+    const std::vector<Tag>& tags = tags_of(mesh_, kind);
     for (std::size_t i = 0; i < tags.size(); ++i) {
-      const CellNodes nodes = nodes_of(mesh_, i);
-      const UnvType& type = type_of(dimension, nodes.size());
-      const Index material = materials != nullptr ? (*materials)[i] : 1;
+      const Index material = dimension == 3 ? features_of(mesh_, kind)[i] : 1;
       line_.clear();
       fmt::format_to(std::back_inserter(line_), "{:10}{:10}{:10}{:10}{:10}{:10}\n", ++count_, type.number,
-                     material, material, 7, nodes.size());
+                     material, material, 7, type.nodes);
       if (unv_is_beam(type.number)) line_ += "         0         1         1\n";
       std::size_t on_line = 0;
-      for (const Index v : nodes.in_order({type.order.data(), type.nodes})) {
-        if (on_line++ == 8) line_ += '\n';
-        fmt::format_to(std::back_inserter(line_), "{:10}", v + 1);
+      const CellNodes nodes = nodes_of(kind)(mesh_, i);
+      for (const std::uint8_t k : type.node_order()) {
+        if (on_line == 8) line_ += '\n';
+        on_line = on_line == 8 ? 1 : on_line + 1;
+        fmt::format_to(std::back_inserter(line_), "{:10}", nodes[k] + 1);
       }
       out_ << line_ << '\n';
       groups_[{dimension, tags[i]}].push_back(count_);
@@ -103,9 +104,7 @@ void write_unv(const std::string& path, const TetMesh& mesh) {
   write_nodes(out, mesh);
   begin_dataset(out, unv_elements);
   ElementWriter elements(out, mesh);
-  elements.write(3, mesh.tet_tag, &mesh.tet_region, nodes_of_tet);
-  elements.write(2, mesh.face_tag, nullptr, nodes_of_face);
-  elements.write(1, mesh.edge_tag, nullptr, nodes_of_edge);
+  for (const CellKind kind : all_cell_kinds) elements.write(kind);
   end_dataset(out);
   elements.write_groups();
   out.commit();

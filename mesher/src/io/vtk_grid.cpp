@@ -7,6 +7,7 @@
 #include <deque>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <span>
 
 #include "common/large_pages.h"
@@ -20,25 +21,51 @@ namespace collarmesh::io {
 
 namespace {
 
-constexpr std::uint8_t vtk_vertex = 1, vtk_line = 3, vtk_triangle = 5, vtk_tet = 10, vtk_line_2 = 21,
-                       vtk_triangle_2 = 22, vtk_tet_2 = 24;
+constexpr std::int64_t vtk_vertex = 1;
 
-std::size_t cell_count(const TetMesh& mesh) {
-  return mesh.tets.size() + mesh.faces.size() + mesh.edges.size();
+/// VTK's types of a kind of cells, by order.
+struct VtkKind {
+  CellKind kind;
+  std::array<std::uint8_t, 2> types;
+};
+constexpr std::array<VtkKind, cell_kinds> vtk_kinds{{{CellKind::tet, {10, 24}},
+                                                     {CellKind::prism, {13, 26}},
+                                                     {CellKind::pyramid, {14, 27}},
+                                                     {CellKind::triangle, {5, 22}},
+                                                     {CellKind::quadrangle, {9, 23}},
+                                                     {CellKind::edge, {3, 21}}}};
+
+/// Our node at each place of VTK's wedges, whose first triangle turns its normal away from the second one.
+constexpr std::array<std::uint8_t, 15> wedge_order{0, 2, 1, 3, 5, 4, 8, 7, 6, 11, 10, 9, 12, 14, 13};
+
+std::span<const std::uint8_t> vtk_order(CellKind kind, std::size_t nodes) {
+  if (kind != CellKind::prism) return {};
+  return std::span(wedge_order).first(nodes);
 }
 
-/// Makes one value per cell, by functions for each kind of cell.
-template <class T, class OfTet, class OfFace, class OfEdge>
-std::vector<T> per_cell(const TetMesh& mesh, OfTet of_tet, OfFace of_face, OfEdge of_edge) {
+std::size_t cell_count(const TetMesh& mesh) {
+  std::size_t count = 0;
+  for (const CellKind kind : all_cell_kinds) count += count_of(mesh, kind);
+  return count;
+}
+
+/// Makes one value per cell.
+template <class T, class OfCell>
+std::vector<T> per_cell(const TetMesh& mesh, const OfCell& of_cell) {
   std::vector<T> values;
   reserve_in_large_pages(values, cell_count(mesh));
-  for (std::size_t i = 0; i < mesh.tets.size(); ++i) values.push_back(static_cast<T>(of_tet(i)));
-  for (std::size_t i = 0; i < mesh.faces.size(); ++i) values.push_back(static_cast<T>(of_face(i)));
-  for (std::size_t i = 0; i < mesh.edges.size(); ++i) values.push_back(static_cast<T>(of_edge(i)));
+  for (const CellKind kind : all_cell_kinds)
+    for (std::size_t i = 0; i < count_of(mesh, kind); ++i) values.push_back(static_cast<T>(of_cell(kind, i)));
   return values;
 }
 
-constexpr auto zero = [](std::size_t) { return 0; };
+/// Returns the value of a tet, and 0 for other cells.
+template <class Values>
+auto of_tets(const Values& values) {
+  return [&values](CellKind kind, std::size_t i) {
+    return kind == CellKind::tet ? values[i] : typename Values::value_type{0};
+  };
+}
 
 /// Replaces infinity, which not all programs accept.
 float finite(double value) {
@@ -77,10 +104,9 @@ class GridMaker {
     array.name = name;
     tasks_.emplace_back([&array, values] { array.values = values(); });
   }
-  template <class T, class OfTet, class OfFace, class OfEdge>
-  void add_cell_data(std::string_view name, OfTet of_tet, OfFace of_face, OfEdge of_edge) {
-    add(cell_data_.emplace_back(), name,
-        [this, of_tet, of_face, of_edge] { return per_cell<T>(mesh_, of_tet, of_face, of_edge); });
+  template <class T, class OfCell>
+  void add_cell_data(std::string_view name, OfCell of_cell) {
+    add(cell_data_.emplace_back(), name, [this, of_cell] { return per_cell<T>(mesh_, of_cell); });
   }
 
   std::vector<double> coordinates() const {
@@ -92,31 +118,30 @@ class GridMaker {
 
   std::vector<std::int32_t> connectivity() const {
     std::vector<std::int32_t> values;
-    const auto add_nodes = [&](const CellNodes& nodes) {
-      values.insert(values.end(), nodes.begin(), nodes.end());
-    };
-    reserve_in_large_pages(values, 4 * mesh_.tets.size() + 3 * mesh_.faces.size() + 2 * mesh_.edges.size());
-    for (std::size_t i = 0; i < mesh_.tets.size(); ++i) add_nodes(nodes_of_tet(mesh_, i));
-    for (std::size_t i = 0; i < mesh_.faces.size(); ++i) add_nodes(nodes_of_face(mesh_, i));
-    for (std::size_t i = 0; i < mesh_.edges.size(); ++i) add_nodes(nodes_of_edge(mesh_, i));
+    std::size_t corners = 0;
+    for (const CellKind kind : all_cell_kinds) corners += shape_of(kind).corners * count_of(mesh_, kind);
+    reserve_in_large_pages(values, corners);
+    for (const CellKind kind : all_cell_kinds) {
+      const std::span<const std::uint8_t> order = vtk_order(kind, shape_of(kind).nodes(mesh_.order()));
+      for (std::size_t i = 0; i < count_of(mesh_, kind); ++i) {
+        const CellNodes nodes = nodes_of(kind)(mesh_, i).in_order(order);
+        values.insert(values.end(), nodes.begin(), nodes.end());
+      }
+    }
     return values;
   }
 
   std::vector<std::int64_t> offsets() const {
-    std::int64_t end = 0;
-    const bool second = mesh_.order() == 2;
+    std::size_t end = 0;
     return per_cell<std::int64_t>(
-        mesh_, [&](std::size_t) { return end += second ? 10 : 4; },
-        [&](std::size_t) { return end += second ? 6 : 3; },
-        [&](std::size_t) { return end += second ? 3 : 2; });
+        mesh_, [&](CellKind kind, std::size_t) { return end += shape_of(kind).nodes(mesh_.order()); });
   }
 
   std::vector<std::uint8_t> types() const {
-    const bool second = mesh_.order() == 2;
-    return per_cell<std::uint8_t>(
-        mesh_, [=](std::size_t) { return second ? vtk_tet_2 : vtk_tet; },
-        [=](std::size_t) { return second ? vtk_triangle_2 : vtk_triangle; },
-        [=](std::size_t) { return second ? vtk_line_2 : vtk_line; });
+    const std::size_t second = mesh_.order() == 2 ? 1 : 0;
+    return per_cell<std::uint8_t>(mesh_, [&](CellKind kind, std::size_t) {
+      return vtk_kinds[static_cast<std::size_t>(kind)].types[second];
+    });
   }
 
   void add_features() {
@@ -134,34 +159,39 @@ class GridMaker {
     });
   }
 
+  /// The regions behind and in front of a face; of a cell of a volume both its region.
+  Index region_beside(CellKind kind, std::size_t i, std::size_t side) const {
+    const std::size_t dimension = shape_of(kind).dimension;
+    if (dimension == 3) return features_of(mesh_, kind)[i];
+    return dimension == 2 ? regions_beside(mesh_, kind)[i][side] : 0;
+  }
+
   void add_labels() {
-    const auto tet_region = [this](std::size_t i) { return mesh_.tet_region[i]; };
-    const auto back = [this](std::size_t i) { return mesh_.face_regions[i][0]; };
-    const auto front = [this](std::size_t i) { return mesh_.face_regions[i][1]; };
-    const auto either = [=](std::size_t i) { return back(i) != 0 ? back(i) : front(i); };
-    add_cell_data<std::int32_t>("region", tet_region, either, zero);
-    add_cell_data<std::int32_t>("region_back", tet_region, back, zero);
-    add_cell_data<std::int32_t>("region_front", tet_region, front, zero);
-    add_cell_data<std::int64_t>(
-        "tag", [this](std::size_t i) { return mesh_.tet_tag[i]; },
-        [this](std::size_t i) { return mesh_.face_tag[i]; },
-        [this](std::size_t i) { return mesh_.edge_tag[i]; });
-    add_cell_data<std::int32_t>(
-        "feature", [](std::size_t) { return -1; }, [this](std::size_t i) { return mesh_.face_patch[i]; },
-        [this](std::size_t i) { return mesh_.edge_curve[i]; });
-    add_cell_data<std::uint8_t>(
-        "collar", [this](std::size_t i) { return mesh_.tet_collar[i]; }, zero, zero);
-    add_cell_data<std::int64_t>(
-        "crease", [this](std::size_t i) { return mesh_.tet_crease[i]; }, zero, zero);
-    if (!mesh_.tet_thin.empty())
-      add_cell_data<std::uint8_t>(
-          "thin", [this](std::size_t i) { return mesh_.tet_thin[i]; }, zero, zero);
+    add_cell_data<std::int32_t>("region", [this](CellKind kind, std::size_t i) {
+      const Index back = region_beside(kind, i, 0);
+      return back != 0 ? back : region_beside(kind, i, 1);
+    });
+    add_cell_data<std::int32_t>("region_back",
+                                [this](CellKind kind, std::size_t i) { return region_beside(kind, i, 0); });
+    add_cell_data<std::int32_t>("region_front",
+                                [this](CellKind kind, std::size_t i) { return region_beside(kind, i, 1); });
+    add_cell_data<std::int64_t>("tag",
+                                [this](CellKind kind, std::size_t i) { return tags_of(mesh_, kind)[i]; });
+    add_cell_data<std::int32_t>("feature", [this](CellKind kind, std::size_t i) {
+      return shape_of(kind).dimension == 3 ? none : features_of(mesh_, kind)[i];
+    });
+    add_cell_data<std::uint8_t>("collar", of_tets(mesh_.tet_collar));
+    add_cell_data<std::int64_t>("crease", of_tets(mesh_.tet_crease));
+    if (!mesh_.tet_thin.empty()) add_cell_data<std::uint8_t>("thin", of_tets(mesh_.tet_thin));
+    if (!mesh_.layers.empty())
+      add_cell_data<std::int32_t>("layer",
+                                  [this](CellKind kind, std::size_t i) { return layer_of(mesh_, kind, i); });
     if (mesh_.tet_partition.empty()) return;
     add(cell_data_.emplace_back(), "partition", [this] {
       const std::vector<Index> faces = partitions_of_faces(mesh_), edges = partitions_of_edges(mesh_);
-      return per_cell<std::int32_t>(
-          mesh_, [&](std::size_t i) { return mesh_.tet_partition[i]; },
-          [&](std::size_t i) { return faces[i]; }, [&](std::size_t i) { return edges[i]; });
+      return per_cell<std::int32_t>(mesh_, [&](CellKind kind, std::size_t i) {
+        return kind == CellKind::tet ? mesh_.tet_partition[i] : kind == CellKind::edge ? edges[i] : faces[i];
+      });
     });
   }
 
@@ -200,25 +230,25 @@ class GridMaker {
 // Reading
 
 /// The cells of one piece by kind, as positions in its arrays.
-struct CellKinds {
-  std::vector<std::size_t> tets, faces, edges;
+using CellKinds = std::array<std::vector<std::size_t>, cell_kinds>;
+
+/// What a type of VTK's cells is for us.
+struct ReadType {
+  std::size_t nodes = 1;
+  std::optional<CellKind> kind;  ///< nothing: a point, which is skipped
 };
 
-std::size_t nodes_of_type(std::size_t cell, std::int64_t type) {
-  switch (type) {
-    case vtk_vertex: return 1;
-    case vtk_line: return 2;
-    case vtk_triangle:
-    case vtk_line_2: return 3;
-    case vtk_tet: return 4;
-    case vtk_triangle_2: return 6;
-    case vtk_tet_2: return 10;
-    default:
-      throw VtkPieceError{
-          "types", fmt::format("cell {} has the type {}, which is not supported, only tetrahedra (10, 24), "
-                               "triangles (5, 22) and lines (3, 21)",
-                               cell, type)};
-  }
+ReadType find_type(std::size_t cell, std::int64_t type) {
+  if (type == vtk_vertex) return {};
+  for (const auto& [kind, types] : vtk_kinds)
+    for (const int order : {1, 2})
+      if (types[static_cast<std::size_t>(order) - 1] == type) return {shape_of(kind).nodes(order), kind};
+  throw VtkPieceError{
+      "types",
+      fmt::format(
+          "cell {} has the type {}, which is not supported, only tetrahedra (10, 24), prisms (13, 26), "
+          "pyramids (14, 27), triangles (5, 22), quadrangles (9, 23) and lines (3, 21)",
+          cell, type)};
 }
 
 CellNodes read_nodes(const VtkPiece& piece, std::size_t cell, std::span<const std::int64_t> corners,
@@ -233,32 +263,23 @@ CellNodes read_nodes(const VtkPiece& piece, std::size_t cell, std::span<const st
   return nodes;
 }
 
-void add_cell(std::int64_t type, const CellNodes& nodes, std::size_t cell, TetMesh& mesh, CellKinds& kinds) {
-  if (type == vtk_tet || type == vtk_tet_2) {
-    add_tet(nodes, mesh);
-    kinds.tets.push_back(cell);
-  } else if (type == vtk_triangle || type == vtk_triangle_2) {
-    add_face(nodes, mesh);
-    kinds.faces.push_back(cell);
-  } else if (type == vtk_line || type == vtk_line_2) {
-    add_edge(nodes, mesh);
-    kinds.edges.push_back(cell);
-  }
-}
-
 CellKinds add_cells(const VtkPiece& piece, std::size_t first_point, TetMesh& mesh) {
   CellKinds kinds;
   const auto corner_count = static_cast<std::int64_t>(piece.connectivity.size());
   std::int64_t begin = 0;
   for (std::size_t i = 0; i < piece.types.size(); ++i) {
-    const std::size_t n = nodes_of_type(i, piece.types[i]);
+    const ReadType type = find_type(i, piece.types[i]);
     if (piece.ends[i] < begin || piece.ends[i] > corner_count ||
-        piece.ends[i] - begin != static_cast<std::int64_t>(n))
+        piece.ends[i] - begin != static_cast<std::int64_t>(type.nodes))
       throw VtkPieceError{"types",
                           fmt::format("cell {} of type {} ends at {} of {} corners, but begins at {}", i,
                                       piece.types[i], piece.ends[i], corner_count, begin)};
     const auto* first = piece.connectivity.data() + begin;
-    add_cell(piece.types[i], read_nodes(piece, i, {first, n}, first_point), i, mesh, kinds);
+    const CellNodes nodes = read_nodes(piece, i, {first, type.nodes}, first_point);
+    if (type.kind) {
+      add_cell(*type.kind, nodes.from_order(vtk_order(*type.kind, type.nodes)), mesh);
+      kinds[static_cast<std::size_t>(*type.kind)].push_back(i);
+    }
     begin = piece.ends[i];
   }
   if (begin != corner_count)
@@ -282,31 +303,35 @@ const std::vector<std::int64_t>& find_array(const VtkPiece::Arrays& arrays,
   return nothing;
 }
 
+bool all_below(const std::vector<std::int64_t>& values, std::int64_t limit) {
+  return std::all_of(values.begin(), values.end(), [=](std::int64_t v) { return v >= 0 && v < limit; });
+}
+
 void add_read_labels(const VtkPiece& piece, const CellKinds& kinds, TetMesh& mesh) {
   const auto find = [&](std::initializer_list<std::string_view> names) -> const auto& {
     return find_array(piece.cell_data, names);
   };
-  const auto& tags = find({"tag", "gmsh:physical", "medit:ref", "CellEntityIds", "region"});
-  pick(tags, kinds.tets, mesh.tet_tag);
-  pick(tags, kinds.faces, mesh.face_tag);
-  pick(tags, kinds.edges, mesh.edge_tag);
-  const auto& regions = find({"region"});
-  if (std::all_of(regions.begin(), regions.end(), [](std::int64_t r) { return r >= 0 && r < none; }))
-    pick(regions, kinds.tets, mesh.tet_region);
-  pick(find({"collar"}), kinds.tets, mesh.tet_collar);
-  pick(find({"crease"}), kinds.tets, mesh.tet_crease);
-  pick(find({"thin"}), kinds.tets, mesh.tet_thin);
+  const auto &tags = find({"tag", "gmsh:physical", "medit:ref", "CellEntityIds", "region"}),
+             &regions = find({"region"}), &features = find({"feature"}), &layers = find({"layer"}),
+             &back = find({"region_back"}), &front = find({"region_front"});
+  for (const CellKind kind : all_cell_kinds) {
+    const std::vector<std::size_t>& cells = kinds[static_cast<std::size_t>(kind)];
+    const std::size_t dimension = shape_of(kind).dimension;
+    pick(tags, cells, tags_of(mesh, kind));
+    if (dimension < 3 || all_below(regions, none))
+      pick(dimension == 3 ? regions : features, cells, features_of(mesh, kind));
+    if (dimension == 3 && all_below(layers, most_layers)) pick(layers, cells, layers_of(mesh, kind));
+    if (dimension == 2 && !back.empty() && !front.empty())
+      for (const std::size_t cell : cells)
+        regions_beside(mesh, kind)
+            .push_back({static_cast<Index>(back[cell]), static_cast<Index>(front[cell])});
+  }
+  const std::vector<std::size_t>& tets = kinds[static_cast<std::size_t>(CellKind::tet)];
+  pick(find({"collar"}), tets, mesh.tet_collar);
+  pick(find({"crease"}), tets, mesh.tet_crease);
+  pick(find({"thin"}), tets, mesh.tet_thin);
   const auto& partitions = find({"partition"});
-  if (std::all_of(partitions.begin(), partitions.end(),
-                  [](std::int64_t p) { return p >= 0 && p < most_partitions; }))
-    pick(partitions, kinds.tets, mesh.tet_partition);
-  const auto& features = find({"feature"});
-  pick(features, kinds.faces, mesh.face_patch);
-  pick(features, kinds.edges, mesh.edge_curve);
-  const auto &back = find({"region_back"}), &front = find({"region_front"});
-  if (!back.empty() && !front.empty())
-    for (const std::size_t cell : kinds.faces)
-      mesh.face_regions.push_back({static_cast<Index>(back[cell]), static_cast<Index>(front[cell])});
+  if (all_below(partitions, most_partitions)) pick(partitions, tets, mesh.tet_partition);
 }
 
 void add_read_features(const VtkPiece& piece, TetMesh& mesh) {
@@ -343,7 +368,10 @@ std::string names_of(const std::vector<std::int64_t>& bytes) {
 }
 
 std::vector<VtkArray> take_boundary(const TetMesh& mesh, VtkGrid& grid) {
-  const std::size_t tets = mesh.tets.size(), corners = tets * (mesh.order() == 2 ? 10 : 4);
+  const std::size_t volumes = count_of_dimension(mesh, 3);
+  std::size_t corners = 0;
+  for_each_kind(mesh, 3,
+                [&](CellKind kind) { corners += count_of(mesh, kind) * shape_of(kind).nodes(mesh.order()); });
   const auto name_of = [](const VtkArray& array) { return std::string(vtk_boundary_prefix) + array.name; };
   std::vector<VtkArray> boundary;
   // Cuts an array and returns the part behind the cut.
@@ -360,14 +388,14 @@ std::vector<VtkArray> take_boundary(const TetMesh& mesh, VtkGrid& grid) {
   };
   boundary.push_back({std::string(vtk_boundary_prefix) + "of",
                       std::vector<std::int64_t>{static_cast<std::int64_t>(mesh.points.size()),
-                                                static_cast<std::int64_t>(tets)}});
+                                                static_cast<std::int64_t>(volumes)}});
   boundary.push_back(cut(grid.connectivity, corners));
-  boundary.push_back(cut(grid.offsets, tets));
+  boundary.push_back(cut(grid.offsets, volumes));
   for (auto& end : std::get<std::vector<std::int64_t>>(boundary.back().values))
     end -= static_cast<std::int64_t>(corners);
-  boundary.push_back(cut(grid.types, tets));
+  boundary.push_back(cut(grid.types, volumes));
   for (VtkArray& array : grid.cell_data) {
-    VtkArray rest = cut(array, tets);
+    VtkArray rest = cut(array, volumes);
     if (std::find(vtk_boundary_arrays.begin(), vtk_boundary_arrays.end(), array.name) !=
         vtk_boundary_arrays.end())
       boundary.push_back(std::move(rest));
@@ -375,7 +403,7 @@ std::vector<VtkArray> take_boundary(const TetMesh& mesh, VtkGrid& grid) {
   std::erase_if(grid.cell_data, [](const VtkArray& array) {
     return array.name == "region_back" || array.name == "region_front" || array.name == "feature";
   });
-  grid.cell_count = tets;
+  grid.cell_count = volumes;
   for (VtkArray& names : names_array(mesh)) boundary.push_back(std::move(names));
   return boundary;
 }
@@ -393,17 +421,17 @@ void add_vtk_piece(const VtkPiece& piece, TetMesh& mesh) {
 
 void complete_vtk_mesh(const std::string& path, TetMesh& mesh) {
   drop_partial(mesh.features, mesh.points.size());
-  drop_partial(mesh.tet_tag, mesh.tets.size());
-  drop_partial(mesh.tet_region, mesh.tets.size());
+  for (const CellKind kind : all_cell_kinds) {
+    const std::size_t count = count_of(mesh, kind), dimension = shape_of(kind).dimension;
+    drop_partial(tags_of(mesh, kind), count);
+    drop_partial(features_of(mesh, kind), count);
+    if (dimension == 3) drop_partial(layers_of(mesh, kind), count);
+    if (dimension == 2) drop_partial(regions_beside(mesh, kind), count);
+  }
   drop_partial(mesh.tet_collar, mesh.tets.size());
   drop_partial(mesh.tet_crease, mesh.tets.size());
   drop_partial(mesh.tet_thin, mesh.tets.size());
   drop_partial(mesh.tet_partition, mesh.tets.size());
-  drop_partial(mesh.face_tag, mesh.faces.size());
-  drop_partial(mesh.face_patch, mesh.faces.size());
-  drop_partial(mesh.face_regions, mesh.faces.size());
-  drop_partial(mesh.edge_tag, mesh.edges.size());
-  drop_partial(mesh.edge_curve, mesh.edges.size());
   complete_mesh(path, mesh);
 }
 

@@ -21,15 +21,17 @@ struct VtkArray {
   int components = 1;
 };
 
-/// Cells: tets, then faces, then curve edges. Cell arrays, each defined for all of them:
-///   region                    of a tet; of a face the one behind it, or in front if none is behind
-///   region_back, region_front of a face: TetMesh::face_regions; of a tet both its region
+/// Cells: those of volumes (tets, prisms, pyramids), then faces (triangles, quadrangles), then curve edges.
+/// Cell arrays, each defined for all of them:
+///   region                    of a volume; of a face the one behind it, or in front if none is behind
+///   region_back, region_front of a face: TetMesh::face_regions; of a volume both its region
 ///   tag                       of the region, patch or curve
-///   feature                   index of the patch or curve in the complex; -1: unknown or a tet
-///   collar, crease            TetMesh::tet_collar, TetMesh::tet_crease; 0 for faces and edges
-///   thin                      TetMesh::tet_thin, if there is any; 0 for faces and edges
+///   feature                   index of the patch or curve in the complex; -1: unknown or a volume
+///   collar, crease            TetMesh::tet_collar, TetMesh::tet_crease; 0 for other cells
+///   thin                      TetMesh::tet_thin, if there is any; 0 for other cells
+///   layer                     of a volume, if the mesh has layers; 0 for other cells
 ///   partition                 TetMesh::tet_partition, if there is any; of faces and edges: cell_partitions.h
-///   radius_edge, min_dihedral, max_dihedral   of tets; 0 for faces and edges
+///   radius_edge, min_dihedral, max_dihedral   of tets; 0 for other cells
 /// Point arrays, if features are known: feature_dimension, feature.
 struct VtkGrid {
   VtkArray points, connectivity, offsets, types;  ///< offsets: where each cell ends
@@ -43,9 +45,9 @@ VtkGrid make_vtk_grid(const TetMesh& mesh);
 constexpr std::string_view vtk_point_ids = "GlobalPointIds", vtk_cell_ids = "GlobalCellIds",
                            vtk_ghosts = "vtkGhostType";
 
-/// Keeps only the tets as cells and moves the other cells to data of the whole grid, so that views that cut
-/// or select cells show the volume alone. The arrays are named `boundary_` and the name of the cell array
-/// that they continue; `boundary_of` has the numbers of points and tets, so that a reader can tell whether
+/// Keeps only the cells of volumes and moves the other cells to data of the whole grid, so that views that
+/// cut or select cells show the volume alone. The arrays are named `boundary_` and the name of the cell array
+/// that they continue; `boundary_of` has the numbers of points and cells, so that a reader can tell whether
 /// these were changed. Cell arrays that only concern faces and edges are removed. The names of groups are
 /// added, too.
 std::vector<VtkArray> take_boundary(const TetMesh& mesh, VtkGrid& grid);
@@ -79,9 +81,10 @@ struct VtkPiece {
 
 /// Arrays with labels of a mesh: ours, and the names that meshio and Gmsh use.
 constexpr std::array<std::string_view, 3> vtk_point_arrays{"feature_dimension", "feature", vtk_point_ids};
-constexpr std::array<std::string_view, 14> vtk_cell_arrays{
-    "tag",     "gmsh:physical", "medit:ref", "CellEntityIds", "region",    "region_back", "region_front",
-    "feature", "collar",        "crease",    "thin",          "partition", vtk_cell_ids,  vtk_ghosts};
+constexpr std::array<std::string_view, 15> vtk_cell_arrays{
+    "tag",         "gmsh:physical", "medit:ref", "CellEntityIds", "region",
+    "region_back", "region_front",  "feature",   "collar",        "crease",
+    "thin",        "layer",         "partition", vtk_cell_ids,    vtk_ghosts};
 
 /// Reads the pieces of a .vtu file, each with the faces and edges beside its cells. Throws ReadError.
 std::vector<VtkPiece> read_vtu_pieces(const std::string& path);

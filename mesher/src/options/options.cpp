@@ -125,6 +125,16 @@ void require_consistent(const RunOptions& o) {
           fmt::format("size-min {} exceeds size {}; make it smaller", o.mesh.size_min, o.mesh.size));
   require(o.split.any() || (o.split.interaction == Interaction::free && !o.split.cohesive),
           "interaction and cohesive are for patches that are split; add split or keep-apart");
+  require(o.layers.any() || !o.layers.tets, "layers-tets is for layers; add layers, or leave it out");
+  require(!o.layers.any() || o.dimension == 3,
+          "layers are for meshes of solids; leave them out, or dimension");
+  require(!o.layers.any() || !o.split.any(),
+          "layers and split change the nodes on the same faces; leave one of them out");
+  require(!o.layers.any() || !o.periodic.any(),
+          "layers would move nodes of periodic faces away from their images; leave one of them out");
+  require(!o.layers.any() || o.layers.tets || o.partitions == 0,
+          "partitions are of tetrahedra; add layers-tets, or leave partitions out");
+  read_walls(o.layers);
   require(!o.split.any() || !o.periodic.any(),
           "split and keep-apart would give nodes on periodic faces copies without images; leave one of them "
           "and periodic out");

@@ -322,6 +322,19 @@ std::vector<Option> split_options() {
        .commands = Option::mesh}};
 }
 
+std::vector<Option> layer_options() {
+  return {
+      {.name = "layers FACES",
+       .place = at<&RunOptions::layers, &LayerOptions::walls>,
+       .help = "Put layers of prisms on these faces: names or numbers with commas between them, or all; with "
+               "heights behind: FACES:first=0.1,growth=1.2,count=3 or FACES:thickness=0.5,count=3",
+       .details = "the first height is a tenth of the edges there unless given; see "
+                  "[Boundary layers](layers.md)"},
+      {.name = "layers-tets",
+       .place = at<&RunOptions::layers, &LayerOptions::tets>,
+       .help = "Divide the prisms and pyramids of layers into tetrahedra"}};
+}
+
 std::vector<Option> periodic_options() {
   return {{.name = "periodic PAIR",
            .place = at<&RunOptions::periodic, &PeriodicOptions::pairs>,
@@ -524,6 +537,7 @@ std::vector<Option> made_table() {
   append(table, quality_options(), quality_group, meshing);
   append(table, element_options(), "Elements", sizing);
   append(table, split_options(), "Sides of their own (contact, cracks)", Option::mesh | Option::programs);
+  append(table, layer_options(), "Boundary layers", Option::mesh | Option::programs);
   append(table, periodic_options(), "Periodic faces (representative cells)", Option::mesh | Option::programs);
   append(table, partition_options(), partitions_group, meshing);
   append(table, complex_options(), complex_group, everywhere);

@@ -42,6 +42,7 @@ void MeshMaker::set_up(const Plc& plc, std::uint64_t seed) {
   if (source_ != nullptr) source_->adapt(plc, options);
   require_known_tags(options.mesh, plc);
   require_known_patches(options.split, plc);
+  require_known_walls(options.layers, plc);
   options.mesh.bounds.tolerance = nearer_ ? *nearer_ : tolerance(plc);
   const double distance = options.mesh.bounds.tolerance->largest();
   require_periodic_patches(options.periodic, plc, distance);

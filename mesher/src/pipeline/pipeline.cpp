@@ -14,6 +14,7 @@
 #include "pipeline/division.h"
 #include "pipeline/mesh_job.h"
 #include "pipeline/tries.h"
+#include "pipeline/wall_layers.h"
 #include "shells/run.h"
 
 namespace collarmesh {
@@ -81,6 +82,7 @@ template <class Mesh>
 void run_stages(MeshJob& job, const Mesh& mesh) {
   try {
     mesh();
+    pipeline::add_layers(job);
     pipeline::divide(job);
     pipeline::split_patches(job);
   } catch (const Ended&) {

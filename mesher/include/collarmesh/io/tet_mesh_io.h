@@ -13,13 +13,13 @@ enum class GhostCells { none, one_layer };
 
 /// Writes a mesh by the extension of `path`, or as `format` (an extension with its dot, lower case) says.
 /// Writes each file under another name and renames it, so a reader never sees half a file. The sources of the
-/// formats say which data each of them keeps (src/io/*_writer.cpp). Throws WriteError, also for ghost cells
-/// where the format has no place for them.
+/// formats say which data each of them keeps (src/io/*_writer.cpp). Throws WriteError, also for ghost cells,
+/// prisms and pyramids where the format has no place for them.
 void write_tet_mesh(const std::string& path, const TetMesh& mesh, std::string_view format = {},
                     GhostCells ghost_cells = GhostCells::none);
 
-/// Reads the files of `write_tet_mesh` and, as far as they carry tetrahedra, triangles and lines of first
-/// or second order, other programs' files of these formats.
+/// Reads the files of `write_tet_mesh` and, as far as they carry tetrahedra, prisms, pyramids, triangles,
+/// quadrangles and lines of first or second order, other programs' files of these formats.
 /// Throws ReadError (path, line or byte).
 TetMesh read_tet_mesh(const std::string& path, std::string_view format = {});
 
@@ -36,6 +36,9 @@ std::vector<std::string> formats_with_partitions();
 std::vector<std::string> formats_with_ghost_cells();
 /// Returns the extensions of formats that have no elements of second order.
 std::vector<std::string> formats_of_first_order();
+
+/// Returns the extensions of formats that hold prisms and pyramids of an order, 1 or 2.
+std::vector<std::string> formats_with_layers(int order);
 
 /// Returns the extensions of formats that hold meshes of triangles alone, and of curve edges alone.
 std::vector<std::string> formats_of_surfaces();

@@ -1,6 +1,7 @@
 // CGNS (cgns.github.io, "SIDS-to-HDF5 File Mapping Manual") in HDF5: one unstructured zone. It has a section
-// of elements for each region, each tag of patches and each tag of curves, with their names; the faces of a
-// patch on the boundary are also a boundary condition, whose family has the name.
+// of elements for each region, each tag of patches and each tag of curves, with their names, one for each
+// kind of cells; the faces of a section on the boundary are also a boundary condition, whose family has the
+// name.
 #include <fmt/format.h>
 #include <hdf5.h>
 
@@ -10,6 +11,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <set>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -27,8 +29,17 @@ namespace {
 
 constexpr std::size_t longest_name = 32;
 
-/// CGNS' numbers of element types, by order and dimension.
-constexpr std::array<std::array<std::int32_t, 4>, 2> element_types{{{0, 3, 5, 10}, {0, 4, 6, 11}}};
+/// CGNS' element types of a kind of cells.
+struct CgnsType {
+  CellKind kind;
+  std::array<std::int32_t, 2> numbers;  ///< by order
+};
+constexpr std::array<CgnsType, cell_kinds> cgns_types{{{CellKind::tet, {10, 11}},
+                                                       {CellKind::prism, {14, 15}},
+                                                       {CellKind::pyramid, {12, 21}},
+                                                       {CellKind::triangle, {5, 6}},
+                                                       {CellKind::quadrangle, {7, 8}},
+                                                       {CellKind::edge, {3, 4}}}};
 
 /// A file of CGNS' nodes: groups of HDF5 with attributes, and their values in a data set.
 class CgnsFile {
@@ -156,47 +167,73 @@ class CgnsFile {
 
 /// The cells of one section.
 struct Section {
-  std::size_t dimension;
+  CellKind kind;
   std::string name;
   std::vector<Index> cells;
   std::size_t outside = 0;  // number of cells on the boundary; they come first
+  std::string family = {};  // name of the group's first section
 };
 
+/// Moves the faces on the boundary to the front and returns their number.
+std::size_t sort_outside_first(const TetMesh& mesh, CellKind kind, std::vector<Index>& faces) {
+  const auto inside = std::stable_partition(faces.begin(), faces.end(), [&](Index f) {
+    const auto& regions = regions_beside(mesh, kind)[f];
+    return (regions[0] == 0) != (regions[1] == 0);
+  });
+  return static_cast<std::size_t>(inside - faces.begin());
+}
+
+/// Sections of one group, which have one name and follow each other, belong to the family of the first one.
+void name_families(std::vector<Section>& sections) {
+  std::string group;
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    const std::string name = std::exchange(sections[i].family, sections[i].name);
+    const bool continues = i > 0 && name == group && sections[i].kind != sections[i - 1].kind &&
+                           shape_of(sections[i].kind).dimension == shape_of(sections[i - 1].kind).dimension;
+    if (continues) sections[i].family = sections[i - 1].family;
+    group = name;
+  }
+}
+
+/// Returns a section for each kind of cells of a group: the cells of a region, patch or curve.
 std::vector<Section> sections_of(const TetMesh& mesh) {
-  std::map<Index, std::vector<Index>> regions;
-  for (Index t = 0; t < mesh.tets.size(); ++t) regions[mesh.tet_region[t]].push_back(t);
-  std::map<Tag, std::vector<Index>> patches, curves;
-  for (Index f = 0; f < mesh.faces.size(); ++f) patches[mesh.face_tag[f]].push_back(f);
-  for (Index e = 0; e < mesh.edges.size(); ++e) curves[mesh.edge_tag[e]].push_back(e);
+  std::map<std::pair<Index, CellKind>, std::vector<Index>> regions;
+  std::array<std::map<std::pair<Tag, CellKind>, std::vector<Index>>, 3> tagged;  // by dimension
+  for (const CellKind kind : all_cell_kinds) {
+    const std::size_t dimension = shape_of(kind).dimension;
+    for (Index i = 0; i < count_of(mesh, kind); ++i)
+      if (dimension == 3)
+        regions[{features_of(mesh, kind)[i], kind}].push_back(i);
+      else
+        tagged[dimension][{tags_of(mesh, kind)[i], kind}].push_back(i);
+  }
   std::vector<Section> sections;
-  for (auto& [region, tets] : regions) {
-    std::string name = group_name(mesh, 3, mesh.tet_tag[tets.front()]);
-    sections.push_back({3, std::move(name), std::move(tets)});
+  for (auto& [key, cells] : regions) {
+    std::string name = group_name(mesh, 3, tags_of(mesh, key.second)[cells.front()]);
+    sections.push_back({key.second, std::move(name), std::move(cells)});
   }
-  for (auto& [tag, faces] : patches) {
-    const auto inside = std::stable_partition(faces.begin(), faces.end(), [&](Index f) {
-      return (mesh.face_regions[f][0] == 0) != (mesh.face_regions[f][1] == 0);
-    });
-    const auto outside = static_cast<std::size_t>(inside - faces.begin());
-    sections.push_back({2, group_name(mesh, 2, tag), std::move(faces), outside});
+  for (auto& [key, faces] : tagged[2]) {
+    const std::size_t outside = sort_outside_first(mesh, key.second, faces);
+    sections.push_back({key.second, group_name(mesh, 2, key.first), std::move(faces), outside});
   }
-  for (auto& [tag, edges] : curves) sections.push_back({1, group_name(mesh, 1, tag), std::move(edges)});
+  for (auto& [key, edges] : tagged[1])
+    sections.push_back({key.second, group_name(mesh, 1, key.first), std::move(edges)});
   DistinctNames names(longest_name);
   for (const char* reserved : {".", "..", "ZoneType", "GridCoordinates", "ZoneBC", "Zone", "DataClass"})
     names.add(reserved);
   for (Section& section : sections) {
     std::replace(section.name.begin(), section.name.end(), '/', '_');
+    section.family = section.name;
     section.name = names.add(section.name);
   }
+  name_families(sections);
   return sections;
 }
 
-std::vector<std::int32_t> nodes_of(const TetMesh& mesh, const Section& section) {
-  const std::array<CellNodes (*)(const TetMesh&, std::size_t), 3> of_dimension{nodes_of_edge, nodes_of_face,
-                                                                               nodes_of_tet};
+std::vector<std::int32_t> nodes_of_section(const TetMesh& mesh, const Section& section) {
   std::vector<std::int32_t> nodes;
   for (const Index cell : section.cells)
-    for (const Index v : of_dimension[section.dimension - 1](mesh, cell))
+    for (const Index v : with_between_before_top(section.kind, nodes_of(section.kind)(mesh, cell)))
       nodes.push_back(static_cast<std::int32_t>(v + 1));
   return nodes;
 }
@@ -218,7 +255,7 @@ void write_boundary(CgnsFile& file, const std::string& conditions, const Section
   const std::string condition = file.add(conditions, section.name, "BC_t", std::string("FamilySpecified"));
   file.add(condition, "PointRange", "IndexRange_t", range, {1, 2});
   file.add(condition, "GridLocation", "GridLocation_t", std::string("FaceCenter"));
-  file.add(condition, "FamilyName", "FamilyName_t", section.name);
+  file.add(condition, "FamilyName", "FamilyName_t", section.family);
 }
 
 }  // namespace
@@ -235,27 +272,29 @@ void write_cgns(const std::string& path, const TetMesh& mesh) {
   file.add("", "CGNSLibraryVersion", "CGNSLibraryVersion_t", std::vector<float>{3.4F});
   const std::string base = file.add("", "Base", "CGNSBase_t", std::vector<std::int32_t>{3, 3});
   file.add(base, "DataClass", "DataClass_t", std::string("NormalizedByUnknownDimensional"));
-  const std::string zone =
-      file.add(base, "Zone", "Zone_t",
-               std::vector<std::int32_t>{whole(mesh.points.size()), whole(mesh.tets.size()), 0}, {1, 3});
+  const std::string zone = file.add(
+      base, "Zone", "Zone_t",
+      std::vector<std::int32_t>{whole(mesh.points.size()), whole(count_of_dimension(mesh, 3)), 0}, {1, 3});
   file.add(zone, "ZoneType", "ZoneType_t", std::string("Unstructured"));
   write_points(file, zone, mesh.points);
   std::string conditions;
+  std::set<std::string> families;
   std::size_t first = 1;
   for (const Section& section : sections) {
     const std::vector<std::int32_t> range{whole(first), whole(first + section.cells.size() - 1)};
     const std::string elements =
         file.add(zone, section.name, "Elements_t",
-                 std::vector<std::int32_t>{
-                     element_types[static_cast<std::size_t>(mesh.order()) - 1][section.dimension], 0});
+                 std::vector<std::int32_t>{cgns_types[static_cast<std::size_t>(section.kind)]
+                                               .numbers[static_cast<std::size_t>(mesh.order()) - 1],
+                                           0});
     file.add(elements, "ElementRange", "IndexRange_t", range);
-    file.add(elements, "ElementConnectivity", "DataArray_t", nodes_of(mesh, section));
+    file.add(elements, "ElementConnectivity", "DataArray_t", nodes_of_section(mesh, section));
     const std::vector<std::int32_t> outside{whole(first), whole(first + section.outside - 1)};
     first += section.cells.size();
     if (section.outside == 0) continue;
     if (conditions.empty()) conditions = file.add(zone, "ZoneBC", "ZoneBC_t");
     write_boundary(file, conditions, section, outside);
-    file.add(base, section.name, "Family_t");
+    if (families.insert(section.family).second) file.add(base, section.family, "Family_t");
   }
   file.commit();
 }

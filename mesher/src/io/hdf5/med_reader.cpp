@@ -1,6 +1,6 @@
-// Reads SALOME's format MED with its library: the first mesh of a file, its tetrahedra, triangles and
-// segments. Groups become tags: groups with names of ours become the tags that these stand for, others are
-// numbered and keep their names.
+// Reads SALOME's format MED with its library: the first mesh of a file, its tetrahedra, prisms,
+// pyramids, triangles, quadrangles and segments. Groups become tags: groups with names of ours become the
+// tags that these stand for, others are numbered and keep their names.
 #include <fmt/format.h>
 #include <med.h>
 #include <algorithm>
@@ -25,11 +25,6 @@ namespace collarmesh::io {
 
 namespace {
 
-/// MED's node at each place of TetMesh's order. MED's tetrahedra have the opposite orientation.
-constexpr std::array<std::uint8_t, 4> tet_order{0, 2, 1, 3};
-constexpr std::array<std::uint8_t, 10> tet_order_2{0, 2, 1, 3, 6, 5, 4, 7, 9, 8};
-constexpr std::array<std::uint8_t, 6> as_is{0, 1, 2, 3, 4, 5};
-
 class MedReader {
  public:
   explicit MedReader(const std::string& path)
@@ -46,12 +41,8 @@ class MedReader {
     find_mesh();
     read_families();
     read_points();
-    read_cells(MED_TETRA4, 3, tet_order, add_tet, mesh_.tet_tag);
-    read_cells(MED_TETRA10, 3, tet_order_2, add_tet, mesh_.tet_tag);
-    read_cells(MED_TRIA3, 2, std::span(as_is).first(3), add_face, mesh_.face_tag);
-    read_cells(MED_TRIA6, 2, as_is, add_face, mesh_.face_tag);
-    read_cells(MED_SEG2, 1, std::span(as_is).first(2), add_edge, mesh_.edge_tag);
-    read_cells(MED_SEG3, 1, std::span(as_is).first(3), add_edge, mesh_.edge_tag);
+    for (const MedType& type : med_types)
+      for (const int order : {1, 2}) read_cells(type, order);
     if (mesh_.tets.empty()) fail("expected tetrahedra, found none");
     read_partitions(mesh_.order() == 2 ? MED_TETRA10 : MED_TETRA4);
     complete_mesh(path_, mesh_);
@@ -120,13 +111,13 @@ class MedReader {
     }
   }
 
-  template <class Add>
-  void read_cells(med_geometry_type type, std::size_t dimension, std::span<const std::uint8_t> order, Add add,
-                  std::vector<Tag>& tags) {
+  void read_cells(const MedType& of, int order) {
+    const med_geometry_type type = of.type(order);
+    const std::size_t nodes_of_cell = of.node_order(order).size(), dimension = shape_of(of.kind).dimension;
     const med_int count = count_of(MED_CELL, type, MED_CONNECTIVITY, MED_NODAL);
     if (count < 1) return;
     const auto n = static_cast<std::size_t>(count);
-    std::vector<med_int> nodes(n * order.size()), families(n, 0);
+    std::vector<med_int> nodes(n * nodes_of_cell), families(n, 0);
     if (MEDmeshElementConnectivityRd(file_, name_.c_str(), MED_NO_DT, MED_NO_IT, MED_CELL, type, MED_NODAL,
                                      MED_FULL_INTERLACE, nodes.data()) < 0)
       fail("its cells cannot be read");
@@ -136,14 +127,14 @@ class MedReader {
       families.assign(n, 0);
     for (std::size_t i = 0; i < n; ++i) {
       CellNodes cell;
-      for (const std::uint8_t place : order) {
-        const med_int node = nodes[i * order.size() + place];
+      for (std::size_t k = 0; k < nodes_of_cell; ++k) {
+        const med_int node = nodes[i * nodes_of_cell + k];
         if (node < 1 || static_cast<std::size_t>(node) > mesh_.points.size())
           fail(fmt::format("a cell has the node {}, but there are {}", node, mesh_.points.size()));
         cell.add(static_cast<Index>(node - 1));
       }
-      add(cell, mesh_);
-      tags.push_back(tag_of(dimension, families[i]));
+      add_cell(of.kind, cell.from_order(of.node_order(order)), mesh_);
+      tags_of(mesh_, of.kind).push_back(tag_of(dimension, families[i]));
     }
   }
 

@@ -1,5 +1,5 @@
 // SALOME's format MED (.med), written with its library: one unstructured mesh, named like the file, of
-// tetrahedra, triangles and segments. Each tag has a family, in a group named as in label_names.h. Partitions
+// volumes, faces and segments. Each tag has a family, in a group named as in label_names.h. Partitions
 // are the whole numbers of a field on the tetrahedra.
 #include <fmt/format.h>
 #include <med.h>
@@ -22,10 +22,6 @@
 namespace collarmesh::io {
 
 namespace {
-
-/// TetMesh's node at each place of MED's order. MED's tetrahedra have the opposite orientation.
-constexpr std::array<std::uint8_t, 4> med_tet_order{0, 2, 1, 3};
-constexpr std::array<std::uint8_t, 10> med_tet_order_2{0, 2, 1, 3, 6, 5, 4, 7, 9, 8};
 
 /// Pads a text: MED's texts have a fixed size.
 std::string padded(std::string text, std::size_t size) {
@@ -65,16 +61,17 @@ class MedFile {
                                     MED_FULL_INTERLACE, static_cast<med_int>(points.size()), values.data()));
   }
 
-  template <class NodesOf>
-  void write_cells(const TetMesh& mesh, std::size_t dimension, med_geometry_type type,
-                   const std::vector<Tag>& tags, std::span<const std::uint8_t> order, NodesOf nodes_of) {
+  void write_cells(const MedType& of) {
+    const std::vector<Tag>& tags = tags_of(mesh_, of.kind);
     if (tags.empty()) return;
     std::vector<med_int> nodes, families;
     for (std::size_t i = 0; i < tags.size(); ++i) {
-      for (const Index v : nodes_of(mesh, i).in_order(order)) nodes.push_back(static_cast<med_int>(v) + 1);
-      families.push_back(family(dimension, tags[i]));
+      for (const Index v : nodes_of(of.kind)(mesh_, i).in_order(of.node_order(mesh_.order())))
+        nodes.push_back(static_cast<med_int>(v) + 1);
+      families.push_back(family(shape_of(of.kind).dimension, tags[i]));
     }
     const auto count = static_cast<med_int>(tags.size());
+    const med_geometry_type type = of.type(mesh_.order());
     require(MEDmeshElementConnectivityWr(file_, name_.c_str(), MED_NO_DT, MED_NO_IT, MED_UNDEF_DT, MED_CELL,
                                          type, MED_NODAL, MED_FULL_INTERLACE, count, nodes.data()));
     require(MEDmeshEntityFamilyNumberWr(file_, name_.c_str(), MED_NO_DT, MED_NO_IT, MED_CELL, type, count,
@@ -132,15 +129,7 @@ void write_med(const std::string& path, const TetMesh& mesh) {
   MedFile file(path, mesh);
   file.create_mesh();
   file.write_points(mesh.points);
-  if (mesh.order() == 2) {
-    file.write_cells(mesh, 3, MED_TETRA10, mesh.tet_tag, med_tet_order_2, nodes_of_tet);
-    file.write_cells(mesh, 2, MED_TRIA6, mesh.face_tag, {}, nodes_of_face);
-    file.write_cells(mesh, 1, MED_SEG3, mesh.edge_tag, {}, nodes_of_edge);
-  } else {
-    file.write_cells(mesh, 3, MED_TETRA4, mesh.tet_tag, med_tet_order, nodes_of_tet);
-    file.write_cells(mesh, 2, MED_TRIA3, mesh.face_tag, {}, nodes_of_face);
-    file.write_cells(mesh, 1, MED_SEG2, mesh.edge_tag, {}, nodes_of_edge);
-  }
+  for (const MedType& type : med_types) file.write_cells(type);
   if (!mesh.tet_partition.empty()) {  // of all cells: meshio reads no field that some lack
     const bool second = mesh.order() == 2;
     file.create_partitions();

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "collarmesh/check.h"
+#include "collarmesh/tet_mesh.h"
+
+/// Further names of guarantees, those of meshes with boundary layers.
+namespace collarmesh::guarantee {
+
+inline constexpr char layer_arrays[] = "layer_arrays";  ///< equal lengths, indices in range
+/// Positive in all points of linear cells; at corners and integration points in those of second order.
+inline constexpr char layer_jacobian[] = "layer_jacobian";
+inline constexpr char layer_conforming[] = "layer_conforming";  ///< cells meet in whole sides
+inline constexpr char layer_sides[] = "layer_sides";  ///< boundaries and interfaces are listed, once each
+inline constexpr char layer_mid_nodes[] = "layer_mid_nodes";  ///< one to an edge, in all cells at it
+inline constexpr char layer_volume[] = "layer_volume";        ///< regions have the volumes of before
+inline constexpr char layer_walls[] =
+    "layer_walls";  ///< the triangles and edges of walls are those of before
+inline constexpr char core_angles[] = "core_angles";  ///< of the tets beside the layers
+
+}  // namespace collarmesh::guarantee
+
+namespace collarmesh::checks {
+
+/// Checks the cells of boundary layers together with the tets, by the mesh alone: arrays; positive Jacobians;
+/// each side of a cell has another cell behind it, turned the other way, or is listed among the faces or
+/// quadrangles; sides between regions are listed, too; nodes of second order. Adds findings. A mesh without
+/// layers may be given, too. Cost: O(n log n).
+void check_layer_cells(const TetMesh& mesh, CheckReport& report, std::size_t findings_per_guarantee = 20);
+
+/// Returns the volumes of regions, by index, of straight tets, prisms and pyramids.
+std::map<Index, double> volumes_with_layers(const TetMesh& mesh);
+
+/// Checks that regions have these volumes. Adds findings.
+void check_layer_volumes(const std::map<Index, double>& before, const TetMesh& mesh, CheckReport& report);
+
+/// Checks the angles of the tets beside the layers: dihedral angles from below as of thin tets, dihedral and
+/// face angles by 150 degrees from above. `walls`: by point, the one of the wall below it; none. Adds
+/// findings.
+void check_core_angles(const TetMesh& mesh, const std::vector<Index>& walls, const Plc& plc,
+                       const Bounds& bounds, CheckReport& report);
+
+}  // namespace collarmesh::checks

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "collarmesh/tet_mesh.h"
+#include "io/cell_nodes.h"
+
+namespace collarmesh::io {
+
+/// Returns six times the volume of a tet, prism or pyramid with straight edges; roughly, where a quadrangle
+/// is not planar.
+double six_volume_of(const TetMesh& mesh, CellKind kind, std::size_t cell);
+
+/// Returns the cell of a volume turned inside out, or the triangle or quadrangle turned over.
+CellNodes turned(CellKind kind, const CellNodes& nodes);
+
+}  // namespace collarmesh::io

@@ -1,0 +1,400 @@
+// Pushes the front into the tets: its nodes move in fractions, nodes near it follow, and the engine of
+// improvement makes the tets good again. Where it cannot, heights are lowered.
+#include "layers/core.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "common/parallel_for.h"
+#include "common/tet_sides.h"
+#include "improve/improve_workpiece.h"
+
+namespace collarmesh::layering {
+
+using improvement::Workpiece;
+
+namespace {
+
+constexpr unsigned rings_moved = 5, sweeps = 12;
+// Moves are halved so often, then left out, where tets would become flat.
+constexpr unsigned most_halvings = 6;
+// A move leaves a tet at least this share of its quality, unless it stays above the second number.
+constexpr double quality_left = 0.2, good_quality = 0.15;
+// While the front moves, tets are improved up to this factor above the bound on angles, at last as far as asked.
+constexpr double above_bound = 1.25;
+constexpr unsigned most_advances = 6, most_rounds = 12;
+// Heights count as reached within this share.
+constexpr double precision = 1e-9;
+constexpr std::size_t at_once = 4096;
+// Larger than any ratio: angles alone decide.
+constexpr double any_ratio = 1e12;
+
+}  // namespace
+
+Core::Core(const TetMesh& mesh, const Plc& plc, const Front& front, const Heights& heights,
+           const ImproveOptions& improvement, const Execution& execution)
+    : given_(mesh),
+      plc_(plc),
+      front_(front),
+      options_(improvement),
+      execution_(execution),
+      mesh_(mesh),
+      reached_(front.nodes.size(), 0) {
+  mesh_.collar_balls.clear();
+  mesh_.layers = {};
+  copy_nodes(heights);
+  copy_faces(heights);
+  piece_ = std::make_unique<Workpiece>(mesh_, plc, *options_.bounds.tolerance, 0,
+                                       options_.bounds.lower_where_forced);
+  thin_ = std::make_unique<improvement::ThinShape>(plc, mesh_, options_.bounds.thin_angle, 0, piece_->forced,
+                                                   options_.bounds.tets_across());
+  fix_wall();
+  poor_at_first_ = poor_tets().size();
+}
+
+/// Gives each node of the front that is to move a copy, which takes its place in the tets of its sector.
+void Core::copy_nodes(const Heights& heights) {
+  node_of_.assign(mesh_.points.size(), none);
+  for (Index n = 0; n < front_.nodes.size(); ++n) {
+    const Index vertex = front_.nodes[n].vertex;
+    if (heights[n] == 0) {
+      vertex_of_.push_back(vertex);
+      continue;
+    }
+    vertex_of_.push_back(static_cast<Index>(mesh_.points.size()));
+    node_of_.push_back(n);
+    mesh_.points.push_back(given_.points[vertex]);
+    mesh_.features.push_back(given_.features[vertex]);
+  }
+  for (Index t = 0; t < mesh_.tets.size(); ++t)
+    for (unsigned corner = 0; corner < 4; ++corner)
+      if (const Index n = front_.node_of(t, corner); n != none) mesh_.tets[t][corner] = vertex_of_[n];
+}
+
+/// The faces of walls become those of the front, and other faces and edges get the copies, too. Edges on walls
+/// are no edges of the core.
+void Core::copy_faces(const Heights& heights) {
+  std::vector<std::uint8_t> replaced(given_.faces.size(), 0);
+  std::vector<std::array<Index, 3>> faces;
+  std::vector<std::array<Index, 2>> regions;
+  std::vector<Index> like;
+  for (const WallSide& side : front_.sides) {
+    const bool moves = std::any_of(side.nodes.begin(), side.nodes.end(), [&](Index n) { return heights[n] > 0; });
+    if (!moves) continue;
+    replaced[side.face] = 1;
+    faces.push_back({vertex_of_[side.nodes[0]], vertex_of_[side.nodes[2]], vertex_of_[side.nodes[1]]});
+    regions.push_back({side.region, 0});
+    like.push_back(side.face);
+  }
+  // An interface may move on one side only.
+  for (const WallSide& side : front_.sides) {
+    const bool moves = std::any_of(side.nodes.begin(), side.nodes.end(), [&](Index n) { return heights[n] > 0; });
+    if (moves || replaced[side.face] == 0) continue;
+    faces.push_back({side.corners[0], side.corners[2], side.corners[1]});
+    regions.push_back({side.region, 0});
+    like.push_back(side.face);
+  }
+  for (Index t = 0; t < mesh_.tets.size(); ++t) {
+    const auto& tet = front_.tet(t);
+    for (unsigned corner = 0; corner < 4; ++corner) {
+      const Index face = tet.faces[corner];
+      if (face == none || front_.is_wall(face)) continue;
+      for (Index& v : mesh_.faces[face])
+        for (unsigned i = 0; i < 4; ++i)
+          if (i != corner && given_.tets[t][i] == v) {
+            v = mesh_.tets[t][i];
+            break;
+          }
+    }
+  }
+  const auto keep = [&replaced](auto& list) {
+    std::size_t kept = 0;
+    for (std::size_t f = 0; f < list.size(); ++f)
+      if (replaced[f] == 0) list[kept++] = list[f];
+    list.resize(kept);
+  };
+  const std::vector<Index> patches = mesh_.face_patch;
+  const std::vector<Tag> tags = mesh_.face_tag;
+  keep(mesh_.faces), keep(mesh_.face_regions), keep(mesh_.face_patch), keep(mesh_.face_tag);
+  for (std::size_t k = 0; k < faces.size(); ++k) {
+    mesh_.faces.push_back(faces[k]);
+    mesh_.face_regions.push_back(regions[k]);
+    mesh_.face_patch.push_back(patches[like[k]]);
+    mesh_.face_tag.push_back(tags[like[k]]);
+  }
+  for (Index n = 0; n < front_.nodes.size(); ++n)
+    for (const Index e : front_.edges_of[n])
+      for (Index& v : mesh_.edges[e])
+        if (v == front_.nodes[n].vertex) v = vertex_of_[n];
+  std::size_t kept = 0;
+  for (std::size_t e = 0; e < mesh_.edges.size(); ++e) {
+    const auto& [a, b] = given_.edges[e];
+    if (front_.is_wall_edge(a, b)) continue;
+    mesh_.edges[kept] = mesh_.edges[e];
+    mesh_.edge_curve[kept] = mesh_.edge_curve[e];
+    mesh_.edge_tag[kept] = mesh_.edge_tag[e];
+    ++kept;
+  }
+  mesh_.edges.resize(kept), mesh_.edge_curve.resize(kept), mesh_.edge_tag.resize(kept);
+}
+
+void Core::fix_wall() {
+  piece_->complex.forget_balls();
+  std::vector<Index> fixed;
+  for (Index v = 0; v < mesh_.points.size(); ++v)
+    if (mesh_.features[v].dimension <= 1 || v >= given_.points.size() || front_.on_wall[v]) fixed.push_back(v);
+  piece_->fix(fixed);
+  std::vector<bool> walls(plc_.patches.size(), false);
+  for (const WallSide& side : front_.sides) walls[side.patch] = true;
+  piece_->keep_triangles_of(walls);
+}
+
+bool Core::push(Heights& heights) {
+  failed_.clear();
+  const double enough = above_bound * options_.bounds.thin_angle;
+  double share = 0.7;
+  for (unsigned round = 0; round < most_rounds; ++round) {
+    for (unsigned k = 0; k < most_advances && !advance(heights); ++k) {
+      improve_tets(enough);
+      if (cancelled_) return true;
+    }
+    improve_tets(enough);
+    if (cancelled_) return true;
+    bool lowered = false, reached = true;
+    for (Index n = 0; n < heights.size(); ++n) {
+      if (is_reached(n, heights)) continue;
+      reached = false;
+      if (reached_[n] > heights[n]) continue;
+      heights.lower(n, reached_[n], Cause::core);
+      lowered = true;
+    }
+    const std::vector<Index> poor = poor_tets();
+    if (poor.size() > poor_at_first_ && round + 1 < most_rounds) {
+      lowered = lower_at(poor, share, heights) || lowered;
+      share = std::max(0.2, share - 0.1);
+    }
+    lowered = heights.settle() || lowered;
+    if (!lowered && reached) {
+      if (poor.size() <= poor_at_first_) {
+        improve_tets(options_.min_dihedral);
+        return true;
+      }
+      failed_ = nodes_near(poor, 2);
+      return false;
+    }
+  }
+  // Whatever is not where its height says may have no layers.
+  for (Index n = 0; n < heights.size(); ++n)
+    if (!is_reached(n, heights)) failed_.push_back(n);
+  const std::vector<Index> poor = poor_tets();
+  if (poor.size() > poor_at_first_) {
+    const std::vector<Index> near = nodes_near(poor, 2);
+    failed_.insert(failed_.end(), near.begin(), near.end());
+  }
+  return failed_.empty();
+}
+
+bool Core::is_reached(Index node, const Heights& heights) const {
+  return vertex_of_[node] == front_.nodes[node].vertex ||
+         std::fabs(reached_[node] - heights[node]) <= precision * heights.asked(node);
+}
+
+/// Moves all vertices as far as tets stay good enough. Returns whether the front is where it is to be.
+bool Core::advance(const Heights& heights) {
+  const std::vector<Index> near = vertices_near_front(rings_moved);
+  const std::vector<Vector> moves = moves_towards(heights, near);
+  const std::vector<double> shares = shares_of(moves, near);
+  bool all = true;
+  for (Index n = 0; n < heights.size(); ++n) {
+    const Index v = vertex_of_[n];
+    if (v == front_.nodes[n].vertex || reached_[n] == heights[n]) continue;
+    const double share = shares[v];
+    if (share == 1)
+      reached_[n] = heights[n];
+    else
+      reached_[n] += share * (heights[n] - reached_[n]), all = false;
+    piece_->complex.move_vertex(v, heights.place(n, reached_[n]));
+  }
+  for (const Index v : near)
+    if ((v >= node_of_.size() || node_of_[v] == none) && shares[v] > 0 && squared_norm(moves[v]) > 0)
+      piece_->complex.move_vertex(v, mesh_.points[v] + shares[v] * moves[v]);
+  return all;
+}
+
+std::vector<Index> Core::vertices_near_front(unsigned rings) const {
+  std::vector<std::uint8_t> ring(mesh_.points.size(), 0);
+  for (std::size_t v = given_.points.size(); v < std::min(node_of_.size(), ring.size()); ++v) ring[v] = 1;
+  const auto& complex = piece_->complex;
+  for (std::uint8_t r = 1; r <= rings; ++r)
+    for (Index t = 0; t < complex.size(); ++t) {
+      if (!complex[t].alive) continue;
+      const auto& c = complex[t].corners;
+      if (std::none_of(c.begin(), c.end(), [&](Index v) { return ring[v] == r; })) continue;
+      for (const Index v : c)
+        if (ring[v] == 0) ring[v] = static_cast<std::uint8_t>(r + 1);
+    }
+  std::vector<Index> near;
+  for (Index v = 0; v < ring.size(); ++v)
+    if (ring[v] != 0 && complex.in_use(v)) near.push_back(v);
+  return near;
+}
+
+std::vector<Vector> Core::moves_towards(const Heights& heights, const std::vector<Index>& near) {
+  std::vector<Vector> moves(mesh_.points.size());
+  for (Index n = 0; n < heights.size(); ++n)
+    if (vertex_of_[n] != front_.nodes[n].vertex)
+      moves[vertex_of_[n]] = (heights[n] - reached_[n]) * front_.nodes[n].direction;
+  spread(moves, near);
+  return moves;
+}
+
+/// Lets the vertices near the front follow it: each moves as the mean of those around.
+void Core::spread(std::vector<Vector>& moves, const std::vector<Index>& near) const {
+  const auto& complex = piece_->complex;
+  std::vector<Index> slot(mesh_.points.size(), none);
+  for (Index i = 0; i < near.size(); ++i) slot[near[i]] = i;
+  std::vector<std::uint64_t> pairs;
+  for (Index t = 0; t < complex.size(); ++t) {
+    if (!complex[t].alive) continue;
+    const auto& c = complex[t].corners;
+    for (const Index v : c)
+      if (slot[v] != none && !piece_->is_fixed(v))
+        for (const Index w : c)
+          if (w != v) pairs.push_back(std::uint64_t{slot[v]} << 32U | w);
+  }
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  std::vector<std::size_t> first(near.size() + 1, 0);
+  for (const std::uint64_t pair : pairs) ++first[(pair >> 32U) + 1];
+  for (std::size_t i = 0; i < near.size(); ++i) first[i + 1] += first[i];
+  std::vector<Vector> next(near.size());
+  for (unsigned sweep = 0; sweep < sweeps; ++sweep) {
+    parallel_for_ranges(near.size(), at_once, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        next[i] = moves[near[i]];
+        if (first[i] == first[i + 1]) continue;
+        Vector sum{};
+        for (std::size_t k = first[i]; k < first[i + 1]; ++k)
+          sum = sum + moves[static_cast<Index>(pairs[k] & 0xffffffffU)];
+        next[i] = sum / static_cast<double>(first[i + 1] - first[i]);
+        constrain(near[i], next[i]);
+      }
+    });
+    for (std::size_t i = 0; i < near.size(); ++i) moves[near[i]] = next[i];
+  }
+}
+
+/// Keeps a vertex on its planar patch; those on curved ones stay.
+void Core::constrain(Index vertex, Vector& move) const {
+  const auto& [dimension, feature] = mesh_.features[vertex];
+  if (dimension == 3) return;
+  if (dimension == 2 && feature != none && plc_.patches[feature].planar) {
+    const Vector& n = plc_.patches[feature].normal;
+    move = move - dot(move, n) * n;
+    return;
+  }
+  move = {};
+}
+
+/// Returns the share of its move that each vertex may make, so that no tet becomes too poor.
+std::vector<double> Core::shares_of(const std::vector<Vector>& moves, const std::vector<Index>& near) const {
+  const auto& complex = piece_->complex;
+  std::vector<double> shares(mesh_.points.size(), 0);
+  for (const Index v : near) shares[v] = 1;
+  std::vector<Index> moved;
+  for (Index t = 0; t < complex.size(); ++t)
+    if (complex[t].alive &&
+        std::any_of(complex[t].corners.begin(), complex[t].corners.end(),
+                    [&](Index v) { return shares[v] > 0 && squared_norm(moves[v]) > 0; }))
+      moved.push_back(t);
+  std::vector<std::uint8_t> spoilt(moved.size(), 1);
+  for (unsigned pass = 0;; ++pass) {
+    parallel_for_ranges(moved.size(), at_once, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const auto& c = complex[moved[i]].corners;
+        improvement::Corners p = corners(moved[i]);
+        const double before = improvement::shape_quality(p);
+        for (unsigned k = 0; k < 4; ++k) p[k] = p[k] + shares[c[k]] * moves[c[k]];
+        const double after = improvement::shape_quality(p);
+        spoilt[i] = after > 0 && (after >= good_quality || after >= quality_left * before) ? 0 : 1;
+      }
+    });
+    bool any = false;
+    std::vector<Index> at;
+    for (std::size_t i = 0; i < moved.size(); ++i)
+      if (spoilt[i] != 0)
+        for (const Index v : complex[moved[i]].corners)
+          if (shares[v] > 0) at.push_back(v);
+    std::sort(at.begin(), at.end());
+    at.erase(std::unique(at.begin(), at.end()), at.end());
+    for (const Index v : at) {
+      shares[v] = pass < most_halvings ? 0.5 * shares[v] : 0;
+      any = true;
+    }
+    if (!any) return shares;
+  }
+}
+
+/// Improves tets below this angle.
+void Core::improve_tets(double angle) {
+  ImproveOptions options = options_;
+  options.min_dihedral = std::min(angle, options.min_dihedral);
+  options.bounds.radius_edge = any_ratio;
+  options.bounds.thin_in_narrow_places_only = false;
+  options.thin_above = any_ratio;
+  options.keep_vertices = false;
+  cancelled_ = cancelled_ || improve(*piece_, options, execution_).cancelled;
+}
+
+/// Returns the tets beyond the bounds on angles.
+std::vector<Index> Core::poor_tets() const {
+  const auto& complex = piece_->complex;
+  std::vector<std::uint8_t> poor(complex.size(), 0);
+  parallel_for_ranges(poor.size(), at_once, [&](std::size_t begin, std::size_t end) {
+    for (auto t = static_cast<Index>(begin); t < end; ++t)
+      poor[t] = complex[t].alive && !thin_->contains(corners(t), complex[t].corners) ? 1 : 0;
+  });
+  std::vector<Index> found;
+  for (Index t = 0; t < poor.size(); ++t)
+    if (poor[t] != 0) found.push_back(t);
+  return found;
+}
+
+/// Returns the nodes of the front that have copies, in tets at most so many rings from these.
+std::vector<Index> Core::nodes_near(const std::vector<Index>& tets, unsigned rings) const {
+  const auto& complex = piece_->complex;
+  std::vector<std::uint8_t> near(mesh_.points.size(), 0);
+  for (const Index t : tets)
+    for (const Index v : complex[t].corners) near[v] = 1;
+  for (unsigned r = 0; r < rings; ++r) {
+    std::vector<std::uint8_t> wider = near;
+    for (Index t = 0; t < complex.size(); ++t) {
+      if (!complex[t].alive) continue;
+      const auto& c = complex[t].corners;
+      if (std::any_of(c.begin(), c.end(), [&](Index v) { return near[v] != 0; }))
+        for (const Index v : c) wider[v] = 1;
+    }
+    near = std::move(wider);
+  }
+  std::vector<Index> nodes;
+  for (std::size_t v = given_.points.size(); v < node_of_.size(); ++v)
+    if (near[v] != 0) nodes.push_back(node_of_[v]);
+  return nodes;
+}
+
+/// Lowers the front at these tets; where they have none of its nodes, in the next ring that has.
+bool Core::lower_at(const std::vector<Index>& tets, double share, Heights& heights) const {
+  for (unsigned rings = 0; rings < 4; ++rings) {
+    bool any = false;
+    for (const Index n : nodes_near(tets, rings))
+      if (heights[n] > 0) {
+        heights.lower(n, share * heights[n], Cause::core);
+        any = true;
+      }
+    if (any) return true;
+  }
+  return false;
+}
+
+}  // namespace collarmesh::layering

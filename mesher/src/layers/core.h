@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "collarmesh/improve.h"
+#include "collarmesh/progress.h"
+#include "improve/thin_shape.h"
+#include "improve/workpiece.h"
+#include "layers/front.h"
+#include "layers/heights.h"
+
+namespace collarmesh::layering {
+
+/// The tets that layers leave: the mesh, whose nodes at the front have copies that move away from the wall.
+class Core {
+ public:
+  /// Keeps all by reference, but copies the mesh.
+  Core(const TetMesh& mesh, const Plc& plc, const Front& front, const Heights& heights,
+       const ImproveOptions& improvement, const Execution& execution);
+
+  /// Moves the copies to these heights, as far as tets stay positive, and improves the tets; where that
+  /// does not suffice, lowers the heights. Returns false if it fails: then `failed()` are the nodes that had
+  /// better have no layers.
+  bool push(Heights& heights);
+  const std::vector<Index>& failed() const { return failed_; }
+  bool cancelled() const { return cancelled_; }
+
+  const improvement::TetComplex& complex() const { return piece_->complex; }
+  const TetMesh& mesh() const { return mesh_; }
+  /// Returns the vertex of the core at a node of the front; the mesh's own where there are no layers.
+  Index vertex_of(Index node) const { return vertex_of_[node]; }
+
+ private:
+  void copy_nodes(const Heights& heights);
+  void copy_faces(const Heights& heights);
+  void fix_wall();
+  bool is_reached(Index node, const Heights& heights) const;
+  bool advance(const Heights& heights);
+  std::vector<Vector> moves_towards(const Heights& heights, const std::vector<Index>& near);
+  std::vector<Index> vertices_near_front(unsigned rings) const;
+  void spread(std::vector<Vector>& moves, const std::vector<Index>& near) const;
+  void constrain(Index vertex, Vector& move) const;
+  std::vector<double> shares_of(const std::vector<Vector>& moves, const std::vector<Index>& near) const;
+  void improve_tets(double angle);
+  std::vector<Index> poor_tets() const;
+  bool lower_at(const std::vector<Index>& tets, double share, Heights& heights) const;
+  std::vector<Index> nodes_near(const std::vector<Index>& tets, unsigned rings) const;
+  improvement::Corners corners(Index tet) const { return piece_->complex.corners(tet); }
+
+  const TetMesh& given_;
+  const Plc& plc_;
+  const Front& front_;
+  const ImproveOptions& options_;
+  const Execution& execution_;
+  TetMesh mesh_;
+  std::vector<Index> vertex_of_;          // by node of the front
+  std::vector<Index> node_of_;            // by vertex of the core that existed at first: node of the front; none
+  std::vector<double> reached_;           // by node of the front: its distance now
+  std::unique_ptr<improvement::Workpiece> piece_;
+  std::unique_ptr<improvement::ThinShape> thin_;
+  std::size_t poor_at_first_ = 0;
+  std::vector<Index> failed_;
+  bool cancelled_ = false;
+};
+
+}  // namespace collarmesh::layering

@@ -1,0 +1,250 @@
+// Second order of meshes with layers: the core first, then the cells of layers, whose edges are between those
+// of the wall and those of the core.
+#include "layers/curving.h"
+
+#include <algorithm>
+#include <array>
+#include <unordered_map>
+
+#include "collarmesh/curved_tet.h"
+#include "common/edge_key.h"
+#include "common/layer_jacobians.h"
+#include "common/tet_sides.h"
+
+namespace collarmesh::layering {
+
+namespace {
+
+constexpr std::array<std::array<std::uint8_t, 2>, 6> edges_of_tet{
+    {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
+constexpr std::array<std::array<std::uint8_t, 2>, 9> edges_of_prism{
+    {{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}}};
+constexpr std::array<std::array<std::uint8_t, 2>, 8> edges_of_pyramid{
+    {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 4}, {1, 4}, {2, 4}, {3, 4}}};
+constexpr std::array<std::array<std::uint8_t, 2>, 3> edges_of_triangle{{{0, 1}, {1, 2}, {2, 0}}};
+constexpr std::array<std::array<std::uint8_t, 2>, 4> edges_of_quad{{{0, 1}, {1, 2}, {2, 3}, {3, 0}}};
+
+// Bulges shrink by this factor, so often at most, where cells fold; then they are left out.
+constexpr double shrinking = 0.5;
+constexpr unsigned most_shrinkings = 5;
+
+class Curving {
+ public:
+  Curving(TetMesh& mesh, const Plc& plc, const Bulges& bulges, const PlacesInLayers& places,
+          const SecondOrderOptions& options, const Execution& execution)
+      : mesh_(mesh), plc_(plc), bulges_(bulges), places_(places), options_(options), execution_(execution) {}
+
+  bool run() {
+    if (!curve_core()) return false;
+    give_nodes();
+    for (unsigned pass = 0; pass <= most_shrinkings; ++pass) {
+      place_nodes();
+      if (!shrink(pass == most_shrinkings)) break;
+    }
+    place_nodes();
+    return true;
+  }
+
+ private:
+  bool in_core(Index tet) const { return mesh_.layers.tet_layer[tet] == 0; }
+
+  /// Makes the core a mesh of second order on its own, which keeps its tets.
+  bool curve_core() {
+    TetMesh core;
+    core.points = mesh_.points;
+    core.features = mesh_.features;
+    std::vector<std::array<Index, 3>> sides;
+    std::vector<std::uint64_t> edges;
+    for (Index t = 0; t < mesh_.tets.size(); ++t) {
+      if (!in_core(t)) continue;
+      core.tets.push_back(mesh_.tets[t]);
+      core.tet_region.push_back(mesh_.tet_region[t]);
+      core.tet_tag.push_back(mesh_.tet_tag[t]);
+      for (unsigned corner = 0; corner < 4; ++corner) sides.push_back(sorted(side_corners(mesh_.tets[t], corner)));
+    }
+    std::sort(sides.begin(), sides.end());
+    for (const auto& [a, b, c] : sides)
+      for (const std::uint64_t key : {edge_key(a, b), edge_key(b, c), edge_key(a, c)}) edges.push_back(key);
+    std::sort(edges.begin(), edges.end());
+    core.tet_collar.assign(core.tets.size(), 0);
+    core.tet_crease.assign(core.tets.size(), 0);
+    for (Index f = 0; f < mesh_.faces.size(); ++f) {
+      if (!std::binary_search(sides.begin(), sides.end(), sorted(mesh_.faces[f]))) continue;
+      core.faces.push_back(mesh_.faces[f]);
+      core.face_regions.push_back(mesh_.face_regions[f]);
+      core.face_patch.push_back(mesh_.face_patch[f]);
+      core.face_tag.push_back(mesh_.face_tag[f]);
+    }
+    for (Index e = 0; e < mesh_.edges.size(); ++e) {
+      if (!std::binary_search(edges.begin(), edges.end(), edge_key(mesh_.edges[e][0], mesh_.edges[e][1])))
+        continue;
+      core.edges.push_back(mesh_.edges[e]);
+      core.edge_curve.push_back(mesh_.edge_curve[e]);
+      core.edge_tag.push_back(mesh_.edge_tag[e]);
+    }
+    SecondOrderOptions options = options_;
+    options.bounds.thin_angle = 0;  // the tets stay, because layers share their sides
+    if (make_second_order(core, plc_, options, execution_).cancelled) return false;
+    first_node_ = static_cast<Index>(mesh_.points.size());
+    mesh_.points = std::move(core.points);
+    mesh_.features = std::move(core.features);
+    core_nodes_ = std::move(core.tet_mid_nodes);
+    for (std::size_t t = 0; t < core.tets.size(); ++t)
+      for (unsigned k = 0; k < 6; ++k)
+        nodes_.emplace(edge_key(core.tets[t][edges_of_tet[k][0]], core.tets[t][edges_of_tet[k][1]]),
+                       core_nodes_[t][k]);
+    first_of_layers_ = static_cast<Index>(mesh_.points.size());
+    return true;
+  }
+
+  static std::array<Index, 3> sorted(std::array<Index, 3> corners) {
+    std::sort(corners.begin(), corners.end());
+    return corners;
+  }
+
+  Index node_of(Index a, Index b) {
+    const auto [at, is_new] = nodes_.emplace(edge_key(a, b), static_cast<Index>(mesh_.points.size()));
+    if (is_new) {
+      mesh_.points.push_back(0.5 * (mesh_.points[a] + mesh_.points[b]));
+      mesh_.features.push_back({});
+      ends_.push_back({std::min(a, b), std::max(a, b)});
+    }
+    return at->second;
+  }
+
+  template <class Cells, class Nodes, class Edges>
+  void give(const Cells& cells, Nodes& nodes, const Edges& edges) {
+    nodes.resize(cells.size());
+    for (std::size_t c = 0; c < cells.size(); ++c)
+      for (std::size_t k = 0; k < edges.size(); ++k)
+        nodes[c][k] = node_of(cells[c][edges[k][0]], cells[c][edges[k][1]]);
+  }
+
+  void give_nodes() {
+    LayerCells& layers = mesh_.layers;
+    give(mesh_.tets, mesh_.tet_mid_nodes, edges_of_tet);
+    give(layers.prisms, layers.prism_mid_nodes, edges_of_prism);
+    give(layers.pyramids, layers.pyramid_mid_nodes, edges_of_pyramid);
+    give(mesh_.faces, mesh_.face_mid_nodes, edges_of_triangle);
+    give(layers.quads, layers.quad_mid_nodes, edges_of_quad);
+    mesh_.edge_mid_nodes.clear();
+    for (Index e = 0; e < mesh_.edges.size(); ++e) {
+      const Index node = node_of(mesh_.edges[e][0], mesh_.edges[e][1]);
+      mesh_.edge_mid_nodes.push_back(node);
+      if (node >= first_of_layers_) mesh_.features[node] = {1, mesh_.edge_curve[e]};
+    }
+    for (Index f = 0; f < mesh_.faces.size(); ++f)
+      for (const Index node : mesh_.face_mid_nodes[f])
+        if (node >= first_of_layers_ && mesh_.features[node].dimension == 3)
+          mesh_.features[node] = {2, mesh_.face_patch[f]};
+  }
+
+  /// Places the nodes of layers: straight, and with the bulges of wall and core in proportion.
+  void place_nodes() {
+    for (std::size_t i = 0; i < ends_.size(); ++i) {
+      const auto [a, b] = ends_[i];
+      mesh_.points[first_of_layers_ + i] = 0.5 * (mesh_.points[a] + mesh_.points[b]) + bulge_between(a, b);
+    }
+  }
+
+  Vector bulge_between(Index a, Index b) const {
+    const Index at = places_.wall[a], bt = places_.wall[b];
+    if (at == none || bt == none || at == bt) return {};
+    const bool raised = places_.is_raised[at], other_raised = places_.is_raised[bt];
+    const double share = raised && other_raised ? 0.5 * (places_.share[a] + places_.share[b])
+                         : raised               ? places_.share[a]
+                                                : places_.share[b];
+    const auto shrunk = shrunk_.find(edge_key(at, bt));
+    const double left = shrunk == shrunk_.end() ? 1 : shrunk->second;
+    return ((1 - share) * left) * bulges_(at, bt);
+  }
+
+  /// Shrinks bulges at the cells that fold. Returns whether there were any.
+  bool shrink(bool wholly) {
+    std::vector<std::uint64_t> at;
+    const auto note = [&](const auto& corners, const auto& edges) {
+      for (const auto& [i, j] : edges) {
+        const Index a = places_.wall[corners[i]], b = places_.wall[corners[j]];
+        if (a != none && b != none && a != b) at.push_back(edge_key(a, b));
+      }
+    };
+    const LayerCells& layers = mesh_.layers;
+    for (Index c = 0; c < layers.prisms.size(); ++c)
+      if (!(least_jacobian_at_points(points_of(layers.prisms[c]), points_of(layers.prism_mid_nodes[c])) > 0))
+        note(layers.prisms[c], edges_of_prism);
+    for (Index c = 0; c < layers.pyramids.size(); ++c)
+      if (!(least_jacobian_at_points(points_of(layers.pyramids[c]), points_of(layers.pyramid_mid_nodes[c])) > 0))
+        note(layers.pyramids[c], edges_of_pyramid);
+    for (Index t = 0; t < mesh_.tets.size(); ++t)
+      if (!in_core(t) && !jacobian_exceeds(curved_tet(mesh_, t))) note(mesh_.tets[t], edges_of_tet);
+    std::sort(at.begin(), at.end());
+    at.erase(std::unique(at.begin(), at.end()), at.end());
+    for (const std::uint64_t key : at) {
+      double& left = shrunk_.emplace(key, 1.0).first->second;
+      left = wholly ? 0 : shrinking * left;
+    }
+    return !at.empty();
+  }
+
+  template <std::size_t n>
+  std::array<Point, n> points_of(const std::array<Index, n>& nodes) const {
+    std::array<Point, n> found;
+    for (std::size_t i = 0; i < n; ++i) found[i] = mesh_.points[nodes[i]];
+    return found;
+  }
+
+  TetMesh& mesh_;
+  const Plc& plc_;
+  const Bulges& bulges_;
+  const PlacesInLayers& places_;
+  const SecondOrderOptions& options_;
+  const Execution& execution_;
+  std::vector<std::array<Index, 6>> core_nodes_;
+  std::unordered_map<std::uint64_t, Index> nodes_;    // by edge key
+  std::unordered_map<std::uint64_t, double> shrunk_;  // shares of bulges that are left, by edge key of the wall
+  std::vector<std::array<Index, 2>> ends_;            // of the edges whose nodes are those of layers
+  Index first_node_ = 0, first_of_layers_ = 0;
+};
+
+}  // namespace
+
+Bulges::Bulges(const TetMesh& mesh) {
+  const auto add = [&](Index a, Index b, Index node) {
+    const Vector bulge = mesh.points[node] - 0.5 * (mesh.points[a] + mesh.points[b]);
+    if (squared_norm(bulge) > 0) bulges_.emplace_back(edge_key(a, b), bulge);
+  };
+  for (std::size_t f = 0; f < mesh.face_mid_nodes.size(); ++f)
+    for (unsigned i = 0; i < 3; ++i)
+      add(mesh.faces[f][i], mesh.faces[f][(i + 1) % 3], mesh.face_mid_nodes[f][i]);
+  for (std::size_t e = 0; e < mesh.edge_mid_nodes.size(); ++e)
+    add(mesh.edges[e][0], mesh.edges[e][1], mesh.edge_mid_nodes[e]);
+  const auto before = [](const auto& x, const auto& y) { return x.first < y.first; };
+  std::stable_sort(bulges_.begin(), bulges_.end(), before);
+  bulges_.erase(std::unique(bulges_.begin(), bulges_.end(),
+                            [](const auto& x, const auto& y) { return x.first == y.first; }),
+                bulges_.end());
+}
+
+Vector Bulges::operator()(Index a, Index b) const {
+  const std::uint64_t key = edge_key(a, b);
+  const auto found = std::lower_bound(bulges_.begin(), bulges_.end(), key,
+                                      [](const auto& each, std::uint64_t k) { return each.first < k; });
+  return found != bulges_.end() && found->first == key ? found->second : Vector{};
+}
+
+void straighten(TetMesh& mesh) {
+  Index first = static_cast<Index>(mesh.points.size());
+  const auto see = [&first](Index node) { first = std::min(first, node); };
+  for (const auto& nodes : mesh.tet_mid_nodes)
+    for (const Index node : nodes) see(node);
+  mesh.points.resize(first);
+  mesh.features.resize(first);
+  mesh.tet_mid_nodes.clear(), mesh.face_mid_nodes.clear(), mesh.edge_mid_nodes.clear();
+}
+
+bool curve(TetMesh& mesh, const Plc& plc, const Bulges& bulges, const PlacesInLayers& places,
+           const SecondOrderOptions& options, const Execution& execution) {
+  return Curving(mesh, plc, bulges, places, options, execution).run();
+}
+
+}  // namespace collarmesh::layering

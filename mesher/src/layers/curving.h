@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "collarmesh/second_order.h"
+#include "collarmesh/tet_mesh.h"
+
+namespace collarmesh::layering {
+
+/// The ways from the middles of a mesh's edges to their nodes of second order.
+class Bulges {
+ public:
+  Bulges() = default;
+  /// Finds those of the listed faces and edges of a mesh of second order.
+  explicit Bulges(const TetMesh& mesh);
+
+  bool empty() const { return bulges_.empty(); }
+  /// Returns that of the edge between two points; none where it is straight or not known.
+  Vector operator()(Index a, Index b) const;
+
+ private:
+  std::vector<std::pair<std::uint64_t, Vector>> bulges_;  // by edge key
+};
+
+/// Turns a mesh of second order into one of first order.
+void straighten(TetMesh& mesh);
+
+/// Where the points of a mesh with layers lie: the point of the wall below them, and the height relative to
+/// all layers there.
+struct PlacesInLayers {
+  std::vector<Index> wall;     ///< itself on walls; none elsewhere
+  std::vector<double> share;   ///< from 0 on walls to 1 beside the core
+  std::vector<bool> is_raised;  ///< by point of a wall: there are layers above it
+};
+
+/// Gives a mesh with layers nodes of second order. Edges of walls keep their bulges, which fade towards the
+/// core. The core gets its nodes as any mesh does, but keeps its tets. Bulges of walls shrink where cells would
+/// fold. Returns false if cancelled.
+bool curve(TetMesh& mesh, const Plc& plc, const Bulges& bulges, const PlacesInLayers& places,
+           const SecondOrderOptions& options, const Execution& execution);
+
+}  // namespace collarmesh::layering

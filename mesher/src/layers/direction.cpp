@@ -1,0 +1,79 @@
+// The direction of the largest smallest cosine is that of the point of the convex hull of the normals that is
+// nearest to the origin (Aubry and Loehner, On the most normal normal, 2008). Gilbert's algorithm finds it.
+#include "layers/direction.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace collarmesh::layering {
+
+namespace {
+
+constexpr unsigned most_steps = 200;
+constexpr double precision = 1e-6;
+// Planes and lines at a smaller sine of their angle are taken for the same.
+constexpr double parallel = 1e-4;
+// Lines may leave planes by this sine, because the normals of curved patches are means over triangles.
+constexpr double nearly_parallel = 0.02;
+
+}  // namespace
+
+std::optional<Direction> DirectionSearch::best() const {
+  if (walls_.empty()) return std::nullopt;
+  if (!lines_.empty() || planes_.size() > 1)
+    if (const std::optional<Vector> way = only_way()) return judge(*way);
+  if (!lines_.empty()) return std::nullopt;
+  for (const Vector& plane : planes_)
+    if (norm(cross(plane, planes_[0])) > parallel) return std::nullopt;
+  Vector nearest{};
+  for (const Vector& n : walls_) nearest = nearest + in_plane(n) / static_cast<double>(walls_.size());
+  for (unsigned step = 0; step < most_steps; ++step) {
+    const auto least = std::min_element(walls_.begin(), walls_.end(), [&](const Vector& a, const Vector& b) {
+      return dot(in_plane(a), nearest) < dot(in_plane(b), nearest);
+    });
+    const Vector way = in_plane(*least) - nearest;
+    const double gain = -dot(nearest, way);
+    if (gain <= precision * squared_norm(nearest)) break;
+    nearest = nearest + std::min(1.0, gain / squared_norm(way)) * way;
+  }
+  return judge(nearest);
+}
+
+/// Returns the direction of the line on which the node has to stay; nothing if there is no single one.
+std::optional<Vector> DirectionSearch::only_way() const {
+  Vector way{};
+  if (!lines_.empty()) {
+    way = lines_[0];
+  } else {
+    double steepest = parallel;
+    for (std::size_t i = 1; i < planes_.size(); ++i)
+      if (const Vector w = cross(planes_[0], planes_[i]); norm(w) > steepest) {
+        steepest = norm(w);
+        way = w / steepest;
+      }
+    if (steepest == parallel) return std::nullopt;
+  }
+  const bool fits = std::all_of(lines_.begin(), lines_.end(),
+                                [&](const Vector& line) { return norm(cross(line, way)) <= nearly_parallel; }) &&
+                    std::all_of(planes_.begin(), planes_.end(),
+                                [&](const Vector& plane) { return std::fabs(dot(plane, way)) <= nearly_parallel; });
+  if (!fits) return std::nullopt;
+  double sum = 0;
+  for (const Vector& n : walls_) sum += dot(n, way);
+  return lines_.empty() && sum < 0 ? -1.0 * way : way;
+}
+
+Vector DirectionSearch::in_plane(const Vector& v) const {
+  return planes_.empty() ? v : v - dot(v, planes_[0]) * planes_[0];
+}
+
+std::optional<Direction> DirectionSearch::judge(const Vector& way) const {
+  const double length = norm(way);
+  if (!(length > 0)) return std::nullopt;
+  Direction found{way / length, 1};
+  for (const Vector& n : walls_) found.least_cosine = std::min(found.least_cosine, dot(n, found.direction));
+  if (!(found.least_cosine > 0)) return std::nullopt;
+  return found;
+}
+
+}  // namespace collarmesh::layering

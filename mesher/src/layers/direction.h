@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "collarmesh/geometry.h"
+
+namespace collarmesh::layering {
+
+struct Direction {
+  Vector direction;     ///< unit
+  double least_cosine;  ///< between it and the normals of walls; positive
+};
+
+/// Finds the direction that is as steep as possible above all walls at a node, within the planes and along
+/// the lines on which the node has to stay.
+class DirectionSearch {
+ public:
+  /// Unit vectors; the normal points away from the wall.
+  void add_wall(const Vector& normal) { walls_.push_back(normal); }
+  void stay_in_plane(const Vector& normal) { planes_.push_back(normal); }
+  void stay_on_line(const Vector& way) { lines_.push_back(way); }
+
+  /// Returns the direction; nothing if there is none from which all walls are seen.
+  std::optional<Direction> best() const;
+
+ private:
+  std::optional<Vector> only_way() const;
+  Vector in_plane(const Vector& v) const;
+  std::optional<Direction> judge(const Vector& way) const;
+
+  std::vector<Vector> walls_, planes_, lines_;
+};
+
+}  // namespace collarmesh::layering

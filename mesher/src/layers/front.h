@@ -1,0 +1,103 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "collarmesh/tet_mesh.h"
+#include "common/cells_at_vertices.h"
+#include "improve/tet_complex.h"
+#include "layers/wall_choice.h"
+
+namespace collarmesh::layering {
+
+/// Numbers in groups one after the other.
+struct Lists {
+  std::vector<Index> first{0};  // the first entry of each group, and the number of all
+  std::vector<Index> entries;
+
+  std::size_t size() const { return first.size() - 1; }
+  std::span<const Index> operator[](std::size_t i) const {
+    return std::span(entries).subspan(first[i], first[i + 1] - first[i]);
+  }
+  void end_group() { first.push_back(static_cast<Index>(entries.size())); }
+};
+
+/// The side of a wall's triangle on which there are to be layers.
+struct WallSide {
+  Index face = none;             ///< triangle of the mesh
+  Index tet = none;              ///< tet on this side
+  std::array<Index, 3> corners;  ///< counterclockwise as seen from inside
+  std::array<Index, 3> nodes;    ///< the front's nodes at these corners
+  Index patch = none, region = none;
+
+  /// Where the layers on the edge from corner i to corner i + 1 go on: at another side, at a face without
+  /// layers, or nowhere.
+  struct Edge {
+    Index beyond = none;   ///< the other side; none: there is a face without layers, or nothing
+    Index across = none;   ///< the face of the mesh that the layers on the edge meet: at their end, or
+                           ///< between regions; none: there is none
+    bool outwards = false;  ///< that face is oriented away from the tets on this side
+    bool blocked = false;   ///< no layers are possible
+  };
+  std::array<Edge, 3> edges;
+};
+
+/// A node of the mesh as seen by the layers of one sector of the tets around it: between walls.
+struct FrontNode {
+  Index vertex = none;
+  Vector direction{};    ///< unit; into the sector
+  double cosine = 0;     ///< the least one between the direction and the normals of the wall's sides
+  bool blocked = false;  ///< there can be no layer
+  /// The features without layers along which the node slides.
+  TetMesh::VertexFeature slides_on = {};
+};
+
+/// The front that layers push inwards: its nodes and triangles, as they are at the wall.
+class Front {
+ public:
+  /// Keeps all by reference. `complex` is that of the mesh.
+  Front(const improvement::TetComplex& complex, const Plc& plc, const WallChoice& walls);
+
+  std::vector<WallSide> sides;
+  std::vector<FrontNode> nodes;
+  Lists sides_at;                 ///< by node: sides with it
+  Lists neighbours;               ///< by node: the others of its sides
+  Lists edges_of;                 ///< by node: edges of curves in its sector that are no edges of walls
+  std::vector<bool> on_wall;      ///< by vertex of the mesh: whether it is a corner of a wall's triangle
+  std::vector<Index> node_at;     ///< four by tet: the front's node at each corner; none
+
+  /// Returns the front's node of a sector: that at a corner of a tet.
+  Index node_of(Index tet, unsigned corner) const { return node_at[4 * std::size_t{tet} + corner]; }
+  /// Returns the unit normal of a side, pointing inwards.
+  Vector normal(const WallSide& side) const;
+  /// Returns whether a face of the mesh is a wall's triangle.
+  bool is_wall(Index face) const { return face != none && walls_.is_wall(mesh_.face_patch[face]); }
+  bool is_wall_patch(Index patch) const { return walls_.is_wall(patch); }
+  const improvement::TetComplex::Tet& tet(Index t) const { return complex_[t]; }
+  /// Returns whether an edge of the mesh is an edge of a wall's triangle.
+  bool is_wall_edge(Index a, Index b) const;
+
+ private:
+  void find_sides();
+  void find_nodes();
+  void find_sector(Index vertex, Index tet, std::vector<Index>& sector);
+  void number_corners();
+  void link_edges();
+  WallSide::Edge follow(const WallSide& side, unsigned corner) const;
+  void list_sides();
+  void find_directions();
+  void find_direction(Index node, std::span<const Index> sector_faces, std::span<const Index> sector_edges);
+
+  const improvement::TetComplex& complex_;
+  const TetMesh& mesh_;
+  const Plc& plc_;
+  const WallChoice& walls_;
+  CellsAtVertices edges_at_;
+  std::vector<std::uint64_t> wall_edges_;  // keys, sorted
+  std::vector<Index> side_of_;             // four by tet: index of the wall's side opposite each corner; none
+  Lists faces_at_;                         // by node: faces without layers in its sector
+};
+
+}  // namespace collarmesh::layering

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "layers/curving.h"
+#include "layers/front.h"
+
+namespace collarmesh::layering {
+
+/// Why layers are lower than asked for.
+enum class Cause : std::uint8_t { none, ends, direction, patch, gap, fold, core, step, count };
+std::string text_of(Cause cause);
+
+/// The distances by which a front's nodes are pushed along their directions.
+class Heights {
+ public:
+  /// Sets the distances that are asked for, and 0 where there can be no layers. Keeps all by reference.
+  Heights(const Front& front, const TetMesh& mesh, const Plc& plc, const WallChoice& walls);
+
+  std::size_t size() const { return length_.size(); }
+  /// Returns the distance along the direction; 0: no layers.
+  double operator[](Index node) const { return length_[node]; }
+  /// Returns the distance that is asked for.
+  double asked(Index node) const { return asked_[node]; }
+  /// Returns the height of all layers above the wall that is asked for, and that is reached.
+  double asked_height(Index node) const { return asked_height_[node]; }
+  double height(Index node) const;
+  Cause cause(Index node) const { return cause_[node]; }
+  bool is_lower(Index node) const;
+  const WallLayers& layers(Index node) const { return *walls_at_[node]; }
+
+  /// Returns the place of a node when it is pushed by this distance.
+  Point place(Index node, double distance) const;
+  Point place(Index node) const { return place(node, length_[node]); }
+
+  /// Lowers a distance to this one.
+  void lower(Index node, double to, Cause cause);
+  /// Lowers distances in gaps: the stacks on both sides leave a part of each gap to the tets between.
+  void fit_gaps();
+  /// Lowers distances where curved edges of the wall would rise above a part of the layers.
+  void fit_bulges(const Bulges& bulges);
+  /// Lowers distances where cells would fold, and where neighbours have less than half. Returns whether it
+  /// lowered any.
+  bool settle();
+  /// Returns the largest ratio of neighbours' distances.
+  double largest_step() const;
+
+ private:
+  void ask();
+  bool unfold(bool strictly);
+  bool limit_steps();
+  double relative_jacobian(const WallSide& side) const;
+
+  const Front& front_;
+  const TetMesh& mesh_;
+  const Plc& plc_;
+  const WallChoice& walls_;
+  std::vector<double> length_, asked_, asked_height_;
+  std::vector<Cause> cause_;
+  std::vector<const WallLayers*> walls_at_;
+};
+
+}  // namespace collarmesh::layering

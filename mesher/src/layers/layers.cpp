@@ -1,0 +1,192 @@
+// Boundary layers: the front of the wall's triangles is pushed into the tets, and the room behind it is
+// filled.
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <utility>
+
+#include "collarmesh/layers.h"
+#include "common/thread_limit.h"
+#include "improve/cell_bounds.h"
+#include "layers/core.h"
+#include "layers/curving.h"
+#include "layers/front.h"
+#include "layers/heights.h"
+#include "layers/stack.h"
+#include "layers/wall_choice.h"
+
+namespace collarmesh {
+
+namespace layering {
+namespace {
+
+// So often the layers are made again without those at places where it failed.
+constexpr unsigned most_tries = 4;
+
+class LayerMaker {
+ public:
+  LayerMaker(TetMesh& mesh, const Plc& plc, const LayerOptions& options, const ImproveOptions& improvement,
+             const SecondOrderOptions& second_order, const Execution& execution)
+      : mesh_(mesh),
+        plc_(plc),
+        options_(options),
+        improvement_(improvement),
+        second_order_(second_order),
+        execution_(execution),
+        walls_(options, plc),
+        bulges_(mesh),
+        is_second_order_(straightened(mesh)),
+        complex_(mesh),
+        front_(complex_, plc, walls_) {}
+
+  LayersReport run() {
+    if (!make()) report_.cancelled = true;
+    return report_;
+  }
+
+ private:
+  /// Makes a mesh one of first order. Returns whether it was one of second order.
+  static bool straightened(TetMesh& mesh) {
+    if (mesh.order() == 1) return false;
+    straighten(mesh);
+    return true;
+  }
+
+  bool make() {
+    Heights heights(front_, mesh_, plc_, walls_);
+    heights.fit_gaps();
+    heights.fit_bulges(bulges_);
+    heights.settle();
+    for (unsigned attempt = 0; attempt < most_tries; ++attempt) {
+      Heights reached = heights;
+      Core core(mesh_, plc_, front_, reached, improvement_, execution_);
+      const bool done = core.push(reached);
+      if (core.cancelled()) return false;
+      if (done) return take(reached, core);
+      for (const Index n : core.failed()) heights.lower(n, 0, Cause::core);
+      heights.settle();
+    }
+    for (Index n = 0; n < heights.size(); ++n) heights.lower(n, 0, Cause::core);
+    return take(heights, Core(mesh_, plc_, front_, heights, improvement_, execution_));
+  }
+
+  bool take(const Heights& heights, const Core& core) {
+    Stack stack(mesh_, front_, heights, core, options_.tets);
+    TetMesh made = stack.build();
+    if (is_second_order_ && !curve(made, plc_, bulges_, stack.places(), second_order_, execution_))
+      return false;
+    describe(heights, made);
+    report_.walls = stack.places().wall;
+    mesh_ = std::move(made);
+    return true;
+  }
+
+  double area_of(const WallSide& side) const {
+    const auto& p = mesh_.points;
+    const auto& [a, b, c] = side.corners;
+    return 0.5 * norm(cross(p[b] - p[a], p[c] - p[a]));
+  }
+
+  void describe(const Heights& heights, const TetMesh& made) {
+    report_.prisms = made.layers.prisms.size();
+    report_.pyramids = made.layers.pyramids.size();
+    report_.tets = static_cast<std::size_t>(std::count_if(made.layers.tet_layer.begin(),
+                                                          made.layers.tet_layer.end(),
+                                                          [](std::uint16_t layer) { return layer > 0; }));
+    report_.largest_step = heights.largest_step();
+    describe_patches(heights);
+    describe_reductions(heights);
+  }
+
+  void describe_patches(const Heights& heights) {
+    std::map<Tag, LayersReport::Patch> patches;
+    constexpr std::size_t bins = std::tuple_size_v<decltype(LayersReport::Patch::histogram)>;
+    for (const WallSide& side : front_.sides) {
+      const Tag tag = mesh_.face_tag[side.face];
+      LayersReport::Patch& patch = patches[tag];
+      patch.tag = tag;
+      const double area = area_of(side);
+      double asked = 0, mean = 0;
+      bool covered = true;
+      for (const Index n : side.nodes) {
+        asked += heights.asked_height(n) / 3;
+        mean += std::min(heights.height(n), heights.asked_height(n)) / 3;
+        covered = covered && heights[n] > 0;
+      }
+      patch.area += area;
+      patch.asked += area * asked;
+      patch.mean += area * mean;
+      if (covered) patch.covered += area;
+      const auto bin = static_cast<std::size_t>(static_cast<double>(bins) * mean / asked * (1 + 1e-6));
+      patch.histogram[std::min(bins - 1, bin)] += area;
+    }
+    for (auto& [tag, patch] : patches) {
+      const std::string* const name = mesh_.names.find(2, tag);
+      patch.name = name != nullptr ? *name : "patch_" + std::to_string(tag);
+      patch.asked /= patch.area;
+      patch.mean /= patch.area;
+      report_.patches.push_back(patch);
+    }
+  }
+
+  void describe_reductions(const Heights& heights) {
+    std::array<LayersReport::Reduction, static_cast<std::size_t>(Cause::count)> by_cause;
+    for (Index n = 0; n < heights.size(); ++n) {
+      if (heights.cause(n) == Cause::none || !heights.is_lower(n)) continue;
+      LayersReport::Reduction& reduction = by_cause[static_cast<std::size_t>(heights.cause(n))];
+      const double share = heights.height(n) / heights.asked_height(n);
+      if (reduction.nodes++ > 0 && share >= reduction.smallest) continue;
+      reduction.smallest = share;
+      reduction.where = mesh_.points[front_.nodes[n].vertex];
+    }
+    for (std::size_t cause = 0; cause < by_cause.size(); ++cause) {
+      if (by_cause[cause].nodes == 0) continue;
+      by_cause[cause].why = text_of(static_cast<Cause>(cause));
+      report_.reductions.push_back(by_cause[cause]);
+    }
+  }
+
+  TetMesh& mesh_;
+  const Plc& plc_;
+  const LayerOptions& options_;
+  const ImproveOptions& improvement_;
+  const SecondOrderOptions& second_order_;
+  const Execution& execution_;
+  WallChoice walls_;
+  Bulges bulges_;
+  bool is_second_order_;
+  improvement::TetComplex complex_;
+  Front front_;
+  LayersReport report_;
+};
+
+}  // namespace
+}  // namespace layering
+
+double LayersReport::coverage() const {
+  double all = 0, part = 0;
+  for (const Patch& patch : patches) {
+    all += patch.area;
+    part += patch.covered;
+  }
+  return all > 0 ? part / all : 0;
+}
+
+LayersReport make_layers(TetMesh& mesh, const Plc& plc, const LayerOptions& options,
+                         const ImproveOptions& improvement, const SecondOrderOptions& second_order,
+                         const Execution& execution) {
+  const auto started = std::chrono::steady_clock::now();
+  ImproveOptions with_tolerance = improvement;
+  if (!with_tolerance.bounds.tolerance)
+    with_tolerance.bounds.tolerance = tolerance_of_any_size(plc, improvement.bounds);
+  LayersReport report;
+  ThreadLimit(improvement.threads).run([&] {
+    report = layering::LayerMaker(mesh, plc, options, with_tolerance, second_order, execution).run();
+    if (!report.cancelled && with_tolerance.bounds.thin_angle > 0)
+      improvement::mark_cells(mesh, plc, with_tolerance.bounds);
+  });
+  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+  return report;
+}
+
+}  // namespace collarmesh

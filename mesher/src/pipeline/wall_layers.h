@@ -1,0 +1,10 @@
+#pragma once
+
+#include "pipeline/mesh_job.h"
+
+namespace collarmesh::pipeline {
+
+/// Puts layers on walls, if asked for, and adds their certificate.
+void add_layers(MeshJob& job);
+
+}  // namespace collarmesh::pipeline

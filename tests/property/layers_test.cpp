@@ -1,0 +1,283 @@
+// Boundary layers of shapes: valid cells, walls that stay, heights as asked, judged by formulas of this file.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "check/layer_cells.h"
+#include "collarmesh/error.h"
+#include "collarmesh/layers.h"
+#include "collarmesh/pipeline.h"
+#include "support/plc_shapes.h"
+
+namespace collarmesh {
+namespace {
+
+using namespace testing;
+
+constexpr double size = 0.2;
+
+PipelineOptions with_layers(const std::vector<std::string>& walls) {
+  PipelineOptions options;
+  options.mesh.size = size;
+  options.mesh.max_vertices = 200'000;
+  options.layers.walls = walls;
+  return options;
+}
+
+PipelineResult made(const std::vector<PolygonSoup>& soups, const PipelineOptions& options) {
+  PipelineResult run = run_pipeline(soups, options);
+  EXPECT_EQ(run.result.status, MeshStatus::complete) << run.missed();
+  EXPECT_TRUE(run.check.passed()) << run.missed();
+  EXPECT_TRUE(run.layers.has_value());
+  return run;
+}
+
+double volume(const Point& a, const Point& b, const Point& c, const Point& d) {
+  return dot(cross(b - a, c - a), d - a) / 6;
+}
+
+/// The volume of all cells; prisms and pyramids as the mean over both diagonals of each quadrangle.
+double volume_of(const TetMesh& mesh) {
+  double sum = 0;
+  const auto& p = mesh.points;
+  for (const auto& [a, b, c, d] : mesh.tets) sum += volume(p[a], p[b], p[c], p[d]);
+  // By the divergence theorem: a sum over sides, as seen from the origin.
+  const auto side = [&](Index a, Index b, Index c) { return dot(cross(p[a], p[b]), p[c]) / 6; };
+  const auto quad = [&](Index a, Index b, Index c, Index d) {
+    return 0.5 * (side(a, b, c) + side(a, c, d) + side(a, b, d) + side(b, c, d));
+  };
+  for (const auto& [a, b, c, d, e, f] : mesh.layers.prisms)
+    sum += side(a, c, b) + side(d, e, f) + quad(a, b, e, d) + quad(b, c, f, e) + quad(c, a, d, f);
+  for (const auto& [a, b, c, d, e] : mesh.layers.pyramids)
+    sum += quad(a, d, c, b) + side(a, b, e) + side(b, c, e) + side(c, d, e) + side(d, a, e);
+  return sum;
+}
+
+/// The smallest corner Jacobian of all cells.
+double least_jacobian_of(const TetMesh& mesh) {
+  double least = INFINITY;
+  const auto& p = mesh.points;
+  const auto see = [&](Index a, Index b, Index c, Index d) {
+    least = std::min(least, volume(p[a], p[b], p[c], p[d]));
+  };
+  for (const auto& [a, b, c, d] : mesh.tets) see(a, b, c, d);
+  for (const auto& v : mesh.layers.prisms)
+    for (unsigned i = 0; i < 3; ++i) {
+      const unsigned j = (i + 1) % 3, k = (i + 2) % 3;
+      see(v[i], v[j], v[k], v[i + 3]);
+      see(v[i + 3], v[k + 3], v[j + 3], v[i]);
+    }
+  for (const auto& v : mesh.layers.pyramids)
+    for (unsigned i = 0; i < 4; ++i) see(v[i], v[(i + 1) % 4], v[(i + 3) % 4], v[4]);
+  return least;
+}
+
+std::set<std::array<Point, 3>, bool (*)(const std::array<Point, 3>&, const std::array<Point, 3>&)>
+triangles_of(const TetMesh& mesh, Tag tag) {
+  const auto less = [](const std::array<Point, 3>& s, const std::array<Point, 3>& t) {
+    for (unsigned i = 0; i < 3; ++i)
+      for (unsigned axis = 0; axis < 3; ++axis)
+        if (s[i][axis] != t[i][axis]) return s[i][axis] < t[i][axis];
+    return false;
+  };
+  std::set<std::array<Point, 3>, bool (*)(const std::array<Point, 3>&, const std::array<Point, 3>&)> found(
+      less);
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    if (tag != 0 && mesh.face_tag[f] != tag) continue;
+    std::array<Point, 3> t{mesh.points[mesh.faces[f][0]], mesh.points[mesh.faces[f][1]],
+                           mesh.points[mesh.faces[f][2]]};
+    std::sort(t.begin(), t.end(), [](const Point& a, const Point& b) {
+      return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
+    });
+    found.insert(t);
+  }
+  return found;
+}
+
+TEST(Layers, CoverACubeWithPrismsAsHighAsAsked) {
+  const std::vector<PolygonSoup> soups{box({0, 0, 0}, {1, 1, 1})};
+  const PipelineResult run = made(soups, with_layers({"all:first=0.02,growth=1.5,count=3"}));
+  const TetMesh& mesh = run.result.mesh;
+  EXPECT_GT(run.layers->prisms, 0U);
+  EXPECT_NEAR(run.layers->coverage(), 1, 1e-9);
+  EXPECT_LE(run.layers->largest_step, 2 + 1e-6);
+  EXPECT_GT(least_jacobian_of(mesh), 0);
+  EXPECT_NEAR(volume_of(mesh), 1, 1e-9);
+  // First layers end 0.02 above their faces, the third 0.095 unless it is lowered.
+  std::size_t full = 0, all = 0;
+  for (std::size_t i = 0; i < mesh.layers.prisms.size(); ++i) {
+    if (mesh.layers.prism_layer[i] != 1) continue;
+    ++all;
+    double height = 0;
+    for (unsigned k = 3; k < 6; ++k) {
+      const Point& p = mesh.points[mesh.layers.prisms[i][k]];
+      height = std::max(height, std::min({p.x, p.y, p.z, 1 - p.x, 1 - p.y, 1 - p.z}));
+    }
+    EXPECT_LE(height, 0.02 + 1e-9);
+    if (height > 0.02 * 0.95) ++full;
+  }
+  EXPECT_GT(full, all * 9 / 10);
+}
+
+TEST(Layers, KeepTheTrianglesOfWalls) {
+  const std::vector<PolygonSoup> soups{box({0, 0, 0}, {1, 1, 1})};
+  PipelineOptions options = with_layers({"all"});
+  const PipelineResult run = made(soups, options);
+  options.layers.walls.clear();
+  const PipelineResult without = run_pipeline(soups, options);
+  EXPECT_EQ(triangles_of(run.result.mesh, 0), triangles_of(without.result.mesh, 0));
+}
+
+TEST(Layers, AreTheSameForAnyNumberOfThreads) {
+  const std::vector<PolygonSoup> soups{sphere(6, 1, {0, 0, 0})};
+  PipelineOptions options = with_layers({"all"});
+  options.mesh.threads = 1;
+  const PipelineResult one = made(soups, options);
+  options.mesh.threads = 4;
+  const PipelineResult four = made(soups, options);
+  EXPECT_EQ(one.result.mesh.points, four.result.mesh.points);
+  EXPECT_EQ(one.result.mesh.tets, four.result.mesh.tets);
+  EXPECT_EQ(one.result.mesh.layers.prisms, four.result.mesh.layers.prisms);
+}
+
+TEST(Layers, OnOneFaceEndAtTheOthersInQuadrangles) {
+  const std::vector<PolygonSoup> soups{box({0, 0, 0}, {1, 1, 1})};
+  const PipelineResult run = made(soups, with_layers({"1:first=0.02,count=2"}));
+  const TetMesh& mesh = run.result.mesh;
+  EXPECT_GT(mesh.layers.quads.size(), 0U);
+  EXPECT_NEAR(run.layers->coverage(), 1, 1e-9);
+  EXPECT_GT(least_jacobian_of(mesh), 0);
+  EXPECT_NEAR(volume_of(mesh), 1, 1e-9);
+  std::map<Tag, double> areas;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const auto& [a, b, c] = mesh.faces[f];
+    areas[mesh.face_tag[f]] +=
+        0.5 * norm(cross(mesh.points[b] - mesh.points[a], mesh.points[c] - mesh.points[a]));
+  }
+  for (std::size_t q = 0; q < mesh.layers.quads.size(); ++q) {
+    const auto& [a, b, c, d] = mesh.layers.quads[q];
+    areas[mesh.layers.quad_tag[q]] +=
+        0.5 * norm(cross(mesh.points[c] - mesh.points[a], mesh.points[d] - mesh.points[b]));
+  }
+  for (const auto& [tag, area] : areas) EXPECT_NEAR(area, 1, 1e-9) << tag;
+}
+
+TEST(Layers, DividedIntoTetsFitEachOther) {
+  const std::vector<PolygonSoup> soups{box({0, 0, 0}, {1, 1, 1})};
+  for (const char* wall : {"all:first=0.02,count=2", "1:first=0.02,count=2"}) {
+    PipelineOptions options = with_layers({wall});
+    options.layers.tets = true;
+    const PipelineResult run = made(soups, options);
+    const TetMesh& mesh = run.result.mesh;
+    EXPECT_TRUE(mesh.layers.prisms.empty() && mesh.layers.pyramids.empty() && mesh.layers.quads.empty());
+    EXPECT_GT(run.layers->tets, 0U);
+    EXPECT_GT(least_jacobian_of(mesh), 0);
+    EXPECT_NEAR(volume_of(mesh), 1, 1e-9);
+  }
+}
+
+TEST(Layers, StepDownIntoAWedge) {
+  const double angle = 20 * M_PI / 180;
+  PolygonSoup soup;
+  for (const double z : {0.0, 1.0})
+    for (const auto& [x, y] : {std::array{0.0, 0.0}, {2.0, 0.0}, {2 * std::cos(angle), 2 * std::sin(angle)}})
+      soup.points.push_back({x, y, z});
+  soup.add_facet(std::array<Index, 3>{0, 2, 1}, 1);
+  soup.add_facet(std::array<Index, 3>{3, 4, 5}, 2);
+  soup.add_facet(std::array<Index, 4>{0, 1, 4, 3}, 3);
+  soup.add_facet(std::array<Index, 4>{1, 2, 5, 4}, 4);
+  soup.add_facet(std::array<Index, 4>{2, 0, 3, 5}, 5);
+  const PipelineResult run = made({soup}, with_layers({"all"}));
+  EXPECT_GT(run.layers->coverage(), 0.8);
+  EXPECT_LE(run.layers->largest_step, 2 + 1e-6);
+  EXPECT_GT(least_jacobian_of(run.result.mesh), 0);
+  EXPECT_NEAR(volume_of(run.result.mesh), 2 * std::sin(angle), 1e-9);
+  EXPECT_FALSE(run.layers->reductions.empty());
+}
+
+TEST(Layers, OnBothSidesOfAnInterface) {
+  const std::vector<PolygonSoup> soups{box({0, 0, 0}, {1, 1, 1}), box({1, 0, 0}, {2, 1, 1})};
+  PipelineOptions options = with_layers({});
+  const PipelineResult without = run_pipeline(soups, options);
+  Tag interface = 0;
+  for (std::size_t f = 0; f < without.result.mesh.faces.size(); ++f)
+    if (const auto& [a, b] = without.result.mesh.face_regions[f]; a != 0 && b != 0)
+      interface = without.result.mesh.face_tag[f];
+  options.layers.walls = {std::to_string(interface) + ":first=0.02,count=2"};
+  const PipelineResult run = made(soups, options);
+  EXPECT_GT(least_jacobian_of(run.result.mesh), 0);
+  EXPECT_NEAR(volume_of(run.result.mesh), 2, 1e-9);
+  std::set<Index> regions(run.result.mesh.layers.prism_region.begin(),
+                          run.result.mesh.layers.prism_region.end());
+  EXPECT_EQ(regions.size(), 2U);
+}
+
+TEST(Layers, AroundTwoRegionsMeetAtTheirInterface) {
+  const std::vector<PolygonSoup> soups{box({0, 0, 0}, {1, 1, 1}), box({1, 0, 0}, {2, 1, 1})};
+  const PipelineResult run = made(soups, with_layers({"all:first=0.02,count=2"}));
+  EXPECT_NEAR(run.layers->coverage(), 1, 1e-9);
+  EXPECT_NEAR(volume_of(run.result.mesh), 2, 1e-9);
+  std::size_t between = 0;
+  for (const auto& [a, b] : run.result.mesh.layers.quad_regions) between += a != 0 && b != 0;
+  EXPECT_GT(between, 0U);
+}
+
+TEST(Layers, OfSecondOrderFollowCurvedWalls) {
+  const std::vector<PolygonSoup> soups{sphere(6, 1, {0, 0, 0})};
+  PipelineOptions options = with_layers({"all"});
+  options.order = 2;
+  const PipelineResult run = made(soups, options);
+  const TetMesh& mesh = run.result.mesh;
+  EXPECT_GT(run.layers->coverage(), 0.95);
+  ASSERT_EQ(mesh.layers.prism_mid_nodes.size(), mesh.layers.prisms.size());
+  options.layers.walls.clear();
+  const PipelineResult without = run_pipeline(soups, options);
+  const auto nodes_of = [](const TetMesh& of) {
+    std::vector<Point> nodes;
+    for (const auto& mid : of.face_mid_nodes)
+      for (const Index node : mid) nodes.push_back(of.points[node]);
+    std::sort(nodes.begin(), nodes.end(), [](const Point& a, const Point& b) {
+      return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
+    });
+    return nodes;
+  };
+  const auto with = nodes_of(mesh), before = nodes_of(without.result.mesh);
+  ASSERT_EQ(with.size(), before.size());
+  for (std::size_t i = 0; i < with.size(); ++i) EXPECT_LT(distance(with[i], before[i]), 1e-12);
+}
+
+std::string error_of(const std::vector<std::string>& walls) {
+  try {
+    run_pipeline(std::vector<PolygonSoup>{box({0, 0, 0}, {1, 1, 1})}, with_layers(walls));
+  } catch (const OptionError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(Layers, RefuseWallsThatAreNone) {
+  EXPECT_NE(error_of({"9"}).find("layers: no face is called '9'"), std::string::npos) << error_of({"9"});
+  EXPECT_NE(error_of({"1", "1:count=2"}).find("face 1 gets layers twice"), std::string::npos);
+  EXPECT_NE(error_of({"all:first=x"}).find("no number"), std::string::npos);
+  EXPECT_NE(error_of({"all:count=0"}).find("count"), std::string::npos);
+  EXPECT_NE(error_of({"all:height=1"}).find("thickness"), std::string::npos);
+  EXPECT_NE(error_of({"all:first=0.1,thickness=1"}).find("leave one out"), std::string::npos);
+}
+
+TEST(Layers, ThickerThanThePartAreLower) {
+  const std::vector<PolygonSoup> soups{box({0, 0, 0}, {1, 1, 0.2})};
+  const PipelineResult run = made(soups, with_layers({"all:thickness=0.5,count=3"}));
+  EXPECT_GT(least_jacobian_of(run.result.mesh), 0);
+  EXPECT_NEAR(volume_of(run.result.mesh), 0.2, 1e-9);
+  ASSERT_FALSE(run.layers->reductions.empty());
+  EXPECT_GT(run.layers->coverage(), 0.8);
+}
+
+}  // namespace
+}  // namespace collarmesh
