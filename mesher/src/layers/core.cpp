@@ -23,6 +23,8 @@ constexpr unsigned most_halvings = 6;
 constexpr double quality_left = 0.2, good_quality = 0.15;
 // While the front moves, tets are improved up to this factor above the bound on angles, at last as far as asked.
 constexpr double above_bound = 1.25;
+// So many poor tets are improved by slow means, too.
+constexpr std::size_t most_of_few = 20;
 constexpr unsigned most_advances = 6, most_rounds = 12;
 // Heights count as reached within this share.
 constexpr double precision = 1e-9;
@@ -154,12 +156,13 @@ bool Core::push(Heights& heights) {
   failed_.clear();
   const double enough = above_bound * options_.bounds.thin_angle;
   double share = 0.7;
+  bool few = false;  // poor tets are left
   for (unsigned round = 0; round < most_rounds; ++round) {
     for (unsigned k = 0; k < most_advances && !advance(heights); ++k) {
-      improve_tets(enough);
+      improve_tets(enough, few);
       if (cancelled_) return true;
     }
-    improve_tets(enough);
+    improve_tets(enough, few);
     if (cancelled_) return true;
     bool lowered = false, reached = true;
     for (Index n = 0; n < heights.size(); ++n) {
@@ -170,6 +173,7 @@ bool Core::push(Heights& heights) {
       lowered = true;
     }
     const std::vector<Index> poor = poor_tets();
+    few = poor.size() <= most_of_few;
     if (poor.size() > poor_at_first_ && round + 1 < most_rounds) {
       lowered = lower_at(poor, share, heights) || lowered;
       share = std::max(0.2, share - 0.1);
@@ -177,7 +181,7 @@ bool Core::push(Heights& heights) {
     lowered = heights.settle() || lowered;
     if (!lowered && reached) {
       if (poor.size() <= poor_at_first_) {
-        improve_tets(options_.min_dihedral);
+        improve_tets(options_.min_dihedral, false);
         return true;
       }
       failed_ = nodes_near(poor, 2);
@@ -336,15 +340,15 @@ std::vector<double> Core::shares_of(const std::vector<Vector>& moves, const std:
   }
 }
 
-/// Improves tets below this angle.
-void Core::improve_tets(double angle) {
+/// Improves tets below this angle. `thoroughly`: by slow means, too.
+void Core::improve_tets(double angle, bool thoroughly) {
   ImproveOptions options = options_;
   options.min_dihedral = std::min(angle, options.min_dihedral);
   options.bounds.radius_edge = any_ratio;
   options.bounds.thin_in_narrow_places_only = false;
   options.thin_above = any_ratio;
   options.keep_vertices = false;
-  cancelled_ = cancelled_ || improve(*piece_, options, execution_).cancelled;
+  cancelled_ = cancelled_ || improve(*piece_, options, execution_, thoroughly).cancelled;
 }
 
 /// Returns the tets beyond the bounds on angles.

@@ -44,7 +44,7 @@ class Core {
   void spread(std::vector<Vector>& moves, const std::vector<Index>& near) const;
   void constrain(Index vertex, Vector& move) const;
   std::vector<double> shares_of(const std::vector<Vector>& moves, const std::vector<Index>& near) const;
-  void improve_tets(double angle);
+  void improve_tets(double angle, bool thoroughly);
   std::vector<Index> poor_tets() const;
   bool lower_at(const std::vector<Index>& tets, double share, Heights& heights) const;
   std::vector<Index> nodes_near(const std::vector<Index>& tets, unsigned rings) const;

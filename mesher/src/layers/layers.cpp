@@ -63,6 +63,7 @@ class LayerMaker {
       const bool done = core.push(reached);
       if (core.cancelled()) return false;
       if (done) return take(reached, core);
+      heights.take(reached);
       for (const Index n : core.failed()) heights.lower(n, 0, Cause::core);
       heights.settle();
     }
