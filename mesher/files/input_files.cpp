@@ -88,7 +88,12 @@ TetMesh read_mesh_or_triangles(const std::string& path) {
   std::optional<TetMesh> mesh = read_mesh_if_there(path);
   if (mesh) return std::move(*mesh);
   if (!io::is_mesh_surface_format(path)) return read_mesh(path);
-  return io::read_mesh_cells(existing_file(path));
+  TetMesh mesh_of_triangles = io::read_mesh_cells(existing_file(path));
+  if (!mesh_of_triangles.layers.quads.empty())
+    throw ReadError(fmt::format(
+        "{}: has {} quadrangles, which are not judged without cells of volumes; save triangles alone", path,
+        mesh_of_triangles.layers.quads.size()));
+  return mesh_of_triangles;
 }
 
 }  // namespace collarmesh::files

@@ -5,13 +5,15 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <set>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "collarmesh/io/tet_mesh_io.h"
 #include "collarmesh/partition.h"
+#include "io/cell_nodes.h"
+#include "io/node_groups.h"
+#include "report/layer_counts.h"
 
 namespace collarmesh::report {
 
@@ -33,14 +35,14 @@ constexpr unsigned curve_names = 1U << 1, patch_names = 1U << 2, region_names = 
 struct MeshKept {
   std::string_view format;
   bool collar = false, features = false, edges = true, curve_nodes = false, regions = true,
-       region_tags = true, region_numbers = true, loose_triangles = true, inner_faces = true;
+       region_tags = true, region_numbers = true, loose_triangles = true, inner_faces = true, layers = false;
   unsigned names = all_names;
 };
 constexpr std::array meshes{
-    MeshKept{.format = ".vtu", .collar = true, .features = true},
+    MeshKept{.format = ".vtu", .collar = true, .features = true, .layers = true},
     MeshKept{.format = ".pvtu", .collar = true, .features = true},
-    MeshKept{.format = ".vtk", .collar = true, .features = true},
-    MeshKept{.format = ".msh", .collar = true, .features = true},
+    MeshKept{.format = ".vtk", .collar = true, .features = true, .layers = true},
+    MeshKept{.format = ".msh", .collar = true, .features = true, .layers = true},
     MeshKept{.format = ".msh2"},
     MeshKept{.format = ".mesh", .region_tags = false, .names = 0},
     MeshKept{.format = ".inp", .edges = false, .curve_nodes = true, .loose_triangles = false},
@@ -83,8 +85,14 @@ std::size_t count_names(const TagNames& names, unsigned which) {
   return count;
 }
 
-std::size_t count_regions(const TetMesh& mesh) {
-  return std::set<Index>(mesh.tet_region.begin(), mesh.tet_region.end()).size();
+/// Counts cells of a dimension for which `holds(kind, cell)`.
+template <class Holds>
+std::size_t count_cells(const TetMesh& mesh, std::size_t dimension, const Holds& holds) {
+  std::size_t count = 0;
+  io::for_each_kind(mesh, dimension, [&](CellKind kind) {
+    for (std::size_t i = 0; i < io::count_of(mesh, kind); ++i) count += holds(kind, i) ? 1 : 0;
+  });
+  return count;
 }
 
 std::string shown(const std::string& path) { return path == "-" ? "standard output" : path; }
@@ -139,14 +147,20 @@ std::vector<std::string> lost_by(const std::string& format, const TetMesh& mesh)
   const auto loose =
       std::count(mesh.face_regions.begin(), mesh.face_regions.end(), std::array<Index, 2>{0, 0});
   add(losses, kept->loose_triangles, static_cast<std::size_t>(loose), "triangles that are no side of a tet");
-  const auto inside = std::count_if(mesh.face_regions.begin(), mesh.face_regions.end(),
-                                    [](const auto& regions) { return regions[0] != 0 && regions[1] != 0; });
-  add(losses, kept->inner_faces, static_cast<std::size_t>(inside), "triangles inside");
-  const std::size_t regions = count_regions(mesh);
+  const auto is_inside = [&](CellKind kind, std::size_t f) {
+    const auto& regions = io::regions_beside(mesh, kind)[f];
+    return regions[0] != 0 && regions[1] != 0;
+  };
+  add(losses, kept->inner_faces, count_cells(mesh, 2, is_inside),
+      mesh.layers.quads.empty() ? "triangles inside" : "triangles and quadrangles inside");
+  add(losses, kept->layers,
+      count_cells(mesh, 3, [&](CellKind kind, std::size_t i) { return io::layer_of(mesh, kind, i) != 0; }),
+      "numbers of layers");
+  const std::size_t regions = io::tags_of_regions(mesh).size();
   add(losses, kept->regions || regions == 1, regions, "regions");
-  std::size_t other = 0;
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
-    other += mesh.tet_tag[t] != static_cast<Tag>(mesh.tet_region[t]) ? 1 : 0;
+  const std::size_t other = count_cells(mesh, 3, [&](CellKind kind, std::size_t i) {
+    return io::tags_of(mesh, kind)[i] != static_cast<Tag>(io::features_of(mesh, kind)[i]);
+  });
   add(losses, kept->region_tags, other, "tags of tets (the number of their region is kept)");
   add(losses, kept->region_numbers, other, "region numbers of tets (the tag of their region is kept)");
   return losses;
@@ -166,8 +180,10 @@ std::string soup_text(const std::string& path, const PolygonSoup& soup) {
 
 std::string tet_mesh_text(const std::string& path, const TetMesh& mesh) {
   return fmt::format(
-      "{}: {} tets of order {}, {} points, {} boundary and interface triangles, {} curve edges\n",
-      shown(path), mesh.tets.size(), mesh.order(), mesh.points.size(), mesh.faces.size(), mesh.edges.size());
+      "{}: {} tets of order {}, {}{} points, {} boundary and interface triangles, {}{} curve edges\n",
+      shown(path), mesh.tets.size(), mesh.order(),
+      layers_text(mesh.layers.prisms.size(), mesh.layers.pyramids.size()), mesh.points.size(),
+      mesh.faces.size(), quads_text(mesh.layers.quads.size()), mesh.edges.size());
 }
 
 std::string merge_text(const MergeReport& report) {

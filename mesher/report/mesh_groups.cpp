@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "io/label_names.h"
+#include "io/node_groups.h"
 
 namespace collarmesh::report {
 
@@ -18,14 +19,14 @@ class Groups {
  public:
   Groups(const TetMesh& mesh, std::size_t dimension) : mesh_(mesh), dimension_(dimension) {}
 
-  void add(Tag tag, double measure, const Point& centre) {
+  void add(Tag tag, double measure, const Point& centre, bool quad = false) {
     MeshGroup& group = groups_[tag];
     double& largest = largest_[tag];
-    if (group.cells == 0 || measure > largest) {
+    if (group.cells + group.quads == 0 || measure > largest) {
       largest = measure;
       group.where = centre;
     }
-    ++group.cells;
+    ++(quad ? group.quads : group.cells);
     group.measure += measure;
   }
 
@@ -50,9 +51,10 @@ void append(std::string& text, const std::vector<MeshGroup>& groups, const char*
             const char* cells, const char* measure) {
   for (std::size_t k = 0; k < std::min(groups.size(), listed); ++k) {
     const MeshGroup& g = groups[k];
-    text += fmt::format("  {} {}{}: {} {}, {} {:.6g}, at ({:.6g}, {:.6g}, {:.6g})\n", kind, g.tag,
-                        g.name.empty() ? "" : fmt::format(" ({})", g.name), g.cells, cells, measure,
-                        g.measure, g.where.x, g.where.y, g.where.z);
+    text += fmt::format("  {} {}{}: {} {},{} {} {:.6g}, at ({:.6g}, {:.6g}, {:.6g})\n", kind, g.tag,
+                        g.name.empty() ? "" : fmt::format(" ({})", g.name), g.cells, cells,
+                        g.quads > 0 ? fmt::format(" {} quadrangles,", g.quads) : "", measure, g.measure,
+                        g.where.x, g.where.y, g.where.z);
   }
   if (groups.size() > listed)
     text += fmt::format("  ... and {} more {} (--json lists all)\n", groups.size() - listed, plural);
@@ -66,6 +68,13 @@ std::vector<MeshGroup> patches_of(const TetMesh& mesh) {
     const Point &a = mesh.points[mesh.faces[f][0]], &b = mesh.points[mesh.faces[f][1]],
                 &c = mesh.points[mesh.faces[f][2]];
     groups.add(mesh.face_tag[f], 0.5 * norm(cross(b - a, c - a)), (a + b + c) / 3);
+  }
+  const LayerCells& layers = mesh.layers;
+  for (std::size_t q = 0; q < layers.quads.size(); ++q) {
+    const auto& [a, b, c, d] = layers.quads[q];
+    const auto& p = mesh.points;
+    const double area = 0.5 * (norm(cross(p[b] - p[a], p[c] - p[a])) + norm(cross(p[c] - p[a], p[d] - p[a])));
+    groups.add(layers.quad_tag[q], area, 0.25 * (p[a] + p[b] + p[c] + p[d]), true);
   }
   return groups.take();
 }
@@ -85,10 +94,8 @@ std::string name_of(const TagNames& given, GroupNames names, std::size_t dimensi
 }
 
 std::map<Index, std::string> names_of_regions(const TetMesh& mesh) {
-  std::map<Index, Tag> tags;
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t) tags.try_emplace(mesh.tet_region[t], mesh.tet_tag[t]);
   std::map<Index, std::string> names;
-  for (const auto& [region, tag] : tags)
+  for (const auto& [region, tag] : io::tags_of_regions(mesh))
     if (std::string name = name_of(mesh.names, mesh.group_names, 3, tag); !name.empty())
       names.emplace(region, std::move(name));
   return names;
@@ -105,12 +112,14 @@ nlohmann::ordered_json groups_json(const std::vector<MeshGroup>& groups, const c
                                    const char* measure) {
   using Json = nlohmann::ordered_json;
   Json list = Json::array();
-  for (const MeshGroup& g : groups)
+  for (const MeshGroup& g : groups) {
     list.push_back({{"tag", g.tag},
                     {"name", g.name.empty() ? Json(nullptr) : Json(g.name)},
                     {cells, g.cells},
                     {measure, g.measure},
                     {"where", {g.where.x, g.where.y, g.where.z}}});
+    if (g.quads > 0) list.back()["quads"] = g.quads;
+  }
   return list;
 }
 

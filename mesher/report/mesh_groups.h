@@ -10,11 +10,12 @@
 
 namespace collarmesh::report {
 
-/// The triangles, or edges, of a mesh that have one tag.
+/// The triangles and quadrangles, or edges, of a mesh that have one tag.
 struct MeshGroup {
   Tag tag = 0;
   std::string name;       ///< the name it was given; empty: none
   std::size_t cells = 0;  ///< triangles or edges
+  std::size_t quads = 0;  ///< quadrangles
   double measure = 0;     ///< their area or length
   Point where;            ///< the centre of the largest one
 };

@@ -3,11 +3,11 @@
 #include <cmath>
 
 #include "report/colour_text.h"
+#include "report/layers_report.h"
 #include "report/mesh_groups.h"
 #include "report/options_json.h"
 #include "report/periodic_report.h"
 #include "report/report.h"
-#include "report/layers_report.h"
 #include "report/split_report.h"
 
 namespace collarmesh::report {
@@ -261,6 +261,9 @@ Json measures_json(const TetMesh& mesh, const MeshMeasures& m) {
           {"tets", mesh.tets.size()},
           {"faces", mesh.faces.size()},
           {"edges", mesh.edges.size()},
+          {"prisms", mesh.layers.prisms.size()},
+          {"pyramids", mesh.layers.pyramids.size()},
+          {"quads", mesh.layers.quads.size()},
           {"min_dihedral", m.min_dihedral},
           {"max_dihedral", m.max_dihedral},
           {"max_radius_edge", number_json(m.max_radius_edge)},

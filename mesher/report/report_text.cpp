@@ -6,10 +6,11 @@
 #include <map>
 
 #include "report/conversion_report.h"
+#include "report/layer_counts.h"
+#include "report/layers_report.h"
 #include "report/mesh_groups.h"
 #include "report/periodic_report.h"
 #include "report/report.h"
-#include "report/layers_report.h"
 #include "report/split_report.h"
 
 namespace collarmesh::report {
@@ -205,8 +206,10 @@ std::string mesh_text(const TetMesh& mesh, const MeshMeasures& m, const CheckRep
   if (mesh.is_curves())
     return fmt::format("{} lines on curves, {} points\n", mesh.edges.size(), mesh.points.size());
   std::string text;
-  fmt::format_to(Out(text), "{} tets, {} points, {} boundary and interface triangles, {} curve edges\n",
-                 mesh.tets.size(), mesh.points.size(), mesh.faces.size(), mesh.edges.size());
+  const LayerCells& layers = mesh.layers;
+  fmt::format_to(Out(text), "{} tets, {}{} points, {} boundary and interface triangles, {}{} curve edges\n",
+                 mesh.tets.size(), layers_text(layers.prisms.size(), layers.pyramids.size()),
+                 mesh.points.size(), mesh.faces.size(), quads_text(layers.quads.size()), mesh.edges.size());
   const char* const ratio = m.max_radius_edge > 0 ? "" : "radius-edge ";
   fmt::format_to(
       Out(text), "  {}{}{}\n", shape_text(m.min_dihedral, m.max_dihedral, m.max_radius_edge),

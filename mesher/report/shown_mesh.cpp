@@ -4,6 +4,8 @@
 #include <array>
 #include <limits>
 
+#include "common/layer_tets.h"
+
 namespace collarmesh::report {
 
 namespace {
@@ -54,6 +56,8 @@ void add_faces(const TetMesh& mesh, const std::vector<std::uint32_t>& point_numb
 }  // namespace
 
 ShownMesh shown_mesh(const TetMesh& mesh, const std::vector<WorstTet>& worst, std::size_t most) {
+  if (!mesh.layers.prisms.empty() || !mesh.layers.pyramids.empty())
+    return shown_mesh(tets_of_layers(mesh), worst, most);  // the page draws tets
   ShownMesh shown;
   Box box;
   for (const Point& p : mesh.points) box.add(p);

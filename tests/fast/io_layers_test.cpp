@@ -153,7 +153,9 @@ TEST(IoLayers, WhatIsWrittenIsRead) {
       expect_same(canonical(read), canonical(as_kept(mesh, format)));
       const TetMesh again = io::read_tet_mesh(folder.file("b" + extension));
       io::write_tet_mesh(folder.file("c" + extension), again);
-      if (extension != ".med") EXPECT_EQ(folder.read("b" + extension), folder.read("c" + extension));
+      if (extension != ".med") {
+        EXPECT_EQ(folder.read("b" + extension), folder.read("c" + extension));
+      }
     }
   }
 }
@@ -200,8 +202,8 @@ TEST(IoLayers, CellsOfBothOrdersAreRefused) {
 }
 
 TEST(IoLayers, FormatsWithoutAPlaceSaySo) {
-  const TemporaryFolder folder;
   for (const int order : {1, 2}) {
+    const TemporaryFolder folder;
     const TetMesh mesh = order == 1 ? layer_mesh() : second_order(layer_mesh());
     const std::vector<std::string> kept = io::formats_with_layers(order);
     for (const std::string& format : io::written_tet_mesh_formats()) {
@@ -233,10 +235,10 @@ TEST(IoLayers, PartitionsAreRefused) {
 
 TEST(IoLayers, HexahedraAreNoPyramids) {
   const TemporaryFolder folder;
-  const std::string path = folder.write(
-      "a.inp",
-      "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,1\n6,1,0,1\n7,1,1,1\n8,0,1,1\n"
-      "*ELEMENT, TYPE=C3D8\n1,1,2,3,4,5,6,7,8\n");
+  const std::string path =
+      folder.write("a.inp",
+                   "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,1\n6,1,0,1\n7,1,1,1\n8,0,1,1\n"
+                   "*ELEMENT, TYPE=C3D8\n1,1,2,3,4,5,6,7,8\n");
   try {
     io::read_tet_mesh(path);
     ADD_FAILURE() << "read";

@@ -19,8 +19,7 @@ std::array<Point, n> shaken(std::array<Point, n> p, double by, std::mt19937_64& 
   return p;
 }
 
-constexpr PrismCorners unit_prism{
-    {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}}};
+constexpr PrismCorners unit_prism{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}}};
 constexpr PyramidCorners unit_pyramid{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0.5, 1}}};
 
 Point place(const PrismCorners& p, double x, double y, double z) {
@@ -70,8 +69,9 @@ TEST(LayerJacobians, LeastOfPyramidIsAtItsBase) {
     for (int i = 0; i <= steps; ++i)
       for (int j = 0; j <= steps; ++j)
         for (const double z : {0.0, 0.5, 0.9})
-          least = std::min(least, sampled(p, static_cast<double>(i) / steps, static_cast<double>(j) / steps, z) /
-                                      ((1 - z) * (1 - z)));
+          least =
+              std::min(least, sampled(p, static_cast<double>(i) / steps, static_cast<double>(j) / steps, z) /
+                                  ((1 - z) * (1 - z)));
     EXPECT_NEAR(least_jacobian(p), least, 1e-6) << k;
   }
 }
@@ -87,7 +87,8 @@ TEST(LayerJacobians, VolumesAreIntegrals) {
     for (int j = 0; j < steps; ++j)
       for (int k = 0; k < steps; ++k) {
         // The square is folded onto the triangle.
-        const double x = middle(i), y = (1 - x) * middle(j), z = middle(k), cell = 1.0 / (steps * steps * steps);
+        const double x = middle(i), y = (1 - x) * middle(j), z = middle(k),
+                     cell = 1.0 / (steps * steps * steps);
         of_prism += cell * (1 - x) * sampled(prism, x, y, z);
         of_pyramid += cell * sampled(pyramid, x, middle(j), z);
       }

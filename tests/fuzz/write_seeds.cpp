@@ -11,6 +11,7 @@
 
 #include "collarmesh/io/soup_io.h"
 #include "collarmesh/io/tet_mesh_io.h"
+#include "support/layer_mesh.h"
 #include "support/sample_mesh.h"
 #include "support/second_order.h"
 #ifdef COLLARMESH_FUZZ_OM
@@ -52,6 +53,18 @@ void join_tetgen_files(std::filesystem::path path) {
   std::ofstream(path.replace_extension(".ele"), std::ios::binary) << joined;
 }
 
+/// Prisms and pyramids, where the format has a place for them.
+void write_layers(const std::filesystem::path& folder, const std::string& format) {
+  const auto keeps = [&](int order) {
+    const std::vector<std::string> formats = io::formats_with_layers(order);
+    return std::find(formats.begin(), formats.end(), format) != formats.end();
+  };
+  if (keeps(1)) io::write_tet_mesh(folder / ("layers" + format), collarmesh::testing::layer_mesh());
+  if (keeps(2))  // without pyramids, as not all formats have those of second order
+    io::write_tet_mesh(folder / ("prisms" + format),
+                       collarmesh::testing::second_order(collarmesh::testing::mesh_of_prisms()));
+}
+
 void write(const std::filesystem::path& folder, const std::string& format) {
   const TetMesh mesh = collarmesh::testing::sample_mesh(1);
   if (io::is_soup_format("", format)) {
@@ -64,6 +77,7 @@ void write(const std::filesystem::path& folder, const std::string& format) {
   } else {
     io::write_tet_mesh(folder / ("first" + format), mesh);
     io::write_tet_mesh(folder / ("second" + format), collarmesh::testing::second_order(mesh));
+    write_layers(folder, format);
     if (format == ".ele")
       for (const char* name : {"first.ele", "second.ele"}) join_tetgen_files(folder / name);
   }

@@ -1,6 +1,7 @@
 // Writes the sample mesh in the format of each name given, for programs of others to read:
 //   write_sample_mesh N ORDER OUT...
 //   write_sample_mesh layers ORDER OUT...     a mesh of prisms, pyramids and tets
+//   write_sample_mesh prisms ORDER OUT...     a mesh of prisms and tets
 // and prints what they have to find in it. Surface formats get its boundary and interface.
 #include <cstdlib>
 #include <iostream>
@@ -19,10 +20,13 @@ int main(int argc, char** argv) {
     std::cerr << "usage: write_sample_mesh N ORDER OUT...\n";
     return 2;
   }
-  const bool layers = std::string_view(argv[1]) == "layers";
+  const std::string_view kind = argv[1];
+  const bool layers = kind == "layers" || kind == "prisms";
   collarmesh::TetMesh mesh =
-      layers ? collarmesh::testing::layer_mesh()
-             : collarmesh::testing::sample_mesh(static_cast<Index>(std::strtoul(argv[1], nullptr, 10)));
+      kind == "layers" ? collarmesh::testing::layer_mesh()
+      : kind == "prisms"
+          ? collarmesh::testing::mesh_of_prisms()
+          : collarmesh::testing::sample_mesh(static_cast<Index>(std::strtoul(argv[1], nullptr, 10)));
   if (argv[2][0] == '2') mesh = collarmesh::testing::second_order(mesh);
   collarmesh::PolygonSoup surface;
   surface.points = mesh.points;

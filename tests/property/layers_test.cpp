@@ -78,15 +78,16 @@ double least_jacobian_of(const TetMesh& mesh) {
   return least;
 }
 
-std::set<std::array<Point, 3>, bool (*)(const std::array<Point, 3>&, const std::array<Point, 3>&)> triangles_of(
-    const TetMesh& mesh, Tag tag) {
+std::set<std::array<Point, 3>, bool (*)(const std::array<Point, 3>&, const std::array<Point, 3>&)>
+triangles_of(const TetMesh& mesh, Tag tag) {
   const auto less = [](const std::array<Point, 3>& s, const std::array<Point, 3>& t) {
     for (unsigned i = 0; i < 3; ++i)
       for (unsigned axis = 0; axis < 3; ++axis)
         if (s[i][axis] != t[i][axis]) return s[i][axis] < t[i][axis];
     return false;
   };
-  std::set<std::array<Point, 3>, bool (*)(const std::array<Point, 3>&, const std::array<Point, 3>&)> found(less);
+  std::set<std::array<Point, 3>, bool (*)(const std::array<Point, 3>&, const std::array<Point, 3>&)> found(
+      less);
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     if (tag != 0 && mesh.face_tag[f] != tag) continue;
     std::array<Point, 3> t{mesh.points[mesh.faces[f][0]], mesh.points[mesh.faces[f][1]],
@@ -185,8 +186,7 @@ TEST(Layers, StepDownIntoAWedge) {
   const double angle = 20 * M_PI / 180;
   PolygonSoup soup;
   for (const double z : {0.0, 1.0})
-    for (const auto& [x, y] :
-         {std::array{0.0, 0.0}, {2.0, 0.0}, {2 * std::cos(angle), 2 * std::sin(angle)}})
+    for (const auto& [x, y] : {std::array{0.0, 0.0}, {2.0, 0.0}, {2 * std::cos(angle), 2 * std::sin(angle)}})
       soup.points.push_back({x, y, z});
   soup.add_facet(std::array<Index, 3>{0, 2, 1}, 1);
   soup.add_facet(std::array<Index, 3>{3, 4, 5}, 2);
@@ -213,7 +213,8 @@ TEST(Layers, OnBothSidesOfAnInterface) {
   const PipelineResult run = made(soups, options);
   EXPECT_GT(least_jacobian_of(run.result.mesh), 0);
   EXPECT_NEAR(volume_of(run.result.mesh), 2, 1e-9);
-  std::set<Index> regions(run.result.mesh.layers.prism_region.begin(), run.result.mesh.layers.prism_region.end());
+  std::set<Index> regions(run.result.mesh.layers.prism_region.begin(),
+                          run.result.mesh.layers.prism_region.end());
   EXPECT_EQ(regions.size(), 2U);
 }
 

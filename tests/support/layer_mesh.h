@@ -14,6 +14,8 @@ namespace collarmesh::testing {
 /// them lie six prisms, of region 1; above them four pyramids, four tets between these, and a pyramid upside
 /// down, of region 2. The quadrangles at z = 0 are the interface (tag 7); the boundary has the tag -5 below
 /// and 6 above, four of its edges the tag 11.
+///
+/// Or eight prisms on a square with a tet on each, without pyramids: `make_prisms`.
 class LayerMesh {
  public:
   static constexpr double volume_below = 3, volume_above = 49.0 / 30;
@@ -28,6 +30,31 @@ class LayerMesh {
         mesh_.edge_curve.push_back(0);
         mesh_.edge_tag.push_back(11);
       }
+    return mesh_;
+  }
+
+  TetMesh make_prisms() {
+    for (const double z : {-1.0, -0.4})
+      for (Index j = 0; j < 3; ++j)
+        for (Index i = 0; i < 3; ++i) {
+          const bool inner = z > -0.5 && i == 1 && j == 1;
+          mesh_.points.push_back({i - 1.0 + (inner ? 0.1 : 0), j - 1.0 - (inner ? 0.07 : 0), z});
+        }
+    mesh_.points.push_back({0.2, 0.1, 1});
+    constexpr Index above = 9, apex = 18;
+    for (Index j = 0; j < 2; ++j)
+      for (Index i = 0; i < 2; ++i) {
+        const Index a = ground(i, j), b = ground(i + 1, j), c = ground(i + 1, j + 1), d = ground(i, j + 1);
+        for (const std::array<Index, 3>& t : {std::array{a, b, c}, std::array{a, c, d}}) {
+          add_prism({t[0], t[1], t[2], t[0] + above, t[1] + above, t[2] + above});
+          add_tet({t[0] + above, t[1] + above, t[2] + above, apex}, 0);
+        }
+      }
+    mesh_.tet_region.assign(mesh_.tets.size(), 1);
+    mesh_.tet_tag.assign(mesh_.tets.size(), tag_of_region(1));
+    for (auto& [key, sides] : sides_)
+      for (Side& side : sides) side.region = 1;
+    list_sides();
     return mesh_;
   }
 
@@ -144,5 +171,6 @@ class LayerMesh {
 };
 
 inline TetMesh layer_mesh() { return LayerMesh().make(); }
+inline TetMesh mesh_of_prisms() { return LayerMesh().make_prisms(); }
 
 }  // namespace collarmesh::testing

@@ -103,8 +103,12 @@ def convert(
             divided = found if partitions is None else found.partitioned(partitions)
             divided.write(target, kind, ghost_cells=ghost_cells)
             return
-        by_tag = numpy.argsort(found.face_tag, kind="stable")  # for formats that number patches
-        source = (found.points, found.faces[by_tag], found.face_tag[by_tag])
+        polygons, tags = found._surface()
+        by_tag = numpy.argsort(tags, kind="stable")  # for formats that number patches
+        if len(found.quads) == 0:
+            source = (found.points, found.faces[by_tag], tags[by_tag])
+        else:
+            source = Complex(found.points, [polygons[i] for i in by_tag], facet_tags=tags[by_tag])
     surfaces: Sequence[Any] = source if isinstance(source, list) else [source]
     if to_surface:
         named = given({"format": format, "input_format": input_format, **options})

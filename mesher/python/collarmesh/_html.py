@@ -20,7 +20,7 @@ def table_of(
     rows: List[Tuple[str, str]] = [("Certificate", verdict)]
     rows += [("Finding", text) for text in _first(findings)] + [("Repair", text) for text in _first(repairs)]
     rows += [
-        ("Cells", f"{figures['tets']} tetrahedra, {figures['points']} points, {figures['faces']} boundary triangles"),
+        ("Cells", _counts(figures)),
         ("Dihedral angles", f"{figures['min_dihedral']:.2f} to {figures['max_dihedral']:.2f} degrees"),
         ("Median edge", f"{figures['median_edge']:.4g}"),
     ]
@@ -33,6 +33,13 @@ def table_of(
     lines = "".join(f"<tr><th style='text-align:left'>{html.escape(head)}</th>"
                     f"<td style='text-align:left'>{html.escape(text)}</td></tr>" for head, text in rows)
     return f"<table><caption>collarmesh.Mesh</caption>{lines}</table>"
+
+
+def _counts(figures: MeshFigures) -> str:
+    counts = [("tetrahedra", figures["tets"]), ("prisms", figures["prisms"]), ("pyramids", figures["pyramids"]),
+              ("points", figures["points"]), ("boundary triangles", figures["faces"]), ("quadrangles", figures["quads"])]
+    layers = ("prisms", "pyramids", "quadrangles")
+    return ", ".join(f"{count} {what}" for what, count in counts if count > 0 or what not in layers)
 
 
 def _first(texts: List[str]) -> List[str]:

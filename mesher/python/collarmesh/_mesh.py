@@ -31,11 +31,35 @@ _ARRAYS = {
     "edge_mid_nodes": (numpy.int64, 1),
     "feature_dimension": (numpy.uint8, 1),
     "feature": (numpy.int64, 1),
+    "prisms": (numpy.int64, 6),
+    "prism_region": (numpy.int64, 1),
+    "prism_tag": (numpy.int64, 1),
+    "prism_layer": (numpy.int64, 1),
+    "prism_mid_nodes": (numpy.int64, 9),
+    "pyramids": (numpy.int64, 5),
+    "pyramid_region": (numpy.int64, 1),
+    "pyramid_tag": (numpy.int64, 1),
+    "pyramid_layer": (numpy.int64, 1),
+    "pyramid_mid_nodes": (numpy.int64, 8),
+    "quads": (numpy.int64, 4),
+    "quad_regions": (numpy.int64, 2),
+    "quad_tag": (numpy.int64, 1),
+    "quad_patch": (numpy.int64, 1),
+    "quad_mid_nodes": (numpy.int64, 4),
+    "tet_layer": (numpy.int64, 1),
 }
+# Arrays that meshes saved by earlier versions lack.
+_LATER = ("tet_partition", *(name for name in _ARRAYS if name.startswith(("prism", "pyramid", "quad"))), "tet_layer")
 # The places of our mid-edge nodes in meshio's and VTK's cells of second order: corners, then ab, bc, ca, ad,
 # bd, cd.
-_MESHIO_CELLS = {1: ("tetra", "triangle", "line"), 2: ("tetra10", "triangle6", "line3")}
-_VTK_CELLS = {1: 10, 2: 24}
+_MESHIO_CELLS = {
+    1: {"tets": "tetra", "faces": "triangle", "edges": "line", "prisms": "wedge", "pyramids": "pyramid", "quads": "quad"},
+    2: {"tets": "tetra10", "faces": "triangle6", "edges": "line3", "prisms": "wedge15", "pyramids": "pyramid13",
+        "quads": "quad8"},
+}
+_VTK_CELLS = {1: {"tets": 10, "prisms": 13, "pyramids": 14}, 2: {"tets": 24, "prisms": 26, "pyramids": 27}}
+# The first triangle of VTK's wedges turns its normal away from the second one.
+_VTK_WEDGE = [0, 2, 1, 3, 5, 4, 8, 7, 6, 11, 10, 9, 12, 14, 13]
 
 
 # The same nodes in the order of dolfinx.
@@ -70,6 +94,34 @@ def _sides_between_tags(tets: Array, tags: Array) -> Tuple[Array, Array]:
     return sides[order[first[kept]]], numbers.astype(numpy.int64)
 
 
+def _beside(regions: Array) -> Array:
+    """The region behind each face, or before it if none is behind."""
+    behind, before = regions.T
+    return numpy.where(behind > 0, behind, before)
+
+
+def _empty(name: str) -> Array:
+    kind, columns = _ARRAYS[name]
+    return numpy.empty(0 if columns == 1 else (0, columns), dtype=kind)
+
+
+def _layer_cells(
+    kind: str, cells: ArrayLike, tags: Optional[ArrayLike], columns: Tuple[int, int], order: int
+) -> Dict[str, Array]:
+    """The arrays of prisms, pyramids or quads."""
+    nodes = _cells_with_nodes(cells, f"{kind}s", columns)
+    if len(nodes) > 0 and nodes.shape[1] != columns[order - 1]:
+        raise _core.OptionError(f"{kind}s: rows have {nodes.shape[1]} nodes, but those of order {order} have "
+                                f"{columns[order - 1]}")
+    tag = numpy.full(len(nodes), 0 if kind == "quad" else 1, dtype=numpy.int64)
+    if tags is not None:
+        tag = one_for_each(integers(tags, f"{kind}_tags"), len(nodes), f"{kind}_tags", kind)
+    arrays = {f"{kind}s": nodes[:, :columns[0]], f"{kind}_tag": tag}
+    if order == 2:
+        arrays[f"{kind}_mid_nodes"] = nodes[:, columns[0]:]
+    return arrays
+
+
 class Mesh:
     """A tetrahedral mesh. Its arrays are not to be written to; indices are int64, rows of `points`.
 
@@ -91,6 +143,14 @@ class Mesh:
     tet_mid_nodes (m, 6), face_mid_nodes (k, 3), edge_mid_nodes (j,): nodes amid the edges ab, bc, ca, ad, bd, cd;
         empty for first order.
     feature_dimension, feature: (n,), the vertex (0), curve (1) or patch (2) that a point is on; 3, -1: none.
+    prisms: (p, 6), of boundary layers: corners a, b, c of the triangle at the wall or nearer to it, then those above
+        them; pyramids: (q, 5), corners of the base, counterclockwise as seen from the apex, then the apex.
+    prism_region, prism_tag, pyramid_region, pyramid_tag: as for tetrahedra. prism_layer, pyramid_layer: numbers of
+        layers, from 1 at the wall; 0: not known. tet_layer: (m,), those of tetrahedra, 0 in none; (0,) if all are.
+    quads: (s, 4), quadrangles on boundaries, interfaces and internal facets, with quad_regions (s, 2), quad_tag and
+        quad_patch as for faces.
+    prism_mid_nodes (p, 9): amid ab, bc, ca, de, ef, fd, ad, be, cf; pyramid_mid_nodes (q, 8): ab, bc, cd, da, ae, be,
+        ce, de; quad_mid_nodes (s, 4): ab, bc, cd, da.
     names: names of tags by dimension, {2: {3: "inlet"}} for patch 3; 1 curves, 3 regions. Solids of STEP files have
         those of their products.
     colours: of a mesh made of a STEP file, in the same way: {2: {3: "#ff0000"}}.
@@ -119,6 +179,22 @@ class Mesh:
     edge_mid_nodes: Array
     feature_dimension: Array
     feature: Array
+    prisms: Array
+    prism_region: Array
+    prism_tag: Array
+    prism_layer: Array
+    prism_mid_nodes: Array
+    pyramids: Array
+    pyramid_region: Array
+    pyramid_tag: Array
+    pyramid_layer: Array
+    pyramid_mid_nodes: Array
+    quads: Array
+    quad_regions: Array
+    quad_tag: Array
+    quad_patch: Array
+    quad_mid_nodes: Array
+    tet_layer: Array
     names: Dict[int, Dict[int, str]]
     colours: Dict[int, Dict[int, str]]
     periodic: List[PeriodicFaces]
@@ -133,6 +209,12 @@ class Mesh:
         face_tags: Optional[ArrayLike] = None,
         edges: Optional[ArrayLike] = None,
         edge_tags: Optional[ArrayLike] = None,
+        prisms: Optional[ArrayLike] = None,
+        prism_tags: Optional[ArrayLike] = None,
+        pyramids: Optional[ArrayLike] = None,
+        pyramid_tags: Optional[ArrayLike] = None,
+        quads: Optional[ArrayLike] = None,
+        quad_tags: Optional[ArrayLike] = None,
         names: Optional[Mapping[int, Mapping[int, str]]] = None,
     ) -> None:
         """A mesh of arrays. Rows of cells are rows of `points`, with those of second order behind the corners, amid
@@ -143,6 +225,9 @@ class Mesh:
         faces: (k, 3) or (k, 6), triangles on boundaries and interfaces; face_tags: (k,). Default: the boundary of
             the tetrahedra with each tag, and a tag for each pair of tags that lie beside each other.
         edges: (j, 2) or (j, 3), edges on curves; edge_tags: (j,).
+        prisms: (p, 6) or (p, 15), pyramids: (q, 5) or (q, 13), with their tags, default 1; quads: (s, 4) or (s, 8),
+            quadrangles on boundaries and interfaces. Nodes are in the order above. With prisms or pyramids, faces are
+            to be given.
         names: names of tags by dimension, {2: {3: "inlet"}}.
 
         Raises OptionError for wrong shapes and kinds and for indices out of range.
@@ -163,6 +248,15 @@ class Mesh:
             "faces": triangles[:, :3], "face_tag": face_tag, "edges": lines[:, :2],
             "names": {kind: dict(by_tag) for kind, by_tag in (names or {}).items()}, "cad_names": False,
         }
+        order = 2 if nodes.shape[1] == 10 else 1
+        if faces is None and (prisms is not None or pyramids is not None):
+            raise _core.OptionError("faces: with prisms or pyramids, give the triangles and quads on boundaries")
+        for kind, cells, its_tags, columns in (
+            ("prism", prisms, prism_tags, (6, 15)), ("pyramid", pyramids, pyramid_tags, (5, 13)),
+            ("quad", quads, quad_tags, (4, 8)),
+        ):
+            if cells is not None:
+                given.update(_layer_cells(kind, cells, its_tags, columns, order))
         if edge_tags is not None:
             given["edge_tag"] = one_for_each(integers(edge_tags, "edge_tags"), len(lines), "edge_tags", "edge")
         if nodes.shape[1] == 10:
@@ -184,7 +278,7 @@ class Mesh:
         return {**self._arrays(), "check": self._check, "colours": self.colours, **self._said}
 
     def __setstate__(self, state: Dict[str, Any]) -> None:
-        arrays = {"tet_partition": numpy.empty(0, dtype=numpy.int64), **state}  # missing in earlier versions
+        arrays = {**{name: _empty(name) for name in _LATER}, **state}
         for name in _ARRAYS:
             array = arrays[name]
             array.setflags(write=False)  # pickle makes arrays writable
@@ -316,7 +410,7 @@ class Mesh:
         outside: "nan", or "nearest": what points outside of the mesh get; the latter is the value of the nearest point
             of the mesh, and needs values on points.
 
-        Returns (p,) or (p, k). Raises OptionError for wrong shapes.
+        Returns (p,) or (p, k). Raises OptionError for wrong shapes, and for a mesh with prisms or pyramids.
         """
         given = numpy.asarray(values, dtype=numpy.float64)
         on_points = given.ndim > 0 and len(given) == len(self.points)
@@ -325,6 +419,7 @@ class Mesh:
                                     f"tetrahedra, not the shape {given.shape}")
         if outside not in ("nan", "nearest") or (outside == "nearest" and not on_points):
             raise _core.OptionError('outside must be "nan", or for values on points "nearest"')
+        self._require_tets_alone("interpolate")
         where = {"name": "points", "points": reals(points, "points", 3)}
         tet, shares, nearest = _core.locate(self._arrays(), where)
         inside = tet >= 0
@@ -339,6 +434,15 @@ class Mesh:
         if outside == "nearest":
             result[~inside] = given[nearest[~inside]]
         return result
+
+    def _require_tets_alone(self, what: str) -> None:
+        if len(self.prisms) + len(self.pyramids) > 0:
+            raise _core.OptionError(f"{what}: the mesh has {len(self.prisms)} prisms and {len(self.pyramids)} pyramids, for "
+                                    "which this is not made; make layers of tetrahedra")
+
+    def _surface(self) -> Tuple[List[Any], Array]:
+        """The triangles and quadrangles with their tags."""
+        return [*self.faces, *self.quads], numpy.concatenate([self.face_tag, self.quad_tag])
 
     def _weights(self, shares: Array) -> Array:
         """Returns the weights of a tetrahedron's nodes at places with these shares of its corners."""
@@ -356,22 +460,23 @@ class Mesh:
         return numpy.hstack([nodes, amid.reshape(len(nodes), -1)])
 
     def to_meshio(self) -> Any:
-        """A meshio.Mesh of tetrahedra, triangles and lines, with the data "tag" and "region" and a cell set for
-        each name. Raises ImportError without meshio."""
+        """A meshio.Mesh of tetrahedra, triangles and lines, then prisms, pyramids and quadrangles if there are any, with
+        the data "tag" and "region" and a cell set for each name. Raises ImportError without meshio."""
         import meshio
 
-        tet, triangle, line = _MESHIO_CELLS[self.order]
-        cells = [(tet, self._cells("tets")), (triangle, self._cells("faces")), (line, self._cells("edges"))]
-        tags = [self.tet_tag, self.face_tag, self.edge_tag]
+        blocks = [("tets", 3, self.tet_tag, self.tet_region), ("faces", 2, self.face_tag, _beside(self.face_regions)),
+                  ("edges", 1, self.edge_tag, numpy.zeros(len(self.edges), dtype=numpy.int64))]
+        of_layers = [("prisms", 3, self.prism_tag, self.prism_region), ("pyramids", 3, self.pyramid_tag, self.pyramid_region),
+                     ("quads", 2, self.quad_tag, _beside(self.quad_regions))]
+        blocks += [block for block in of_layers if len(block[2]) > 0]
+        cells = [(_MESHIO_CELLS[self.order][name], self._cells(name)) for name, *_ in blocks]
+        tags, regions = [block[2] for block in blocks], [block[3] for block in blocks]
         sets: Dict[str, List[Array]] = {}
-        for block, (dimension, tag_of_cell) in enumerate(zip((3, 2, 1), tags)):
+        for place, (_, dimension, tag_of_cell, _) in enumerate(blocks):
             for tag in numpy.unique(tag_of_cell):
-                members = [numpy.empty(0, dtype=numpy.int64)] * 3
-                members[block] = numpy.flatnonzero(tag_of_cell == tag)
-                sets[self.name(dimension, int(tag))] = members
-        behind, before = self.face_regions.T
-        beside = numpy.where(behind > 0, behind, before)
-        regions = [self.tet_region, beside, numpy.zeros(len(self.edges), dtype=numpy.int64)]
+                nothing = [numpy.empty(0, dtype=numpy.int64)] * len(blocks)
+                members = sets.setdefault(self.name(dimension, int(tag)), nothing)
+                members[place] = numpy.flatnonzero(tag_of_cell == tag)
         return meshio.Mesh(self.points, cells, cell_data={"tag": tags, "region": regions}, cell_sets=sets)
 
     def to_dolfinx(self, comm: Any = None) -> Tuple[Any, Any, Any]:
@@ -379,25 +484,38 @@ class Mesh:
         `face_tag`.
 
         comm: of mpi4py, COMM_WORLD by default. The first rank's mesh is divided among all; that of the others is not
-        looked at. Raises ImportError without dolfinx.
+        looked at. Raises ImportError without dolfinx, OptionError for a mesh with prisms or pyramids.
         """
         from ._dolfinx import mesh_and_tags
 
+        self._require_tets_alone("dolfinx")
         tets = self._cells("tets")[:, _DOLFINX_TETS[self.order]]
         faces = self._cells("faces")[:, _DOLFINX_TRIANGLES[self.order]]
         return mesh_and_tags(comm, self.points, self.order, (tets, self.tet_tag), (faces, self.face_tag))
 
     def to_pyvista(self) -> Any:
-        """A pyvista.UnstructuredGrid of the tetrahedra with the data "tag", "region", "collar".
+        """A pyvista.UnstructuredGrid of the tetrahedra with the data "tag", "region", "collar"; then prisms and pyramids if
+        there are any, with the data "layer".
 
         Raises ImportError without pyvista.
         """
         import pyvista
 
-        grid = pyvista.UnstructuredGrid({_VTK_CELLS[self.order]: self._cells("tets")}, numpy.array(self.points))
-        grid.cell_data["tag"] = self.tet_tag
-        grid.cell_data["region"] = self.tet_region
-        grid.cell_data["collar"] = self.tet_collar
+        numbers = _VTK_CELLS[self.order]
+        prisms, pyramids = self._cells("prisms"), self._cells("pyramids")
+        cells = {numbers["tets"]: self._cells("tets")}
+        if len(prisms) > 0:
+            cells[numbers["prisms"]] = prisms[:, _VTK_WEDGE[:prisms.shape[1]]]
+        if len(pyramids) > 0:
+            cells[numbers["pyramids"]] = pyramids
+        grid = pyvista.UnstructuredGrid(cells, numpy.array(self.points))
+        none = numpy.zeros(len(prisms) + len(pyramids), dtype=self.tet_collar.dtype)
+        grid.cell_data["tag"] = numpy.concatenate([self.tet_tag, self.prism_tag, self.pyramid_tag])
+        grid.cell_data["region"] = numpy.concatenate([self.tet_region, self.prism_region, self.pyramid_region])
+        grid.cell_data["collar"] = numpy.concatenate([self.tet_collar, none])
+        if len(none) > 0 or len(self.tet_layer) > 0:
+            of_tets = self.tet_layer if len(self.tet_layer) > 0 else numpy.zeros(len(self.tets), dtype=numpy.int64)
+            grid.cell_data["layer"] = numpy.concatenate([of_tets, self.prism_layer, self.pyramid_layer])
         return grid
 
     def plot(self, axes: Any = None, *, labels: bool = True, curves: bool = False) -> Any:
@@ -413,17 +531,18 @@ class Mesh:
 
         if axes is None:
             axes = matplotlib.pyplot.figure().add_subplot(projection="3d")
-        tags, colour = numpy.unique(self.face_tag, return_inverse=True)
+        polygons, face_tag = self._surface()
+        tags, colour = numpy.unique(face_tag, return_inverse=True)
         colours = matplotlib.pyplot.get_cmap("tab20")(colour % 20)
         for tag, given in self.colours.get(2, {}).items():
-            colours[self.face_tag == tag] = matplotlib.colors.to_rgba(given)
-        triangles = self.points[self.faces]
-        axes.add_collection3d(Poly3DCollection(triangles, facecolors=colours, edgecolors="k", linewidths=0.2))
+            colours[face_tag == tag] = matplotlib.colors.to_rgba(given)
+        corners = [self.points[polygon] for polygon in polygons]
+        axes.add_collection3d(Poly3DCollection(corners, facecolors=colours, edgecolors="k", linewidths=0.2))
         low, high = self.points.min(axis=0), self.points.max(axis=0)
         axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
         axes.set_box_aspect(numpy.maximum(high - low, 1e-6 * (high - low).max()))
         if labels:
-            self._label(axes, 2, triangles.mean(axis=1), self.face_tag)
+            self._label(axes, 2, numpy.array([each.mean(axis=0) for each in corners]), face_tag)
         if curves:
             self._label(axes, 1, self.points[self.edges].mean(axis=1), self.edge_tag)
         return axes
@@ -443,4 +562,6 @@ class Mesh:
                         self._check or {})
 
     def __repr__(self) -> str:
-        return f"<collarmesh.Mesh: {len(self.tets)} tets, {len(self.points)} points>"
+        layers = "".join(f" {len(cells)} {name}," for name, cells in (("prisms", self.prisms), ("pyramids", self.pyramids))
+                         if len(cells) > 0)
+        return f"<collarmesh.Mesh: {len(self.tets)} tets,{layers} {len(self.points)} points>"

@@ -99,6 +99,9 @@ class MeshFigures(TypedDict):
     tets: int
     faces: int
     edges: int
+    prisms: int
+    pyramids: int
+    quads: int
     min_dihedral: float
     max_dihedral: float
     max_radius_edge: float

@@ -226,6 +226,57 @@ py::dict arrays_of(const PolygonSoup& soup) {
   return arrays;
 }
 
+namespace {
+
+std::vector<std::array<Index, 2>> region_pairs(const py::dict& arrays, const char* key) {
+  const auto regions = numbers<Index>(arrays, key);
+  std::vector<std::array<Index, 2>> pairs;
+  for (std::size_t i = 0; i + 1 < regions.size(); i += 2) pairs.push_back({regions[i], regions[i + 1]});
+  return pairs;
+}
+
+LayerCells layers_of(const py::dict& arrays, std::size_t points) {
+  LayerCells layers;
+  layers.prisms = rows<6>(arrays, "prisms", points);
+  layers.prism_region = numbers<Index>(arrays, "prism_region");
+  layers.prism_tag = numbers<Tag>(arrays, "prism_tag");
+  layers.prism_layer = numbers<std::uint16_t>(arrays, "prism_layer");
+  layers.prism_mid_nodes = rows<9>(arrays, "prism_mid_nodes", points);
+  layers.pyramids = rows<5>(arrays, "pyramids", points);
+  layers.pyramid_region = numbers<Index>(arrays, "pyramid_region");
+  layers.pyramid_tag = numbers<Tag>(arrays, "pyramid_tag");
+  layers.pyramid_layer = numbers<std::uint16_t>(arrays, "pyramid_layer");
+  layers.pyramid_mid_nodes = rows<8>(arrays, "pyramid_mid_nodes", points);
+  layers.quads = rows<4>(arrays, "quads", points);
+  layers.quad_regions = region_pairs(arrays, "quad_regions");
+  layers.quad_patch = numbers<Index>(arrays, "quad_patch");
+  layers.quad_tag = numbers<Tag>(arrays, "quad_tag");
+  layers.quad_mid_nodes = rows<4>(arrays, "quad_mid_nodes", points);
+  layers.tet_layer = numbers<std::uint16_t>(arrays, "tet_layer");
+  return layers;
+}
+
+void add_layers(LayerCells layers, py::dict& arrays) {
+  arrays["prisms"] = index_array(layers.prisms);
+  arrays["prism_region"] = index_array(layers.prism_region);
+  arrays["prism_tag"] = owned(std::move(layers.prism_tag), 1);
+  arrays["prism_layer"] = signed_array(layers.prism_layer);
+  arrays["prism_mid_nodes"] = index_array(layers.prism_mid_nodes);
+  arrays["pyramids"] = index_array(layers.pyramids);
+  arrays["pyramid_region"] = index_array(layers.pyramid_region);
+  arrays["pyramid_tag"] = owned(std::move(layers.pyramid_tag), 1);
+  arrays["pyramid_layer"] = signed_array(layers.pyramid_layer);
+  arrays["pyramid_mid_nodes"] = index_array(layers.pyramid_mid_nodes);
+  arrays["quads"] = index_array(layers.quads);
+  arrays["quad_regions"] = index_array(layers.quad_regions);
+  arrays["quad_patch"] = index_array(layers.quad_patch);
+  arrays["quad_tag"] = owned(std::move(layers.quad_tag), 1);
+  arrays["quad_mid_nodes"] = index_array(layers.quad_mid_nodes);
+  arrays["tet_layer"] = signed_array(layers.tet_layer);
+}
+
+}  // namespace
+
 TetMesh tet_mesh_of(const py::dict& arrays) {
   TetMesh mesh;
   mesh.points = points(arrays, "points");
@@ -238,9 +289,7 @@ TetMesh tet_mesh_of(const py::dict& arrays) {
   mesh.tet_crease = numbers<Tag>(arrays, "tet_crease");
   mesh.tet_partition = numbers<Index>(arrays, "tet_partition");
   mesh.faces = rows<3>(arrays, "faces", n);
-  const auto regions = numbers<Index>(arrays, "face_regions");
-  for (std::size_t i = 0; i + 1 < regions.size(); i += 2)
-    mesh.face_regions.push_back({regions[i], regions[i + 1]});
+  mesh.face_regions = region_pairs(arrays, "face_regions");
   mesh.face_patch = numbers<Index>(arrays, "face_patch");
   mesh.face_tag = numbers<Tag>(arrays, "face_tag");
   mesh.edges = rows<2>(arrays, "edges", n);
@@ -252,6 +301,7 @@ TetMesh tet_mesh_of(const py::dict& arrays) {
   const auto dimension = numbers<std::uint8_t>(arrays, "feature_dimension");
   const auto feature = numbers<Index>(arrays, "feature");
   for (std::size_t i = 0; i < dimension.size(); ++i) mesh.features.push_back({dimension[i], feature[i]});
+  mesh.layers = layers_of(arrays, n);
   mesh.names = names_of(arrays);
   mesh.periodic = periodic_of(arrays, n);
   if (arrays["cad_names"].cast<bool>()) mesh.group_names = GroupNames::cad;
@@ -299,6 +349,7 @@ py::dict arrays_of(TetMesh mesh) {
   }
   arrays["feature_dimension"] = owned(std::move(dimension), 1);
   arrays["feature"] = index_array(feature);
+  add_layers(std::move(mesh.layers), arrays);
   arrays["names"] = names_of(mesh.names);
   arrays["periodic"] = periodic_of(mesh.periodic);
   arrays["cad_names"] = mesh.group_names == GroupNames::cad;

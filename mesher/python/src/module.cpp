@@ -24,9 +24,9 @@
 #include "files/surface_files.h"
 #include "io/complete_mesh.h"
 #include "options.h"
+#include "report/layers_report.h"
 #include "report/report.h"
 #include "report/soup_output.h"
-#include "report/layers_report.h"
 #include "report/split_report.h"
 #include "watched.h"
 

@@ -1,13 +1,17 @@
 // The certificate: each guarantee recomputed from the mesh and the complex alone.
 #include "collarmesh/check.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 
+#include "check/layer_cells.h"
 #include "check/subject.h"
 #include "collarmesh/mesher.h"
+#include "common/layer_tets.h"
 #include "common/parallel_for.h"
 #include "common/thread_limit.h"
 
@@ -45,7 +49,9 @@ Subject checks::make_subject(const TetMesh& mesh, const Plc& plc, const CheckOpt
                   {},
                   std::make_shared<RegionLocator>(plc),
                   {},
-                  {}};
+                  {},
+                  false,
+                  none};
   subject.curve_allowance = curve_allowances(subject);
   subject.patch_allowance = patch_allowances(subject);
   return subject;
@@ -76,7 +82,7 @@ void take_measures(CheckReport& report, CheckReport&& part) {
 }
 
 // Independent groups of guarantees are checked in parallel, each with a report of its own.
-void judge(Subject subject, CheckReport& report, Findings& findings, const Execution& execution) {
+void judge(Subject& subject, CheckReport& report, Findings& findings, const Execution& execution) {
   report.faces = subject.mesh.faces.size();
   report.edges = subject.mesh.edges.size();
   subject.match = match_features(subject.mesh, subject.plc, subject.rounding);
@@ -113,24 +119,67 @@ void judge(Subject subject, CheckReport& report, Findings& findings, const Execu
   report.cancelled = execution.cancelled();
 }
 
-CheckReport check_by_all_threads(const TetMesh& mesh, const Plc& plc, const CheckOptions& options,
-                                 const Execution& execution) {
-  CheckReport report;
-  Findings findings(report, options.findings_per_guarantee);
+bool has_layers(const TetMesh& mesh) { return !mesh.layers.empty() || !mesh.layers.quads.empty(); }
+
+void count_cells(const TetMesh& mesh, CheckReport& report) {
   report.tets = mesh.tets.size();
   report.points = mesh.points.size();
   report.faces = mesh.faces.size();
   report.edges = mesh.edges.size();
-  if (!check_arrays(mesh, findings)) return report;
+}
+
+void note_layers(const TetMesh& mesh, CheckReport& report) {
+  const LayerCells& layers = mesh.layers;
+  report.notes.push_back(
+      fmt::format("the mesh has {} prisms, {} pyramids and {} quadrangles, which have positive Jacobians and "
+                  "conform; the other guarantees were judged with these cut into tets and triangles",
+                  layers.prisms.size(), layers.pyramids.size(), layers.quads.size()));
+}
+
+/// Judges the angles of the tets beside layers. `subject`: the mesh with its layers cut into tets.
+void check_core(const TetMesh& mesh, const Subject& subject, CheckReport& report) {
+  constexpr double least_angle = 8;  // where the bounds have no angle
+  TetMesh labelled = mesh;
+  labelled.features = features_of(subject);
+  labelled.features.resize(mesh.points.size());
+  labelled.face_patch.assign(
+      subject.match.face_patch.begin(),
+      subject.match.face_patch.begin() + static_cast<std::ptrdiff_t>(mesh.faces.size()));
+  Bounds bounds = subject.options.bounds;
+  if (bounds.thin_angle == 0) bounds.thin_angle = least_angle;
+  check_core_angles(labelled, walls_below(mesh), subject.plc, bounds, report);
+}
+
+/// Judges a mesh of tets. `with_layers`: the mesh whose layers were cut into tets to make it, or null.
+void check_tet_mesh(const TetMesh& mesh, const TetMesh* with_layers, const Plc& plc,
+                    const CheckOptions& options, const Execution& execution, CheckReport& report,
+                    Findings& findings) {
   Subject given = make_subject(mesh, plc, options);
-  if (!check_points(given, findings)) return report;
+  if (!check_points(given, findings)) return;
   const std::size_t before = findings.total();
   const std::optional<TetMesh> placed = place_by_position(given, report, findings);
-  if (findings.total() > before || !check_labels(placed ? *placed : mesh, plc, findings)) return report;
-  if (placed)
-    judge(make_subject(*placed, plc, options), report, findings, execution);
-  else
-    judge(std::move(given), report, findings, execution);
+  if (findings.total() > before || !check_labels(placed ? *placed : mesh, plc, findings)) return;
+  Subject subject = placed ? make_subject(*placed, plc, options) : std::move(given);
+  if (with_layers != nullptr) subject.first_part = static_cast<Index>(with_layers->tets.size());
+  judge(subject, report, findings, execution);
+  if (with_layers != nullptr && !report.cancelled) check_core(*with_layers, subject, report);
+}
+
+CheckReport check_by_all_threads(const TetMesh& mesh, const Plc& plc, const CheckOptions& options,
+                                 const Execution& execution) {
+  CheckReport report;
+  Findings findings(report, options.findings_per_guarantee);
+  count_cells(mesh, report);
+  if (!check_arrays(mesh, findings)) return report;
+  if (!has_layers(mesh)) {
+    check_tet_mesh(mesh, nullptr, plc, options, execution, report, findings);
+    return report;
+  }
+  check_layer_cells(mesh, report, options.findings_per_guarantee);
+  if (report.findings_total > 0) return report;
+  check_tet_mesh(tets_of_layers(mesh), &mesh, plc, options, execution, report, findings);
+  count_cells(mesh, report);
+  note_layers(mesh, report);
   return report;
 }
 

@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "collarmesh/shape_measures.h"
+#include "common/layer_jacobians.h"
 
 namespace collarmesh {
 
@@ -44,6 +45,26 @@ void MeshMeasures::add(Index tet, const TetQuality& quality, Index region, Kind 
   insert({quality.max_dihedral, tet}, largest_angles, std::greater<double>());
 }
 
+namespace {
+
+/// Adds the volumes of prisms and pyramids, with straight edges, to those of their regions.
+void add_volumes_of_layers(const TetMesh& mesh, MeshMeasures& measures) {
+  const LayerCells& layers = mesh.layers;
+  const auto& p = mesh.points;
+  for (std::size_t i = 0; i < layers.prisms.size(); ++i) {
+    const auto& [a, b, c, d, e, f] = layers.prisms[i];
+    measures.region_volumes[layers.prism_region[i]] +=
+        volume_of(PrismCorners{p[a], p[b], p[c], p[d], p[e], p[f]});
+  }
+  for (std::size_t i = 0; i < layers.pyramids.size(); ++i) {
+    const auto& [a, b, c, d, e] = layers.pyramids[i];
+    measures.region_volumes[layers.pyramid_region[i]] +=
+        volume_of(PyramidCorners{p[a], p[b], p[c], p[d], p[e]});
+  }
+}
+
+}  // namespace
+
 TetQuality measure_tet(const TetMesh& mesh, Index tet) {
   const auto& [a, b, c, d] = mesh.tets[tet];
   TetQuality quality = measure(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]);
@@ -59,6 +80,7 @@ MeshMeasures measure_mesh(const TetMesh& mesh) {
                  : t < mesh.tet_thin.size() && mesh.tet_thin[t] != 0   ? MeshMeasures::Kind::thin
                                                                        : MeshMeasures::Kind::plain);
   }
+  add_volumes_of_layers(mesh, measures);
   return measures;
 }
 

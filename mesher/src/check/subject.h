@@ -39,6 +39,11 @@ struct Subject {
   FeatureMatch match;
   std::vector<std::uint8_t> collar;  ///< by tet, as TetMesh::tet_collar: what the complex excuses
   bool coarsened = false;            ///< cells of collars keep the bounds of other tets, too, and may be thin
+  /// Tets from this number on are parts of prisms and pyramids, which are judged as a whole elsewhere.
+  Index first_part = none;
+
+  /// Are the angles of tets judged elsewhere, as the mesh has layers?
+  bool has_layers() const { return !mesh.layers.tet_layer.empty(); }
 
   const Point& point(Index i) const { return mesh.points[i]; }
   Point centroid(const std::array<Index, 3>& f) const {
@@ -82,6 +87,10 @@ class ThinCells {
   std::optional<ForcedEdges> forced_;   // none where no tet may be thin
   std::optional<NarrowPlaces> narrow_;  // none unless thin tets have to be there
 };
+
+/// Returns the feature of lowest dimension that the mesh shows each point to be on.
+/// Precondition: subject.match is filled in.
+std::vector<TetMesh::VertexFeature> features_of(const Subject& subject);
 
 /// Items in groups by a key below `groups`; items whose key is none are left out.
 class Grouping {

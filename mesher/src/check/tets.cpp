@@ -19,6 +19,12 @@ struct Corners {
   Point centre() const { return 0.25 * ((a + b) + (c + d)); }
 };
 
+/// Notes the angles of a tet beside layers, which `check_core_angles` judges.
+void note_angles(const TetQuality& quality, CheckReport& report) {
+  report.min_dihedral = std::min(report.min_dihedral, quality.min_dihedral);
+  report.max_dihedral = std::max(report.max_dihedral, quality.max_dihedral);
+}
+
 void check_shape(Index tet, const Corners& p, const TetQuality& quality, const Subject& subject,
                  const ThinCells& thin, CheckReport& report, Findings& findings) {
   const CheckOptions& options = subject.options;
@@ -101,12 +107,19 @@ void check_tets(const Subject& subject, CheckReport& report, Findings& findings)
     const Corners p = corners(tet);
     const bool is_thin =
         thin.claimed(tet) && quality.radius_edge > subject.options.bounds.radius_edge * slack;
-    report.measures.add(tet, quality, mesh.tet_region[tet],
-                        subject.collar[tet] != 0 ? MeshMeasures::Kind::collar
-                        : is_thin                ? MeshMeasures::Kind::thin
-                                                 : MeshMeasures::Kind::plain);
-    check_orientation({"Tet", tet}, {p.a, p.b, p.c, p.d}, quality.volume, findings);
-    check_shape(tet, p, quality, subject, thin, report, findings);
+    if (tet < subject.first_part) {
+      report.measures.add(tet, quality, mesh.tet_region[tet],
+                          subject.collar[tet] != 0 ? MeshMeasures::Kind::collar
+                          : is_thin                ? MeshMeasures::Kind::thin
+                                                   : MeshMeasures::Kind::plain);
+      check_orientation({"Tet", tet}, {p.a, p.b, p.c, p.d}, quality.volume, findings);
+    } else {
+      report.measures.region_volumes[mesh.tet_region[tet]] += quality.volume;
+    }
+    if (!subject.has_layers())
+      check_shape(tet, p, quality, subject, thin, report, findings);
+    else if (mesh.layers.tet_layer[tet] == 0)
+      note_angles(quality, report);
     check_region_tag(tet, p, subject, findings);
     volumes[mesh.tet_region[tet]] += quality.volume;
   };

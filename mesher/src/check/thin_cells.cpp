@@ -14,7 +14,8 @@ constexpr double slack = 1e-9;  // relative
 // 25 degrees of opposite.
 constexpr double least_cosine_of_sides = -0.9;
 
-// By point, the one of lowest dimension that the mesh shows it to be on.
+}  // namespace
+
 std::vector<TetMesh::VertexFeature> features_of(const Subject& subject) {
   std::vector<TetMesh::VertexFeature> features(subject.mesh.points.size());
   for (Index f = 0; f < subject.mesh.faces.size(); ++f)
@@ -27,8 +28,6 @@ std::vector<TetMesh::VertexFeature> features_of(const Subject& subject) {
     if (const Index p = subject.match.vertex_point[v]; p != none) features[p] = {0, v};
   return features;
 }
-
-}  // namespace
 
 ThinCells::ThinCells(const Subject& subject)
     : mesh_(subject.mesh),

@@ -10,8 +10,8 @@ namespace collarmesh {
 enum class CellKind : std::uint8_t { tet, prism, pyramid, triangle, quadrangle, edge };
 
 inline constexpr std::size_t cell_kinds = 6;
-inline constexpr std::array<CellKind, cell_kinds> all_cell_kinds{CellKind::tet,      CellKind::prism,
-                                                                 CellKind::pyramid,  CellKind::triangle,
+inline constexpr std::array<CellKind, cell_kinds> all_cell_kinds{CellKind::tet,        CellKind::prism,
+                                                                 CellKind::pyramid,    CellKind::triangle,
                                                                  CellKind::quadrangle, CellKind::edge};
 inline constexpr std::size_t most_nodes_of_cell = 15;
 

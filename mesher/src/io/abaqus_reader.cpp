@@ -115,22 +115,30 @@ struct ElementType {
 };
 /// The longest prefix counts: c3d10m is a c3d10, c3d20 is not a c3d2.
 constexpr ElementType element_types[] = {
-    {"c3d4", CellKind::tet, 1},         {"c3d10", CellKind::tet, 2},       {"dc3d4", CellKind::tet, 1},
-    {"dc3d10", CellKind::tet, 2},       {"f3d4", CellKind::tet, 1},        {"ac3d4", CellKind::tet, 1},
-    {"ac3d10", CellKind::tet, 2},       {"c3d6", CellKind::prism, 1},      {"c3d15", CellKind::prism, 2},
-    {"dc3d6", CellKind::prism, 1},      {"dc3d15", CellKind::prism, 2},    {"f3d6", CellKind::prism, 1},
-    {"ac3d6", CellKind::prism, 1},      {"ac3d15", CellKind::prism, 2},    {"c3d5", CellKind::pyramid, 1},
-    {"c3d8", CellKind::pyramid, 1},     {"dc3d8", CellKind::pyramid, 1},   {"f3d8", CellKind::pyramid, 1},
-    {"ac3d8", CellKind::pyramid, 1},    {"cps3", CellKind::triangle, 1},   {"cps6", CellKind::triangle, 2},
-    {"cpe3", CellKind::triangle, 1},    {"cpe6", CellKind::triangle, 2},   {"cax3", CellKind::triangle, 1},
-    {"cax6", CellKind::triangle, 2},    {"s3", CellKind::triangle, 1},     {"s6", CellKind::triangle, 2},
-    {"stri3", CellKind::triangle, 1},   {"stri65", CellKind::triangle, 2}, {"m3d3", CellKind::triangle, 1},
-    {"m3d6", CellKind::triangle, 2},    {"sfm3d3", CellKind::triangle, 1}, {"sfm3d6", CellKind::triangle, 2},
-    {"r3d3", CellKind::triangle, 1},    {"ds3", CellKind::triangle, 1},    {"ds6", CellKind::triangle, 2},
-    {"s4", CellKind::quadrangle, 1},    {"s8", CellKind::quadrangle, 2},   {"m3d4", CellKind::quadrangle, 1},
-    {"m3d8", CellKind::quadrangle, 2},  {"r3d4", CellKind::quadrangle, 1}, {"sfm3d4", CellKind::quadrangle, 1},
-    {"sfm3d8", CellKind::quadrangle, 2}, {"t3d2", CellKind::edge, 1},      {"t3d3", CellKind::edge, 2},
-    {"b31", CellKind::edge, 1},         {"b32", CellKind::edge, 2},        {"t2d2", CellKind::edge, 1}};
+    {"c3d4", CellKind::tet, 1},          {"c3d10", CellKind::tet, 2},
+    {"dc3d4", CellKind::tet, 1},         {"dc3d10", CellKind::tet, 2},
+    {"f3d4", CellKind::tet, 1},          {"ac3d4", CellKind::tet, 1},
+    {"ac3d10", CellKind::tet, 2},        {"c3d6", CellKind::prism, 1},
+    {"c3d15", CellKind::prism, 2},       {"dc3d6", CellKind::prism, 1},
+    {"dc3d15", CellKind::prism, 2},      {"f3d6", CellKind::prism, 1},
+    {"ac3d6", CellKind::prism, 1},       {"ac3d15", CellKind::prism, 2},
+    {"c3d5", CellKind::pyramid, 1},      {"c3d8", CellKind::pyramid, 1},
+    {"dc3d8", CellKind::pyramid, 1},     {"f3d8", CellKind::pyramid, 1},
+    {"ac3d8", CellKind::pyramid, 1},     {"cps3", CellKind::triangle, 1},
+    {"cps6", CellKind::triangle, 2},     {"cpe3", CellKind::triangle, 1},
+    {"cpe6", CellKind::triangle, 2},     {"cax3", CellKind::triangle, 1},
+    {"cax6", CellKind::triangle, 2},     {"s3", CellKind::triangle, 1},
+    {"s6", CellKind::triangle, 2},       {"stri3", CellKind::triangle, 1},
+    {"stri65", CellKind::triangle, 2},   {"m3d3", CellKind::triangle, 1},
+    {"m3d6", CellKind::triangle, 2},     {"sfm3d3", CellKind::triangle, 1},
+    {"sfm3d6", CellKind::triangle, 2},   {"r3d3", CellKind::triangle, 1},
+    {"ds3", CellKind::triangle, 1},      {"ds6", CellKind::triangle, 2},
+    {"s4", CellKind::quadrangle, 1},     {"s8", CellKind::quadrangle, 2},
+    {"m3d4", CellKind::quadrangle, 1},   {"m3d8", CellKind::quadrangle, 2},
+    {"r3d4", CellKind::quadrangle, 1},   {"sfm3d4", CellKind::quadrangle, 1},
+    {"sfm3d8", CellKind::quadrangle, 2}, {"t3d2", CellKind::edge, 1},
+    {"t3d3", CellKind::edge, 2},         {"b31", CellKind::edge, 1},
+    {"b32", CellKind::edge, 2},          {"t2d2", CellKind::edge, 1}};
 
 const ElementType* find_type(std::string_view name) {
   const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
@@ -267,34 +275,37 @@ class AbaqusReader {
       }
     });
     if (!numbers.empty())
-      lines_.fail(fmt::format("expected an element of {} nodes, found {}", type->nodes(), numbers.size() - 1));
+      lines_.fail(
+          fmt::format("expected an element of {} nodes, found {}", type->nodes(), numbers.size() - 1));
   }
 
   void add_element(const ElementType& type, const std::vector<std::int64_t>& numbers, std::size_t set) {
-    CellNodes nodes;
+    std::vector<Index> listed;
     for (std::size_t k = 1; k < numbers.size(); ++k) {
-      const Index node = nodes_.find(numbers[k]);
-      if (node == none)
+      listed.push_back(nodes_.find(numbers[k]));
+      if (listed.back() == none)
         lines_.fail(
             fmt::format("element {} has the node {}, but no node has that number", numbers[0], numbers[k]));
-      nodes.add(node);
     }
     const Place place{type.kind, static_cast<Index>(count_of(mesh_, type.kind))};
-    if (type.is_hexahedron()) nodes = pyramid_of(nodes, numbers[0]);
-    // The mid-edge node is the second of three.
-    if (type.kind == CellKind::edge) nodes = nodes.in_order(std::array<std::uint8_t, 3>{0, 2, 1});
-    add_cell(type.kind, nodes, mesh_);
+    add_cell(type.kind, nodes_of_element(type, listed, numbers[0]), mesh_);
     elements_.add(numbers[0]);
     places_.push_back(place);
     if (set != none) sets_[set].members.push_back(numbers[0]);
   }
 
-  /// Returns the pyramid that a hexahedron is whose last four corners are one.
-  CellNodes pyramid_of(const CellNodes& nodes, std::int64_t number) const {
-    if (!nodes.has_order(abaqus_pyramid_order))
+  CellNodes nodes_of_element(const ElementType& type, const std::vector<Index>& listed,
+                             std::int64_t number) const {
+    if (type.is_hexahedron()) {
+      const std::optional<CellNodes> pyramid = CellNodes::gathered(listed, abaqus_pyramid_order);
+      if (pyramid) return *pyramid;
       lines_.fail(fmt::format(
           "element {} is a hexahedron, which is not supported, unless its last four nodes are one", number));
-    return nodes.from_order(abaqus_pyramid_order);
+    }
+    CellNodes nodes;
+    for (const Index node : listed) nodes.add(node);
+    // The mid-edge node is the second of three.
+    return type.kind == CellKind::edge ? nodes.in_order(std::array<std::uint8_t, 3>{0, 2, 1}) : nodes;
   }
 
   void sort_elements() {

@@ -103,9 +103,11 @@ void write_elements_of(FileWriter& out, const TetMesh& mesh, CellKind kind, Inde
   const std::size_t before = count_before(mesh, kind);
   write_each(out, cells.size(), [&](TextBuffer& text, std::size_t i) {
     text << before + cells[i] + 1;
-    CellNodes nodes = nodes_of(kind)(mesh, cells[i]);
-    if (kind == CellKind::pyramid) nodes = nodes.spread(abaqus_pyramid_order);
-    for (const Index v : nodes) text << ", " << v + 1;
+    const CellNodes nodes = nodes_of(kind)(mesh, cells[i]);
+    if (kind == CellKind::pyramid)
+      for (const std::uint8_t k : abaqus_pyramid_order) text << ", " << nodes[k] + 1;
+    else
+      for (const Index v : nodes) text << ", " << v + 1;
     text << '\n';
   });
 }
@@ -220,9 +222,10 @@ void write_abaqus(const std::string& path, const TetMesh& mesh) { write_abaqus(p
 void write_abaqus(const std::string& path, const TetMesh& mesh, const Interfaces& interfaces) {
   const bool without_tets = mesh.is_surface() || mesh.is_curves();
   if (mesh.order() == 2 && !mesh.layers.pyramids.empty())
-    throw WriteError(path +
-                     ": neither CalculiX nor Abaqus has pyramids of second order; write a mesh of first order, or "
-                     "layers of tetrahedra");
+    throw WriteError(
+        path +
+        ": neither CalculiX nor Abaqus has pyramids of second order; write a mesh of first order, or "
+        "layers of tetrahedra");
   if (mesh.is_surface() && mesh.triangle_elements != TriangleElements::shell) require_plane(path, mesh);
   FileWriter out(path);
   out << "*HEADING\nWritten by collarmesh.\n";

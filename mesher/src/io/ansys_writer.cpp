@@ -46,8 +46,8 @@ void write_nodes(FileWriter& out, const TetMesh& mesh) {
 /// Elements of a kind of cells: Ansys has prisms and pyramids as hexahedra of which nodes are one.
 struct AnsysType {
   CellKind kind;
-  int number;  ///< by ET
-  std::array<std::size_t, 2> nodes;  ///< by order
+  int number;                           ///< by ET
+  std::array<std::size_t, 2> nodes;     ///< by order
   std::array<std::uint8_t, 20> places;  ///< our node at each place
 };
 constexpr std::array<AnsysType, 3> ansys_types{
@@ -63,13 +63,13 @@ void write_elements(FileWriter& out, const TetMesh& mesh) {
     const std::span order(type.places.data(), type.nodes[mesh.order() == 2 ? 1 : 0]);
     const std::size_t before = count_before(mesh, type.kind);
     write_each(out, count_of(mesh, type.kind), [&](TextBuffer& text, std::size_t i) {
-      const CellNodes nodes = nodes_of(type.kind)(mesh, i).spread(order);
-      std::string line = fmt::format("{:9}{:9}{:9}{:9}{:9}{:9}{:9}{:9}{:9}{:9}{:9}",
-                                     features_of(mesh, type.kind)[i], type.number, 1, 1, 0, 0, 0, 0,
-                                     nodes.size(), 0, before + i + 1);
-      for (std::size_t k = 0; k < nodes.size(); ++k) {
+      const CellNodes nodes = nodes_of(type.kind)(mesh, i);
+      std::string line =
+          fmt::format("{:9}{:9}{:9}{:9}{:9}{:9}{:9}{:9}{:9}{:9}{:9}", features_of(mesh, type.kind)[i],
+                      type.number, 1, 1, 0, 0, 0, 0, order.size(), 0, before + i + 1);
+      for (std::size_t k = 0; k < order.size(); ++k) {
         if (k == nodes_on_line) line += '\n';
-        line += fmt::format("{:9}", nodes[k] + 1);
+        line += fmt::format("{:9}", nodes[order[k]] + 1);
       }
       text << std::string_view(line) << '\n';
     });

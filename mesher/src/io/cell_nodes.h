@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -33,29 +34,23 @@ class CellNodes {
     for (const std::uint8_t k : order) result.add(nodes_[k]);
     return result;
   }
-  /// Does the same for an order that may name nodes several times, as that of a pyramid that is written as a
-  /// hexahedron.
-  CellNodes spread(std::span<const std::uint8_t> order) const {
-    CellNodes result;
-    for (const std::uint8_t k : order) result.add(nodes_[k]);
-    return result;
-  }
   /// Returns the cell whose node order[k] is this one's k-th node; unchanged if the order is of other cells.
   CellNodes from_order(std::span<const std::uint8_t> order) const {
     if (order.size() != count_) return *this;
-    CellNodes result;
-    for (std::size_t k = 0; k < count_; ++k) {
-      result.nodes_[order[k]] = nodes_[k];
-      result.count_ = std::max(result.count_, std::size_t{order[k]} + 1);
-    }
+    CellNodes result = *this;
+    for (std::size_t k = 0; k < count_; ++k) result.nodes_[order[k]] = nodes_[k];
     return result;
   }
-  /// Returns whether nodes that the order names as one are one.
-  bool has_order(std::span<const std::uint8_t> order) const {
-    const CellNodes cell = from_order(order);
+  /// Returns the cell whose node order[k] is listed[k]. The order may name a node several times, as that of a
+  /// pyramid does that a format has as a hexahedron; nothing if those differ.
+  static std::optional<CellNodes> gathered(std::span<const Index> listed,
+                                           std::span<const std::uint8_t> order) {
+    CellNodes result;
+    for (const std::uint8_t k : order) result.count_ = std::max<std::uint8_t>(result.count_, k + 1);
+    for (std::size_t k = 0; k < order.size(); ++k) result.nodes_[order[k]] = listed[k];
     for (std::size_t k = 0; k < order.size(); ++k)
-      if (cell[order[k]] != nodes_[k]) return false;
-    return true;
+      if (result.nodes_[order[k]] != listed[k]) return std::nullopt;
+    return result;
   }
 
   std::size_t size() const { return count_; }
@@ -64,9 +59,8 @@ class CellNodes {
   Index operator[](std::size_t k) const { return nodes_[k]; }
 
  private:
-  static constexpr std::size_t most_nodes = 20;  // of a hexahedron, as which some formats have pyramids
-  std::array<Index, most_nodes> nodes_{};
-  std::size_t count_ = 0;
+  std::array<Index, most_nodes_of_cell> nodes_{};
+  std::uint8_t count_ = 0;
 };
 
 inline CellNodes nodes_of_tet(const TetMesh& mesh, std::size_t i) {
@@ -123,7 +117,8 @@ auto& tags_of(Mesh& mesh, CellKind kind) {
     default: return mesh.edge_tag;
   }
 }
-/// Returns the regions of the cells of volumes, the patches of triangles and quadrangles, the curves of edges.
+/// Returns the regions of the cells of volumes, the patches of triangles and quadrangles, the curves of
+/// edges.
 template <class Mesh>
 auto& features_of(Mesh& mesh, CellKind kind) {
   switch (kind) {
@@ -162,7 +157,7 @@ inline std::uint16_t layer_of(const TetMesh& mesh, CellKind kind, std::size_t i)
 
 /// Our node at each place of a prism in formats that list the mid-edge nodes between the triangles before
 /// those of the second triangle: CGNS, Exodus and Nastran.
-inline constexpr std::array<std::uint8_t, 15> prism_between_before_top{0, 1, 2,  3,  4,  5, 6, 7,
+inline constexpr std::array<std::uint8_t, 15> prism_between_before_top{0, 1,  2,  3,  4, 5,  6, 7,
                                                                        8, 12, 13, 14, 9, 10, 11};
 inline CellNodes with_between_before_top(CellKind kind, const CellNodes& nodes) {
   return kind == CellKind::prism ? nodes.in_order(prism_between_before_top) : nodes;

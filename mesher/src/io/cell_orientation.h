@@ -5,8 +5,8 @@
 
 namespace collarmesh::io {
 
-/// Returns six times the volume of a tet, prism or pyramid with straight edges; roughly, where a quadrangle is
-/// not planar.
+/// Returns six times the volume of a tet, prism or pyramid with straight edges; roughly, where a quadrangle
+/// is not planar.
 double six_volume_of(const TetMesh& mesh, CellKind kind, std::size_t cell);
 
 /// Returns the cell of a volume turned inside out, or the triangle or quadrangle turned over.

@@ -63,9 +63,10 @@ class MidNodes {
   Index find(Index a, Index b) const {
     const auto found = nodes_.find(edge_key(a, b));
     if (found == nodes_.end())
-      throw ReadError(path_ +
-                      ": a triangle, quadrangle or line of first order is no face or edge of a cell of second "
-                      "order; save all cells with one order");
+      throw ReadError(
+          path_ +
+          ": a triangle, quadrangle or line of first order is no face or edge of a cell of second "
+          "order; save all cells with one order");
     return found->second;
   }
 
@@ -126,8 +127,7 @@ void number_regions(TetMesh& mesh) {
     features_of(mesh, kind).clear();
     for (const Tag tag : tags_of(mesh, kind))
       features_of(mesh, kind)
-          .push_back(
-              static_cast<Index>(std::lower_bound(tags.begin(), tags.end(), tag) - tags.begin() + 1));
+          .push_back(static_cast<Index>(std::lower_bound(tags.begin(), tags.end(), tag) - tags.begin() + 1));
   }
   for (const CellKind kind : surfaces) regions_beside(mesh, kind).clear();
 }

@@ -111,8 +111,7 @@ class ExodusFile {
 
   void name_all() {
     DistinctNames blocks(longest_name), side_sets(longest_name), node_sets(longest_name);
-    for (const Block& block : blocks_)
-      block_names_.push_back(blocks.add(group_name(mesh_, 3, block.tag)));
+    for (const Block& block : blocks_) block_names_.push_back(blocks.add(group_name(mesh_, 3, block.tag)));
     for (const auto& [tag, members] : side_sets_)
       side_names_.push_back(side_sets.add(group_name(mesh_, 2, tag)));
     for (const auto& [tag, members] : node_sets_)

@@ -37,8 +37,7 @@ void read_vertices(TextScanner& scan, TetMesh& mesh) {
 /// Reads the cells of a kind with their references.
 void read_cells(TextScanner& scan, CellKind kind, int order, TetMesh& mesh) {
   const std::size_t node_count = shape_of(kind).nodes(order);
-  const Index n =
-      scan.count(fmt::format("the number of {}", medit_keyword(kind)), 2 * (node_count + 1));
+  const Index n = scan.count(fmt::format("the number of {}", medit_keyword(kind)), 2 * (node_count + 1));
   for (Index i = 0; i < n; ++i) {
     CellNodes nodes;
     for (std::size_t k = 0; k < node_count; ++k) nodes.add(scan.index("a corner", 1, mesh.points.size()));
@@ -63,9 +62,10 @@ bool read_cells(TextScanner& scan, std::string_view keyword, TetMesh& mesh) {
 
 void refuse_cells(TextScanner& scan, std::string_view keyword) {
   if (scan.count("the number of cells", 2) > 0)
-    scan.fail(fmt::format(
-        "{} are not supported, only tetrahedra, prisms and pyramids, their triangles, quadrilaterals and edges",
-        keyword));
+    scan.fail(
+        fmt::format("{} are not supported, only tetrahedra, prisms and pyramids, their triangles, "
+                    "quadrilaterals and edges",
+                    keyword));
 }
 
 void require_three_dimensions(TextScanner& scan) {

@@ -104,8 +104,7 @@ void write_mfem(const std::string& path, const TetMesh& mesh) {
   const std::map<Tag, std::size_t> attributes = positive_numbers(all_tags(mesh, 2));
   std::vector<Attributed> volumes, faces;
   for_each_kind(mesh, 3, [&](CellKind kind) {
-    for (Index i = 0; i < count_of(mesh, kind); ++i)
-      volumes.push_back({kind, i, features_of(mesh, kind)[i]});
+    for (Index i = 0; i < count_of(mesh, kind); ++i) volumes.push_back({kind, i, features_of(mesh, kind)[i]});
   });
   for_each_kind(mesh, 2, [&](CellKind kind) {
     for (Index f = 0; f < count_of(mesh, kind); ++f)  // other faces bound nothing

@@ -39,7 +39,8 @@ void number_group(const std::vector<Tag>& tags, std::map<Tag, int>& numbers, std
 Numbers number_groups(const TetMesh& mesh) {
   Numbers numbers;
   std::set<int> taken;
-  for (const std::size_t dimension : {2, 3, 1}) number_group(all_tags(mesh, dimension), numbers[dimension], taken);
+  for (const std::size_t dimension : {2, 3, 1})
+    number_group(all_tags(mesh, dimension), numbers[dimension], taken);
   return numbers;
 }
 
@@ -86,7 +87,8 @@ void write_msh2(const std::string& path, const TetMesh& mesh) {
   const bool partitioned = !mesh.tet_partition.empty();
   // Only tets, triangles and edges have partitions.
   std::array<std::vector<Index>, 4> partitions;
-  if (partitioned) partitions = {{{}, partitions_of_edges(mesh), partitions_of_faces(mesh), mesh.tet_partition}};
+  if (partitioned)
+    partitions = {{{}, partitions_of_edges(mesh), partitions_of_faces(mesh), mesh.tet_partition}};
   for (const CellKind kind : {CellKind::edge, CellKind::triangle, CellKind::quadrangle, CellKind::tet,
                               CellKind::prism, CellKind::pyramid}) {
     const GmshType& type = gmsh_type(kind, mesh.order());
@@ -95,8 +97,10 @@ void write_msh2(const std::string& path, const TetMesh& mesh) {
       out << ++number << ' ' << type.number << (partitioned ? " 4 " : " 2 ")
           << numbers[type.dimension()].at(tags_of(mesh, kind)[i]) << ' '
           << (type.dimension() == 3 ? std::size_t{feature} : entity(feature));
-      if (partitioned) out << " 1 " << partitions[type.dimension()][i] + 1;  // their number, then the partition
-      for (const Index v : nodes_of(kind)(mesh, i).in_order(type.node_order())) out << ' ' << std::size_t{v} + 1;
+      if (partitioned)
+        out << " 1 " << partitions[type.dimension()][i] + 1;  // their number, then the partition
+      for (const Index v : nodes_of(kind)(mesh, i).in_order(type.node_order()))
+        out << ' ' << std::size_t{v} + 1;
       out << '\n';
     }
   }

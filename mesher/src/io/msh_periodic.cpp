@@ -81,8 +81,7 @@ class PairLinks {
       const auto& [a, b] = mesh_.edges[e];
       if (!sides_.contains(sorted(a, b))) continue;
       const auto found = edges.find(sorted(image_of(a), image_of(b)));
-      if (found != edges.end())
-        add(1, curves[found->second], curves[e], nodes_of_edge(mesh_, e));
+      if (found != edges.end()) add(1, curves[found->second], curves[e], nodes_of_edge(mesh_, e));
     }
   }
 

@@ -1,10 +1,10 @@
 // Gmsh's format 4.1 as text (Gmsh's reference manual, "MSH file format"). Entities are the features: a volume
 // per region, a surface per patch, a curve per curve, a point per vertex. All entities with one tag form a
 // physical group. Cells are numbered in the order of their kinds, tets first; $ElementData "collar" and
-// "crease" covers all of them in the order of the file, as meshio needs it. In a partitioned mesh the cells and nodes
-// of an entity are divided among its parts, one entity for each partition: otherwise Gmsh would lose data
-// when it writes such a mesh again. $Periodic has a link for each point, curve and surface on the second
-// sides of periodic faces.
+// "crease" covers all of them in the order of the file, as meshio needs it. In a partitioned mesh the cells
+// and nodes of an entity are divided among its parts, one entity for each partition: otherwise Gmsh would
+// lose data when it writes such a mesh again. $Periodic has a link for each point, curve and surface on the
+// second sides of periodic faces.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -186,8 +186,8 @@ void write_nodes(FileWriter& out, const TetMesh& mesh, const MshEntities& entiti
 }
 
 /// Writes the cells of a kind, numbered from `first_number`.
-void write_cells(FileWriter& out, const TetMesh& mesh, CellKind kind,
-                 const std::vector<MshEntity>& entities, const Groups& groups, std::size_t first_number) {
+void write_cells(FileWriter& out, const TetMesh& mesh, CellKind kind, const std::vector<MshEntity>& entities,
+                 const Groups& groups, std::size_t first_number) {
   const GmshType& type = gmsh_type(kind, mesh.order());
   for (std::size_t e = 0; e < entities.size(); ++e) {
     const std::span<const Index> members = groups.of(e);

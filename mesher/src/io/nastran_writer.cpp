@@ -1,7 +1,7 @@
 // Nastran's bulk data (.bdf; MSC Nastran Quick Reference Guide): nodes in large fields, CTETRA, CPENTA
-// and CPYRAM of both orders, CTRIA3 or CTRIA6 and CQUAD4 or CQUAD8 of the faces. Each region and then each tag of faces has a property number;
-// comments give its name, as HyperMesh does. The user adds properties and materials, and deletes faces that
-// need none.
+// and CPYRAM of both orders, CTRIA3 or CTRIA6 and CQUAD4 or CQUAD8 of the faces. Each region and then each
+// tag of faces has a property number; comments give its name, as HyperMesh does. The user adds properties and
+// materials, and deletes faces that need none.
 #include <fmt/format.h>
 
 #include <algorithm>

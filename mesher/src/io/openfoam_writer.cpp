@@ -59,8 +59,7 @@ struct Sides {
     PolygonFinder<4> quadrangles(mesh.layers.quads);
     for (auto* sides : {&inside, &outside})
       for (Side& side : *sides)
-        side.face =
-            side.is_triangle() ? triangles.find(side.triangle()) : quadrangles.find(side.corners);
+        side.face = side.is_triangle() ? triangles.find(side.triangle()) : quadrangles.find(side.corners);
     std::sort(inside.begin(), inside.end(), [](const Side& a, const Side& b) {
       return std::pair(a.owner, a.neighbour) < std::pair(b.owner, b.neighbour);
     });
@@ -97,7 +96,9 @@ struct Sides {
       return sorted;
     };
     std::sort(all.begin(), all.end(), [&](const Side& a, const Side& b) {
-      return std::pair(key(a), a.owner) < std::pair(key(b), b.owner);
+      if (a.corners[0] != b.corners[0]) return a.corners[0] < b.corners[0];
+      const Corners first = key(a), second = key(b);
+      return first != second ? first < second : a.owner < b.owner;
     });
     for (std::size_t i = 0; i < all.size(); ++i) {
       Side side = all[i];
@@ -194,15 +195,13 @@ bool is_flipped(const TetMesh& mesh, const Side& side) {
 void write_face_zones(FileWriter& out, const TetMesh& mesh, const Sides& sides) {
   Groups zones;
   for (std::size_t i = 0; i < sides.inside.size(); ++i)
-    if (sides.inside[i].face != none)
-      zones[tag_of(mesh, sides.inside[i])].push_back(static_cast<Index>(i));
+    if (sides.inside[i].face != none) zones[tag_of(mesh, sides.inside[i])].push_back(static_cast<Index>(i));
   out << zones.size() << "\n(\n";
   for (const auto& [tag, faces] : zones) {
     out << word_name(mesh, 2, tag) << "\n{\n        type            faceZone;\n";
     write_labels(out, "faceLabels", faces);
     out << fmt::format("        flipMap         List<bool>\n{}\n(\n", faces.size());
-    for (const Index i : faces)
-      out << (is_flipped(mesh, sides.inside[i]) ? "1\n" : "0\n");
+    for (const Index i : faces) out << (is_flipped(mesh, sides.inside[i]) ? "1\n" : "0\n");
     out << ")\n;\n}\n";
   }
   out << ")\n";

@@ -1,5 +1,5 @@
-// SU2's mesh format (.su2; su2code.github.io/docs_v7/Mesh-File): volumes, points, and a marker for each tag of
-// faces on the boundary. The format has no place for faces inside, regions, edges and second order.
+// SU2's mesh format (.su2; su2code.github.io/docs_v7/Mesh-File): volumes, points, and a marker for each tag
+// of faces on the boundary. The format has no place for faces inside, regions, edges and second order.
 #include <map>
 #include <string>
 #include <utility>

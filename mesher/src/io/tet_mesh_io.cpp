@@ -22,7 +22,7 @@ struct TetMeshFormat {
   bool partitions = false;                   ///< has a place for partitions
   void (*write_with_ghost_cells)(const std::string& path, const TetMesh& mesh) = nullptr;
   bool second_order = true;
-  bool surfaces = false;  ///< has a place for meshes of triangles alone, and of curve edges alone
+  bool surfaces = false;    ///< has a place for meshes of triangles alone, and of curve edges alone
   int order_of_layers = 0;  ///< the highest order of prisms and pyramids; 0: there is no place for them
 };
 
@@ -92,8 +92,7 @@ void require_place_for_layers(const std::string& path, const TetMesh& mesh, cons
   if (layers.prisms.empty() && layers.pyramids.empty() && layers.quads.empty()) return;
   if (format.order_of_layers < mesh.order())
     throw WriteError(fmt::format("{}: {} has no place for prisms and pyramids{}; write {}", path,
-                                 format.extension,
-                                 format.order_of_layers > 0 ? " of second order" : "",
+                                 format.extension, format.order_of_layers > 0 ? " of second order" : "",
                                  fmt::join(formats_with_layers(mesh.order()), " ")));
   if (!mesh.tet_partition.empty())
     throw WriteError(path + ": a mesh with prisms or pyramids is not written in partitions; leave them out");

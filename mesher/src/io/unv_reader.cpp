@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -124,17 +126,19 @@ class UnvReader {
     const auto* known =
         std::find_if(unv_types.begin(), unv_types.end(), [&](const UnvType& t) { return t.number == type; });
     if (known == unv_types.end() || known->nodes != count)
-      scan_.fail(
-          fmt::format("elements of type {} with {} nodes are not supported, only tetrahedra (111, 118), prisms "
-                      "(112, 113), triangles (91, 92, 41, 42), quadrangles (94, 95, 44, 45) and lines (21, 24, "
-                      "11)",
-                      type, count));
-    CellNodes nodes;
-    for (std::size_t k = 0; k < count; ++k) nodes.add(read_node());
-    if (!nodes.has_order(known->node_order()))
       scan_.fail(fmt::format(
-          "element {} is a brick, which is not supported, unless its upper nodes are one", number));
-    add_cell(known->kind, nodes.from_order(known->node_order()), mesh_);
+          "elements of type {} with {} nodes are not supported, only tetrahedra (111, 118), prisms "
+          "(112, 113), triangles (91, 92, 41, 42), quadrangles (94, 95, 44, 45) and lines (21, 24, "
+          "11)",
+          type, count));
+    std::array<Index, 20> listed{};
+    for (std::size_t k = 0; k < count; ++k) listed[k] = read_node();
+    const std::optional<CellNodes> nodes =
+        CellNodes::gathered(std::span(listed).first(count), known->node_order());
+    if (!nodes)
+      scan_.fail(fmt::format("element {} is a brick, which is not supported, unless its upper nodes are one",
+                             number));
+    add_cell(known->kind, *nodes, mesh_);
     element_numbers_.add(number);
     elements_.push_back({known->kind, material, 0, false});
   }

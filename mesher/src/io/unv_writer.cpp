@@ -60,10 +60,11 @@ class ElementWriter {
                      material, material, 7, type.nodes);
       if (unv_is_beam(type.number)) line_ += "         0         1         1\n";
       std::size_t on_line = 0;
-      for (const Index v : nodes_of(kind)(mesh_, i).spread(type.node_order())) {
+      const CellNodes nodes = nodes_of(kind)(mesh_, i);
+      for (const std::uint8_t k : type.node_order()) {
         if (on_line == 8) line_ += '\n';
         on_line = on_line == 8 ? 1 : on_line + 1;
-        fmt::format_to(std::back_inserter(line_), "{:10}", v + 1);
+        fmt::format_to(std::back_inserter(line_), "{:10}", nodes[k] + 1);
       }
       out_ << line_ << '\n';
       groups_[{dimension, tags[i]}].push_back(count_);

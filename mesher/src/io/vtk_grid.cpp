@@ -171,10 +171,10 @@ class GridMaker {
       const Index back = region_beside(kind, i, 0);
       return back != 0 ? back : region_beside(kind, i, 1);
     });
-    add_cell_data<std::int32_t>(
-        "region_back", [this](CellKind kind, std::size_t i) { return region_beside(kind, i, 0); });
-    add_cell_data<std::int32_t>(
-        "region_front", [this](CellKind kind, std::size_t i) { return region_beside(kind, i, 1); });
+    add_cell_data<std::int32_t>("region_back",
+                                [this](CellKind kind, std::size_t i) { return region_beside(kind, i, 0); });
+    add_cell_data<std::int32_t>("region_front",
+                                [this](CellKind kind, std::size_t i) { return region_beside(kind, i, 1); });
     add_cell_data<std::int64_t>("tag",
                                 [this](CellKind kind, std::size_t i) { return tags_of(mesh_, kind)[i]; });
     add_cell_data<std::int32_t>("feature", [this](CellKind kind, std::size_t i) {
@@ -184,8 +184,8 @@ class GridMaker {
     add_cell_data<std::int64_t>("crease", of_tets(mesh_.tet_crease));
     if (!mesh_.tet_thin.empty()) add_cell_data<std::uint8_t>("thin", of_tets(mesh_.tet_thin));
     if (!mesh_.layers.empty())
-      add_cell_data<std::int32_t>(
-          "layer", [this](CellKind kind, std::size_t i) { return layer_of(mesh_, kind, i); });
+      add_cell_data<std::int32_t>("layer",
+                                  [this](CellKind kind, std::size_t i) { return layer_of(mesh_, kind, i); });
     if (mesh_.tet_partition.empty()) return;
     add(cell_data_.emplace_back(), "partition", [this] {
       const std::vector<Index> faces = partitions_of_faces(mesh_), edges = partitions_of_edges(mesh_);
@@ -245,9 +245,10 @@ ReadType find_type(std::size_t cell, std::int64_t type) {
       if (types[static_cast<std::size_t>(order) - 1] == type) return {shape_of(kind).nodes(order), kind};
   throw VtkPieceError{
       "types",
-      fmt::format("cell {} has the type {}, which is not supported, only tetrahedra (10, 24), prisms (13, 26), "
-                  "pyramids (14, 27), triangles (5, 22), quadrangles (9, 23) and lines (3, 21)",
-                  cell, type)};
+      fmt::format(
+          "cell {} has the type {}, which is not supported, only tetrahedra (10, 24), prisms (13, 26), "
+          "pyramids (14, 27), triangles (5, 22), quadrangles (9, 23) and lines (3, 21)",
+          cell, type)};
 }
 
 CellNodes read_nodes(const VtkPiece& piece, std::size_t cell, std::span<const std::int64_t> corners,
@@ -369,9 +370,8 @@ std::string names_of(const std::vector<std::int64_t>& bytes) {
 std::vector<VtkArray> take_boundary(const TetMesh& mesh, VtkGrid& grid) {
   const std::size_t volumes = count_of_dimension(mesh, 3);
   std::size_t corners = 0;
-  for_each_kind(mesh, 3, [&](CellKind kind) {
-    corners += count_of(mesh, kind) * shape_of(kind).nodes(mesh.order());
-  });
+  for_each_kind(mesh, 3,
+                [&](CellKind kind) { corners += count_of(mesh, kind) * shape_of(kind).nodes(mesh.order()); });
   const auto name_of = [](const VtkArray& array) { return std::string(vtk_boundary_prefix) + array.name; };
   std::vector<VtkArray> boundary;
   // Cuts an array and returns the part behind the cut.

@@ -45,8 +45,8 @@ VtkGrid make_vtk_grid(const TetMesh& mesh);
 constexpr std::string_view vtk_point_ids = "GlobalPointIds", vtk_cell_ids = "GlobalCellIds",
                            vtk_ghosts = "vtkGhostType";
 
-/// Keeps only the cells of volumes and moves the other cells to data of the whole grid, so that views that cut
-/// or select cells show the volume alone. The arrays are named `boundary_` and the name of the cell array
+/// Keeps only the cells of volumes and moves the other cells to data of the whole grid, so that views that
+/// cut or select cells show the volume alone. The arrays are named `boundary_` and the name of the cell array
 /// that they continue; `boundary_of` has the numbers of points and cells, so that a reader can tell whether
 /// these were changed. Cell arrays that only concern faces and edges are removed. The names of groups are
 /// added, too.
@@ -82,9 +82,9 @@ struct VtkPiece {
 /// Arrays with labels of a mesh: ours, and the names that meshio and Gmsh use.
 constexpr std::array<std::string_view, 3> vtk_point_arrays{"feature_dimension", "feature", vtk_point_ids};
 constexpr std::array<std::string_view, 15> vtk_cell_arrays{
-    "tag",     "gmsh:physical", "medit:ref", "CellEntityIds", "region", "region_back", "region_front",
-    "feature", "collar",        "crease",    "thin",          "layer",  "partition",   vtk_cell_ids,
-    vtk_ghosts};
+    "tag",         "gmsh:physical", "medit:ref", "CellEntityIds", "region",
+    "region_back", "region_front",  "feature",   "collar",        "crease",
+    "thin",        "layer",         "partition", vtk_cell_ids,    vtk_ghosts};
 
 /// Reads the pieces of a .vtu file, each with the faces and edges beside its cells. Throws ReadError.
 std::vector<VtkPiece> read_vtu_pieces(const std::string& path);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "collarmesh/error.h"
+#include "common/layer_tets.h"
 #include "common/module_function.h"
 #include "partition/level_partitions.h"
 #include "partition/scotch_module.h"
@@ -96,6 +97,7 @@ std::vector<GraphIndex> best_by_scotch(ScotchPartition by_scotch, const DualGrap
 void require_partitioner() { find_scotch(); }
 
 void partition(TetMesh& mesh, unsigned partitions) {
+  require_tets_alone(mesh, "partitions");
   const std::size_t tets = mesh.tets.size();
   if (partitions < 1 || partitions > tets)
     throw OptionError(

@@ -26,8 +26,7 @@ void add_layers(MeshJob& job) {
   const ImproveOptions options = options_of_core(job);
   const SecondOrderOptions second_order{
       .exact = job.options.exact, .bounds = job.bounds(), .threads = job.options.mesh.threads};
-  job.made.layers =
-      make_layers(mesh, *job.plc, job.options.layers, options, second_order, job.execution());
+  job.made.layers = make_layers(mesh, *job.plc, job.options.layers, options, second_order, job.execution());
   if (job.made.layers->cancelled) job.control.stop();
   checks::check_layer_cells(mesh, job.made.check);
   checks::check_core_angles(mesh, job.made.layers->walls, *job.plc, options.bounds, job.made.check);

@@ -14,6 +14,7 @@
 #include "collarmesh/options.h"
 #include "collarmesh/partition.h"
 #include "collarmesh/second_order.h"
+#include "common/layer_tets.h"
 #include "common/thread_limit.h"
 #include "improve/improve_workpiece.h"
 #include "remesh/edge_division.h"
@@ -317,6 +318,11 @@ class Remeshing {
 
 RemeshResult remesh(const TetMesh& mesh, const PipelineOptions& options, const AdaptOptions& adapt,
                     const Execution& execution) {
+  if (!mesh.layers.prisms.empty() || !mesh.layers.pyramids.empty()) {
+    TetMesh cut = tets_of_layers(mesh);
+    cut.layers = {};
+    return remesh(cut, options, adapt, execution);
+  }
   return remeshing::Remeshing(mesh, options, adapt, execution).run();
 }
 

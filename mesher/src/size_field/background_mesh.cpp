@@ -8,6 +8,7 @@
 #include "collarmesh/locate.h"
 #include "collarmesh/size_field.h"
 #include "common/box_tree.h"
+#include "common/layer_tets.h"
 #include "location/triangle_hierarchy.h"
 
 namespace collarmesh {
@@ -81,6 +82,21 @@ class BackgroundMesh {
 
 }  // namespace
 
+namespace {
+
+/// The mesh of first order with its layers cut into tets.
+TetMesh straight_tets(TetMesh mesh) {
+  mesh.tet_mid_nodes.clear();
+  mesh.face_mid_nodes.clear();
+  mesh.edge_mid_nodes.clear();
+  mesh.layers.prism_mid_nodes.clear();
+  mesh.layers.pyramid_mid_nodes.clear();
+  mesh.layers.quad_mid_nodes.clear();
+  return tets_of_layers(mesh);
+}
+
+}  // namespace
+
 SizeField size_field_on_mesh(const TetMesh& mesh, const std::vector<double>& values) {
   if (values.size() != mesh.points.size())
     throw OptionError(fmt::format("a size field of {} values does not fit a mesh of {} points", values.size(),
@@ -90,11 +106,13 @@ SizeField size_field_on_mesh(const TetMesh& mesh, const std::vector<double>& val
       throw OptionError(
           fmt::format("the size field is {} at point {}, ({:.9g}, {:.9g}, {:.9g}); sizes must be positive",
                       values[i], i, mesh.points[i].x, mesh.points[i].y, mesh.points[i].z));
-  const auto background = std::make_shared<const BackgroundMesh>(mesh);
+  const auto background =
+      std::make_shared<const BackgroundMesh>(mesh.layers.empty() ? mesh : straight_tets(mesh));
   return [background, values](const Point& p) { return background->value_at(p, values); };
 }
 
 std::vector<MeshPlace> locate(const TetMesh& mesh, std::span<const Point> points) {
+  require_tets_alone(mesh, "places in a mesh");
   const BackgroundMesh background(mesh);
   std::vector<MeshPlace> places;
   places.reserve(points.size());

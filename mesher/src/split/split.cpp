@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "common/layer_tets.h"
 #include "common/tet_sides.h"
 #include "io/face_finder.h"
 #include "io/label_names.h"
@@ -307,6 +308,9 @@ void require_known_patches(const SplitOptions& options, const Plc& plc) {
   PatchChoice(options, plc.names, all);
 }
 
-SplitReport split(TetMesh& mesh, const SplitOptions& options) { return Splitter(mesh, options).run(); }
+SplitReport split(TetMesh& mesh, const SplitOptions& options) {
+  require_tets_alone(mesh, "split");
+  return Splitter(mesh, options).run();
+}
 
 }  // namespace collarmesh

@@ -1,6 +1,7 @@
 // CGNS (cgns.github.io, "SIDS-to-HDF5 File Mapping Manual") in HDF5: one unstructured zone. It has a section
-// of elements for each region, each tag of patches and each tag of curves, with their names, one for each kind
-// of cells; the faces of a section on the boundary are also a boundary condition, whose family has the name.
+// of elements for each region, each tag of patches and each tag of curves, with their names, one for each
+// kind of cells; the faces of a section on the boundary are also a boundary condition, whose family has the
+// name.
 #include <fmt/format.h>
 #include <hdf5.h>
 
@@ -169,8 +170,8 @@ struct Section {
   CellKind kind;
   std::string name;
   std::vector<Index> cells;
-  std::size_t outside = 0;      // number of cells on the boundary; they come first
-  std::string family = {};      // name of the group's first section
+  std::size_t outside = 0;  // number of cells on the boundary; they come first
+  std::string family = {};  // name of the group's first section
 };
 
 /// Moves the faces on the boundary to the front and returns their number.
@@ -271,9 +272,9 @@ void write_cgns(const std::string& path, const TetMesh& mesh) {
   file.add("", "CGNSLibraryVersion", "CGNSLibraryVersion_t", std::vector<float>{3.4F});
   const std::string base = file.add("", "Base", "CGNSBase_t", std::vector<std::int32_t>{3, 3});
   file.add(base, "DataClass", "DataClass_t", std::string("NormalizedByUnknownDimensional"));
-  const std::string zone =
-      file.add(base, "Zone", "Zone_t",
-               std::vector<std::int32_t>{whole(mesh.points.size()), whole(count_of_dimension(mesh, 3)), 0}, {1, 3});
+  const std::string zone = file.add(
+      base, "Zone", "Zone_t",
+      std::vector<std::int32_t>{whole(mesh.points.size()), whole(count_of_dimension(mesh, 3)), 0}, {1, 3});
   file.add(zone, "ZoneType", "ZoneType_t", std::string("Unstructured"));
   write_points(file, zone, mesh.points);
   std::string conditions;
@@ -283,10 +284,9 @@ void write_cgns(const std::string& path, const TetMesh& mesh) {
     const std::vector<std::int32_t> range{whole(first), whole(first + section.cells.size() - 1)};
     const std::string elements =
         file.add(zone, section.name, "Elements_t",
-                 std::vector<std::int32_t>{
-                     cgns_types[static_cast<std::size_t>(section.kind)]
-                         .numbers[static_cast<std::size_t>(mesh.order()) - 1],
-                     0});
+                 std::vector<std::int32_t>{cgns_types[static_cast<std::size_t>(section.kind)]
+                                               .numbers[static_cast<std::size_t>(mesh.order()) - 1],
+                                           0});
     file.add(elements, "ElementRange", "IndexRange_t", range);
     file.add(elements, "ElementConnectivity", "DataArray_t", nodes_of_section(mesh, section));
     const std::vector<std::int32_t> outside{whole(first), whole(first + section.outside - 1)};

@@ -1,6 +1,6 @@
 // Reads SALOME's format MED with its library: the first mesh of a file, its tetrahedra, prisms,
-// pyramids, triangles, quadrangles and segments. Groups become tags: groups with names of ours become the tags that these stand for, others are
-// numbered and keep their names.
+// pyramids, triangles, quadrangles and segments. Groups become tags: groups with names of ours become the
+// tags that these stand for, others are numbered and keep their names.
 #include <fmt/format.h>
 #include <med.h>
 #include <algorithm>

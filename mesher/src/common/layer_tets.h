@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "collarmesh/tet_mesh.h"
+
+namespace collarmesh {
+
+/// Returns the mesh with its prisms and pyramids cut into tets, which follow its own tets, and its
+/// quadrangles into triangles, by the diagonals through the smallest of their points, so that all fit. In
+/// second order each diagonal has a node, where the quadrangle's nodes place its middle. `layers` keeps only
+/// `tet_layer`, which no tet of a prism or pyramid has at 0. Precondition: the arrays of the layers fit.
+/// Cost: O(n log n) in the quadrangles' sides.
+TetMesh tets_of_layers(const TetMesh& mesh);
+
+/// Throws OptionError if the mesh has prisms or pyramids. `what`: begins the message.
+void require_tets_alone(const TetMesh& mesh, std::string_view what);
+
+/// Returns for each point the one at the wall from which the edges of prisms rise to it; none for others.
+std::vector<Index> walls_below(const TetMesh& mesh);
+
+}  // namespace collarmesh
