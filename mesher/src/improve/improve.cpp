@@ -41,17 +41,18 @@ constexpr std::size_t trials = 4000, tets_per_trial = 50;
 /// the result does not depend on the number of threads.
 class Improvement {
  public:
-  Improvement(Workpiece& workpiece, const ImproveOptions& options, const Execution& execution)
+  Improvement(Workpiece& workpiece, const ImproveOptions& options, const Execution& execution,
+              bool thoroughly)
       : workpiece_(workpiece),
         thin_(workpiece.plc, complex().mesh(), options.bounds.thin_angle, options.bounds.reserve,
               workpiece.forced, options.bounds.tets_across()),
         cells_(workpiece.plc, complex().mesh(), options.bounds),
         rule_(options.bounds.radius_edge, options.bounds.thin_angle > 0 ? &thin_ : nullptr,
               options.bounds.thin_angle > 0 ? &cells_ : nullptr),
-        remedies_(workpiece, rule_, options),
+        remedies_(workpiece, rule_, options, thoroughly),
         operations_([this] { return Operations(workpiece_, rule_); }),
         execution_(execution),
-        move_vertices_(options.move_vertices),
+        detours_(thoroughly && options.move_vertices),
         passes_(options.passes) {}
 
   ImproveReport run() {
@@ -66,7 +67,7 @@ class Improvement {
       if (changes() == before) break;
       find_poor_tets_again(begun);
     }
-    if (move_vertices_ && !report_.cancelled && take_detours()) find_poor_tets();
+    if (detours_ && !report_.cancelled && take_detours()) find_poor_tets();
     report_.remaining = poor_.size();
     report_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
     return report_;
@@ -226,7 +227,7 @@ class Improvement {
   Remedies remedies_;
   tbb::enumerable_thread_specific<Operations> operations_;
   const Execution& execution_;
-  bool move_vertices_;
+  bool detours_;
   unsigned passes_;
   std::vector<Item> poor_;  // poor tets, as found by find_poor_tets
   std::priority_queue<Item> queue_;
@@ -252,8 +253,8 @@ ImproveOptions improve_options(unsigned level) {
 }
 
 ImproveReport improve(improvement::Workpiece& workpiece, const ImproveOptions& options,
-                      const Execution& execution) {
-  return improvement::Improvement(workpiece, options, execution).run();
+                      const Execution& execution, bool thoroughly) {
+  return improvement::Improvement(workpiece, options, execution, thoroughly).run();
 }
 
 ImproveReport improve(TetMesh& mesh, const Plc& plc, const ImproveOptions& options,

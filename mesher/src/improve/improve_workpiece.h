@@ -6,8 +6,9 @@
 namespace collarmesh {
 
 /// Like `improve`, but works on the caller's workpiece: does not write the mesh back or mark thin tets, and
-/// runs in the caller's arena.
+/// runs in the caller's arena. `thoroughly`: take detours and fill cavities again, which is slow where many
+/// tets stay poor.
 ImproveReport improve(improvement::Workpiece& workpiece, const ImproveOptions& options,
-                      const Execution& execution);
+                      const Execution& execution, bool thoroughly = true);
 
 }  // namespace collarmesh

@@ -13,13 +13,15 @@ constexpr double enough = 0.7;
 
 }  // namespace
 
-Remedies::Remedies(const Workpiece& workpiece, const SliverRule& rule, const ImproveOptions& options)
+Remedies::Remedies(const Workpiece& workpiece, const SliverRule& rule, const ImproveOptions& options,
+                   bool refill)
     : complex_(workpiece.complex),
       rule_(rule),
       thin_above_(options.thin_above > 0 ? options.thin_above : options.bounds.radius_edge),
       wanted_(std::sin(options.min_dihedral * std::numbers::pi / 180)),
       move_vertices_(options.move_vertices),
-      keep_vertices_(options.keep_vertices) {}
+      keep_vertices_(options.keep_vertices),
+      refill_(refill) {}
 
 double Remedies::poor_quality(Index tet) const {
   if (!complex_[tet].alive || complex_[tet].collar) return INFINITY;
@@ -47,7 +49,7 @@ Change Remedies::propose(Operations& operations, Index tet) const {
       operations.split_edge(corners[i], corners[j], enough * wanted_, change);
   if (found() || !rule_.is_blunt(quality(tet))) return change;
   // For a flat tet, such as one between the pairs of a wall.
-  operations.reconnect(tet, change);
+  if (refill_) operations.reconnect(tet, change);
   if (found()) return change;
   // A longer edge is better than a missed guarantee, so any length is allowed here.
   for (const Index v : corners)

@@ -13,8 +13,9 @@ namespace collarmesh::improvement {
 /// each with its own operations.
 class Remedies {
  public:
-  /// Keeps both by reference.
-  Remedies(const Workpiece& workpiece, const SliverRule& rule, const ImproveOptions& options);
+  /// Keeps both by reference. `refill`: fill the space around flat tets again where nothing else helps.
+  Remedies(const Workpiece& workpiece, const SliverRule& rule, const ImproveOptions& options,
+           bool refill = true);
 
   /// Returns the sine of the angle up to which tets are improved.
   double wanted() const { return wanted_; }
@@ -49,7 +50,7 @@ class Remedies {
   const SliverRule& rule_;
   RadiusEdgeBound thin_above_;
   double wanted_;
-  bool move_vertices_, keep_vertices_;
+  bool move_vertices_, keep_vertices_, refill_;
   std::vector<bool> stays_;  // by vertex: no move of it helps, and nothing at it has changed since
 };
 

@@ -21,8 +21,11 @@ constexpr unsigned rings_moved = 5, sweeps = 12;
 constexpr unsigned most_halvings = 6;
 // A move leaves a tet at least this share of its quality, unless it stays above the second number.
 constexpr double quality_left = 0.2, good_quality = 0.15;
-// While the front moves, tets are improved up to this factor above the bound on angles, at last as far as asked.
+// While the front moves, tets are improved up to this factor above the bound on angles, at last as far as
+// asked.
 constexpr double above_bound = 1.25;
+// So many poor tets are improved by slow means, too.
+constexpr std::size_t most_of_few = 20;
 constexpr unsigned most_advances = 6, most_rounds = 12;
 // Heights count as reached within this share.
 constexpr double precision = 1e-9;
@@ -72,15 +75,16 @@ void Core::copy_nodes(const Heights& heights) {
       if (const Index n = front_.node_of(t, corner); n != none) mesh_.tets[t][corner] = vertex_of_[n];
 }
 
-/// The faces of walls become those of the front, and other faces and edges get the copies, too. Edges on walls
-/// are no edges of the core.
+/// The faces of walls become those of the front, and other faces and edges get the copies, too. Edges on
+/// walls are no edges of the core.
 void Core::copy_faces(const Heights& heights) {
   std::vector<std::uint8_t> replaced(given_.faces.size(), 0);
   std::vector<std::array<Index, 3>> faces;
   std::vector<std::array<Index, 2>> regions;
   std::vector<Index> like;
   for (const WallSide& side : front_.sides) {
-    const bool moves = std::any_of(side.nodes.begin(), side.nodes.end(), [&](Index n) { return heights[n] > 0; });
+    const bool moves =
+        std::any_of(side.nodes.begin(), side.nodes.end(), [&](Index n) { return heights[n] > 0; });
     if (!moves) continue;
     replaced[side.face] = 1;
     faces.push_back({vertex_of_[side.nodes[0]], vertex_of_[side.nodes[2]], vertex_of_[side.nodes[1]]});
@@ -89,7 +93,8 @@ void Core::copy_faces(const Heights& heights) {
   }
   // An interface may move on one side only.
   for (const WallSide& side : front_.sides) {
-    const bool moves = std::any_of(side.nodes.begin(), side.nodes.end(), [&](Index n) { return heights[n] > 0; });
+    const bool moves =
+        std::any_of(side.nodes.begin(), side.nodes.end(), [&](Index n) { return heights[n] > 0; });
     if (moves || replaced[side.face] == 0) continue;
     faces.push_back({side.corners[0], side.corners[2], side.corners[1]});
     regions.push_back({side.region, 0});
@@ -143,7 +148,8 @@ void Core::fix_wall() {
   piece_->complex.forget_balls();
   std::vector<Index> fixed;
   for (Index v = 0; v < mesh_.points.size(); ++v)
-    if (mesh_.features[v].dimension <= 1 || v >= given_.points.size() || front_.on_wall[v]) fixed.push_back(v);
+    if (mesh_.features[v].dimension <= 1 || v >= given_.points.size() || front_.on_wall[v])
+      fixed.push_back(v);
   piece_->fix(fixed);
   std::vector<bool> walls(plc_.patches.size(), false);
   for (const WallSide& side : front_.sides) walls[side.patch] = true;
@@ -154,12 +160,13 @@ bool Core::push(Heights& heights) {
   failed_.clear();
   const double enough = above_bound * options_.bounds.thin_angle;
   double share = 0.7;
+  bool few = false;  // poor tets are left
   for (unsigned round = 0; round < most_rounds; ++round) {
     for (unsigned k = 0; k < most_advances && !advance(heights); ++k) {
-      improve_tets(enough);
+      improve_tets(enough, few);
       if (cancelled_) return true;
     }
-    improve_tets(enough);
+    improve_tets(enough, few);
     if (cancelled_) return true;
     bool lowered = false, reached = true;
     for (Index n = 0; n < heights.size(); ++n) {
@@ -170,6 +177,7 @@ bool Core::push(Heights& heights) {
       lowered = true;
     }
     const std::vector<Index> poor = poor_tets();
+    few = poor.size() <= most_of_few;
     if (poor.size() > poor_at_first_ && round + 1 < most_rounds) {
       lowered = lower_at(poor, share, heights) || lowered;
       share = std::max(0.2, share - 0.1);
@@ -177,7 +185,7 @@ bool Core::push(Heights& heights) {
     lowered = heights.settle() || lowered;
     if (!lowered && reached) {
       if (poor.size() <= poor_at_first_) {
-        improve_tets(options_.min_dihedral);
+        improve_tets(options_.min_dihedral, false);
         return true;
       }
       failed_ = nodes_near(poor, 2);
@@ -304,9 +312,8 @@ std::vector<double> Core::shares_of(const std::vector<Vector>& moves, const std:
   for (const Index v : near) shares[v] = 1;
   std::vector<Index> moved;
   for (Index t = 0; t < complex.size(); ++t)
-    if (complex[t].alive &&
-        std::any_of(complex[t].corners.begin(), complex[t].corners.end(),
-                    [&](Index v) { return shares[v] > 0 && squared_norm(moves[v]) > 0; }))
+    if (complex[t].alive && std::any_of(complex[t].corners.begin(), complex[t].corners.end(),
+                                        [&](Index v) { return shares[v] > 0 && squared_norm(moves[v]) > 0; }))
       moved.push_back(t);
   std::vector<std::uint8_t> spoilt(moved.size(), 1);
   for (unsigned pass = 0;; ++pass) {
@@ -336,15 +343,15 @@ std::vector<double> Core::shares_of(const std::vector<Vector>& moves, const std:
   }
 }
 
-/// Improves tets below this angle.
-void Core::improve_tets(double angle) {
+/// Improves tets below this angle. `thoroughly`: by slow means, too.
+void Core::improve_tets(double angle, bool thoroughly) {
   ImproveOptions options = options_;
   options.min_dihedral = std::min(angle, options.min_dihedral);
   options.bounds.radius_edge = any_ratio;
   options.bounds.thin_in_narrow_places_only = false;
   options.thin_above = any_ratio;
   options.keep_vertices = false;
-  cancelled_ = cancelled_ || improve(*piece_, options, execution_).cancelled;
+  cancelled_ = cancelled_ || improve(*piece_, options, execution_, thoroughly).cancelled;
 }
 
 /// Returns the tets beyond the bounds on angles.

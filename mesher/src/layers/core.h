@@ -44,7 +44,7 @@ class Core {
   void spread(std::vector<Vector>& moves, const std::vector<Index>& near) const;
   void constrain(Index vertex, Vector& move) const;
   std::vector<double> shares_of(const std::vector<Vector>& moves, const std::vector<Index>& near) const;
-  void improve_tets(double angle);
+  void improve_tets(double angle, bool thoroughly);
   std::vector<Index> poor_tets() const;
   bool lower_at(const std::vector<Index>& tets, double share, Heights& heights) const;
   std::vector<Index> nodes_near(const std::vector<Index>& tets, unsigned rings) const;
@@ -56,9 +56,9 @@ class Core {
   const ImproveOptions& options_;
   const Execution& execution_;
   TetMesh mesh_;
-  std::vector<Index> vertex_of_;          // by node of the front
-  std::vector<Index> node_of_;            // by vertex of the core that existed at first: node of the front; none
-  std::vector<double> reached_;           // by node of the front: its distance now
+  std::vector<Index> vertex_of_;  // by node of the front
+  std::vector<Index> node_of_;    // by vertex of the core that existed at first: node of the front; none
+  std::vector<double> reached_;   // by node of the front: its distance now
   std::unique_ptr<improvement::Workpiece> piece_;
   std::unique_ptr<improvement::ThinShape> thin_;
   std::size_t poor_at_first_ = 0;

@@ -36,6 +36,11 @@ class Heights {
   Point place(Index node, double distance) const;
   Point place(Index node) const { return place(node, length_[node]); }
 
+  /// Takes the distances of others at the same front.
+  void take(const Heights& others) {
+    length_ = others.length_;
+    cause_ = others.cause_;
+  }
   /// Lowers a distance to this one.
   void lower(Index node, double to, Cause cause);
   /// Lowers distances in gaps: the stacks on both sides leave a part of each gap to the tets between.

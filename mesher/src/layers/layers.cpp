@@ -63,6 +63,7 @@ class LayerMaker {
       const bool done = core.push(reached);
       if (core.cancelled()) return false;
       if (done) return take(reached, core);
+      heights.take(reached);
       for (const Index n : core.failed()) heights.lower(n, 0, Cause::core);
       heights.settle();
     }
@@ -90,9 +91,9 @@ class LayerMaker {
   void describe(const Heights& heights, const TetMesh& made) {
     report_.prisms = made.layers.prisms.size();
     report_.pyramids = made.layers.pyramids.size();
-    report_.tets = static_cast<std::size_t>(std::count_if(made.layers.tet_layer.begin(),
-                                                          made.layers.tet_layer.end(),
-                                                          [](std::uint16_t layer) { return layer > 0; }));
+    report_.tets =
+        static_cast<std::size_t>(std::count_if(made.layers.tet_layer.begin(), made.layers.tet_layer.end(),
+                                               [](std::uint16_t layer) { return layer > 0; }));
     report_.largest_step = heights.largest_step();
     describe_patches(heights);
     describe_reductions(heights);
