@@ -210,7 +210,7 @@ def kind_of(obj):
 
 
 def make(mesh_object, kind, size=0, name=""):
-    """A new size object of a mesh object, in the middle of its part.
+    """Makes a new size object of a mesh object, in the middle of its part.
 
     `kind`: Sphere, Box, Cylinder or Distance; `size`: target edge length, mm; 0: a quarter of the mesh's own.
     """
