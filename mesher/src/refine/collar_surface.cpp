@@ -19,6 +19,8 @@ constexpr double arc_clearance = 0.5;
 constexpr double bent_clearance = 0.1;
 // Least distance of other points on the collar surface from mesh vertices, in radii of their ball.
 constexpr double clearance_in_radii = 1e-3;
+// Edges to the centre that are longer than this, in radii of the ball, are divided where they leave a patch.
+constexpr double divisible_spoke = 1.05;
 // The radius of a ball is at most a third of the gap size.
 constexpr double gap_per_radius = 3;
 
@@ -156,10 +158,12 @@ bool CollarSurface::bends(CollarTriangle& t) const {
     for (unsigned k = 0; k < 3; ++k) {
       const Index i = v[k], j = v[(k + 1) % 3];
       if (mesh_.on_patch(i, patch)) {
-        // The edge to the centre; it is longer than the radius if i is not on the sphere.
+        // The edge to the centre. A point on the sphere divides it only if it is longer than the radius. Otherwise
+        // the new point would be right beside i.
         const Vector spoke = mesh_.point(i) - ball.centre;
+        const bool divisible = norm(spoke) > divisible_spoke * ball.radius;
         for (const double share : {0.4, 0.65}) {
-          if (!far_from_patch(patch, ball.centre + share * spoke)) continue;
+          if (!divisible || !far_from_patch(patch, ball.centre + share * spoke)) continue;
           t.bent_on = patch;
           t.bent_at = ball.centre + share * spoke;
           return true;
