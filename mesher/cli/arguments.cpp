@@ -327,6 +327,17 @@ void check_output_of_surfaces(const MeshArguments& a) {
                                                       report::format_of(a.output, a.output_format)));
 }
 
+/// Rejects layers of prisms for which the output has no place, before anything is meshed.
+void check_output_of_layers(const MeshArguments& a) {
+  const std::vector<std::string> formats = io::formats_with_layers(a.order);
+  if (!a.layers.any() || a.layers.tets || !io::is_tet_mesh_format(a.output, a.output_format) ||
+      is_among(a.output, a.output_format, formats))
+    return;
+  throw CLI::ValidationError(
+      "--layers", fmt::format("'{}' has no place for prisms{}; use {}, or add --layers-tets", a.output,
+                              a.order == 2 ? " of second order" : "", list(formats)));
+}
+
 void check_mesh_arguments(const MeshArguments& a) {
   if (a.inputs.empty()) throw CLI::RequiredError("INPUT, a file to mesh,");
   if (!a.batch.empty()) {
@@ -346,6 +357,7 @@ void check_mesh_arguments(const MeshArguments& a) {
     throw CLI::ValidationError("--output", fmt::format("'{}' {}; use {}", a.output, extension_list(a.output),
                                                        list(io::written_tet_mesh_formats())));
   }
+  check_output_of_layers(a);
   if (a.order == 2 && is_among(a.output, a.output_format, io::formats_of_first_order()))
     throw CLI::ValidationError("--order", fmt::format("{} has no elements of second order; use --order 1",
                                                       report::format_of(a.output, a.output_format)));
@@ -378,6 +390,7 @@ void check_convert_arguments(const MeshArguments& a) {
     throw CLI::ValidationError("--output", fmt::format("'{}' {}; use {}, or name one with --format", a.output,
                                                        extension_list(a.output), known_formats()));
   check_standard_input(a);
+  check_output_of_layers(a);
   check_partitions(a, io::is_tet_mesh_format(a.inputs.front(), a.input_format));
   if (a.output == "-" && files::is_of_several_files(a.output_format))
     throw CLI::ValidationError("--format", "writes several files, so the output cannot be standard output");

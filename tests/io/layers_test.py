@@ -432,6 +432,8 @@ def with_convert(folder):
     for target in ("a.xdmf", "a.pvtu", "a.ele"):
         said = collarmesh("convert", path, "-o", os.path.join(folder, target), code=8)
         expect("prisms and pyramids" in said and not os.path.exists(os.path.join(folder, target)), f"{target}: {said}")
+    said = collarmesh(skin, "-o", os.path.join(folder, "a.pvtu"), "--size", "1", "--layers", "all", code=2)
+    expect("--layers" in said and "no place for prisms" in said, f"a.pvtu: {said}")
     said = collarmesh("convert", second.files[".vtu"], "-o", os.path.join(folder, "second.su2"), code=8)
     expect("pyramids of second order" in said, f"second.su2: {said}")
     said = collarmesh("convert", path, "-o", os.path.join(folder, "a.msh"), "--partitions", "2", code=2)

@@ -1,6 +1,7 @@
 #include "io/abaqus_pyramids.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 namespace collarmesh::io {
