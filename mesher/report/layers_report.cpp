@@ -19,16 +19,16 @@ std::string layers_text(const LayersReport& report) {
   std::string text;
   for (std::size_t k = 0; k < std::min(listed, report.patches.size()); ++k) {
     const LayersReport::Patch& p = report.patches[k];
-    text += fmt::format("  layers: {} covered to {:.1f}%, thickness {:.4g} in the mean, {:.4g} asked for\n", p.name,
-                        percent(p.covered, p.area), p.mean, p.asked);
+    text += fmt::format("  layers: {} covered to {:.1f}%, thickness {:.4g} in the mean, {:.4g} asked for\n",
+                        p.name, percent(p.covered, p.area), p.mean, p.asked);
   }
   if (report.patches.size() > listed)
     text += fmt::format("  ... and {} more faces (--report lists all)\n", report.patches.size() - listed);
   for (const LayersReport::Reduction& r : report.reductions)
     text += fmt::format("  lower at {} nodes, down to {:.0f}% at ({:.6g}, {:.6g}, {:.6g}): {}\n", r.nodes,
                         100 * r.smallest, r.where.x, r.where.y, r.where.z, r.why);
-  text += fmt::format("  {} prisms, {} pyramids and {} tets in layers cover {:.1f}% of the walls\n", report.prisms,
-                      report.pyramids, report.tets, 100 * report.coverage());
+  text += fmt::format("  {} prisms, {} pyramids and {} tets in layers cover {:.1f}% of the walls\n",
+                      report.prisms, report.pyramids, report.tets, 100 * report.coverage());
   return text;
 }
 
@@ -47,12 +47,9 @@ Json layers_json(const LayersReport& report) {
                           {"nodes", r.nodes},
                           {"smallest_share", r.smallest},
                           {"where", {r.where.x, r.where.y, r.where.z}}});
-  return {{"coverage", report.coverage()},
-          {"patches", std::move(patches)},
-          {"reductions", std::move(reductions)},
-          {"prisms", report.prisms},
-          {"pyramids", report.pyramids},
-          {"tets", report.tets},
+  return {{"coverage", report.coverage()},       {"patches", std::move(patches)},
+          {"reductions", std::move(reductions)}, {"prisms", report.prisms},
+          {"pyramids", report.pyramids},         {"tets", report.tets},
           {"largest_step", report.largest_step}};
 }
 

@@ -72,15 +72,16 @@ std::vector<WallLayers> read_walls(const LayerOptions& options);
 void require_known_walls(const LayerOptions& options, const Plc& plc);
 
 /// Puts layers of prisms on walls, on the inner sides of boundaries and on both sides of interfaces and of
-/// facets inside regions. The tets there are pushed inwards and improved; the triangles and edges of the walls
-/// stay. Nodes that also lie on other patches slide along these.
+/// facets inside regions. The tets there are pushed inwards and improved; the triangles and edges of the
+/// walls stay. Nodes that also lie on other patches slide along these.
 ///
 /// Layers are lower where there is little room: in gaps, where prisms would fold, and where tets would miss
-/// their bounds (`improvement.bounds`). Heights of neighbours differ by at most a factor of 2. They are 0 where
-/// no direction leads away from all walls at a node, and where layers end. There, prisms become pyramids and
-/// tets. In second order the edges of walls keep their nodes, and their bulges fade towards the tets.
-/// Precondition: `mesh` comes from `generate` for `plc`. Same mesh and options: same result, with any number of threads. If cancelled, the mesh is as before. Throws OptionError as
-/// `require_known_walls`. Cost: near linear in the tets.
+/// their bounds (`improvement.bounds`). Heights of neighbours differ by at most a factor of 2. They are 0
+/// where no direction leads away from all walls at a node, and where layers end. There, prisms become
+/// pyramids and tets. In second order the edges of walls keep their nodes, and their bulges fade towards the
+/// tets. Precondition: `mesh` comes from `generate` for `plc`. Same mesh and options: same result, with any
+/// number of threads. If cancelled, the mesh is as before. Throws OptionError as `require_known_walls`. Cost:
+/// near linear in the tets.
 LayersReport make_layers(TetMesh& mesh, const Plc& plc, const LayerOptions& options,
                          const ImproveOptions& improvement, const SecondOrderOptions& second_order = {},
                          const Execution& execution = {});

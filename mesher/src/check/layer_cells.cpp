@@ -323,8 +323,8 @@ void check_layer_cells(const TetMesh& mesh, CheckReport& report, std::size_t fin
 
 namespace {
 
-/// The bounds on the angles of tets beside layers. A node that layers pushed away counts as on the features of
-/// its wall.
+/// The bounds on the angles of tets beside layers. A node that layers pushed away counts as on the features
+/// of its wall.
 class CoreAngles {
  public:
   CoreAngles(const TetMesh& mesh, const std::vector<Index>& walls, const Plc& plc, const Bounds& bounds)
@@ -345,8 +345,8 @@ class CoreAngles {
     if (!forced_) return least;
     const auto& p = mesh_.points;
     const std::array<Point, 4> places{p[corners[0]], p[corners[1]], p[corners[2]], p[corners[3]]};
-    return std::min(least, ForcedEdges::smallest_angle(forced_->narrowness(places, corners)) /
-                               bounds_.tets_across());
+    return std::min(
+        least, ForcedEdges::smallest_angle(forced_->narrowness(places, corners)) / bounds_.tets_across());
   }
 
  private:
@@ -431,11 +431,12 @@ void check_core_angles(const TetMesh& mesh, const std::vector<Index>& walls, con
     if (widest <= largest * (1 + slack) && quality.min_dihedral >= bounds.thin_angle) continue;
     const double least = angles.smallest(t);
     if (widest <= largest * (1 + slack) && quality.min_dihedral >= least * (1 - slack)) continue;
-    findings.add(guarantee::core_angles, p[a], {t},
-                 "Tet {} beside the layers at {} has dihedral angles from {:.4g} to {:.4g} degrees and face angles "
-                 "up to {:.4g}; allowed are {:.4g} to {}.",
-                 t, At{p[a]}, quality.min_dihedral, quality.max_dihedral,
-                 largest_face_angle(p[a], p[b], p[c], p[d]), least, largest);
+    findings.add(
+        guarantee::core_angles, p[a], {t},
+        "Tet {} beside the layers at {} has dihedral angles from {:.4g} to {:.4g} degrees and face angles "
+        "up to {:.4g}; allowed are {:.4g} to {}.",
+        t, At{p[a]}, quality.min_dihedral, quality.max_dihedral, largest_face_angle(p[a], p[b], p[c], p[d]),
+        least, largest);
   }
 }
 
@@ -468,9 +469,11 @@ void check_layer_volumes(const std::map<Index, double>& before, const TetMesh& m
   for (const auto& [region, volume] : before) {
     const auto found = now.find(region);
     const double reached = found == now.end() ? 0 : found->second;
-    if (std::fabs(reached - volume) <= (curved ? allowed_where_curved : allowed) * std::fabs(volume)) continue;
+    if (std::fabs(reached - volume) <= (curved ? allowed_where_curved : allowed) * std::fabs(volume))
+      continue;
     findings.add(guarantee::layer_volume, {}, {region},
-                 "The volume of region {} was {:.12g} before the layers and is {:.12g}.", region, volume, reached);
+                 "The volume of region {} was {:.12g} before the layers and is {:.12g}.", region, volume,
+                 reached);
   }
 }
 

@@ -60,7 +60,8 @@ class Curving {
       core.tets.push_back(mesh_.tets[t]);
       core.tet_region.push_back(mesh_.tet_region[t]);
       core.tet_tag.push_back(mesh_.tet_tag[t]);
-      for (unsigned corner = 0; corner < 4; ++corner) sides.push_back(sorted(side_corners(mesh_.tets[t], corner)));
+      for (unsigned corner = 0; corner < 4; ++corner)
+        sides.push_back(sorted(side_corners(mesh_.tets[t], corner)));
     }
     std::sort(sides.begin(), sides.end());
     for (const auto& [a, b, c] : sides)
@@ -173,7 +174,8 @@ class Curving {
       if (!(least_jacobian_at_points(points_of(layers.prisms[c]), points_of(layers.prism_mid_nodes[c])) > 0))
         note(layers.prisms[c], edges_of_prism);
     for (Index c = 0; c < layers.pyramids.size(); ++c)
-      if (!(least_jacobian_at_points(points_of(layers.pyramids[c]), points_of(layers.pyramid_mid_nodes[c])) > 0))
+      if (!(least_jacobian_at_points(points_of(layers.pyramids[c]), points_of(layers.pyramid_mid_nodes[c])) >
+            0))
         note(layers.pyramids[c], edges_of_pyramid);
     for (Index t = 0; t < mesh_.tets.size(); ++t)
       if (!in_core(t) && !jacobian_exceeds(curved_tet(mesh_, t))) note(mesh_.tets[t], edges_of_tet);
@@ -200,9 +202,10 @@ class Curving {
   const SecondOrderOptions& options_;
   const Execution& execution_;
   std::vector<std::array<Index, 6>> core_nodes_;
-  std::unordered_map<std::uint64_t, Index> nodes_;    // by edge key
-  std::unordered_map<std::uint64_t, double> shrunk_;  // shares of bulges that are left, by edge key of the wall
-  std::vector<std::array<Index, 2>> ends_;            // of the edges whose nodes are those of layers
+  std::unordered_map<std::uint64_t, Index> nodes_;  // by edge key
+  std::unordered_map<std::uint64_t, double>
+      shrunk_;                              // shares of bulges that are left, by edge key of the wall
+  std::vector<std::array<Index, 2>> ends_;  // of the edges whose nodes are those of layers
   Index first_node_ = 0, first_of_layers_ = 0;
 };
 

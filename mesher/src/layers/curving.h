@@ -31,14 +31,14 @@ void straighten(TetMesh& mesh);
 /// Where the points of a mesh with layers lie: the point of the wall below them, and the height relative to
 /// all layers there.
 struct PlacesInLayers {
-  std::vector<Index> wall;     ///< itself on walls; none elsewhere
-  std::vector<double> share;   ///< from 0 on walls to 1 beside the core
+  std::vector<Index> wall;      ///< itself on walls; none elsewhere
+  std::vector<double> share;    ///< from 0 on walls to 1 beside the core
   std::vector<bool> is_raised;  ///< by point of a wall: there are layers above it
 };
 
 /// Gives a mesh with layers nodes of second order. Edges of walls keep their bulges, which fade towards the
-/// core. The core gets its nodes as any mesh does, but keeps its tets. Bulges of walls shrink where cells would
-/// fold. Returns false if cancelled.
+/// core. The core gets its nodes as any mesh does, but keeps its tets. Bulges of walls shrink where cells
+/// would fold. Returns false if cancelled.
 bool curve(TetMesh& mesh, const Plc& plc, const Bulges& bulges, const PlacesInLayers& places,
            const SecondOrderOptions& options, const Execution& execution);
 

@@ -53,10 +53,11 @@ std::optional<Vector> DirectionSearch::only_way() const {
       }
     if (steepest == parallel) return std::nullopt;
   }
-  const bool fits = std::all_of(lines_.begin(), lines_.end(),
-                                [&](const Vector& line) { return norm(cross(line, way)) <= nearly_parallel; }) &&
-                    std::all_of(planes_.begin(), planes_.end(),
-                                [&](const Vector& plane) { return std::fabs(dot(plane, way)) <= nearly_parallel; });
+  const bool fits =
+      std::all_of(lines_.begin(), lines_.end(),
+                  [&](const Vector& line) { return norm(cross(line, way)) <= nearly_parallel; }) &&
+      std::all_of(planes_.begin(), planes_.end(),
+                  [&](const Vector& plane) { return std::fabs(dot(plane, way)) <= nearly_parallel; });
   if (!fits) return std::nullopt;
   double sum = 0;
   for (const Vector& n : walls_) sum += dot(n, way);

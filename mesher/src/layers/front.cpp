@@ -223,7 +223,8 @@ void Front::find_direction(Index node, std::span<const Index> sector_faces,
     }
     const auto& [a, b, c] = mesh_.faces[f];
     const Vector n = cross(mesh_.points[b] - mesh_.points[a], mesh_.points[c] - mesh_.points[a]);
-    auto known = std::find_if(patches.begin(), patches.end(), [&](const auto& each) { return each.first == patch; });
+    auto known =
+        std::find_if(patches.begin(), patches.end(), [&](const auto& each) { return each.first == patch; });
     if (known == patches.end()) known = patches.insert(known, {patch, Vector{}});
     known->second = known->second + n;
   }

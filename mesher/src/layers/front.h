@@ -35,9 +35,9 @@ struct WallSide {
   /// Where the layers on the edge from corner i to corner i + 1 go on: at another side, at a face without
   /// layers, or nowhere.
   struct Edge {
-    Index beyond = none;   ///< the other side; none: there is a face without layers, or nothing
-    Index across = none;   ///< the face of the mesh that the layers on the edge meet: at their end, or
-                           ///< between regions; none: there is none
+    Index beyond = none;    ///< the other side; none: there is a face without layers, or nothing
+    Index across = none;    ///< the face of the mesh that the layers on the edge meet: at their end, or
+                            ///< between regions; none: there is none
     bool outwards = false;  ///< that face is oriented away from the tets on this side
     bool blocked = false;   ///< no layers are possible
   };
@@ -62,11 +62,11 @@ class Front {
 
   std::vector<WallSide> sides;
   std::vector<FrontNode> nodes;
-  Lists sides_at;                 ///< by node: sides with it
-  Lists neighbours;               ///< by node: the others of its sides
-  Lists edges_of;                 ///< by node: edges of curves in its sector that are no edges of walls
-  std::vector<bool> on_wall;      ///< by vertex of the mesh: whether it is a corner of a wall's triangle
-  std::vector<Index> node_at;     ///< four by tet: the front's node at each corner; none
+  Lists sides_at;              ///< by node: sides with it
+  Lists neighbours;            ///< by node: the others of its sides
+  Lists edges_of;              ///< by node: edges of curves in its sector that are no edges of walls
+  std::vector<bool> on_wall;   ///< by vertex of the mesh: whether it is a corner of a wall's triangle
+  std::vector<Index> node_at;  ///< four by tet: the front's node at each corner; none
 
   /// Returns the front's node of a sector: that at a corner of a tet.
   Index node_of(Index tet, unsigned corner) const { return node_at[4 * std::size_t{tet} + corner]; }

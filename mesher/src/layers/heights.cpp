@@ -49,7 +49,8 @@ double distance_along(const Point& from, const Vector& way, const std::array<Poi
 std::string text_of(Cause cause) {
   switch (cause) {
     case Cause::ends: return "layers end there, at faces without layers or at facets inside";
-    case Cause::direction: return "the faces there meet so sharply that no steep direction leads away from all";
+    case Cause::direction:
+      return "the faces there meet so sharply that no steep direction leads away from all";
     case Cause::patch: return "a curved face without layers would be left";
     case Cause::gap: return "the gap to the opposite face is narrow";
     case Cause::fold: return "cells would fold, as the surface is curved";

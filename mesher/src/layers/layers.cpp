@@ -21,7 +21,9 @@ namespace layering {
 namespace {
 
 // So often the layers are made again without those at places where it failed.
-constexpr unsigned most_tries = 4;
+constexpr unsigned most_tries = 8, last_levels = 4;
+// Where it fails with heights that hardly change the tets, this share of them is tried, then none.
+constexpr double further_share = 0.25;
 
 class LayerMaker {
  public:
@@ -57,14 +59,20 @@ class LayerMaker {
     heights.fit_gaps();
     heights.fit_bulges(bulges_);
     heights.settle();
+    std::vector<std::uint8_t> levels(heights.size(), 0);
     for (unsigned attempt = 0; attempt < most_tries; ++attempt) {
       Heights reached = heights;
       Core core(mesh_, plc_, front_, reached, improvement_, execution_);
-      const bool done = core.push(reached);
+      const bool done = core.push(reached, levels);
       if (core.cancelled()) return false;
       if (done) return take(reached, core);
-      heights.take(reached);
-      for (const Index n : core.failed()) heights.lower(n, 0, Cause::core);
+      for (const Index n : core.failed()) {
+        const std::uint8_t level = ++levels[n];
+        if (level > Core::strictest + 1 || attempt >= last_levels)
+          heights.lower(n, 0, Cause::core);
+        else if (level > Core::strictest)
+          heights.lower(n, further_share * std::min(heights[n], reached[n]), Cause::core);
+      }
       heights.settle();
     }
     for (Index n = 0; n < heights.size(); ++n) heights.lower(n, 0, Cause::core);
@@ -91,9 +99,9 @@ class LayerMaker {
   void describe(const Heights& heights, const TetMesh& made) {
     report_.prisms = made.layers.prisms.size();
     report_.pyramids = made.layers.pyramids.size();
-    report_.tets = static_cast<std::size_t>(std::count_if(made.layers.tet_layer.begin(),
-                                                          made.layers.tet_layer.end(),
-                                                          [](std::uint16_t layer) { return layer > 0; }));
+    report_.tets =
+        static_cast<std::size_t>(std::count_if(made.layers.tet_layer.begin(), made.layers.tet_layer.end(),
+                                               [](std::uint16_t layer) { return layer > 0; }));
     report_.largest_step = heights.largest_step();
     describe_patches(heights);
     describe_reductions(heights);

@@ -17,8 +17,7 @@ double share_below(const WallLayers& layers, unsigned layer) {
 
 }  // namespace
 
-Stack::Stack(const TetMesh& given, const Front& front, const Heights& heights,
-             const Core& core, bool tets)
+Stack::Stack(const TetMesh& given, const Front& front, const Heights& heights, const Core& core, bool tets)
     : given_(given), front_(front), heights_(heights), core_(core), tets_(tets) {
   for (std::size_t t = 0; t < given.tets.size(); ++t) {
     const Index region = given.tet_region[t];
@@ -146,12 +145,13 @@ void Stack::fill(const WallSide& side) {
     if (raised == 1)
       add_tet({node(a, k - 1), node(b, 0), node(c, 0), node(a, k)}, side, k);
     else if (raised == 2)
-      add_pyramid({node(c, k - 1), node(b, k - 1), node(b, k), node(c, k), node(a, 0)}, is_before(c, b),
-                  side, k);
+      add_pyramid({node(c, k - 1), node(b, k - 1), node(b, k), node(c, k), node(a, 0)}, is_before(c, b), side,
+                  k);
     else if (tets_)
       divide_prism(side, k);
     else
-      add_prism({node(a, k - 1), node(b, k - 1), node(c, k - 1), node(a, k), node(b, k), node(c, k)}, side, k);
+      add_prism({node(a, k - 1), node(b, k - 1), node(c, k - 1), node(a, k), node(b, k), node(c, k)}, side,
+                k);
   }
 }
 
@@ -195,9 +195,9 @@ void Stack::divide_prism(const WallSide& side, unsigned layer) {
     low[i] = node(side.nodes[order[i]], layer - 1);
     high[i] = node(side.nodes[order[i]], layer);
   }
-  for (std::array<Index, 4> tet : {std::array{low[0], low[1], low[2], high[2]},
-                                   std::array{low[0], low[1], high[2], high[1]},
-                                   std::array{low[0], high[0], high[1], high[2]}}) {
+  for (std::array<Index, 4> tet :
+       {std::array{low[0], low[1], low[2], high[2]}, std::array{low[0], low[1], high[2], high[1]},
+        std::array{low[0], high[0], high[1], high[2]}}) {
     if (!even) std::swap(tet[2], tet[3]);
     add_tet(tet, side, layer);
   }

@@ -12,8 +12,7 @@ namespace collarmesh::layering {
 class Stack {
  public:
   /// Keeps all by reference. `given`: the mesh before. `tets`: divides prisms and pyramids.
-  Stack(const TetMesh& given, const Front& front, const Heights& heights, const Core& core,
-        bool tets);
+  Stack(const TetMesh& given, const Front& front, const Heights& heights, const Core& core, bool tets);
 
   TetMesh build();
   /// Where the points of that mesh lie.

@@ -95,7 +95,8 @@ WallChoice::WallChoice(const LayerOptions& options, const Plc& plc)
     : walls_(read_walls(options)), wall_of_(plc.patches.size(), none) {
   const auto put = [&](Index patch, Index wall) {
     if (wall_of_[patch] != none)
-      throw OptionError(fmt::format("layers: face {} gets layers twice; name it once", plc.patches[patch].tag));
+      throw OptionError(
+          fmt::format("layers: face {} gets layers twice; name it once", plc.patches[patch].tag));
     wall_of_[patch] = wall;
   };
   for (Index w = 0; w < walls_.size(); ++w) {
@@ -127,8 +128,6 @@ std::vector<WallLayers> read_walls(const LayerOptions& options) {
   return walls;
 }
 
-void require_known_walls(const LayerOptions& options, const Plc& plc) {
-  layering::WallChoice(options, plc);
-}
+void require_known_walls(const LayerOptions& options, const Plc& plc) { layering::WallChoice(options, plc); }
 
 }  // namespace collarmesh
