@@ -57,6 +57,8 @@ class LayerMaker {
   bool make() {
     Heights heights(front_, mesh_, plc_, walls_);
     heights.fit_gaps();
+    heights.fit_patches(improvement::SmoothSurfaces(plc_, mesh_, *improvement_.bounds.tolerance),
+                        *improvement_.bounds.tolerance);
     heights.fit_bulges(bulges_);
     heights.settle();
     std::vector<std::uint8_t> levels(heights.size(), 0);
