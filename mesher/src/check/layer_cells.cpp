@@ -422,11 +422,16 @@ void check_core_angles(const TetMesh& mesh, const std::vector<Index>& walls, con
   constexpr double largest = 150, slack = 1e-9;
   Findings findings(report, listed);
   const CoreAngles angles(mesh, walls, plc, bounds);
+  report.tets = mesh.tets.size(), report.points = mesh.points.size();
+  report.faces = mesh.faces.size(), report.edges = mesh.edges.size();
+  report.min_dihedral = 180, report.max_dihedral = 0;
   for (Index t = 0; t < mesh.tets.size(); ++t) {
     if (!mesh.layers.tet_layer.empty() && mesh.layers.tet_layer[t] != 0) continue;
     const auto& [a, b, c, d] = mesh.tets[t];
     const auto& p = mesh.points;
     const TetQuality quality = measure(p[a], p[b], p[c], p[d]);
+    report.min_dihedral = std::min(report.min_dihedral, quality.min_dihedral);
+    report.max_dihedral = std::max(report.max_dihedral, quality.max_dihedral);
     const double widest = std::max(quality.max_dihedral, largest_face_angle(p[a], p[b], p[c], p[d]));
     if (widest <= largest * (1 + slack) && quality.min_dihedral >= bounds.thin_angle) continue;
     const double least = angles.smallest(t);
@@ -459,18 +464,15 @@ std::map<Index, double> volumes_with_layers(const TetMesh& mesh) {
   return volumes;
 }
 
-void check_layer_volumes(const std::map<Index, double>& before, const TetMesh& mesh, CheckReport& report) {
+void check_layer_volumes(const std::map<Index, double>& before, const TetMesh& mesh, double allowed,
+                         CheckReport& report) {
   constexpr std::size_t listed = 20;
-  // Relative: rounding in flat regions, and the sag of curved faces along which layers end.
-  constexpr double allowed = 1e-9, allowed_where_curved = 0.01;
   Findings findings(report, listed);
-  const bool curved = !mesh.layers.quads.empty();
   const auto now = volumes_with_layers(mesh);
   for (const auto& [region, volume] : before) {
     const auto found = now.find(region);
     const double reached = found == now.end() ? 0 : found->second;
-    if (std::fabs(reached - volume) <= (curved ? allowed_where_curved : allowed) * std::fabs(volume))
-      continue;
+    if (std::fabs(reached - volume) <= allowed * std::fabs(volume)) continue;
     findings.add(guarantee::layer_volume, {}, {region},
                  "The volume of region {} was {:.12g} before the layers and is {:.12g}.", region, volume,
                  reached);

@@ -33,12 +33,13 @@ void check_layer_cells(const TetMesh& mesh, CheckReport& report, std::size_t fin
 /// Returns the volumes of regions, by index, of straight tets, prisms and pyramids.
 std::map<Index, double> volumes_with_layers(const TetMesh& mesh);
 
-/// Checks that regions have these volumes. Adds findings.
-void check_layer_volumes(const std::map<Index, double>& before, const TetMesh& mesh, CheckReport& report);
+/// Checks that regions have these volumes within this share. Adds findings.
+void check_layer_volumes(const std::map<Index, double>& before, const TetMesh& mesh, double allowed,
+                         CheckReport& report);
 
 /// Checks the angles of the tets beside the layers: dihedral angles from below as of thin tets, dihedral and
-/// face angles by 150 degrees from above. `walls`: by point, the one of the wall below it; none. Adds
-/// findings.
+/// face angles by 150 degrees from above; they and the sizes of the mesh become those of the report. `walls`:
+/// by point, the one of the wall below it; none. Adds findings.
 void check_core_angles(const TetMesh& mesh, const std::vector<Index>& walls, const Plc& plc,
                        const Bounds& bounds, CheckReport& report);
 

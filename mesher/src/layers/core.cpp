@@ -23,10 +23,11 @@ constexpr unsigned most_halvings = 6;
 constexpr double quality_left = 0.2, good_quality = 0.15;
 // While the front moves, tets are improved up to this factor above the bound on angles, at last as far as
 // asked.
-constexpr double above_bound = 1.25;
+constexpr double above_bound = 1.05;
 // So many poor tets are improved by slow means, too.
 constexpr std::size_t most_of_few = 20;
-constexpr unsigned most_advances = 6, most_rounds = 12;
+constexpr unsigned most_advances = 6, most_rounds = 4, most_fittings = 40;
+constexpr double fitting = 0.85;  // by this factor heights are lowered to fit tets
 // Heights count as reached within this share.
 constexpr double precision = 1e-9;
 constexpr std::size_t at_once = 4096;
@@ -156,17 +157,15 @@ void Core::fix_wall() {
   piece_->keep_triangles_of(walls);
 }
 
-bool Core::push(Heights& heights) {
+bool Core::push(Heights& heights, const std::vector<std::uint8_t>& levels) {
   failed_.clear();
+  fit_tets(heights, levels);
   const double enough = above_bound * options_.bounds.thin_angle;
   double share = 0.7;
   bool few = false;  // poor tets are left
+  std::vector<Index> poor;
   for (unsigned round = 0; round < most_rounds; ++round) {
-    for (unsigned k = 0; k < most_advances && !advance(heights); ++k) {
-      improve_tets(enough, few);
-      if (cancelled_) return true;
-    }
-    improve_tets(enough, few);
+    go(heights, enough, few);
     if (cancelled_) return true;
     bool lowered = false, reached = true;
     for (Index n = 0; n < heights.size(); ++n) {
@@ -176,31 +175,90 @@ bool Core::push(Heights& heights) {
       heights.lower(n, reached_[n], Cause::core);
       lowered = true;
     }
-    const std::vector<Index> poor = poor_tets();
+    poor = poor_tets();
     few = poor.size() <= most_of_few;
-    if (poor.size() > poor_at_first_ && round + 1 < most_rounds) {
+    if (poor.size() > poor_at_first_) {
       lowered = lower_at(poor, share, heights) || lowered;
-      share = std::max(0.2, share - 0.1);
+      share = 0.5;
     }
     lowered = heights.settle() || lowered;
-    if (!lowered && reached) {
-      if (poor.size() <= poor_at_first_) {
-        improve_tets(options_.min_dihedral, false);
-        return true;
-      }
-      failed_ = nodes_near(poor, 2);
-      return false;
-    }
+    if (poor.size() > poor_at_first_ + most_left(heights)) break;
+    if (lowered || !reached) continue;
+    if (poor.size() > poor_at_first_) break;
+    improve_tets(options_.min_dihedral, false);
+    return true;
   }
-  // Whatever is not where its height says may have no layers.
+  failed_ = nodes_near(poor, 2);
   for (Index n = 0; n < heights.size(); ++n)
     if (!is_reached(n, heights)) failed_.push_back(n);
-  const std::vector<Index> poor = poor_tets();
-  if (poor.size() > poor_at_first_) {
-    const std::vector<Index> near = nodes_near(poor, 2);
-    failed_.insert(failed_.end(), near.begin(), near.end());
+  std::sort(failed_.begin(), failed_.end());
+  failed_.erase(std::unique(failed_.begin(), failed_.end()), failed_.end());
+  return false;
+}
+
+/// Lowers heights until tets that only move, without any change of their connections, keep a share of their
+/// bounds. What is missing is left to the engine.
+void Core::fit_tets(Heights& heights, const std::vector<std::uint8_t>& levels) {
+  constexpr std::array<double, strictest + 1> shares{0.4, 1.0};
+  const std::vector<Index> near = vertices_near_front(rings_moved);
+  find_around(near);
+  const auto& complex = piece_->complex;
+  std::vector<std::uint8_t> spoilt(complex.size(), 0);
+  for (unsigned pass = 0; pass < most_fittings; ++pass) {
+    const std::vector<Vector> moves = moves_towards(heights, near);
+    parallel_for_ranges(spoilt.size(), at_once, [&](std::size_t begin, std::size_t end) {
+      for (auto t = static_cast<Index>(begin); t < end; ++t) {
+        spoilt[t] = 0;
+        const auto& c = complex[t].corners;
+        double wanted = 0;
+        for (const Index v : c)
+          if (v < node_of_.size() && node_of_[v] != none)
+            wanted = std::max(wanted, shares[std::min(strictest, levels[node_of_[v]])]);
+        if (wanted == 0) continue;
+        improvement::Corners p = corners(t);
+        const double before = margin(p, t);
+        for (unsigned k = 0; k < 4; ++k) p[k] = p[k] + moves[c[k]];
+        spoilt[t] = margin(p, t) < std::min(wanted, before) ? 1 : 0;
+      }
+    });
+    std::vector<Index> at;
+    for (Index t = 0; t < spoilt.size(); ++t)
+      if (spoilt[t] != 0)
+        for (const Index v : complex[t].corners)
+          if (v < node_of_.size() && node_of_[v] != none) at.push_back(node_of_[v]);
+    if (at.empty()) return;
+    std::sort(at.begin(), at.end());
+    at.erase(std::unique(at.begin(), at.end()), at.end());
+    for (const Index n : at)
+      if (heights[n] > 0) heights.lower(n, fitting * heights[n], Cause::core);
+    heights.settle();
   }
-  return failed_.empty();
+}
+
+/// Returns the angles of a tet relative to their bounds: at least 1 if it keeps them.
+double Core::margin(const improvement::Corners& p, Index tet) const {
+  const auto [sharp, blunt] =
+      thin_->squared_margins(improvement::extreme_cosines(p), p, piece_->complex[tet].corners);
+  return blunt < 0 ? -1 : std::sqrt(std::min(sharp, blunt));
+}
+
+/// Moves the front step by step, with improvements in between, as long as it comes forward.
+void Core::go(const Heights& heights, double enough, bool thoroughly) {
+  std::size_t left = heights.size() + 1;
+  for (unsigned k = 0; k < most_advances; ++k) {
+    const bool there = advance(heights);
+    improve_tets(enough, thoroughly);
+    std::size_t missing = 0;
+    for (Index n = 0; n < heights.size(); ++n) missing += is_reached(n, heights) ? 0 : 1;
+    if (there || cancelled_ || missing >= left) return;
+    left = missing;
+  }
+}
+
+/// Returns the number of poor tets up to which it pays to lower heights in place.
+std::size_t Core::most_left(const Heights& heights) const {
+  constexpr std::size_t few_nodes = 20, nodes_per_tet = 40;
+  return few_nodes + heights.size() / nodes_per_tet;
 }
 
 bool Core::is_reached(Index node, const Heights& heights) const {
@@ -211,6 +269,7 @@ bool Core::is_reached(Index node, const Heights& heights) const {
 /// Moves all vertices as far as tets stay good enough. Returns whether the front is where it is to be.
 bool Core::advance(const Heights& heights) {
   const std::vector<Index> near = vertices_near_front(rings_moved);
+  find_around(near);
   const std::vector<Vector> moves = moves_towards(heights, near);
   const std::vector<double> shares = shares_of(moves, near);
   bool all = true;
@@ -257,8 +316,8 @@ std::vector<Vector> Core::moves_towards(const Heights& heights, const std::vecto
   return moves;
 }
 
-/// Lets the vertices near the front follow it: each moves as the mean of those around.
-void Core::spread(std::vector<Vector>& moves, const std::vector<Index>& near) const {
+/// Finds the vertices around each that is free to follow the front.
+void Core::find_around(const std::vector<Index>& near) {
   const auto& complex = piece_->complex;
   std::vector<Index> slot(mesh_.points.size(), none);
   for (Index i = 0; i < near.size(); ++i) slot[near[i]] = i;
@@ -273,19 +332,27 @@ void Core::spread(std::vector<Vector>& moves, const std::vector<Index>& near) co
   }
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-  std::vector<std::size_t> first(near.size() + 1, 0);
-  for (const std::uint64_t pair : pairs) ++first[(pair >> 32U) + 1];
-  for (std::size_t i = 0; i < near.size(); ++i) first[i + 1] += first[i];
+  around_ = {};
+  std::size_t next = 0;
+  for (Index i = 0; i < near.size(); ++i) {
+    for (; next < pairs.size() && pairs[next] >> 32U == i; ++next)
+      around_.entries.push_back(static_cast<Index>(pairs[next] & 0xffffffffU));
+    around_.end_group();
+  }
+}
+
+/// Lets the vertices near the front follow it: each moves as the mean of those around.
+void Core::spread(std::vector<Vector>& moves, const std::vector<Index>& near) const {
   std::vector<Vector> next(near.size());
   for (unsigned sweep = 0; sweep < sweeps; ++sweep) {
     parallel_for_ranges(near.size(), at_once, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
+        const auto around = around_[i];
         next[i] = moves[near[i]];
-        if (first[i] == first[i + 1]) continue;
+        if (around.empty()) continue;
         Vector sum{};
-        for (std::size_t k = first[i]; k < first[i + 1]; ++k)
-          sum = sum + moves[static_cast<Index>(pairs[k] & 0xffffffffU)];
-        next[i] = sum / static_cast<double>(first[i + 1] - first[i]);
+        for (const Index v : around) sum = sum + moves[v];
+        next[i] = sum / static_cast<double>(around.size());
         constrain(near[i], next[i]);
       }
     });

@@ -24,7 +24,11 @@ class Core {
   /// Moves the copies to these heights, as far as tets stay positive, and improves the tets; where that
   /// does not suffice, lowers the heights. Returns false if it fails: then `failed()` are the nodes that had
   /// better have no layers.
-  bool push(Heights& heights);
+  /// `levels`: by node of the front, how strictly its height is limited at first by the tets there, as long
+  /// as they are what they were.
+  bool push(Heights& heights, const std::vector<std::uint8_t>& levels);
+  /// From this level on tets stay within their bounds without any improvement.
+  static constexpr std::uint8_t strictest = 1;
   const std::vector<Index>& failed() const { return failed_; }
   bool cancelled() const { return cancelled_; }
 
@@ -37,11 +41,16 @@ class Core {
   void copy_nodes(const Heights& heights);
   void copy_faces(const Heights& heights);
   void fix_wall();
+  void go(const Heights& heights, double enough, bool thoroughly);
+  std::size_t most_left(const Heights& heights) const;
   bool is_reached(Index node, const Heights& heights) const;
   bool advance(const Heights& heights);
+  void fit_tets(Heights& heights, const std::vector<std::uint8_t>& levels);
   std::vector<Vector> moves_towards(const Heights& heights, const std::vector<Index>& near);
   std::vector<Index> vertices_near_front(unsigned rings) const;
+  void find_around(const std::vector<Index>& near);
   void spread(std::vector<Vector>& moves, const std::vector<Index>& near) const;
+  double margin(const improvement::Corners& p, Index tet) const;
   void constrain(Index vertex, Vector& move) const;
   std::vector<double> shares_of(const std::vector<Vector>& moves, const std::vector<Index>& near) const;
   void improve_tets(double angle, bool thoroughly);
@@ -62,6 +71,7 @@ class Core {
   std::unique_ptr<improvement::Workpiece> piece_;
   std::unique_ptr<improvement::ThinShape> thin_;
   std::size_t poor_at_first_ = 0;
+  Lists around_;  // by vertex near the front: those around it; none for fixed ones
   std::vector<Index> failed_;
   bool cancelled_ = false;
 };

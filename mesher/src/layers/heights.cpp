@@ -149,6 +149,23 @@ void Heights::fit_gaps() {
     if (room[n] < length_[n]) lower(n, room[n], Cause::gap);
 }
 
+void Heights::fit_patches(const improvement::SmoothSurfaces& surfaces, const SurfaceTolerance& tolerance) {
+  constexpr unsigned most_halvings = 3;
+  for (Index n = 0; n < size(); ++n) {
+    const auto& [dimension, patch] = front_.nodes[n].slides_on;
+    if (dimension != 2 || plc_.patches[patch].planar || length_[n] == 0) continue;
+    const double most = tolerance.least_on_patch(patch);
+    double to = length_[n];
+    const auto is_near = [&](double along) {
+      const Point p = place(n, along);
+      return distance(surfaces.nearest(patch, p).point, p) <= most;
+    };
+    for (unsigned k = 0; k < most_halvings && !(is_near(to) && is_near(0.5 * to)); ++k) to *= 0.5;
+    if (!(is_near(to) && is_near(0.5 * to))) to = 0;
+    if (to < length_[n]) lower(n, to, Cause::patch);
+  }
+}
+
 void Heights::fit_bulges(const Bulges& bulges) {
   if (bulges.empty()) return;
   for (const WallSide& side : front_.sides)

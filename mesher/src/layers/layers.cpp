@@ -21,7 +21,9 @@ namespace layering {
 namespace {
 
 // So often the layers are made again without those at places where it failed.
-constexpr unsigned most_tries = 4;
+constexpr unsigned most_tries = 8, last_levels = 4;
+// Where it fails with heights that hardly change the tets, this share of them is tried, then none.
+constexpr double further_share = 0.25;
 
 class LayerMaker {
  public:
@@ -55,16 +57,24 @@ class LayerMaker {
   bool make() {
     Heights heights(front_, mesh_, plc_, walls_);
     heights.fit_gaps();
+    heights.fit_patches(improvement::SmoothSurfaces(plc_, mesh_, *improvement_.bounds.tolerance),
+                        *improvement_.bounds.tolerance);
     heights.fit_bulges(bulges_);
     heights.settle();
+    std::vector<std::uint8_t> levels(heights.size(), 0);
     for (unsigned attempt = 0; attempt < most_tries; ++attempt) {
       Heights reached = heights;
       Core core(mesh_, plc_, front_, reached, improvement_, execution_);
-      const bool done = core.push(reached);
+      const bool done = core.push(reached, levels);
       if (core.cancelled()) return false;
       if (done) return take(reached, core);
-      heights.take(reached);
-      for (const Index n : core.failed()) heights.lower(n, 0, Cause::core);
+      for (const Index n : core.failed()) {
+        const std::uint8_t level = ++levels[n];
+        if (level > Core::strictest + 1 || attempt >= last_levels)
+          heights.lower(n, 0, Cause::core);
+        else if (level > Core::strictest)
+          heights.lower(n, further_share * std::min(heights[n], reached[n]), Cause::core);
+      }
       heights.settle();
     }
     for (Index n = 0; n < heights.size(); ++n) heights.lower(n, 0, Cause::core);

@@ -1,5 +1,8 @@
 #include "pipeline/wall_layers.h"
 
+#include <algorithm>
+#include <set>
+
 #include "check/layer_cells.h"
 
 namespace collarmesh::pipeline {
@@ -16,6 +19,19 @@ ImproveOptions options_of_core(const MeshJob& job) {
   return options;
 }
 
+/// Returns the share of its volume by which layers may change a region: rounding, and, where they end at
+/// curved faces, what the new triangles there cut off.
+double volume_allowance(const MeshJob& job) {
+  constexpr double rounding = 1e-9, cut_off = 0.01;
+  std::set<Tag> walls;
+  for (const LayersReport::Patch& patch : job.made.layers->patches) walls.insert(patch.tag);
+  const auto& patches = job.plc->patches;
+  return std::all_of(patches.begin(), patches.end(),
+                     [&](const Plc::Patch& patch) { return patch.planar || walls.contains(patch.tag); })
+             ? rounding
+             : cut_off;
+}
+
 }  // namespace
 
 void add_layers(MeshJob& job) {
@@ -30,7 +46,7 @@ void add_layers(MeshJob& job) {
   if (job.made.layers->cancelled) job.control.stop();
   checks::check_layer_cells(mesh, job.made.check);
   checks::check_core_angles(mesh, job.made.layers->walls, *job.plc, options.bounds, job.made.check);
-  checks::check_layer_volumes(volumes, mesh, job.made.check);
+  checks::check_layer_volumes(volumes, mesh, volume_allowance(job), job.made.check);
   job.control.stop_if_asked();
 }
 
