@@ -158,8 +158,8 @@ bool CollarSurface::bends(CollarTriangle& t) const {
     for (unsigned k = 0; k < 3; ++k) {
       const Index i = v[k], j = v[(k + 1) % 3];
       if (mesh_.on_patch(i, patch)) {
-        // The edge to the centre. A point on the sphere divides it only if it is longer than the radius. Otherwise
-        // the new point would be right beside i.
+        // The edge to the centre. A point on the sphere divides it only if it is longer than the radius.
+        // Otherwise the new point would be right beside i.
         const Vector spoke = mesh_.point(i) - ball.centre;
         const bool divisible = norm(spoke) > divisible_spoke * ball.radius;
         for (const double share : {0.4, 0.65}) {
