@@ -71,8 +71,9 @@ TEST(IoAbaqus, RefusesBadFiles) {
                  "line 11: element 1 has the node 41");
   expect_refused("a.inp", replaced(inp, "40, 50\n", "40\n"),
                  "line 14: expected an element of 4 nodes, found 3");
-  expect_refused("a.inp", replaced(inp, "C3D4", "C3D8"),
-                 "line 11: elements of type 'c3d8' are not supported");
+  expect_refused("a.inp", replaced(inp, "C3D4", "C3D20"),
+                 "line 11: elements of type 'c3d20' are not supported");
+  expect_refused("a.inp", replaced(inp, "C3D4", "C3D8"), "line 13: element 1 has the node 2, but");
   expect_refused("a.inp", replaced(inp, "7, 10", "1, 10"), "two elements have the number 1");
   expect_refused("a.inp", replaced(inp, "1, 2, 1", "1, 2000000000, 1"), "line 19: the range 1 to 2000000000");
   expect_refused("a.inp", replaced(inp, "Upper, S3", "Lower, S3"),
