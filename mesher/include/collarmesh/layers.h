@@ -80,8 +80,8 @@ void require_known_walls(const LayerOptions& options, const Plc& plc);
 /// where no direction leads away from all walls at a node, and where layers end. There, prisms become
 /// pyramids and tets. In second order the edges of walls keep their nodes, and their bulges fade towards the
 /// tets. Precondition: `mesh` comes from `generate` for `plc`. Same mesh and options: same result, with any
-/// number of threads. If cancelled, the mesh has first order and no layers. Throws OptionError as `require_known_walls`. Cost:
-/// near linear in the tets.
+/// number of threads. If cancelled, the mesh has first order and no layers. Throws OptionError as
+/// `require_known_walls`. Cost: near linear in the tets.
 LayersReport make_layers(TetMesh& mesh, const Plc& plc, const LayerOptions& options,
                          const ImproveOptions& improvement, const SecondOrderOptions& second_order = {},
                          const Execution& execution = {});
