@@ -13,6 +13,9 @@ namespace {
 // onto it. The factor on the distance leaves room for twice the triangles' share of it and some more.
 constexpr double distance_left = 0.75, ratio_left = 0.99, angle_reserve = 0.05;
 
+// Layers are pushed into the tets, which makes angles worse where walls are one tet apart.
+constexpr double reserve_for_layers = 0.2;
+
 // Bound on angles in collars with which refinement ended on all shapes tried. Coarsening and improvement
 // reach smaller bounds.
 constexpr double reached_collar_angle = 130;
@@ -23,11 +26,12 @@ MeshOptions options_of_refinement(const MeshJob& job, NarrowCells narrow_cells) 
   MeshOptions options = job.options.mesh;
   options.time_limit = 0;  // the control has one limit for all stages
   if (job.options.coarsen) options.narrow_cells = narrow_cells;
+  if (job.given.layers.any()) options.bounds.reserve = reserve_for_layers;
   if (!job.exact()) return options;
   options.bounds.tolerance = tolerance_of(*job.plc, options.bounds, 0).scaled(distance_left);
   if (options.profile == Profile::standard)  // the paper's proofs need the given ratio
     options.bounds.radius_edge = std::max(1.0, ratio_left * options.bounds.radius_edge);
-  options.bounds.reserve = angle_reserve;
+  options.bounds.reserve = std::max(angle_reserve, options.bounds.reserve);
   return options;
 }
 
