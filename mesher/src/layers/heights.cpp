@@ -152,8 +152,9 @@ void Heights::fit_gaps() {
 void Heights::fit_patches(const improvement::SmoothSurfaces& surfaces, const SurfaceTolerance& tolerance) {
   constexpr unsigned most_halvings = 3;
   for (Index n = 0; n < size(); ++n) {
-    const auto& [dimension, patch] = front_.nodes[n].slides_on;
-    if (dimension != 2 || plc_.patches[patch].planar || length_[n] == 0) continue;
+    const TetMesh::VertexFeature& slides_on = front_.nodes[n].slides_on;
+    const Index patch = slides_on.feature;
+    if (slides_on.dimension != 2 || plc_.patches[patch].planar || length_[n] == 0) continue;
     const double most = tolerance.least_on_patch(patch);
     double to = length_[n];
     const auto is_near = [&](double along) {
