@@ -316,29 +316,28 @@ std::vector<Vector> Core::moves_towards(const Heights& heights, const std::vecto
   return moves;
 }
 
-/// Finds the vertices around each that is free to follow the front.
+/// Finds the vertices around each that is free to follow the front, once for each tet with both.
 void Core::find_around(const std::vector<Index>& near) {
   const auto& complex = piece_->complex;
   std::vector<Index> slot(mesh_.points.size(), none);
-  for (Index i = 0; i < near.size(); ++i) slot[near[i]] = i;
-  std::vector<std::uint64_t> pairs;
-  for (Index t = 0; t < complex.size(); ++t) {
-    if (!complex[t].alive) continue;
-    const auto& c = complex[t].corners;
-    for (const Index v : c)
-      if (slot[v] != none && !piece_->is_fixed(v))
-        for (const Index w : c)
-          if (w != v) pairs.push_back(std::uint64_t{slot[v]} << 32U | w);
-  }
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-  around_ = {};
-  std::size_t next = 0;
-  for (Index i = 0; i < near.size(); ++i) {
-    for (; next < pairs.size() && pairs[next] >> 32U == i; ++next)
-      around_.entries.push_back(static_cast<Index>(pairs[next] & 0xffffffffU));
-    around_.end_group();
-  }
+  for (Index i = 0; i < near.size(); ++i)
+    if (!piece_->is_fixed(near[i])) slot[near[i]] = i;
+  around_.first.assign(near.size() + 1, 0);
+  const auto for_all = [&](const auto& visit) {
+    for (Index t = 0; t < complex.size(); ++t) {
+      if (!complex[t].alive) continue;
+      for (const Index v : complex[t].corners)
+        if (slot[v] != none) visit(slot[v], v, complex[t].corners);
+    }
+  };
+  for_all([&](Index i, Index, const auto&) { around_.first[i + 1] += 3; });
+  for (Index i = 0; i < near.size(); ++i) around_.first[i + 1] += around_.first[i];
+  around_.entries.resize(around_.first.back());
+  std::vector<Index> next(around_.first.begin(), around_.first.end() - 1);
+  for_all([&](Index i, Index v, const auto& corners) {
+    for (const Index w : corners)
+      if (w != v) around_.entries[next[i]++] = w;
+  });
 }
 
 /// Lets the vertices near the front follow it: each moves as the mean of those around.
