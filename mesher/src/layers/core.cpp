@@ -293,7 +293,7 @@ std::vector<Index> Core::vertices_near_front(unsigned rings) const {
   std::vector<std::uint8_t> ring(mesh_.points.size(), 0);
   for (std::size_t v = given_.points.size(); v < std::min(node_of_.size(), ring.size()); ++v) ring[v] = 1;
   const auto& complex = piece_->complex;
-  for (std::uint8_t r = 1; r <= rings; ++r)
+  for (unsigned r = 1; r <= rings; ++r)
     for (Index t = 0; t < complex.size(); ++t) {
       if (!complex[t].alive) continue;
       const auto& c = complex[t].corners;
