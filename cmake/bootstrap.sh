@@ -95,7 +95,11 @@ build() {
   }
   exec 9>"$build_dir/.lock"
   command -v flock >/dev/null && flock 9
-  [ -f "$build_dir/CMakeCache.txt" ] || ! command -v ninja >/dev/null || generator=(-G Ninja)
+  # A folder that a developer has configured keeps what it has.
+  if [ ! -f "$build_dir/CMakeCache.txt" ]; then
+    set -- -DCOLLARMESH_IN_GROUPS=ON "$@"
+    ! command -v ninja >/dev/null || generator=(-G Ninja)
+  fi
   : >"$log"
   : >"$stamp.begun"
   logged "$log" cmake -S "$root" -B "$build_dir" "${generator[@]}" -DCMAKE_BUILD_TYPE=Release "$@" 9>&- &&

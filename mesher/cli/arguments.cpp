@@ -143,6 +143,12 @@ CLI::App* add_remesh_command(CLI::App& app, RemeshArguments& a) {
       ->required()
       ->expected(1)
       ->type_name("FILE");
+  remesh
+      ->add_option(
+          "--against", a.against,
+          "The input that the mesh was made of, one or several files, which the result then follows: "
+          "on CAD shapes the exact faces")
+      ->type_name("FILE");
   remesh->add_option("-o,--output", a.output, "The mesh to write: " + list(io::written_tet_mesh_formats()))
       ->type_name("FILE");
   add_output_format(*remesh, a.output_format, "");

@@ -53,7 +53,9 @@ struct RepairArguments : MeshArguments {
 };
 
 /// The arguments of `collarmesh remesh MESH -o OUT`.
-struct RemeshArguments : MeshArguments {};
+struct RemeshArguments : MeshArguments {
+  std::vector<std::string> against;  ///< the input that the mesh was made of; empty: the mesh's own surface
+};
 
 using Arguments = std::variant<MeshArguments, CheckArguments, InfoArguments, ConvertArguments,
                                RepairArguments, RemeshArguments>;

@@ -1,10 +1,13 @@
 #include "remesh_command.h"
 
+#include <optional>
 #include <utility>
 
 #include "collarmesh/error.h"
 #include "collarmesh/remesh.h"
+#include "files/complex_input.h"
 #include "files/input_files.h"
+#include "interruptible.h"
 #include "mesh_command.h"
 #include "process/interrupt.h"
 #include "process/out_of_memory.h"
@@ -13,9 +16,23 @@ namespace collarmesh::cli {
 
 namespace {
 
-void adapt(const RemeshArguments& arguments, const Plc& plc, PipelineOptions& options) {
+void adapt(const RemeshArguments& arguments, const files::ComplexInput* input, const Plc& plc,
+           PipelineOptions& options) {
   if (!arguments.size_field_file.empty())
     options.mesh.size_field = read_size_field(arguments.size_field_file, plc);
+  if (input == nullptr || !input->has_cad()) return;
+  options.exact = input->exact_geometry(plc);
+  options.exact_measures = input->exact_measures(plc);
+}
+
+files::ComplexInput read_complex(const RemeshArguments& arguments) {
+  files::InputReading reading;
+  reading.distance = [&](double diagonal) { return distance_of(arguments, diagonal); };
+  reading.tolerance = [&](const Plc& plc) {
+    return tolerance_of(plc, arguments.mesh.bounds, arguments.mesh.size, static_cast<int>(arguments.order));
+  };
+  reading.threads = arguments.mesh.threads;
+  return files::ComplexInput(arguments.against, interruptible(std::move(reading)));
 }
 
 void remesh_file(const RemeshArguments& arguments, Stages& stages, report::MeshRun& run) {
@@ -28,8 +45,14 @@ void remesh_file(const RemeshArguments& arguments, Stages& stages, report::MeshR
     stages.update(report);
     return true;
   };
-  RemeshResult made = remesh(
-      mesh, options, [&](const Plc& plc, PipelineOptions& o) { adapt(arguments, plc, o); }, execution);
+  std::optional<files::ComplexInput> input;
+  if (!arguments.against.empty()) input.emplace(read_complex(arguments));
+  const auto adapted = [&](const Plc& plc, PipelineOptions& o) {
+    adapt(arguments, input ? &*input : nullptr, plc, o);
+  };
+  RemeshResult made =
+      input ? remesh(mesh, input->build(arguments.complex, arguments.repair), options, adapted, execution)
+            : remesh(mesh, options, adapted, execution);
   run.remeshing = made.remeshing;
   static_cast<SoupPipelineResult&>(run) = std::move(made);
   if (run.result.status == MeshStatus::cancelled) process::stop_if_interrupted();

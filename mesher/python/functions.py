@@ -39,6 +39,7 @@ def mesh(
 def remesh(
     mesh: Union[Mesh, Path],
     size: Union[float, SizeField, ArrayLike, None] = None,
+    against: Union[Input, Sequence[Input], None] = None,
     # options of remesh
     progress: Union[bool, Callable[[str, float], Optional[bool]], None] = None,
 ) -> Mesh:
@@ -49,15 +50,19 @@ def remesh(
         `order=2` the result is of second order again.
     size: a length; lengths for each point or each tetrahedron of the mesh, as `sizes_from_errors` returns them; or a size
         field, as `size_field` in `collarmesh.mesh`. None: improve tetrahedra and keep the lengths.
+    against: the input that the mesh was made of, or a list of its surfaces, as in `collarmesh.mesh`. The result follows it
+        in place of the triangles of the mesh, on CAD shapes the exact faces, and is certified against it.
     # options of remesh
     progress: as in `collarmesh.mesh`.
 
     Returns a `Mesh`; its `passed` says whether every guarantee holds. Raises `Error`; ComplexError for tetrahedra that
-    do not fit each other.
+    do not fit each other, or that do not cover `against`.
     """
     options = given(sized(locals()))
+    shape = options.pop("against", None)
+    shapes = [] if shape is None else inputs(shape if isinstance(shape, list) else [shape])
     with watching(progress) as told:
-        return Mesh._of(_core.remesh(options.pop("mesh")._arrays(), options, told))
+        return Mesh._of(_core.remesh(options.pop("mesh")._arrays(), shapes, options, told))
 
 
 def predict(

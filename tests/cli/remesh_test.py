@@ -5,7 +5,7 @@ Run by ctest with COLLARMESH_PROGRAM set; each class is one ctest.
 import json
 import unittest
 
-from program import ProgramTest
+from program import BOX_FACES, ProgramTest, box_points, off_text
 
 
 class Remeshing(ProgramTest):
@@ -43,6 +43,14 @@ class Remeshing(ProgramTest):
         self.assertIn("edges divided", run.stderr)
         self.assertIn("<html", (self.folder / "r.html").read_text())
         self.assertGreater(json.loads((self.folder / "r.json").read_text())["remeshing"]["divided_edges"], 100)
+
+    def test_against_the_input(self):
+        report = self.report("first.vtu", "-o", "next.vtu", "--size", 0.2, "--against", self.box)
+        self.assertTrue(report["guarantees_hold"])
+        self.expect(0, "check", "next.vtu", "--against", self.box)
+        other = self.write("other.off", off_text([[1.5 * c for c in p] for p in box_points()], BOX_FACES))
+        self.expect(4, "remesh", "first.vtu", "-o", "last.vtu", "--against", other, says=["does not cover", "("])
+        self.expect(3, "remesh", "first.vtu", "-o", "last.vtu", "--against", "missing.off", says=["missing.off"])
 
     def test_the_same_bytes(self):
         written = []

@@ -1,11 +1,12 @@
 """Meshes are adapted from Python: sizes of each kind, meshes of Gmsh, sizes from errors."""
 
+import tempfile
 import unittest
 
 import collarmesh
 import numpy
 
-from module_test import box
+from module_test import MODELS, box
 
 CUBE = box((0, 0, 0), (1, 1, 1))
 
@@ -165,6 +166,106 @@ class Errors(unittest.TestCase):
                 collarmesh.sizes_from_errors(self.mesh, wrong, elements=100)
         with self.assertRaises(collarmesh.OptionError):
             collarmesh.estimated_errors(self.mesh, [1, 2])
+
+
+def block_with_wires():
+    """Returns a block with two square holes, each a hundredth of it wide."""
+    def ring(x, y, half):
+        return [(x - half, y - half), (x + half, y - half), (x + half, y + half), (x - half, y + half)]
+    outlines = [ring(0, 0, 1), ring(-0.2, 0, 0.01), ring(0.2, 0, 0.01)]
+    points = [(x, y, z) for outline in outlines for z in (0, 0.5) for x, y in outline]
+    sides = [tuple(first + i for i in ((k, (k + 1) % 4, (k + 1) % 4 + 4, k + 4) if first == 0 else
+                                       (k + 4, (k + 1) % 4 + 4, (k + 1) % 4, k))) for first in (0, 8, 16) for k in range(4)]
+    low = [(3, 2, 1, 0), (8, 9, 10, 11), (16, 17, 18, 19)]
+    high = [(4, 5, 6, 7), (15, 14, 13, 12), (23, 22, 21, 20)]
+    return collarmesh.Complex(points, [*sides, low, high])
+
+
+class PoorMeshes(unittest.TestCase):
+    def test_vertices_of_the_improvement_have_sizes(self):
+        mesh = collarmesh.mesh(block_with_wires(), size=0.4)
+        for size in (None, 0.3):
+            made = [mesh.adapt(size) for _ in range(2)]
+            self.assertTrue(made[0].passed, made[0].findings)
+            self.assertLess(len(made[0].tets), 2500)
+            numpy.testing.assert_array_equal(made[0].points, made[1].points)
+            numpy.testing.assert_array_equal(made[0].tets, made[1].tets)
+
+
+class AgainstTheInput(unittest.TestCase):
+    def on_the_rim(self, mesh):
+        """Returns how far the nodes on the flange's outer cylinder are off its radius of 20."""
+        nodes = numpy.unique(mesh.faces[mesh.face_tag == 3])
+        self.assertGreater(len(nodes), 20)
+        return abs(numpy.hypot(*mesh.points[nodes, :2].T) - 20)
+
+    def test_nodes_lie_on_the_faces_of_a_cad_shape(self):
+        flange = MODELS / "flange.step"
+        first = mesh = collarmesh.mesh(flange, size=6)
+        for size in (3, 8, 4):
+            mesh = mesh.adapt(size, against=flange)
+            self.assertTrue(mesh.passed, mesh.findings)
+            self.assertLess(numpy.quantile(self.on_the_rim(mesh), 0.98), 1e-9)
+            self.assertEqual(set(mesh.face_tag), set(first.face_tag))
+            self.assertEqual(set(mesh.edge_tag), set(first.edge_tag))
+        self.assertTrue(collarmesh.check(mesh, flange, size=4)["passed"])
+        self.assertGreater(self.on_the_rim(first.adapt(3)).max(), 1e-3)
+        curved = mesh.adapt(5, against=[flange], order=2)
+        self.assertTrue(curved.passed, curved.findings)
+        self.assertEqual(curved.order, 2)
+
+    def test_a_complex_and_sizes_by_place(self):
+        mesh = collarmesh.mesh(CUBE, size=0.4)
+        for _ in range(2):
+            mesh = mesh.adapt(0.1 + 0.3 * mesh.points[:, 0], against=CUBE)
+            self.assertTrue(mesh.passed, mesh.findings)
+            self.assertAlmostEqual(sum(volumes(mesh).values()), 1, 12)
+
+    def test_what_does_not_fit_is_told(self):
+        mesh = collarmesh.mesh(CUBE, size=0.4)
+        for wrong in (box((0, 0, 0), (1, 1, 1.2)), box((5, 5, 5), (6, 6, 6)), MODELS / "flange.step"):
+            with self.assertRaisesRegex(collarmesh.ComplexError, "does not cover the shape"):
+                mesh.adapt(0.3, against=wrong)
+        with self.assertRaises(collarmesh.OptionError):
+            mesh.adapt(0.3, against=[])
+
+
+class ResultsOfCalculix(unittest.TestCase):
+    HEAD = "    1C\n    2C                             3                                     1\n -1         1 0.00000E+00 0.00000E+00\n -3\n"
+
+    @staticmethod
+    def block(name, rows, end=" -3\n"):
+        """Returns the text of a field; rows: node and values, six to a line."""
+        text = f"  100CL  101 1.000000000           3                     0    1           1\n -4  {name}        4    1\n"
+        text += " -5  D1          1    2    1    0\n -5  ALL         1    2    0    0    1ALL\n"
+        for node, *values in rows:
+            lines = [values[i:i + 6] for i in range(0, len(values), 6)]
+            for number, line in enumerate(lines):
+                text += (f" -1{node:10}" if number == 0 else " -2" + 10 * " ") + \
+                    "".join(f"{value:12.5E}" for value in line) + "\n"
+        return text + end
+
+    def read(self, text):
+        with tempfile.NamedTemporaryFile("w", suffix=".frd") as file:
+            file.write(text)
+            file.flush()
+            return collarmesh.read_frd(file.name)
+
+    def test_the_last_step_of_each_field(self):
+        wide = [float(i) for i in range(8)]
+        fields = self.read(self.HEAD + self.block("DISP", [(1, 1, 2, 3), (2, 4, 5, 6)]) + self.block("OTHER", [(3, *wide)]) +
+                           self.block("DISP", [(1, -1, 0.5, -3e-5), (3, -7, -8, -9e10)]) + " 9999\n")
+        numpy.testing.assert_array_equal(fields["DISP"], [[-1, 0.5, -3e-5], 3 * [numpy.nan], [-7, -8, -9e10]])
+        numpy.testing.assert_array_equal(fields["OTHER"][2], wide)
+
+    def test_bad_files(self):
+        whole = self.block("DISP", [(1, 1, 2, 3), (2, 4, 5, 6)])
+        for text in ("", "solid cube\n", self.HEAD, self.block("DISP", [(1, 1, 2, 3)], end=""), whole.replace("E+00", "E+xx", 1),
+                     whole.replace(" -1         2", " -1        -2"), self.block("DISP", [(1, 1, 2, 3), (2, 4, 5)])):
+            with self.assertRaises(collarmesh.ReadError):
+                self.read(text)
+        with self.assertRaises(collarmesh.ReadError):
+            collarmesh.read_frd("missing.frd")
 
 
 if __name__ == "__main__":

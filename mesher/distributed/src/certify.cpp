@@ -15,6 +15,7 @@
 #include "check/subject.h"
 #include "collarmesh/curved_tet.h"
 #include "collarmesh/distributed.h"
+#include "common/sorted.h"
 #include "common/split_mix.h"
 #include "local_mesh.h"
 #include "mid_nodes.h"
@@ -123,9 +124,8 @@ struct Expected {
       const Point &a = plc.points[q[0]], &b = plc.points[q[1]], &c = plc.points[q[2]];
       const Vector normal = cross(b - a, c - a);
       for (std::size_t k = 0; k < 3; ++k) {
-        const auto [side, is_new] =
-            sides.try_emplace(checks::sorted(q[k], q[(k + 1) % 3]),
-                              distance(plc.points[q[k]], plc.points[q[(k + 1) % 3]]), normal);
+        const auto [side, is_new] = sides.try_emplace(
+            sorted(q[k], q[(k + 1) % 3]), distance(plc.points[q[k]], plc.points[q[(k + 1) % 3]]), normal);
         if (!is_new) turn += side->second.first * angle(side->second.second, normal);
       }
     }

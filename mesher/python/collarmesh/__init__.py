@@ -35,6 +35,7 @@ from ._errors import estimated_errors, sizes_from_errors
 from ._functions import check, info, mesh, predict, read, remesh, repair
 from ._inputs import Complex, Input, Path, given, inputs, sampled_sizes
 from ._mesh import Mesh
+from ._results import read_frd
 
 __all__ = [
     "BudgetError",
@@ -54,6 +55,7 @@ __all__ = [
     "mesh",
     "predict",
     "read",
+    "read_frd",
     "remesh",
     "repair",
     "sampled_sizes",

@@ -153,7 +153,9 @@ py::dict mesh_of(const py::list& inputs, const py::dict& options, const py::obje
 
 struct RemeshCall {
   TetMesh mesh;
+  Inputs against;
   Options options;
+  std::optional<files::ComplexInput> input;
   RemeshResult run;
 };
 
@@ -163,16 +165,28 @@ void remesh(RemeshCall& call, Watch& watch) {
   options.mesh.time_limit = 0;  // run_watched limits the time of the whole call
   const auto adapt = [&](const Plc& plc, PipelineOptions& adapted) {
     if (SizeField field = size_field_for(plc, call.options)) adapted.mesh.size_field = std::move(field);
+    if (!call.input || !call.input->has_cad()) return;
+    adapted.exact = call.input->exact_geometry(plc);
+    adapted.exact_measures = call.input->exact_measures(plc);
   };
-  call.run = collarmesh::remesh(call.mesh, options, adapt, watch.execution());
+  if (call.against.paths.empty() && call.against.soups.empty()) {
+    call.run = collarmesh::remesh(call.mesh, options, adapt, watch.execution());
+  } else {
+    call.input.emplace(read(call.against, call.options, watch));
+    watch.begin_stage("complex");
+    const Plc plc = call.input->build(call.options.complex, call.options.repair);
+    call.run = collarmesh::remesh(call.mesh, plc, options, adapt, watch.execution());
+  }
   const MeshResult& result = call.run.result;
   if (result.status == MeshStatus::budget_hit) throw BudgetSpent(result.message);
   if (result.status == MeshStatus::cancelled) throw Cancelled(result.message);
 }
 
-py::dict remesh_mesh(const py::dict& mesh, const py::dict& options, const py::object& progress) {
+py::dict remesh_mesh(const py::dict& mesh, const py::list& against, const py::dict& options,
+                     const py::object& progress) {
   const auto call = std::make_shared<RemeshCall>();
   call->mesh = tet_mesh_of(mesh);
+  call->against = inputs_of(against);
   call->options = options_of(options);
   const double time_limit = call->options.mesh.time_limit;
   run_watched([call](Watch& watch) { remesh(*call, watch); }, progress, time_limit);

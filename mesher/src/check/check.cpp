@@ -6,10 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
+#include "check/labelled.h"
 #include "check/layer_cells.h"
 #include "check/subject.h"
+#include "collarmesh/error.h"
 #include "collarmesh/mesher.h"
 #include "common/layer_tets.h"
 #include "common/parallel_for.h"
@@ -165,6 +168,24 @@ void check_tet_mesh(const TetMesh& mesh, const TetMesh* with_layers, const Plc& 
   if (with_layers != nullptr && !report.cancelled) check_core(*with_layers, subject, report);
 }
 
+/// Returns whether a guarantee is about shapes of cells and distances, which other sizes change.
+bool is_of_shapes(const std::string& name) {
+  using namespace guarantee;
+  const std::array<std::string_view, 14> of_shapes{
+      radius_edge,    thin_angles,     collar_dihedral, interior_node, collar_centre,
+      collar_gap,     collar_disjoint, collar_cells,    region_volume, volume_kept,
+      thickness_kept, curve_distance,  patch_distance,  patch_area};
+  return std::find(of_shapes.begin(), of_shapes.end(), name) != of_shapes.end();
+}
+
+[[noreturn]] void refuse_mesh(const Finding& finding) {
+  const std::string message = fmt::format(
+      "The mesh does not cover the shape that it should follow: {} Name the input that it was made of, or "
+      "adapt it without one.",
+      finding.message);
+  throw PlcError(message, {{PlcFault::Kind::intersection, message, finding.ids, finding.where}});
+}
+
 CheckReport check_by_all_threads(const TetMesh& mesh, const Plc& plc, const CheckOptions& options,
                                  const Execution& execution) {
   CheckReport report;
@@ -184,6 +205,33 @@ CheckReport check_by_all_threads(const TetMesh& mesh, const Plc& plc, const Chec
 }
 
 }  // namespace
+
+namespace checks {
+
+TetMesh labelled(const TetMesh& mesh, const Plc& plc, const CheckOptions& options,
+                 const Execution& execution) {
+  CheckReport report;
+  Findings findings(report, 1);
+  const auto refuse_if_any = [&] {
+    for (const Finding& finding : report.findings)
+      if (!is_of_shapes(finding.guarantee)) refuse_mesh(finding);
+  };
+  if (!check_arrays(mesh, findings)) refuse_if_any();
+  const Subject given = make_subject(mesh, plc, options);
+  if (!check_points(given, findings)) refuse_if_any();
+  std::optional<TetMesh> placed = place_by_position(given, report, findings);
+  TetMesh result = placed ? std::move(*placed) : mesh;
+  if (!check_labels(result, plc, findings)) refuse_if_any();
+  Subject subject = make_subject(result, plc, options);
+  judge(subject, report, findings, execution);
+  refuse_if_any();
+  result.features = features_of(subject);
+  result.face_patch = std::move(subject.match.face_patch);
+  result.edge_curve = std::move(subject.match.edge_curve);
+  return result;
+}
+
+}  // namespace checks
 
 CheckReport check(const TetMesh& mesh, const Plc& plc, const CheckOptions& options,
                   const Execution& execution) {

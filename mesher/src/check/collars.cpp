@@ -10,8 +10,8 @@ namespace collarmesh::checks {
 
 namespace {
 
-constexpr double gap_per_radius = 3;  // paper, Procedure 4
-constexpr double slack = 1 - 1e-9;    // relative tolerance of distances
+constexpr double gap_per_radius = 3;         // paper, Procedure 4
+constexpr double distance_slack = 1 - 1e-9;  // relative tolerance of distances
 
 double to_triangle(const Point& p, const std::array<Point, 3>& t) {
   return std::sqrt(squared_distance_to_triangle(p, t[0], t[1], t[2]));
@@ -122,7 +122,7 @@ class CollarCheck {
     const std::array<Point, 3> t{plc_.points[element.points[0]], plc_.points[element.points[1]],
                                  plc_.points[element.points[2]]};
     const double gap = to_triangle(centre(ball), t);
-    if (gap >= gap_per_radius * radius(ball) * slack - subject_.rounding) return;
+    if (gap >= gap_per_radius * radius(ball) * distance_slack - subject_.rounding) return;
     static constexpr const char* kinds[] = {"vertex", "curve", "patch"};
     findings_.add(
         guarantee::collar_gap, centre(ball), {balls_[ball].point},
@@ -142,7 +142,7 @@ class CollarCheck {
   }
 
   void check_overlap(Index a, Index b) {
-    if (distance(centre(a), centre(b)) >= (radius(a) + radius(b)) * slack) return;
+    if (distance(centre(a), centre(b)) >= (radius(a) + radius(b)) * distance_slack) return;
     overlapping_[a].push_back(b);
     overlapping_[b].push_back(a);
     if (of_one_crease(a, b)) return;
@@ -172,7 +172,7 @@ class CollarCheck {
         const Vector to = centre(k) - middle;
         const double height = dot(to, axis);
         const double off = std::sqrt(std::max(0.0, squared_norm(to) - height * height));
-        if (std::hypot(height, off - std::sqrt(squared)) < radius(k) * slack)
+        if (std::hypot(height, off - std::sqrt(squared)) < radius(k) * distance_slack)
           report_circle(a, b, "meet in a circle that a third one reaches");
       }
     }

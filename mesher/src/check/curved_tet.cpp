@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "check/orientation.h"
+#include "common/cell_shapes.h"
 
 namespace collarmesh {
 
 namespace {
 
-constexpr std::array<std::array<unsigned, 2>, 6> ends{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
 constexpr double epsilon = 0x1p-52;
 
 /// A cubic polynomial on a tetrahedron as its blossom, a symmetric form in three points: at(i, j, k) is the
@@ -45,10 +45,10 @@ struct Part {
   Cubic cubic;
   std::array<std::array<double, 4>, 4> corners;
 
-  std::array<unsigned, 2> longest_edge() const {
-    std::array<unsigned, 2> longest = ends[0];
+  EdgePlaces longest_edge() const {
+    EdgePlaces longest = cell_shapes::tet_edges[0];
     double length = 0;
-    for (const auto& [i, j] : ends) {
+    for (const auto& [i, j] : cell_shapes::tet_edges) {
       double squared = 0;
       for (unsigned k = 0; k < 4; ++k)
         squared += (corners[i][k] - corners[j][k]) * (corners[i][k] - corners[j][k]);
@@ -69,7 +69,7 @@ double determinant(const Vector& a, const Vector& b, const Vector& c) { return d
 
 bool is_straight(const CurvedTet& p) {
   for (std::size_t e = 0; e < 6; ++e) {
-    const Point &a = p[ends[e][0]], &b = p[ends[e][1]], &m = p[4 + e];
+    const Point &a = p[cell_shapes::tet_edges[e][0]], &b = p[cell_shapes::tet_edges[e][1]], &m = p[4 + e];
     for (std::size_t axis = 0; axis < 3; ++axis)
       if (std::fabs(m[axis] - 0.5 * (a[axis] + b[axis])) >
           2 * epsilon * std::max(std::fabs(a[axis]), std::fabs(b[axis])))
@@ -86,7 +86,7 @@ Cubic jacobian(const CurvedTet& p, double& error) {
   std::array<std::array<Point, 4>, 4> bezier;
   for (std::size_t i = 0; i < 4; ++i) bezier[i][i] = p[i];
   for (std::size_t e = 0; e < 6; ++e) {
-    const auto [i, j] = ends[e];
+    const auto [i, j] = cell_shapes::tet_edges[e];
     bezier[i][j] = bezier[j][i] = 2 * p[4 + e] - 0.5 * (p[i] + p[j]);
   }
   std::array<std::array<Vector, 4>, 3> d;

@@ -31,7 +31,7 @@ constexpr std::string_view name_of(Kind kind) {
 
 /// A side of a cell, or a listed face or quadrangle. The corners begin with the smallest and go on with the
 /// smaller of its neighbours; the fourth is `none` for a triangle.
-struct Side {
+struct CellSide {
   std::array<Index, 4> corners;
   Index cell;
   Kind kind;
@@ -41,14 +41,14 @@ struct Side {
 };
 
 /// `corners`: counterclockwise as seen from outside.
-Side side_of(std::array<Index, 3> corners, Index cell, Kind kind) {
+CellSide side_of(std::array<Index, 3> corners, Index cell, Kind kind) {
   std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
   const bool turned = corners[1] > corners[2];
   if (turned) std::swap(corners[1], corners[2]);
   return {{corners[0], corners[1], corners[2], none}, cell, kind, turned};
 }
 
-Side side_of(std::array<Index, 4> corners, Index cell, Kind kind) {
+CellSide side_of(std::array<Index, 4> corners, Index cell, Kind kind) {
   std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
   const bool turned = corners[1] > corners[3];
   if (turned) std::swap(corners[1], corners[3]);
@@ -180,7 +180,7 @@ class LayerCheck {
 
   // Sides
 
-  Index region_of(const Side& side) const {
+  Index region_of(const CellSide& side) const {
     switch (side.kind) {
       case Kind::tet: return mesh_.tet_region[side.cell];
       case Kind::prism: return layers_.prism_region[side.cell];
@@ -188,20 +188,20 @@ class LayerCheck {
       default: return none;
     }
   }
-  const std::array<Index, 2>& regions_of(const Side& side) const {
+  const std::array<Index, 2>& regions_of(const CellSide& side) const {
     return side.kind == Kind::face ? mesh_.face_regions[side.cell] : layers_.quad_regions[side.cell];
   }
 
   void check_sides() {
-    const std::vector<Side> sides = all_sides();
+    const std::vector<CellSide> sides = all_sides();
     for (std::size_t first = 0, last = 0; first < sides.size(); first = last) {
       for (last = first; last < sides.size() && sides[last].corners == sides[first].corners;) ++last;
       check_side(&sides[first], &sides[last - 1] + 1);
     }
   }
 
-  std::vector<Side> all_sides() const {
-    std::vector<Side> sides;
+  std::vector<CellSide> all_sides() const {
+    std::vector<CellSide> sides;
     sides.reserve(4 * mesh_.tets.size() + 5 * (layers_.prisms.size() + layers_.pyramids.size()) +
                   mesh_.faces.size() + layers_.quads.size());
     for (Index t = 0; t < mesh_.tets.size(); ++t)
@@ -212,13 +212,13 @@ class LayerCheck {
     for (Index f = 0; f < mesh_.faces.size(); ++f) sides.push_back(side_of(mesh_.faces[f], f, Kind::face));
     for (Index q = 0; q < layers_.quads.size(); ++q)
       sides.push_back(side_of(layers_.quads[q], q, Kind::quad));
-    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+    std::sort(sides.begin(), sides.end(), [](const CellSide& a, const CellSide& b) {
       return std::tie(a.corners, a.kind, a.cell) < std::tie(b.corners, b.kind, b.cell);
     });
     return sides;
   }
 
-  void add_sides_of_prism(Index prism, std::vector<Side>& sides) const {
+  void add_sides_of_prism(Index prism, std::vector<CellSide>& sides) const {
     const auto& [a, b, c, d, e, f] = layers_.prisms[prism];
     for (const std::array<Index, 3>& triangle : {std::array{a, c, b}, std::array{d, e, f}})
       sides.push_back(side_of(triangle, prism, Kind::prism));
@@ -227,7 +227,7 @@ class LayerCheck {
       sides.push_back(side_of(quad, prism, Kind::prism));
   }
 
-  void add_sides_of_pyramid(Index pyramid, std::vector<Side>& sides) const {
+  void add_sides_of_pyramid(Index pyramid, std::vector<CellSide>& sides) const {
     const auto& [a, b, c, d, e] = layers_.pyramids[pyramid];
     for (const std::array<Index, 3>& triangle :
          {std::array{a, b, e}, std::array{b, c, e}, std::array{c, d, e}, std::array{d, a, e}})
@@ -236,8 +236,8 @@ class LayerCheck {
   }
 
   /// Checks the cells and listed faces that have one side in common, cells first.
-  void check_side(const Side* first, const Side* last) {
-    const Side* const cells_end = std::find_if(first, last, [](const Side& s) { return s.listed(); });
+  void check_side(const CellSide* first, const CellSide* last) {
+    const CellSide* const cells_end = std::find_if(first, last, [](const CellSide& s) { return s.listed(); });
     const auto cells = cells_end - first, lists = last - cells_end;
     const Point& where = at(first->corners[0]);
     if (cells == 0 || cells > 2 || (cells == 2 && first[0].turned == first[1].turned)) {
@@ -257,9 +257,9 @@ class LayerCheck {
     if (lists == 1) check_regions(*cells_end, first, cells == 2 ? first + 1 : nullptr);
   }
 
-  void check_regions(const Side& listed, const Side* one, const Side* other) {
-    std::array<Index, 2> wanted{};  // behind and in front of the corners as they are in Side
-    for (const Side* side : {one, other})
+  void check_regions(const CellSide& listed, const CellSide* one, const CellSide* other) {
+    std::array<Index, 2> wanted{};  // behind and in front of the corners as they are in CellSide
+    for (const CellSide* side : {one, other})
       if (side != nullptr) wanted[side->turned ? 1 : 0] = region_of(*side);
     if (listed.turned) std::swap(wanted[0], wanted[1]);
     if (regions_of(listed) == wanted) return;
@@ -356,12 +356,13 @@ class CoreAngles {
 
   /// Finds the sides of the core, with the patches of their walls.
   void find_surface() {
-    std::vector<Side> sides;
+    std::vector<CellSide> sides;
     for (Index t = 0; t < mesh_.tets.size(); ++t)
       if (mesh_.layers.tet_layer.empty() || mesh_.layers.tet_layer[t] == 0)
         for (unsigned corner = 0; corner < 4; ++corner)
           sides.push_back(side_of(side_corners(mesh_.tets[t], corner), t, Kind::tet));
-    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.corners < b.corners; });
+    std::sort(sides.begin(), sides.end(),
+              [](const CellSide& a, const CellSide& b) { return a.corners < b.corners; });
     std::vector<std::pair<std::array<Index, 4>, Index>> patches;
     for (Index f = 0; f < mesh_.faces.size(); ++f)
       patches.emplace_back(side_of(mesh_.faces[f], f, Kind::face).corners, mesh_.face_patch[f]);

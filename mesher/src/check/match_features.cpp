@@ -129,14 +129,14 @@ DisjointSets edge_pieces(const TetMesh& mesh, const std::vector<Index>& vertex_p
 
 // Joins faces between the same regions (and of one tag, if `by_tag`) that share an edge on no curve.
 DisjointSets face_pieces(const TetMesh& mesh, bool by_tag) {
-  struct Side {
+  struct FaceEdge {
     std::array<Index, 2> ends;
     Index face;  // none: an edge on a curve
-    bool operator<(const Side& other) const {
+    bool operator<(const FaceEdge& other) const {
       return ends != other.ends ? ends < other.ends : face < other.face;
     }
   };
-  std::vector<Side> sides;
+  std::vector<FaceEdge> sides;
   for (const auto& e : mesh.edges) sides.push_back({sorted(e[0], e[1]), none});
   for (Index f = 0; f < mesh.faces.size(); ++f)
     for (unsigned i = 0; i < 3; ++i)

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "check/findings.h"
+#include "common/sorted.h"
 
 namespace collarmesh::checks {
 
@@ -23,16 +24,6 @@ using Ends = std::array<Index, 2>;
 using Map = std::unordered_map<Index, Index>;
 
 constexpr double unit_roundoff = std::numeric_limits<double>::epsilon() / 2;
-
-Corners sorted(Corners corners) {
-  std::sort(corners.begin(), corners.end());
-  return corners;
-}
-
-Ends sorted(Ends ends) {
-  std::sort(ends.begin(), ends.end());
-  return ends;
-}
 
 bool is_translation(const TetMesh::Motion& motion) { return motion.rows == TetMesh::Motion().rows; }
 

@@ -37,12 +37,12 @@ bool tell_apart(const Features& features) {
 }
 
 // A triangle of three points that are corners of sides of tets or of listed faces.
-struct Side {
+struct ListedSide {
   Triangle corners;  // sorted
   Index tet;         // none: a listed face
   Index place;       // number of the opposite corner, or of the face
 
-  friend bool operator<(const Side& a, const Side& b) {
+  friend bool operator<(const ListedSide& a, const ListedSide& b) {
     return a.corners != b.corners ? a.corners < b.corners : a.tet < b.tet;
   }
 };
@@ -269,7 +269,7 @@ class Placement {
     for (Index t = 0; t < mesh.tets.size(); ++t)
       for (Index i = 0; i < 4; ++i) sides_.push_back({outward_face(t, i), t, i});
     for (Index f = 0; f < mesh.faces.size(); ++f) sides_.push_back({mesh.faces[f], none, f});
-    for (Side& side : sides_) std::sort(side.corners.begin(), side.corners.end());
+    for (ListedSide& side : sides_) std::sort(side.corners.begin(), side.corners.end());
     std::sort(sides_.begin(), sides_.end());
   }
 
@@ -292,7 +292,7 @@ class Placement {
   void place_tets() {
     const TetMesh& mesh = subject_.mesh;
     DisjointSets parts(mesh.tets.size());
-    for_each_triangle([&](const Side* side, std::size_t count, Index face) {
+    for_each_triangle([&](const ListedSide* side, std::size_t count, Index face) {
       if (count != 2 || face != none) return;
       const Index t = side[0].tet, u = side[1].tet;
       if (mesh.tet_tag[t] != mesh.tet_tag[u] || mesh.tet_region[t] != mesh.tet_region[u]) return;
@@ -336,7 +336,7 @@ class Placement {
 
   void renew_face_regions() {
     mesh_.face_regions.assign(mesh_.faces.size(), {0, 0});
-    for_each_triangle([&](const Side* side, std::size_t count, Index face) {
+    for_each_triangle([&](const ListedSide* side, std::size_t count, Index face) {
       if (face == none) return;
       for (std::size_t i = 0; i < count; ++i) {
         const Triangle own = outward_face(side[i].tet, side[i].place);
@@ -361,7 +361,7 @@ class Placement {
     mesh_.faces.clear();
     mesh_.face_regions.clear();
     mesh_.face_mid_nodes.clear();
-    for_each_triangle([&](const Side* side, std::size_t count, Index face) {
+    for_each_triangle([&](const ListedSide* side, std::size_t count, Index face) {
       if (count != 1 && count != 2) return;
       const Index region = mesh_.tet_region[side[0].tet],
                   other = count == 2 ? mesh_.tet_region[side[1].tet] : 0;
@@ -481,7 +481,7 @@ class Placement {
   Findings& findings_;
   InnerPatches inner_;
   bool tets_known_, lost_tets_, new_faces_, new_edges_;
-  std::vector<Side> sides_;
+  std::vector<ListedSide> sides_;
   TetMesh mesh_;
 };
 

@@ -9,14 +9,14 @@ namespace collarmesh::checks {
 
 namespace {
 
-using Corners = std::array<Point, 3>;
+using CornerPoints = std::array<Point, 3>;
 
-Corners corners_of(const Plc& plc, const Plc::Triangle& t) {
+CornerPoints corners_of(const Plc& plc, const Plc::Triangle& t) {
   return {plc.points[t.points[0]], plc.points[t.points[1]], plc.points[t.points[2]]};
 }
 
-std::vector<Corners> all_corners(const Plc& plc) {
-  std::vector<Corners> corners;
+std::vector<CornerPoints> all_corners(const Plc& plc) {
+  std::vector<CornerPoints> corners;
   for (const Plc::Triangle& t : plc.triangles) corners.push_back(corners_of(plc, t));
   return corners;
 }
@@ -36,7 +36,7 @@ struct Meeting {
 };
 
 // Returns how the segment from p, which is not on the triangle, to q meets the triangle.
-Meeting meet(const Point& p, const Point& q, const Corners& t) {
+Meeting meet(const Point& p, const Point& q, const CornerPoints& t) {
   const int from = exact_orientation(t[0], t[1], t[2], p), to = exact_orientation(t[0], t[1], t[2], q);
   if (from == 0 && to == 0) return {Crossing::at_border, false};  // the segment lies in the triangle's plane
   if (from == to || from == 0) return {Crossing::none, false};
@@ -52,7 +52,7 @@ Meeting meet(const Point& p, const Point& q, const Corners& t) {
 }
 
 // Returns the position along pq, from 0 to 1, of the plane of the triangle.
-double place_of_plane(const Point& p, const Point& q, const Corners& t) {
+double place_of_plane(const Point& p, const Point& q, const CornerPoints& t) {
   const double from = std::fabs(six_volume(t[0], t[1], t[2], p)),
                to = std::fabs(six_volume(t[0], t[1], t[2], q));
   return from + to > 0 ? from / (from + to) : 0;
@@ -76,7 +76,7 @@ Index RegionLocator::region_on_the_way(const Point& p, const Point& target) cons
   bool doubtful = false;
   trees().boxes.for_each_near_segment(p, beyond, [&](Index i) {
     const Plc::Triangle& triangle = plc_.triangles[i];
-    const Corners corners = corners_of(plc_, triangle);
+    const CornerPoints corners = corners_of(plc_, triangle);
     const Meeting meeting = meet(p, beyond, corners);
     if (meeting.crossing == Crossing::none) return;
     doubtful = doubtful || meeting.crossing == Crossing::at_border;
@@ -96,7 +96,7 @@ Index RegionLocator::region_at(const Point& p) const {
                                           {0.7254, 0.1631, 0.1115},
                                           {0.0912, 0.1377, 0.7711}}};
   const auto towards = [&](Index t) {
-    const Corners c = corners_of(plc_, plc_.triangles[t]);
+    const CornerPoints c = corners_of(plc_, plc_.triangles[t]);
     if (exact_orientation(c[0], c[1], c[2], p) == 0) return none;
     for (const Vector& weights : places)
       if (const Index region = region_on_the_way(p, weights.x * c[0] + weights.y * c[1] + weights.z * c[2]);

@@ -4,9 +4,12 @@
 #include "check/predicates.h"
 #include "check/subject.h"
 #include "collarmesh/curved_tet.h"
+#include "common/cell_shapes.h"
 #include "common/distance_tree.h"
 
 namespace collarmesh::checks {
+
+using cell_shapes::tet_edges;
 
 namespace {
 
@@ -18,16 +21,13 @@ struct MidNode {
   int dimension;
 };
 
-// The ends of the edges of a tet; the first three are also the edges of a triangle.
-constexpr std::array<std::array<std::size_t, 2>, 6> ends{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
-
 std::vector<MidNode> mid_nodes_of_tets(const TetMesh& mesh) {
   std::vector<MidNode> nodes;
   nodes.reserve(6 * mesh.tets.size() + 3 * mesh.faces.size() + mesh.edges.size());
   for (Index t = 0; t < mesh.tets.size(); ++t)
     for (std::size_t k = 0; k < 6; ++k)
-      nodes.push_back(
-          {sorted(mesh.tets[t][ends[k][0]], mesh.tets[t][ends[k][1]]), mesh.tet_mid_nodes[t][k], t, 3});
+      nodes.push_back({sorted(mesh.tets[t][tet_edges[k][0]], mesh.tets[t][tet_edges[k][1]]),
+                       mesh.tet_mid_nodes[t][k], t, 3});
   return nodes;
 }
 
@@ -35,8 +35,8 @@ std::vector<MidNode> mid_nodes(const TetMesh& mesh) {
   std::vector<MidNode> nodes = mid_nodes_of_tets(mesh);
   for (Index f = 0; f < mesh.faces.size(); ++f)
     for (std::size_t k = 0; k < 3; ++k)
-      nodes.push_back(
-          {sorted(mesh.faces[f][ends[k][0]], mesh.faces[f][ends[k][1]]), mesh.face_mid_nodes[f][k], f, 2});
+      nodes.push_back({sorted(mesh.faces[f][tet_edges[k][0]], mesh.faces[f][tet_edges[k][1]]),
+                       mesh.face_mid_nodes[f][k], f, 2});
   for (Index e = 0; e < mesh.edges.size(); ++e)
     nodes.push_back({sorted(mesh.edges[e][0], mesh.edges[e][1]), mesh.edge_mid_nodes[e], e, 1});
   return nodes;

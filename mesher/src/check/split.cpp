@@ -12,6 +12,7 @@
 
 #include "check/findings.h"
 #include "common/disjoint_sets.h"
+#include "common/sorted.h"
 #include "common/tet_sides.h"
 
 namespace collarmesh::checks {
@@ -21,11 +22,6 @@ namespace {
 using Corners = std::array<Index, 3>;
 
 constexpr double rounding = 1e-10;  // relative tolerance of sums that are added in another order
-
-Corners sorted(Corners corners) {
-  std::sort(corners.begin(), corners.end());
-  return corners;
-}
 
 /// Returns for each node the smallest node at the same place.
 std::vector<Index> places_of(const std::vector<Point>& points) {
@@ -40,7 +36,7 @@ std::vector<Index> places_of(const std::vector<Point>& points) {
 }
 
 /// A side of a tet; its corners by place and by number.
-struct Side {
+struct PlacedSide {
   Corners place, corners;
   Index tet = none;
 };
@@ -67,7 +63,7 @@ class SplitCheck {
  private:
   bool is_side(Index face) const { return other_side_.contains(mesh_.face_tag[face]); }
   Corners placed(const Corners& corners) const {
-    return sorted({places_[corners[0]], places_[corners[1]], places_[corners[2]]});
+    return sorted(Corners{places_[corners[0]], places_[corners[1]], places_[corners[2]]});
   }
   const Point& at(Index node) const { return mesh_.points[node]; }
 
@@ -81,7 +77,7 @@ class SplitCheck {
         sides_.push_back({placed(corners), corners, t});
       }
     }
-    std::sort(sides_.begin(), sides_.end(), [](const Side& a, const Side& b) {
+    std::sort(sides_.begin(), sides_.end(), [](const PlacedSide& a, const PlacedSide& b) {
       return std::tie(a.place, a.tet) < std::tie(b.place, b.tet);
     });
   }
@@ -118,7 +114,7 @@ class SplitCheck {
             pair[0], At{at(place[0])});
     }
     for (std::size_t k = 1; k < sides_.size(); ++k) {
-      const Side &a = sides_[k - 1], &b = sides_[k];
+      const PlacedSide &a = sides_[k - 1], &b = sides_[k];
       if (a.place != b.place) continue;
       const bool apart = sorted(a.corners) != sorted(b.corners);
       if (apart != faces.contains(a.place))
@@ -165,7 +161,7 @@ class SplitCheck {
     };
     DisjointSets together(all.size()), touching(all.size());
     for (std::size_t k = 1; k < sides_.size(); ++k) {
-      const Side &a = sides_[k - 1], &b = sides_[k];
+      const PlacedSide &a = sides_[k - 1], &b = sides_[k];
       if (a.place != b.place) continue;
       for (const Index v : a.corners)
         for (const Index w : b.corners) {
@@ -188,7 +184,7 @@ class SplitCheck {
   std::vector<Index> places_;
   std::vector<bool> shared_;  // nodes that share their place with another node
   std::map<Tag, Tag> other_side_;
-  std::vector<Side> sides_;
+  std::vector<PlacedSide> sides_;
 };
 
 /// Returns the areas of patches, by index, leaving out faces with some tags.

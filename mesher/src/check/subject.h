@@ -12,6 +12,7 @@
 #include "check/guarantees.h"
 #include "check/region_locator.h"
 #include "collarmesh/check.h"
+#include "common/sorted.h"
 #include "tolerance/forced_edges.h"
 #include "tolerance/narrow_places.h"
 
@@ -116,8 +117,6 @@ class Grouping {
   std::vector<std::size_t> first_;
   std::vector<Index> items_;
 };
-
-inline std::array<Index, 2> sorted(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
 
 inline double area(const Point& a, const Point& b, const Point& c) { return 0.5 * norm(cross(b - a, c - a)); }
 

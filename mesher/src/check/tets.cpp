@@ -10,12 +10,12 @@ namespace collarmesh::checks {
 
 namespace {
 
-constexpr double slack = 1 + 1e-9;  // relative tolerance of the bounds on shape
+constexpr double shape_slack = 1 + 1e-9;  // relative tolerance of the bounds on shape
 // Number of tets that a thread measures at once, and number of tets measured before findings and sums are
 // made of them (4 MB).
 constexpr std::size_t measured_at_once = 4096, in_a_batch = 1 << 17;
 
-struct Corners {
+struct CornersOfTet {
   const Point &a, &b, &c, &d;
   Point centre() const { return 0.25 * ((a + b) + (c + d)); }
 };
@@ -26,13 +26,13 @@ void note_angles(const TetQuality& quality, CheckReport& report) {
   report.max_dihedral = std::max(report.max_dihedral, quality.max_dihedral);
 }
 
-void check_shape(Index tet, const Corners& p, const TetQuality& quality, const Subject& subject,
+void check_shape(Index tet, const CornersOfTet& p, const TetQuality& quality, const Subject& subject,
                  const ThinCells& thin, CheckReport& report, Findings& findings) {
   const CheckOptions& options = subject.options;
   if (subject.collar[tet] != 0) {
     ++report.collar_tets;
     report.max_collar_dihedral = std::max(report.max_collar_dihedral, quality.max_dihedral);
-    if (quality.max_dihedral > options.bounds.collar_angle * slack)
+    if (quality.max_dihedral > options.bounds.collar_angle * shape_slack)
       findings.add(
           guarantee::collar_dihedral, p.centre(), {tet},
           "Tet {} of a collar at {} has a dihedral angle of {:.6g} degrees, allowed are {:.6g}; a smaller "
@@ -44,7 +44,7 @@ void check_shape(Index tet, const Corners& p, const TetQuality& quality, const S
     report.min_dihedral = std::min(report.min_dihedral, quality.min_dihedral);
     report.max_dihedral = std::max(report.max_dihedral, quality.max_dihedral);
   }
-  const bool within = quality.radius_edge <= options.bounds.radius_edge * slack;
+  const bool within = quality.radius_edge <= options.bounds.radius_edge * shape_slack;
   if (!within && thin.claimed(tet)) {
     if (subject.collar[tet] == 0) {
       ++report.thin_tets;
@@ -83,7 +83,7 @@ void check_shape(Index tet, const Corners& p, const TetQuality& quality, const S
         tet, At{p.centre()}, quality.radius_edge, options.bounds.radius_edge);
 }
 
-void check_region_tag(Index tet, const Corners& p, const Subject& subject, Findings& findings) {
+void check_region_tag(Index tet, const CornersOfTet& p, const Subject& subject, Findings& findings) {
   const Index region = subject.mesh.tet_region[tet];
   const Tag tag = subject.mesh.tet_tag[tet], expected = subject.plc.regions[region].tag;
   // Some formats store only the region, which is then read as the tag, too.
@@ -100,14 +100,14 @@ void check_tets(const Subject& subject, CheckReport& report, Findings& findings)
   const TetMesh& mesh = subject.mesh;
   std::vector<long double> volumes(subject.plc.regions.size(), 0);
   const ThinCells thin(subject);
-  const auto corners = [&mesh](std::size_t tet) -> Corners {
+  const auto corners = [&mesh](std::size_t tet) -> CornersOfTet {
     const auto& t = mesh.tets[tet];
     return {mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]};
   };
   const auto see = [&](Index tet, const TetQuality& quality) {
-    const Corners p = corners(tet);
+    const CornersOfTet p = corners(tet);
     const bool is_thin =
-        thin.claimed(tet) && quality.radius_edge > subject.options.bounds.radius_edge * slack;
+        thin.claimed(tet) && quality.radius_edge > subject.options.bounds.radius_edge * shape_slack;
     if (tet < subject.first_part) {
       report.measures.add(tet, quality, mesh.tet_region[tet],
                           subject.collar[tet] != 0 ? MeshMeasures::Kind::collar

@@ -9,7 +9,7 @@ namespace collarmesh::checks {
 
 namespace {
 
-constexpr double slack = 1e-9;  // relative tolerance
+constexpr double thin_slack = 1e-9;  // relative tolerance
 // Two sides of a patch face opposite ways if the cosine between the mesh's normals is below this: within some
 // 25 degrees of opposite.
 constexpr double least_cosine_of_sides = -0.9;
@@ -94,13 +94,14 @@ double ThinCells::smallest_angle_at(const std::array<Index, 4>& tet) const {
 }
 
 bool ThinCells::are_bounded(const TetQuality& quality, double face_angle, Index tet) const {
-  if (!(quality.max_dihedral <= largest_angle * (1 + slack) && face_angle <= largest_angle * (1 + slack)))
+  if (!(quality.max_dihedral <= largest_angle * (1 + thin_slack) &&
+        face_angle <= largest_angle * (1 + thin_slack)))
     return false;
-  return !is_forced(quality, tet) || quality.min_dihedral >= forced_angle(tet) * (1 - slack);
+  return !is_forced(quality, tet) || quality.min_dihedral >= forced_angle(tet) * (1 - thin_slack);
 }
 
 bool ThinCells::is_forced(const TetQuality& quality, Index tet) const {
-  return quality.min_dihedral < smallest_angle_at(mesh_.tets[tet]) * (1 - slack);
+  return quality.min_dihedral < smallest_angle_at(mesh_.tets[tet]) * (1 - thin_slack);
 }
 
 }  // namespace collarmesh::checks

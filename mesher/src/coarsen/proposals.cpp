@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/contains.h"
+
 namespace collarmesh::coarsening {
 
 using improvement::Change;
@@ -29,8 +31,6 @@ std::array<std::array<unsigned, 2>, 6> longest_first(const improvement::Corners&
   std::transform(edges.begin(), edges.end(), sorted.begin(), [](const Edge& e) { return e.ends; });
   return sorted;
 }
-
-bool contains(const auto& range, Index v) { return std::find(range.begin(), range.end(), v) != range.end(); }
 
 }  // namespace
 

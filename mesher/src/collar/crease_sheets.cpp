@@ -2,13 +2,9 @@
 
 #include <algorithm>
 
+#include "common/sorted.h"
+
 namespace collarmesh {
-
-namespace {
-
-std::array<Index, 2> sorted(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
-
-}  // namespace
 
 CreaseSheets::CreaseSheets(const Plc& plc, std::span<const Point> points, std::span<const Index> vertices,
                            const std::vector<bool>& is_crease_curve)

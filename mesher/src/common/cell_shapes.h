@@ -25,6 +25,8 @@ struct SidePlaces {
 
 namespace cell_shapes {
 inline constexpr std::array<EdgePlaces, 6> tet_edges{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
+/// The edges of a tet with the lower corner first, in the order of the corners.
+inline constexpr std::array<EdgePlaces, 6> corner_pairs{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
 inline constexpr std::array<EdgePlaces, 9> prism_edges{
     {{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}}};
 inline constexpr std::array<EdgePlaces, 8> pyramid_edges{

@@ -1,6 +1,8 @@
 // Inserts a vertex inside a region, into a cavity that grows around a tet.
 #include <algorithm>
 
+#include "common/cell_shapes.h"
+#include "common/contains.h"
 #include "improve/operations.h"
 
 namespace collarmesh::improvement {
@@ -8,16 +10,12 @@ namespace collarmesh::improvement {
 namespace {
 
 constexpr std::size_t most_tets = 24;
-constexpr std::array<std::array<unsigned, 2>, 6> edges_of_tet{
-    {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
-
-bool has(const auto& range, Index v) { return std::find(range.begin(), range.end(), v) != range.end(); }
 
 }  // namespace
 
 void Operations::insert_in_cavity(Index tet, double least, Change& change) {
   grow_and_insert({tet}, least, change);
-  for (const auto& [i, j] : edges_of_tet) {
+  for (const auto& [i, j] : cell_shapes::corner_pairs) {
     const Index a = complex_[tet].corners[i], b = complex_[tet].corners[j];
     if (complex_.on_faces(a, b) || complex_.on_curve(a, b)) continue;
     complex_.ring(tet, a, b, ring_);
@@ -58,7 +56,7 @@ bool Operations::find_cone_of_cavity(const std::vector<Index>& cavity) {
     const auto& tet = complex_[t];
     if (untouchable(tet)) return false;
     for (unsigned corner = 0; corner < 4; ++corner) {
-      if (tet.neighbours[corner] == none || !has(cavity, tet.neighbours[corner])) {
+      if (tet.neighbours[corner] == none || !contains(cavity, tet.neighbours[corner])) {
         cone_.hull.push_back(side_corners(tet.corners, corner));
         cone_.hull_tet.push_back(t);
       } else if (tet.faces[corner] != none) {
@@ -68,15 +66,16 @@ bool Operations::find_cone_of_cavity(const std::vector<Index>& cavity) {
   }
   const auto on_hull = [&](Index a, Index b) {
     return std::any_of(cone_.hull.begin(), cone_.hull.end(),
-                       [&](const auto& face) { return has(face, a) && has(face, b); });
+                       [&](const auto& face) { return contains(face, a) && contains(face, b); });
   };
   return std::all_of(cavity.begin(), cavity.end(), [&](Index t) {
     const auto& v = complex_[t].corners;
     return std::all_of(v.begin(), v.end(), [&](Index w) { return on_hull(w, w); }) &&
-           std::all_of(edges_of_tet.begin(), edges_of_tet.end(), [&](const auto& edge) {
-             const Index a = v[edge[0]], b = v[edge[1]];
-             return !complex_.on_curve(a, b) || on_hull(a, b);
-           });
+           std::all_of(cell_shapes::corner_pairs.begin(), cell_shapes::corner_pairs.end(),
+                       [&](const auto& edge) {
+                         const Index a = v[edge[0]], b = v[edge[1]];
+                         return !complex_.on_curve(a, b) || on_hull(a, b);
+                       });
   });
 }
 
@@ -102,7 +101,7 @@ Index Operations::beyond_worst_of_hull(const Point& apex) const {
   }
   const auto& tet = complex_[cone_.hull_tet[at]];
   for (unsigned corner = 0; corner < 4; ++corner)
-    if (!has(cone_.hull[at], tet.corners[corner]))
+    if (!contains(cone_.hull[at], tet.corners[corner]))
       return tet.faces[corner] == none ? tet.neighbours[corner] : none;
   return none;
 }

@@ -5,18 +5,19 @@
 
 #include "collarmesh/plc_builder.h"
 #include "common/parallel_for.h"
+#include "common/sorted.h"
 
 namespace collarmesh::improvement {
 
 namespace {
 
 // The same value as in `thin_shape.cpp`.
-constexpr double least_cosine_of_sides = -0.92;
+constexpr double least_cosine_of_forced = -0.92;
 // Narrow places must be narrower than the certificate's by this factor, because vertices move afterwards. If
 // they will move onto exact geometry, the reserve is subtracted, too.
 constexpr double narrower = 0.98;
 constexpr std::uint8_t star = 1, book = 2;
-constexpr std::size_t tets_at_once = 4096;
+constexpr std::size_t cells_at_once = 4096;
 
 double signed_square_of_cosine(double degrees) {
   return signed_square(std::cos(degrees * std::numbers::pi / 180));
@@ -26,7 +27,7 @@ std::optional<NarrowPlaces> narrow_places(const Plc& plc, const TetMesh& mesh, c
   if (!bounds.thin_in_narrow_places_only || mesh.features.size() != mesh.points.size()) return std::nullopt;
   return NarrowPlaces(
       plc, mesh.features,
-      ForcedEdges(plc, mesh.features, mesh.points, mesh.faces, mesh.face_patch, least_cosine_of_sides),
+      ForcedEdges(plc, mesh.features, mesh.points, mesh.faces, mesh.face_patch, least_cosine_of_forced),
       bounds.crease_angle, narrower / (bounds.radius_edge * (1 + bounds.reserve)));
 }
 
@@ -57,8 +58,6 @@ class CreaseEdges {
   }
 
  private:
-  static std::array<Index, 2> sorted(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
-
   std::vector<std::pair<std::array<Index, 2>, Tag>> edges_;  // ends of the edge and tag of the curve, sorted
 };
 
@@ -108,7 +107,7 @@ void mark_collar_cells(TetMesh& mesh, const Plc& plc, double crease_angle) {
   mesh.tet_crease.assign(mesh.tets.size(), 0);
   if (!creases.any()) return;
   const CreaseEdges edges(mesh, creases);
-  parallel_for_ranges(mesh.tets.size(), tets_at_once, [&](std::size_t first, std::size_t last) {
+  parallel_for_ranges(mesh.tets.size(), cells_at_once, [&](std::size_t first, std::size_t last) {
     for (std::size_t t = first; t < last; ++t) {
       const auto& corners = mesh.tets[t];
       const auto on_crease =

@@ -5,27 +5,27 @@
 #include <tuple>
 #include <utility>
 
+#include "common/cell_shapes.h"
+#include "common/contains.h"
+
 namespace collarmesh::improvement {
 
 namespace {
 
-constexpr std::array<std::array<unsigned, 2>, 6> edges{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
 // The lowest quality of tets that first steps may make.
-constexpr double least_quality = 0.02;
-constexpr unsigned most_steps = 30;
+constexpr double least_quality_on_way = 0.02;
+constexpr unsigned most_detours = 30;
 // Number of operations that are tried before the first detour is taken, and its increase with each detour
 // taken.
 constexpr std::size_t first_trials = 2000, trials_per_detour = 200;
-constexpr double least_gain = 1e-3, rounding = 1e-9;
-
-bool contains(const auto& range, Index x) { return std::find(range.begin(), range.end(), x) != range.end(); }
+constexpr double least_detour_gain = 1e-3, rounding = 1e-9;
 
 // Compares two sorted lists from the worst entry up. Returns whether the first differing entry is larger in
 // `now`; a missing entry counts as good.
 bool is_better(const std::vector<double>& now, const std::vector<double>& before, double wanted) {
   for (std::size_t i = 0; i < std::max(before.size(), now.size()); ++i) {
     const double was = i < before.size() ? before[i] : wanted, is = i < now.size() ? now[i] : wanted;
-    if (is > was * (1 + least_gain)) return true;
+    if (is > was * (1 + least_detour_gain)) return true;
     if (std::fabs(is - was) > rounding * std::fabs(was)) return false;
   }
   return false;
@@ -105,7 +105,7 @@ bool Detours::help(Index tet, Effort effort) {
   FirstStep step{};
   for (const Index place : places(tet, effort)) {
     const bool may_change_vertices = place == tet || remedies_.may_change_vertices(place);
-    for (unsigned edge = 0; edge < edges.size(); ++edge)
+    for (unsigned edge = 0; edge < cell_shapes::corner_pairs.size(); ++edge)
       for (const Operation operation : {Operation::contraction, Operation::contraction_turned,
                                         Operation::insertion, Operation::removal}) {
         if (operation != Operation::removal && !may_change_vertices) continue;
@@ -154,14 +154,18 @@ std::vector<Index> Detours::places(Index tet, Effort effort) const {
 
 Change Detours::first_step(const FirstStep& step) {
   const auto& corners = complex()[step.tet].corners;
-  const auto [i, j] = edges[step.edge];
+  const auto [i, j] = cell_shapes::corner_pairs[step.edge];
   const Index a = corners[i], b = corners[j];
   Change change;
   switch (step.operation) {
-    case Operation::contraction: operations_.contract_edge_anyhow(a, b, least_quality, change); break;
-    case Operation::contraction_turned: operations_.contract_edge_anyhow(b, a, least_quality, change); break;
-    case Operation::insertion: operations_.split_edge_anyhow(a, b, least_quality, change); break;
-    case Operation::removal: operations_.remove_edge_anyhow(step.tet, i, j, least_quality, change); break;
+    case Operation::contraction: operations_.contract_edge_anyhow(a, b, least_quality_on_way, change); break;
+    case Operation::contraction_turned:
+      operations_.contract_edge_anyhow(b, a, least_quality_on_way, change);
+      break;
+    case Operation::insertion: operations_.split_edge_anyhow(a, b, least_quality_on_way, change); break;
+    case Operation::removal:
+      operations_.remove_edge_anyhow(step.tet, i, j, least_quality_on_way, change);
+      break;
   }
   return change;
 }
@@ -199,7 +203,7 @@ void Detours::apply(Change change) {
 
 void Detours::improve_changed() {
   const auto key = [this](Index t) { return std::pair(remedies_.poor_quality(t), t); };
-  for (unsigned step = 0; step < most_steps && !to_improve_.empty(); ++step) {
+  for (unsigned step = 0; step < most_detours && !to_improve_.empty(); ++step) {
     const auto worst = std::ranges::min_element(to_improve_, {}, key);
     const Index tet = *worst;
     if (remedies_.poor_quality(tet) == INFINITY) return;

@@ -13,7 +13,7 @@ namespace collarmesh::improvement {
 namespace {
 
 constexpr double much_longer = 1.5;
-constexpr double least = 1e-4;  // the least quality of new tets
+constexpr double least_divided = 1e-4;  // the least_divided quality of new tets
 
 /// Returns the tet's longest edge on a curve if the tet has much shorter edges, else nothing.
 std::optional<std::array<Index, 2>> edge_to_divide(const TetComplex& complex, Index tet) {
@@ -50,7 +50,7 @@ std::size_t divide_curves_at_poor_tets(Workpiece& workpiece, const Bounds& bound
     const auto edge = edge_to_divide(complex, t);
     if (!edge || workpiece.is_fixed((*edge)[0]) || workpiece.is_fixed((*edge)[1])) continue;
     Change change;
-    operations.divide_edge((*edge)[0], (*edge)[1], least, change);
+    operations.divide_edge((*edge)[0], (*edge)[1], least_divided, change);
     if (change.kind == Change::Kind::none) continue;
     workpiece.apply(std::move(change));
     ++divided;

@@ -1,6 +1,7 @@
 // Operations that replace the tets around two edges at once.
 #include <algorithm>
 
+#include "common/cell_shapes.h"
 #include "improve/operations.h"
 #include "improve/polyhedron_filling.h"
 
@@ -8,9 +9,7 @@ namespace collarmesh::improvement {
 
 namespace {
 
-constexpr std::size_t most_tets = 14, most_steps = 400;
-constexpr std::array<std::array<unsigned, 2>, 6> edges_of_tet{
-    {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
+constexpr std::size_t most_tets_around = 14, most_fillings = 400;
 
 bool has(std::span<const Index> sorted, Index item) {
   return std::binary_search(sorted.begin(), sorted.end(), item);
@@ -21,16 +20,16 @@ bool has(std::span<const Index> sorted, Index item) {
 void Operations::reconnect(Index tet, Change& change) {
   std::vector<std::vector<Index>> tried;
   TetComplex::Ring first, second;
-  for (const auto& [i, j] : edges_of_tet) {
+  for (const auto& [i, j] : cell_shapes::corner_pairs) {
     complex_.ring(tet, complex_[tet].corners[i], complex_[tet].corners[j], first);
     for (const Index beside : first.tets)
-      for (const auto& [k, l] : edges_of_tet) {
+      for (const auto& [k, l] : cell_shapes::corner_pairs) {
         complex_.ring(beside, complex_[beside].corners[k], complex_[beside].corners[l], second);
         std::vector<Index> cavity = first.tets;
         cavity.insert(cavity.end(), second.tets.begin(), second.tets.end());
         std::sort(cavity.begin(), cavity.end());
         cavity.erase(std::unique(cavity.begin(), cavity.end()), cavity.end());
-        if (cavity.size() > most_tets || std::find(tried.begin(), tried.end(), cavity) != tried.end())
+        if (cavity.size() > most_tets_around || std::find(tried.begin(), tried.end(), cavity) != tried.end())
           continue;
         refill(cavity, change);
         tried.push_back(std::move(cavity));
@@ -61,7 +60,7 @@ std::optional<std::vector<std::array<Index, 3>>> Operations::hull_of(std::span<c
     const auto& corners = complex_[t].corners;
     for (const Index v : corners)
       if (!on_hull({{v}})) return std::nullopt;
-    for (const auto& [i, j] : edges_of_tet)
+    for (const auto& [i, j] : cell_shapes::corner_pairs)
       if (complex_.on_curve(corners[i], corners[j]) && !on_hull({{corners[i], corners[j]}}))
         return std::nullopt;
   }
@@ -78,7 +77,7 @@ void Operations::refill(const std::vector<Index>& cavity, Change& change) const 
   for (const Index t : cavity) {
     worst = std::min(worst, quality(t));
     const auto& corners = complex_[t].corners;
-    for (const auto& [i, j] : edges_of_tet) {
+    for (const auto& [i, j] : cell_shapes::corner_pairs) {
       edges.push_back({std::min(corners[i], corners[j]), std::max(corners[i], corners[j])});
       longest = std::max(longest, squared_distance(mesh_.points[corners[i]], mesh_.points[corners[j]]));
     }
@@ -87,7 +86,7 @@ void Operations::refill(const std::vector<Index>& cavity, Change& change) const 
   const auto quality_of = [&](const std::array<Index, 4>& v, double above) {
     const double quality = new_quality(v, above);
     if (quality < 0) return quality;
-    const bool allowed = std::ranges::all_of(edges_of_tet, [&](const std::array<unsigned, 2>& edge) {
+    const bool allowed = std::ranges::all_of(cell_shapes::corner_pairs, [&](const EdgePlaces& edge) {
       const Index a = std::min(v[edge[0]], v[edge[1]]), b = std::max(v[edge[0]], v[edge[1]]);
       return std::ranges::binary_search(edges, std::array<Index, 2>{a, b}) ||
              rule_.allows_edge(a, b, squared_distance(mesh_.points[a], mesh_.points[b]), longest);
@@ -95,7 +94,7 @@ void Operations::refill(const std::vector<Index>& cavity, Change& change) const 
     return allowed ? quality : -1;
   };
   const double above = change.kind == Change::Kind::none ? worst : std::max(worst, change.quality);
-  const auto tets = fill_polyhedron(*hull, above, quality_of, most_steps);
+  const auto tets = fill_polyhedron(*hull, above, quality_of, most_fillings);
   if (tets.empty()) return;
   Change made;
   made.kind = Change::Kind::edge_removal;

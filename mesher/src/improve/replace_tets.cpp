@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/sorted.h"
 #include "improve/operations.h"
 
 namespace collarmesh::improvement {
@@ -14,11 +15,6 @@ namespace {
 // A replacement is not tried if it makes a tet worse than this share of the bound.
 constexpr double mendable = 0.15;
 constexpr unsigned most_repairs = 16;
-
-std::array<Index, 4> sorted(std::array<Index, 4> corners) {
-  std::sort(corners.begin(), corners.end());
-  return corners;
-}
 
 /// A rule by which tets with certain corners are worse than all others.
 class UnwantedRule final : public ShapeRule {

@@ -14,17 +14,11 @@
 #include "common/parallel_for.h"
 #include "common/resize_by_all_threads.h"
 #include "common/simplices_at_vertex.h"
+#include "common/sorted.h"
 
 namespace collarmesh::improvement {
 
 namespace {
-
-std::array<Index, 3> sorted(std::array<Index, 3> face) {
-  if (face[0] > face[1]) std::swap(face[0], face[1]);
-  if (face[1] > face[2]) std::swap(face[1], face[2]);
-  if (face[0] > face[1]) std::swap(face[0], face[1]);
-  return face;
-}
 
 // Compares like ==, but without its call of memcmp.
 bool equal(const std::array<Index, 3>& a, const std::array<Index, 3>& b) {
@@ -36,7 +30,7 @@ bool has_face(const std::array<Index, 4>& tet, const std::array<Index, 3>& face)
                        [&](Index v) { return v == face[0] || v == face[1] || v == face[2]; }) == 3;
 }
 
-constexpr std::size_t tets_at_once = 8192;  // tets in a chunk of one thread
+constexpr std::size_t stored_at_once = 8192;  // tets in a chunk of one thread
 
 // Mark deleted faces and edges until `store`.
 constexpr std::array<Index, 3> lost_face{none, none, none};
@@ -63,7 +57,7 @@ TetComplex::TetComplex(TetMesh& mesh, const KnownNeighbours& neighbours) : mesh_
   const bool has_balls = !mesh.collar_balls.empty(), alone = tbb::this_task_arena::max_concurrency() == 1;
   vertex_tet_.assign(mesh.points.size(), none);
   constexpr std::array<Index, 4> nothing{none, none, none, none};
-  parallel_for_ranges(mesh.tets.size(), tets_at_once, [&](std::size_t first, std::size_t last) {
+  parallel_for_ranges(mesh.tets.size(), stored_at_once, [&](std::size_t first, std::size_t last) {
     for (std::size_t t = first; t < last; ++t) {
       const auto& across = neighbours.empty() ? nothing : neighbours[t];
       tets_[t] = {
@@ -493,7 +487,7 @@ void TetComplex::store() {
   resize_by_all_threads(stored.tet_tag, alive.size());
   resize_by_all_threads(stored.tet_collar, alive.size());
   resize_by_all_threads(stored.tet_crease, alive.size());
-  parallel_for_ranges(alive.size(), tets_at_once, [&](std::size_t first, std::size_t last) {
+  parallel_for_ranges(alive.size(), stored_at_once, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       const Index t = alive[i];
       stored.tets[i] = tets_[t].corners;
@@ -543,7 +537,7 @@ void TetComplex::drop_lost_vertices() {
   mesh_.points.resize(kept);
   mesh_.features.resize(kept);
   const auto renumber = [&](auto& cells) {
-    parallel_for_ranges(cells.size(), tets_at_once, [&](std::size_t first, std::size_t last) {
+    parallel_for_ranges(cells.size(), stored_at_once, [&](std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i)
         for (Index& point : cells[i]) point = number[point];
     });

@@ -3,6 +3,7 @@
 #include <initializer_list>
 #include <tuple>
 
+#include "common/contains.h"
 #include "common/index_set.h"
 #include "improve/operations.h"
 #include "improve/shape.h"
@@ -13,8 +14,6 @@ namespace {
 
 // The first step of a moving vertex, relative to its shortest edge; steps shrink afterwards.
 constexpr double first_step = 0.4;
-
-bool contains(const auto& range, Index v) { return std::find(range.begin(), range.end(), v) != range.end(); }
 
 }  // namespace
 

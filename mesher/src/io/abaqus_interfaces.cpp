@@ -10,8 +10,6 @@ namespace collarmesh::io {
 
 namespace {
 
-using Names = std::map<Tag, std::string>;
-
 std::set<Index> nodes_of_side(const TetMesh& mesh, Tag tag) {
   std::set<Index> nodes;
   for (std::size_t f = 0; f < mesh.faces.size(); ++f)
@@ -22,7 +20,7 @@ std::set<Index> nodes_of_side(const TetMesh& mesh, Tag tag) {
 
 /// Ties the nodes of the plus sides, except those of a front, which both sides share, and those that are tied
 /// to another patch at a junction: a node can be dependent only once.
-void write_ties(FileWriter& out, const TetMesh& mesh, const Interfaces& interfaces, const Names& names) {
+void write_ties(FileWriter& out, const TetMesh& mesh, const Interfaces& interfaces, const NamesByTag& names) {
   std::set<Index> tied;
   for (const Sides& sides : interfaces.sides) {
     const std::set<Index> master = nodes_of_side(mesh, sides.minus);
@@ -38,7 +36,7 @@ void write_ties(FileWriter& out, const TetMesh& mesh, const Interfaces& interfac
   }
 }
 
-void write_contacts(FileWriter& out, const Interfaces& interfaces, const Names& names) {
+void write_contacts(FileWriter& out, const Interfaces& interfaces, const NamesByTag& names) {
   for (const Sides& sides : interfaces.sides)
     out << "*CONTACT PAIR, INTERACTION=CONTACT, TYPE=SURFACE TO SURFACE\n"
         << names.at(sides.plus) << ", " << names.at(sides.minus) << '\n';
@@ -53,7 +51,8 @@ std::vector<std::array<Index, 6>> straight_prisms(const Interfaces& interfaces, 
   return {{a, ab, ca, p, pq, rp}, {ab, b, bc, pq, q, qr}, {ca, bc, c, rp, qr, r}, {ab, bc, ca, pq, qr, rp}};
 }
 
-void write_prisms(FileWriter& out, const TetMesh& mesh, const Interfaces& interfaces, const Names& names) {
+void write_prisms(FileWriter& out, const TetMesh& mesh, const Interfaces& interfaces,
+                  const NamesByTag& names) {
   std::map<Tag, std::vector<std::size_t>> prisms;
   for (std::size_t i = 0; i < interfaces.prisms.size(); ++i) prisms[interfaces.prism_tag[i]].push_back(i);
   std::size_t number = count_of_dimension(mesh, 3);
@@ -71,7 +70,7 @@ void write_prisms(FileWriter& out, const TetMesh& mesh, const Interfaces& interf
 }  // namespace
 
 void write_abaqus_interfaces(FileWriter& out, const TetMesh& mesh, const Interfaces& interfaces,
-                             const std::map<Tag, std::string>& names) {
+                             const NamesByTag& names) {
   write_prisms(out, mesh, interfaces, names);
   if (interfaces.interaction == Interaction::tie) write_ties(out, mesh, interfaces, names);
   if (interfaces.interaction == Interaction::contact) write_contacts(out, interfaces, names);

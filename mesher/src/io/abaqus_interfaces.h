@@ -8,12 +8,14 @@
 
 namespace collarmesh::io {
 
+using NamesByTag = std::map<Tag, std::string>;
+
 /// Does the same as `write_abaqus` of the mesh alone, and adds the elements and conditions between the sides.
 void write_abaqus(const std::string& path, const TetMesh& mesh, const Interfaces& interfaces);
 
 /// Writes the elements and conditions between the sides of split patches to an .inp file. `names` are those
 /// of the patches' surfaces.
 void write_abaqus_interfaces(FileWriter& out, const TetMesh& mesh, const Interfaces& interfaces,
-                             const std::map<Tag, std::string>& names);
+                             const NamesByTag& names);
 
 }  // namespace collarmesh::io

@@ -8,11 +8,11 @@ namespace collarmesh::io {
 
 namespace {
 
-// Nodes of the halves of a pyramid whose diagonal begins at its first corner; `middle` is the node amid the
-// base.
-constexpr std::uint8_t middle = 13;
+// Nodes of the halves of a pyramid whose diagonal begins at its first corner; `middle_node` is the node
+// amid the base.
+constexpr std::uint8_t middle_node = 13;
 constexpr std::array<std::array<std::uint8_t, 10>, 2> nodes_of_halves{
-    {{0, 1, 2, 4, 5, 6, middle, 9, 10, 11}, {0, 2, 3, 4, middle, 7, 8, 9, 11, 12}}};
+    {{0, 1, 2, 4, 5, 6, middle_node, 9, 10, 11}, {0, 2, 3, 4, middle_node, 7, 8, 9, 11, 12}}};
 
 // The half and its side, S1 and so on, that each side of such a pyramid but its base is.
 constexpr std::array<HalvedPyramids::Side, 5> sides_of_halves{{{0, 1}, {0, 2}, {0, 3}, {1, 3}, {1, 4}}};
@@ -58,7 +58,7 @@ CellNodes HalvedPyramids::half(Index pyramid, std::size_t half) const {
   const CellNodes nodes = turned(pyramid);
   CellNodes result;
   for (const std::uint8_t place : nodes_of_halves[half])
-    result.add(place == middle ? middle_[pyramid] : nodes[place]);
+    result.add(place == middle_node ? middle_[pyramid] : nodes[place]);
   return result;
 }
 
@@ -89,11 +89,11 @@ std::optional<std::vector<Index>> join_pyramids(const std::vector<std::array<Ind
     const CellNodes one = nodes_of_tet(mesh, first), other = nodes_of_tet(mesh, second);
     std::array<Index, 13> nodes{};
     for (std::size_t k = 0; k < 10; ++k)
-      if (nodes_of_halves[0][k] != middle) nodes[nodes_of_halves[0][k]] = one[k];
+      if (nodes_of_halves[0][k] != middle_node) nodes[nodes_of_halves[0][k]] = one[k];
     for (std::size_t k = 0; k < 10; ++k)
-      if (nodes_of_halves[1][k] != middle) nodes[nodes_of_halves[1][k]] = other[k];
+      if (nodes_of_halves[1][k] != middle_node) nodes[nodes_of_halves[1][k]] = other[k];
     for (std::size_t k = 0; k < 10; ++k)
-      if (nodes_of_halves[0][k] != middle && nodes[nodes_of_halves[0][k]] != one[k]) return std::nullopt;
+      if (nodes_of_halves[0][k] != middle_node && nodes[nodes_of_halves[0][k]] != one[k]) return std::nullopt;
     if (one[6] != other[4]) return std::nullopt;
     amid.insert(one[6]);
     CellNodes pyramid;

@@ -160,7 +160,7 @@ struct Set {
 };
 
 /// The place of an element in the mesh: which list, and its index there.
-struct Place {
+struct CellPlace {
   CellKind kind = CellKind::tet;
   Index index = 0;
   std::optional<unsigned> half = {};  ///< of a pyramid of second order that the file has as two tets
@@ -174,7 +174,7 @@ class AbaqusReader {
     std::string_view line;
     while (lines_.peek(line)) {
       if (line[0] != '*')
-        lines_.fail(fmt::format("expected a keyword such as *NODE, found {}", quoted(line)));
+        lines_.fail(fmt::format("expected a keyword such as *NODE, found {}", in_quotes(line)));
       const Keyword keyword(line);
       lines_.next();
       read_block(keyword);
@@ -222,7 +222,7 @@ class AbaqusReader {
   std::int64_t integer(std::string_view field, std::string_view what) const {
     std::int64_t value = 0;
     if (!parse(field, value))
-      lines_.fail(fmt::format("expected {}, an integer, found {}", what, quoted(field)));
+      lines_.fail(fmt::format("expected {}, an integer, found {}", what, in_quotes(field)));
     return value;
   }
 
@@ -232,7 +232,8 @@ class AbaqusReader {
     std::replace(text.begin(), text.end(), 'd', 'e');
     std::replace(text.begin(), text.end(), 'D', 'e');
     if (!parse(text, value) || !std::isfinite(value))
-      lines_.fail(fmt::format("expected a coordinate of a node, a finite number, found {}", quoted(field)));
+      lines_.fail(
+          fmt::format("expected a coordinate of a node, a finite number, found {}", in_quotes(field)));
     return value;
   }
 
@@ -264,7 +265,7 @@ class AbaqusReader {
           fmt::format("elements of type {} are not supported, only tetrahedra (C3D4, C3D10), prisms (C3D6, "
                       "C3D15), pyramids (C3D5), triangles (S3, S6, CPS3, ...), quadrangles (S4, S8, ...) and "
                       "lines (T3D2, B31, ...)",
-                      quoted(keyword["type"])));
+                      in_quotes(keyword["type"])));
     const std::size_t set_index = keyword.set.empty() ? none : index_of_set(keyword.set);
     // An element may continue over several lines.
     std::vector<std::int64_t> numbers;
@@ -290,7 +291,7 @@ class AbaqusReader {
         lines_.fail(
             fmt::format("element {} has the node {}, but no node has that number", numbers[0], numbers[k]));
     }
-    const Place place{type.kind, static_cast<Index>(count_of(mesh_, type.kind))};
+    const CellPlace place{type.kind, static_cast<Index>(count_of(mesh_, type.kind))};
     add_cell(type.kind, nodes_of_element(type, listed, numbers[0]), mesh_);
     elements_.add(numbers[0]);
     places_.push_back(place);
@@ -331,7 +332,7 @@ class AbaqusReader {
     const auto before = static_cast<Index>(mesh_.layers.pyramids.size());
     const auto numbers = join_pyramids(pairs, mesh_);
     if (!numbers) lines_.fail(fmt::format("the elements of {} are no halves of pyramids", abaqus_halves));
-    for (Place& place : places_)
+    for (CellPlace& place : places_)
       if (place.kind == CellKind::tet) place.index = (*numbers)[place.index];
     for (Index k = 0; k < pairs.size(); ++k)
       for (unsigned half = 0; half < 2; ++half)
@@ -381,7 +382,7 @@ class AbaqusReader {
     }
     const auto found = set_index_.find(lower_case(field));
     if (found == set_index_.end())
-      lines_.fail(fmt::format("no element set before has the name {}", quoted(field)));
+      lines_.fail(fmt::format("no element set before has the name {}", in_quotes(field)));
     const std::vector<std::int64_t> copy = sets_[found->second].members;
     require_room(copy.size());
     members.insert(members.end(), copy.begin(), copy.end());
@@ -425,7 +426,7 @@ class AbaqusReader {
   void add_sides(const std::string& set, Side side) {
     const auto found = set_index_.find(set);
     if (found == set_index_.end())
-      lines_.fail(fmt::format("no element set before has the name {}", quoted(set)));
+      lines_.fail(fmt::format("no element set before has the name {}", in_quotes(set)));
     std::vector<Side>& sides = surfaces_.back().second;
     require_room(sets_[found->second].members.size());
     for (const std::int64_t element : sets_[found->second].members) {
@@ -520,7 +521,7 @@ class AbaqusReader {
 
   /// Returns which of our cell's sides S1 and so on are; nothing for a face without area, and for the second
   /// part of a base.
-  static std::optional<std::size_t> side_of(const Place& place, unsigned number) {
+  static std::optional<std::size_t> side_of(const CellPlace& place, unsigned number) {
     if (place.half) return side_of_pyramid(*place.half, number);
     const auto numbers = abaqus_faces(place.kind);
     const auto found = std::find(numbers.begin(), numbers.end(), number);
@@ -550,7 +551,7 @@ class AbaqusReader {
   TetMesh mesh_;
   NumberTable nodes_, elements_;
   bool sorted_ = true;
-  std::vector<Place> places_;  ///< by element
+  std::vector<CellPlace> places_;  ///< by element
   std::map<std::string, std::size_t, std::less<>> set_index_;
   std::vector<Set> sets_;
   std::size_t repeated_members_ = 0;  ///< ranges and names of sets in all sets and surfaces

@@ -48,12 +48,10 @@ void write_numbers(FileWriter& out, const std::vector<Index>& numbers) {
     out << numbers[i] << (i + 1 == numbers.size() || (i + 1) % numbers_a_line == 0 ? ",\n" : ", ");
 }
 
-using Names = std::map<Tag, std::string>;
-
 /// Returns names of sets that differ from each other and from known ones.
-Names names_of(const TetMesh& mesh, std::size_t dimension, const std::vector<Tag>& tags,
-               DistinctNames& known) {
-  Names names;
+NamesByTag set_names_of(const TetMesh& mesh, std::size_t dimension, const std::vector<Tag>& tags,
+                        DistinctNames& known) {
+  NamesByTag names;
   for (const auto& each : numbered_tags(tags))
     names[each.first] = known.add(capital_name(mesh, dimension, each.first));
   return names;
@@ -66,17 +64,17 @@ bool is_volume(std::string_view name) {
 }
 
 /// Returns names that also differ from those of our own element sets.
-Names names_of_regions(const TetMesh& mesh) {
+NamesByTag names_of_regions(const TetMesh& mesh) {
   DistinctNames known(std::string::npos);
   known.add(capital_word(abaqus_everything));
   known.add(capital_word(abaqus_halves));
   const std::vector<Tag> tags = all_tags(mesh, 3);
   for (const auto& each : numbered_tags(tags))
     if (const std::string name = capital_name(mesh, 3, each.first); is_volume(name)) known.add(name);
-  return names_of(mesh, 3, tags, known);
+  return set_names_of(mesh, 3, tags, known);
 }
 
-void write_node_sets(FileWriter& out, const Groups& groups, const Names& names) {
+void write_node_sets(FileWriter& out, const Groups& groups, const NamesByTag& names) {
   for (const auto& [tag, nodes] : groups) {
     out << "*NSET, NSET=" << names.at(tag) << "_NODES\n";
     write_numbers(out, nodes);
@@ -92,7 +90,7 @@ void write_nodes(FileWriter& out, const TetMesh& mesh, const std::vector<Point>&
   });
 }
 
-const char* type_of(CellKind kind, int order) {
+const char* element_type_of(CellKind kind, int order) {
   if (kind == CellKind::tet) return order == 2 ? "C3D10" : "C3D4";
   if (kind == CellKind::prism) return order == 2 ? "C3D15" : "C3D6";
   return "C3D8";
@@ -103,7 +101,7 @@ void write_elements_of(FileWriter& out, const TetMesh& mesh, const HalvedPyramid
                        Index region, const std::vector<Index>& cells) {
   if (cells.empty()) return;
   const bool halves = kind == CellKind::pyramid && halved.any();
-  out << "*ELEMENT, TYPE=" << type_of(halves ? CellKind::tet : kind, mesh.order())
+  out << "*ELEMENT, TYPE=" << element_type_of(halves ? CellKind::tet : kind, mesh.order())
       << ", ELSET=" << abaqus_volume_prefix << region << '\n';
   const std::size_t before = count_before(mesh, kind);
   const auto write = [](TextBuffer& text, std::size_t number, const auto& nodes) {
@@ -157,7 +155,7 @@ void write_elements(FileWriter& out, const TetMesh& mesh, const HalvedPyramids& 
   }
   out << "*ELSET, ELSET=EALL\n";
   for (const auto& volume : volumes) out << abaqus_volume_prefix << volume.first << ",\n";
-  const Names names = names_of_regions(mesh);
+  const NamesByTag names = names_of_regions(mesh);
   for (const auto& [tag, regions] : regions_of_tag) {
     out << "*ELSET, ELSET=" << names.at(tag) << '\n';
     for (const Index region : regions) out << abaqus_volume_prefix << region << ",\n";
@@ -168,7 +166,7 @@ void write_elements(FileWriter& out, const TetMesh& mesh, const HalvedPyramids& 
 /// of the i-th element, in order.
 template <class NodesOf>
 void write_elements_by_tag(FileWriter& out, const std::vector<Tag>& tags, const std::string& type,
-                           const Names& names, const NodesOf& nodes_of) {
+                           const NamesByTag& names, const NodesOf& nodes_of) {
   std::map<Tag, std::vector<Index>> members;
   for (std::size_t i = 0; i < tags.size(); ++i) members[tags[i]].push_back(static_cast<Index>(i));
   for (const auto& [tag, with_tag] : members) {
@@ -208,7 +206,7 @@ CellNodes nodes_of_plane_face(const TetMesh& mesh, std::size_t face) {
 }
 
 /// Writes triangles as elements of shells, or of a plane.
-void write_triangles(FileWriter& out, const TetMesh& mesh, const Names& names) {
+void write_triangles(FileWriter& out, const TetMesh& mesh, const NamesByTag& names) {
   const std::size_t nodes = mesh.order() == 2 ? 6 : 3;
   if (mesh.triangle_elements == TriangleElements::shell) {
     write_elements_by_tag(out, mesh.face_tag, fmt::format("S{}", nodes), names,
@@ -221,14 +219,15 @@ void write_triangles(FileWriter& out, const TetMesh& mesh, const Names& names) {
 }
 
 /// Writes edges as beams; the middle node is the second one.
-void write_beams(FileWriter& out, const TetMesh& mesh, const Names& names) {
+void write_beams(FileWriter& out, const TetMesh& mesh, const NamesByTag& names) {
   constexpr std::array<std::uint8_t, 3> order{0, 2, 1};
   write_elements_by_tag(out, mesh.edge_tag, mesh.order() == 2 ? "B32" : "B31", names,
                         [&](Index edge) { return nodes_of_edge(mesh, edge).in_order(order); });
 }
 
 /// Writes for each face the element behind it, and that element's side.
-void write_surfaces(FileWriter& out, const TetMesh& mesh, const HalvedPyramids& halved, const Names& names) {
+void write_surfaces(FileWriter& out, const TetMesh& mesh, const HalvedPyramids& halved,
+                    const NamesByTag& names) {
   std::map<Tag, std::vector<SideOfCell>> surfaces;
   for_each_kind(mesh, 2, [&](CellKind kind) {
     const std::vector<SideOfCell> sides = sides_of_faces(mesh, kind);
@@ -264,8 +263,8 @@ void write_abaqus(const std::string& path, const TetMesh& mesh, const Interfaces
     known.add(capital_word(abaqus_everything));
   else
     write_elements(out, mesh, halved);
-  const Names patches = names_of(mesh, 2, all_tags(mesh, 2), known),
-              curves = names_of(mesh, 1, mesh.edge_tag, known);
+  const NamesByTag patches = set_names_of(mesh, 2, all_tags(mesh, 2), known),
+                   curves = set_names_of(mesh, 1, mesh.edge_tag, known);
   if (mesh.is_curves())
     write_beams(out, mesh, curves);
   else if (mesh.is_surface())

@@ -23,22 +23,22 @@ namespace collarmesh::io {
 namespace {
 
 constexpr std::size_t nodes_on_line = 8, numbers_on_line = 8;
-constexpr std::size_t longest_name = 32;
+constexpr std::size_t longest_component = 32;
 
 /// Formats as 6e21.13e3: the exponent has three digits.
-std::string real(double value) {
+std::string real_field(double value) {
   std::string text = fmt::format("{:.13E}", value);
   const std::size_t sign = text.find('E') + 1;
   text.insert(sign + 1, 3 - (text.size() - sign - 1), '0');
   return fmt::format("{:>21}", text);
 }
 
-void write_nodes(FileWriter& out, const TetMesh& mesh) {
+void write_nblock(FileWriter& out, const TetMesh& mesh) {
   out << fmt::format("NBLOCK,6,SOLID,{0:10},{0:10}\n(3i9,6e21.13e3)\n", mesh.points.size());
   write_each(out, mesh.points.size(), [&](TextBuffer& text, std::size_t i) {
     const Point& p = mesh.points[i];
     text << std::string_view(
-        fmt::format("{:9}{:9}{:9}{}{}{}\n", i + 1, 0, 0, real(p.x), real(p.y), real(p.z)));
+        fmt::format("{:9}{:9}{:9}{}{}{}\n", i + 1, 0, 0, real_field(p.x), real_field(p.y), real_field(p.z)));
   });
   out << "N,R5.3,LOC,       -1,\n";
 }
@@ -102,9 +102,9 @@ void write_ansys(const std::string& path, const TetMesh& mesh) {
   out << "/COM,Written by collarmesh.\n/PREP7\nET,1," << (mesh.order() == 2 ? 187 : 285) << '\n';
   if (!mesh.layers.prisms.empty() || !mesh.layers.pyramids.empty())
     out << "ET,2," << (mesh.order() == 2 ? 186 : 185) << '\n';
-  write_nodes(out, mesh);
+  write_nblock(out, mesh);
   write_elements(out, mesh);
-  DistinctNames known(longest_name);
+  DistinctNames known(longest_component);
   Groups regions;
   for_each_kind(mesh, 3, [&](CellKind kind) {
     const std::vector<Tag>& tags = tags_of(mesh, kind);

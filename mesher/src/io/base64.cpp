@@ -11,13 +11,13 @@ constexpr std::string_view alphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmno
 constexpr std::uint8_t invalid = 0xff;
 
 constexpr std::array<std::uint8_t, 256> make_values() {
-  std::array<std::uint8_t, 256> values{};
-  values.fill(invalid);
+  std::array<std::uint8_t, 256> value_of_letter{};
+  value_of_letter.fill(invalid);
   for (std::size_t i = 0; i < alphabet.size(); ++i)
-    values[static_cast<unsigned char>(alphabet[i])] = static_cast<std::uint8_t>(i);
-  return values;
+    value_of_letter[static_cast<unsigned char>(alphabet[i])] = static_cast<std::uint8_t>(i);
+  return value_of_letter;
 }
-constexpr std::array<std::uint8_t, 256> values = make_values();
+constexpr std::array<std::uint8_t, 256> value_of_letter = make_values();
 
 std::uint32_t byte(char c) { return static_cast<unsigned char>(c); }
 
@@ -56,7 +56,7 @@ std::optional<std::string> base64_decode(std::string_view text) {
   bytes.reserve(text.size() / 4 * 3);
   std::uint32_t group = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
-    const std::uint8_t value = i < used ? values[static_cast<unsigned char>(text[i])] : 0;
+    const std::uint8_t value = i < used ? value_of_letter[static_cast<unsigned char>(text[i])] : 0;
     if (value == invalid) return std::nullopt;
     group = group << 6 | value;
     if (i % 4 != 3) continue;

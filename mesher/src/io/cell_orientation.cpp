@@ -9,18 +9,18 @@ namespace collarmesh::io {
 namespace {
 
 // Our node at each place of the turned cell; the corners come first.
-constexpr std::array<std::uint8_t, 10> tet{0, 1, 3, 2, 4, 8, 7, 6, 5, 9};
+constexpr std::array<std::uint8_t, 10> turned_tet{0, 1, 3, 2, 4, 8, 7, 6, 5, 9};
 constexpr std::array<std::uint8_t, 15> prism{0, 2, 1, 3, 5, 4, 8, 7, 6, 11, 10, 9, 12, 14, 13};
 constexpr std::array<std::uint8_t, 13> pyramid{0, 3, 2, 1, 4, 8, 7, 6, 5, 9, 12, 11, 10};
-constexpr std::array<std::uint8_t, 6> triangle{0, 2, 1, 5, 4, 3};
+constexpr std::array<std::uint8_t, 6> turned_triangle{0, 2, 1, 5, 4, 3};
 constexpr std::array<std::uint8_t, 8> quadrangle{0, 3, 2, 1, 7, 6, 5, 4};
 
 constexpr std::span<const std::uint8_t> turned_places(CellKind kind) {
   switch (kind) {
-    case CellKind::tet: return tet;
+    case CellKind::tet: return turned_tet;
     case CellKind::prism: return prism;
     case CellKind::pyramid: return pyramid;
-    case CellKind::triangle: return triangle;
+    case CellKind::triangle: return turned_triangle;
     default: return quadrangle;
   }
 }

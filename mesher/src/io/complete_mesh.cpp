@@ -46,7 +46,7 @@ void orient_volumes(TetMesh& mesh) {
   orient(CellKind::pyramid, mesh, mesh.layers.pyramids, mesh.layers.pyramid_mid_nodes);
 }
 
-/// The mid-edge nodes of the volumes by the ends of their edge.
+/// The mid-edge nodes of the cells of volumes by the ends of their edge.
 class MidNodes {
  public:
   MidNodes(const std::string& path, const TetMesh& mesh) : path_(path) {
@@ -114,32 +114,33 @@ void complete_mid_nodes(const std::string& path, TetMesh& mesh) {
     for (const auto& [a, b] : mesh.edges) mesh.edge_mid_nodes.push_back(nodes.find(a, b));
 }
 
-constexpr std::array<CellKind, 3> volumes{CellKind::tet, CellKind::prism, CellKind::pyramid};
-constexpr std::array<CellKind, 2> surfaces{CellKind::triangle, CellKind::quadrangle};
+constexpr std::array<CellKind, 3> volume_kinds{CellKind::tet, CellKind::prism, CellKind::pyramid};
+constexpr std::array<CellKind, 2> surface_kinds{CellKind::triangle, CellKind::quadrangle};
 
 void number_regions(TetMesh& mesh) {
   std::vector<Tag> tags;
-  for (const CellKind kind : volumes)
+  for (const CellKind kind : volume_kinds)
     tags.insert(tags.end(), tags_of(mesh, kind).begin(), tags_of(mesh, kind).end());
   std::sort(tags.begin(), tags.end());
   tags.erase(std::unique(tags.begin(), tags.end()), tags.end());
-  for (const CellKind kind : volumes) {
+  for (const CellKind kind : volume_kinds) {
     features_of(mesh, kind).clear();
     for (const Tag tag : tags_of(mesh, kind))
       features_of(mesh, kind)
           .push_back(static_cast<Index>(std::lower_bound(tags.begin(), tags.end(), tag) - tags.begin() + 1));
   }
-  for (const CellKind kind : surfaces) regions_beside(mesh, kind).clear();
+  for (const CellKind kind : surface_kinds) regions_beside(mesh, kind).clear();
 }
 
 /// Returns whether regions are numbered from 1; every format has 9 digits for them.
 bool has_region_numbers(const TetMesh& mesh) {
   constexpr Index largest = 999'999'999;
-  return !mesh.tet_region.empty() && std::all_of(volumes.begin(), volumes.end(), [&](CellKind kind) {
-    const std::vector<Index>& regions = features_of(mesh, kind);
-    return regions.size() == count_of(mesh, kind) &&
-           std::all_of(regions.begin(), regions.end(), [](Index r) { return r >= 1 && r <= largest; });
-  });
+  return !mesh.tet_region.empty() &&
+         std::all_of(volume_kinds.begin(), volume_kinds.end(), [&](CellKind kind) {
+           const std::vector<Index>& regions = features_of(mesh, kind);
+           return regions.size() == count_of(mesh, kind) &&
+                  std::all_of(regions.begin(), regions.end(), [](Index r) { return r >= 1 && r <= largest; });
+         });
 }
 
 void find_face_regions(TetMesh& mesh, CellKind kind) {
@@ -182,7 +183,7 @@ void complete_mesh(const std::string& path, TetMesh& mesh) {
   if (mesh.tet_partition.size() != mesh.tets.size()) mesh.tet_partition.clear();
   complete_layers(mesh);
   if (!has_region_numbers(mesh)) number_regions(mesh);
-  for (const CellKind kind : surfaces)
+  for (const CellKind kind : surface_kinds)
     if (mesh.tets.empty())  // the mesh of a surface stays as it is
       regions_beside(mesh, kind).assign(count_of(mesh, kind), {0, 0});
     else if (regions_beside(mesh, kind).empty())

@@ -18,17 +18,17 @@ namespace collarmesh::io {
 
 namespace {
 
-struct Format {
+struct MeshFormat {
   std::string_view extension;
   TetMesh (*read)(const std::string& path);
 };
 
-constexpr std::array formats{Format{".msh", read_msh_cells}, Format{".mesh", read_medit_cells},
-                             Format{".vtu", read_vtu_cells}, Format{".vtp", read_vtp_cells}};
+constexpr std::array mesh_formats{MeshFormat{".msh", read_msh_cells}, MeshFormat{".mesh", read_medit_cells},
+                                  MeshFormat{".vtu", read_vtu_cells}, MeshFormat{".vtp", read_vtp_cells}};
 
-const Format* find_format(const std::string& path, std::string_view format) {
+const MeshFormat* find_mesh_format(const std::string& path, std::string_view format) {
   const std::string extension = format.empty() ? lower_extension(path) : std::string(format);
-  for (const Format& known : formats)
+  for (const MeshFormat& known : mesh_formats)
     if (known.extension == extension) return &known;
   return nullptr;
 }
@@ -71,7 +71,7 @@ std::vector<PolygonSoup::RegionPoint> points_in_regions(const TetMesh& mesh) {
 }  // namespace
 
 TetMesh read_mesh_cells(const std::string& path, std::string_view format) {
-  const Format* found = find_format(path, format);
+  const MeshFormat* found = find_mesh_format(path, format);
   if (found == nullptr) throw ReadError(fmt::format("{}: is no file of a mesh with triangles", path));
   return found->read(path);
 }
@@ -106,13 +106,13 @@ PolygonSoup read_mesh_surface(const std::string& path, std::string_view format) 
 }
 
 bool is_mesh_surface_format(const std::string& path, std::string_view format) {
-  return find_format(path, format) != nullptr;
+  return find_mesh_format(path, format) != nullptr;
 }
 
 std::vector<std::string> mesh_surface_formats() {
   std::vector<std::string> result;
-  result.reserve(formats.size());
-  for (const Format& format : formats) result.emplace_back(format.extension);
+  result.reserve(mesh_formats.size());
+  for (const MeshFormat& format : mesh_formats) result.emplace_back(format.extension);
   return result;
 }
 

@@ -7,6 +7,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "common/sorted.h"
 #include "io/cell_nodes.h"
 #include "io/face_finder.h"
 
@@ -17,8 +18,6 @@ namespace {
 bool contains(const std::vector<Tag>& tags, Tag tag) {
   return std::find(tags.begin(), tags.end(), tag) != tags.end();
 }
-
-std::array<Index, 2> sorted(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
 
 /// The links of one pair.
 class PairLinks {

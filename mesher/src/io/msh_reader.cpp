@@ -450,16 +450,16 @@ void read_data(MshText values, Contents& contents) {
   }
 }
 
-struct Format {
+struct MshFormat {
   double version = 0;
   bool binary = false;
   std::endian order = std::endian::little;
 };
 
-Format read_format(const std::string& path, const MshSection& section) {
+MshFormat read_format(const std::string& path, const MshSection& section) {
   MshText values(path, section);
   if (section.name != "MeshFormat") values.fail("expected $MeshFormat first");
-  Format format;
+  MshFormat format;
   format.version = values.real("the version");
   format.binary = values.integer("0 for text or 1 for binary") != 0;
   const int size = values.integer("the size of numbers");
@@ -479,7 +479,7 @@ Format read_format(const std::string& path, const MshSection& section) {
 
 /// Calls `read` with the values of a section as text or bytes.
 template <class Read>
-void with_values(const std::string& path, const MshSection& section, const Format& format, Read read) {
+void with_values(const std::string& path, const MshSection& section, const MshFormat& format, Read read) {
   if (format.binary)
     read(MshBinary(path, section, format.order));
   else
@@ -488,14 +488,14 @@ void with_values(const std::string& path, const MshSection& section, const Forma
 
 /// Does the same for version 2.
 template <class Read>
-void with_old_values(const std::string& path, const MshSection& section, const Format& format, Read read) {
+void with_old_values(const std::string& path, const MshSection& section, const MshFormat& format, Read read) {
   if (format.binary)
     read(MshBinary2(path, section, format.order));
   else
     read(MshText(path, section));
 }
 
-void read_section(const std::string& path, const MshSection& section, const Format& format,
+void read_section(const std::string& path, const MshSection& section, const MshFormat& format,
                   Contents& contents) {
   const auto with_any = [&](auto read) { with_values(path, section, format, read); };
   if (section.name == "PhysicalNames")
@@ -635,7 +635,7 @@ namespace {
 
 using NodeValues = std::vector<std::pair<std::uint64_t, double>>;
 
-NodeValues read_node_values(const std::string& path, const MshSection& section, const Format& format) {
+NodeValues read_node_values(const std::string& path, const MshSection& section, const MshFormat& format) {
   MshText text(path, section);
   const DataHead head = read_data_head(text);
   NodeValues values;
@@ -660,7 +660,7 @@ NodeValues read_node_values(const std::string& path, const MshSection& section, 
 struct MshFile {
   std::string text;
   std::vector<MshSection> sections;
-  Format format;
+  MshFormat format;
 
   explicit MshFile(const std::string& path) : text(read_bytes(path)), sections(split_msh(path, text)) {
     if (sections.empty()) TextScanner(path, text).fail("expected $MeshFormat, found the end of the file");

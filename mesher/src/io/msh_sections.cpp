@@ -29,12 +29,12 @@ std::vector<MshSection> split_msh(const std::string& path, std::string_view text
     const auto fail = [&](const std::string& message) { TextScanner(path, {}, 0, line).fail(message); };
     const std::string_view head = line_at(text, start);
     if (head.size() < 2 || head[0] != '$')
-      fail(fmt::format("expected a section such as $Nodes, found {}", quoted(head)));
+      fail(fmt::format("expected a section such as $Nodes, found {}", in_quotes(head)));
     const std::size_t body = std::min(text.find('\n', start), text.size() - 1) + 1;
     const std::string end = fmt::format("$End{}", head.substr(1));
     const std::size_t stop = text.find(end, body);
     if (stop == std::string_view::npos)
-      fail(fmt::format("the section {} has no {}; the file is cut off", quoted(head), quoted(end)));
+      fail(fmt::format("the section {} has no {}; the file is cut off", in_quotes(head), in_quotes(end)));
     sections.push_back({head.substr(1), text.substr(body, stop - body), line + 1, body});
     at = stop + end.size();
     line += count_lines(text.substr(start, at - start));

@@ -113,12 +113,13 @@ void write_ghost_elements(FileWriter& out, const TetMesh& mesh, const MshParts& 
 }
 
 /// The members of each entity of one dimension, in the order of the mesh.
-struct Groups {
+struct EntityMembers {
   std::vector<Index> starts, members;
 
   /// Groups the members. `entity_of(i)`, for all i below `count`, returns none for members of no group.
   template <class EntityOf>
-  Groups(std::size_t entity_count, std::size_t count, const EntityOf& entity_of) : starts(entity_count + 1) {
+  EntityMembers(std::size_t entity_count, std::size_t count, const EntityOf& entity_of)
+      : starts(entity_count + 1) {
     // Members are counted and placed in chunks, each of which has its own range in each group.
     constexpr std::size_t least_chunk = 16384, most_chunks = 64;
     const std::size_t chunk = std::max((count + most_chunks - 1) / most_chunks, least_chunk + entity_count);
@@ -139,8 +140,8 @@ struct Groups {
         if (const Index e = entity_of(i); e != none) members[places[e]++] = static_cast<Index>(i);
     });
   }
-  Groups(std::size_t entity_count, std::span<const Index> of)
-      : Groups(entity_count, of.size(), [&](std::size_t i) { return of[i]; }) {}
+  EntityMembers(std::size_t entity_count, std::span<const Index> of)
+      : EntityMembers(entity_count, of.size(), [&](std::size_t i) { return of[i]; }) {}
 
   std::span<const Index> of(std::size_t entity) const {
     return {members.data() + starts[entity], members.data() + starts[entity + 1]};
@@ -152,8 +153,8 @@ struct Groups {
   }
 };
 
-std::vector<Groups> group_points(const MshEntities& entities) {
-  std::vector<Groups> result;
+std::vector<EntityMembers> group_points(const MshEntities& entities) {
+  std::vector<EntityMembers> result;
   for (std::size_t dimension = 0; dimension < 4; ++dimension)
     result.emplace_back(entities.of_dimension[dimension].size(), entities.of_point.size(),
                         [&](std::size_t v) {
@@ -164,9 +165,9 @@ std::vector<Groups> group_points(const MshEntities& entities) {
 }
 
 void write_nodes(FileWriter& out, const TetMesh& mesh, const MshEntities& entities) {
-  const std::vector<Groups> groups = group_points(entities);
+  const std::vector<EntityMembers> groups = group_points(entities);
   std::size_t blocks = 0;
-  for (const Groups& g : groups) blocks += g.filled();
+  for (const EntityMembers& g : groups) blocks += g.filled();
   const std::size_t n = mesh.points.size();
   out << "$Nodes\n" << blocks << ' ' << n << ' ' << (n > 0 ? 1 : 0) << ' ' << n << '\n';
   for (std::size_t dimension = 0; dimension < 4; ++dimension)
@@ -187,7 +188,7 @@ void write_nodes(FileWriter& out, const TetMesh& mesh, const MshEntities& entiti
 
 /// Writes the cells of a kind, numbered from `first_number`.
 void write_cells(FileWriter& out, const TetMesh& mesh, CellKind kind, const std::vector<MshEntity>& entities,
-                 const Groups& groups, std::size_t first_number) {
+                 const EntityMembers& groups, std::size_t first_number) {
   const GmshType& type = gmsh_type(kind, mesh.order());
   for (std::size_t e = 0; e < entities.size(); ++e) {
     const std::span<const Index> members = groups.of(e);
@@ -205,7 +206,7 @@ void write_cells(FileWriter& out, const TetMesh& mesh, CellKind kind, const std:
 
 /// The kinds of cells by entity, and the number of the first cell of each kind.
 struct CellGroups {
-  std::vector<Groups> of_kind;
+  std::vector<EntityMembers> of_kind;
   std::array<std::size_t, cell_kinds> first;
   std::size_t count, filled = 0;
 

@@ -22,7 +22,7 @@ namespace {
 constexpr std::size_t large_field = 16, fields_on_line = 8;
 
 /// Formats a real number with a point and as many digits as fit.
-std::string real(double value) {
+std::string short_real(double value) {
   for (int digits = 17;; --digits) {
     std::string text = digits == 17 ? fmt::format("{}", value) : fmt::format("{:.{}g}", value, digits);
     if (text.find('.') == std::string::npos) text.insert(std::min(text.find('e'), text.size()), 1, '.');
@@ -32,16 +32,16 @@ std::string real(double value) {
   }
 }
 
-void write_nodes(FileWriter& out, const TetMesh& mesh) {
+void write_grid_points(FileWriter& out, const TetMesh& mesh) {
   write_each(out, mesh.points.size(), [&](TextBuffer& text, std::size_t i) {
     const Point& p = mesh.points[i];
     text << std::string_view(fmt::format("GRID*   {:16}{:16}{:>16}{:>16}*\n*       {:>16}\n", i + 1, "",
-                                         real(p.x), real(p.y), real(p.z)));
+                                         short_real(p.x), short_real(p.y), short_real(p.z)));
   });
 }
 
 /// The names of elements by order.
-constexpr std::array<const char*, 2> names_of(CellKind kind) {
+constexpr std::array<const char*, 2> nastran_names_of(CellKind kind) {
   switch (kind) {
     case CellKind::tet: return {"CTETRA", "CTETRA"};
     case CellKind::prism: return {"CPENTA", "CPENTA"};
@@ -53,7 +53,7 @@ constexpr std::array<const char*, 2> names_of(CellKind kind) {
 
 /// Writes fields of eight characters, on continuation lines if there are more than eight.
 void write_elements(FileWriter& out, const TetMesh& mesh, CellKind kind, const auto& property_of) {
-  const char* const name = names_of(kind)[mesh.order() == 2 ? 1 : 0];
+  const char* const name = nastran_names_of(kind)[mesh.order() == 2 ? 1 : 0];
   const std::size_t first = count_before(mesh, kind) + 1;
   write_each(out, count_of(mesh, kind), [&](TextBuffer& text, std::size_t i) {
     std::string line = fmt::format("{:8}{:8}{:8}", name, first + i, property_of(i));
@@ -82,7 +82,7 @@ void write_nastran(const std::string& path, const TetMesh& mesh) {
     out << fmt::format("$HMNAME PROP {:>19}\"{}\"\n", region, group_name(mesh, 3, tag));
   for (const auto& [tag, number] : patches)
     out << fmt::format("$HMNAME PROP {:>19}\"{}\"\n", number, group_name(mesh, 2, tag));
-  write_nodes(out, mesh);
+  write_grid_points(out, mesh);
   for_each_kind(mesh, 3, [&](CellKind kind) {
     write_elements(out, mesh, kind, [&](std::size_t i) { return features_of(mesh, kind)[i]; });
   });

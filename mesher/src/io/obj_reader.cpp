@@ -21,7 +21,7 @@ namespace {
 
 /// An element of an .obj file. Faces may come before their vertices, so indices are checked at the end, with
 /// the line.
-struct Element {
+struct ObjElement {
   std::size_t first_corner, line;
   bool is_face;
   std::size_t group, material;  ///< indices of their names
@@ -43,7 +43,7 @@ class Names {
 };
 
 struct Elements {
-  std::vector<Element> list;
+  std::vector<ObjElement> list;
   Names groups, materials;
   std::size_t group = 0, material = 0;  ///< the current ones
   std::vector<std::int64_t> corners;    ///< counted from 0; negative ones are already resolved
@@ -83,7 +83,7 @@ void read_element(TextScanner& scan, bool is_face, std::size_t points_so_far, El
   elements.list.push_back({first, line, is_face, elements.group, elements.material});
 }
 
-void require_in_range(const std::string& path, const Element& element, std::int64_t corner,
+void require_in_range(const std::string& path, const ObjElement& element, std::int64_t corner,
                       std::size_t size) {
   if (corner < static_cast<std::int64_t>(size)) return;
   TextScanner(path, {}, 0, element.line)
@@ -94,7 +94,7 @@ void require_in_range(const std::string& path, const Element& element, std::int6
 /// materials.
 std::vector<Tag> tags_of_faces(const Elements& elements, PolygonSoup& soup) {
   std::set<std::size_t> groups, materials;
-  for (const Element& element : elements.list) {
+  for (const ObjElement& element : elements.list) {
     if (!element.is_face) continue;
     groups.insert(element.group);
     materials.insert(element.material);
@@ -110,7 +110,7 @@ std::vector<Tag> tags_of_faces(const Elements& elements, PolygonSoup& soup) {
   for (const std::string& name : names)
     if (tag_of_group_name(2, name)) known.find(2, name);
   for (std::size_t i = 0; i < tags.size(); ++i) {
-    const Element& element = elements.list[i];
+    const ObjElement& element = elements.list[i];
     const std::string& name = names[by_group ? element.group : element.material];
     if (!element.is_face || name.empty()) continue;
     tags[i] = known.find(2, name);
@@ -123,7 +123,7 @@ void add_elements(const std::string& path, const Elements& elements, PolygonSoup
   std::vector<Index> corners;
   const std::vector<Tag> tags = tags_of_faces(elements, soup);
   for (std::size_t i = 0; i < elements.list.size(); ++i) {
-    const Element& element = elements.list[i];
+    const ObjElement& element = elements.list[i];
     const std::size_t end =
         i + 1 < elements.list.size() ? elements.list[i + 1].first_corner : elements.corners.size();
     corners.clear();

@@ -25,7 +25,8 @@ void read_keyword(TextScanner& scan) {
   if (rest.starts_with("C")) rest.remove_prefix(1);
   if (rest.starts_with("N")) rest.remove_prefix(1);
   if (rest == "4OFF" || rest == "nOFF" || rest == "4nOFF")
-    scan.fail(fmt::format("{} has points of other than 3 coordinates; convert it to OFF", quoted(keyword)));
+    scan.fail(
+        fmt::format("{} has points of other than 3 coordinates; convert it to OFF", in_quotes(keyword)));
   if (rest != "OFF") scan.fail("the keyword OFF", keyword);
   if (!scan.at_line_end() && scan.peek() == "BINARY")
     scan.fail("binary OFF is not supported; convert it to text");
@@ -63,7 +64,7 @@ PolygonSoup read_off(const std::string& path) {
   for (Index i = 0; i < face_count; ++i) read_face(scan, corners, soup);
   if (!scan.at_end())
     scan.fail(fmt::format("expected the end of the file after {} vertices and {} faces, found {}",
-                          point_count, face_count, quoted(scan.peek())));
+                          point_count, face_count, in_quotes(scan.peek())));
   return soup;
 }
 

@@ -47,7 +47,7 @@ struct Property {
   Type list_size = Type::none;  ///< none: not a list
 };
 
-struct Element {
+struct PlyElement {
   std::string_view name;
   std::uint64_t count = 0;
   std::size_t line = 0;
@@ -58,7 +58,7 @@ enum class Encoding { text, little, big };
 
 struct Header {
   Encoding encoding = Encoding::text;
-  std::vector<Element> elements;
+  std::vector<PlyElement> elements;
 };
 
 Type read_type(TextScanner& scan) {
@@ -76,8 +76,8 @@ Encoding read_encoding(TextScanner& scan) {
   scan.fail("ascii, binary_little_endian or binary_big_endian", name);
 }
 
-Element read_element(TextScanner& scan) {
-  Element element;
+PlyElement read_element(TextScanner& scan) {
+  PlyElement element;
   element.name = scan.word("the name of an element");
   element.line = scan.line();
   const std::int64_t count = scan.integer("the number of elements");
@@ -162,13 +162,13 @@ class Body {
   Body(Values values, PolygonSoup& soup) : values_(values), soup_(soup) {}
 
   void read(const Header& header) {
-    for (const Element& element : header.elements) read(element);
+    for (const PlyElement& element : header.elements) read(element);
     if (!values_.at_end()) values_.fail_at("expected the end of the file after the last element, found more");
     require_known_corners();
   }
 
  private:
-  void read(const Element& element) {
+  void read(const PlyElement& element) {
     if (element.properties.empty()) return;
     require_room(element);
     if (element.name == "vertex") {
@@ -188,7 +188,7 @@ class Body {
     }
   }
 
-  void require_room(const Element& element) {
+  void require_room(const PlyElement& element) {
     std::size_t least = 0;
     for (const Property& p : element.properties)
       least += Values::least_bytes(p.list_size == Type::none ? p.type : p.list_size);
@@ -199,7 +199,7 @@ class Body {
           element.count, element.name, least, values_.left()));
   }
 
-  std::size_t column(const Element& element, std::string_view name, std::string_view other = {}) {
+  std::size_t column(const PlyElement& element, std::string_view name, std::string_view other = {}) {
     for (std::size_t k = 0; k < element.properties.size(); ++k)
       if (element.properties[k].name == name || (!other.empty() && element.properties[k].name == other))
         return k;
@@ -208,7 +208,7 @@ class Body {
   }
 
   /// Returns our own column; past the last column if there is none.
-  static std::size_t tag_column(const Element& element) {
+  static std::size_t tag_column(const PlyElement& element) {
     const auto found =
         std::find_if(element.properties.begin(), element.properties.end(), [](const Property& p) {
           return p.name == "tag" && p.type == Type::i32 && p.list_size == Type::none;
@@ -216,7 +216,7 @@ class Body {
     return static_cast<std::size_t>(found - element.properties.begin());
   }
 
-  void read_vertices(const Element& element) {
+  void read_vertices(const PlyElement& element) {
     const std::array<std::size_t, 3> columns{column(element, "x"), column(element, "y"),
                                              column(element, "z")};
     for (const std::size_t k : columns)
@@ -242,7 +242,7 @@ class Body {
     return value;
   }
 
-  void read_face(const Element& element, std::size_t corners_column, std::size_t tag_column) {
+  void read_face(const PlyElement& element, std::size_t corners_column, std::size_t tag_column) {
     Tag tag = 0;
     for (std::size_t k = 0; k < element.properties.size(); ++k)
       if (k == corners_column)
@@ -259,7 +259,7 @@ class Body {
       soup_.add_facet(corners_, tag);
   }
 
-  void read_edge(const Element& element, std::size_t a, std::size_t b) {
+  void read_edge(const PlyElement& element, std::size_t a, std::size_t b) {
     PolygonSoup::Segment segment;
     for (std::size_t k = 0; k < element.properties.size(); ++k)
       if (k == a)

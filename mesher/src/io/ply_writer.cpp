@@ -13,7 +13,7 @@ namespace collarmesh::io {
 namespace {
 
 template <class T>
-void write_value(FileWriter& out, T value) {
+void write_binary(FileWriter& out, T value) {
   static_assert(std::endian::native == std::endian::little);
   const auto bytes = std::bit_cast<std::array<char, sizeof(T)>>(value);
   out << std::string_view(bytes.data(), bytes.size());
@@ -43,16 +43,16 @@ void write_ply(const std::string& path, const PolygonSoup& soup) {
     out << "element edge " << soup.segments.size() << "\nproperty uint vertex1\nproperty uint vertex2\n";
   out << "end_header\n";
   for (const Point& p : soup.points)
-    for (const double c : {p.x, p.y, p.z}) write_value(out, c);
+    for (const double c : {p.x, p.y, p.z}) write_binary(out, c);
   for (Index f = 0; f < soup.facet_count(); ++f) {
     const auto corners = one_polygon(path, soup, f);
-    write_value(out, static_cast<std::uint32_t>(corners.size()));
-    for (const Index v : corners) write_value(out, v);
-    if (tags) write_value(out, static_cast<std::int32_t>(soup.facet_tag(f)));
+    write_binary(out, static_cast<std::uint32_t>(corners.size()));
+    for (const Index v : corners) write_binary(out, v);
+    if (tags) write_binary(out, static_cast<std::int32_t>(soup.facet_tag(f)));
   }
   for (const auto& segment : soup.segments) {
-    write_value(out, segment.a);
-    write_value(out, segment.b);
+    write_binary(out, segment.a);
+    write_binary(out, segment.b);
   }
   out.commit();
 }

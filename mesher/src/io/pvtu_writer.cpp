@@ -221,7 +221,7 @@ void write_pieces(const std::string& path, const TetMesh& mesh, bool told, bool 
 }
 
 /// Writes the pieces; a mesh that is not partitioned is one piece.
-void write(const std::string& path, const TetMesh& mesh, bool with_ghosts) {
+void write_any(const std::string& path, const TetMesh& mesh, bool with_ghosts) {
   if (!mesh.tet_partition.empty()) {
     write_pieces(path, mesh, true, with_ghosts);
     return;
@@ -233,7 +233,9 @@ void write(const std::string& path, const TetMesh& mesh, bool with_ghosts) {
 
 }  // namespace
 
-void write_pvtu(const std::string& path, const TetMesh& mesh) { write(path, mesh, false); }
-void write_pvtu_with_ghost_cells(const std::string& path, const TetMesh& mesh) { write(path, mesh, true); }
+void write_pvtu(const std::string& path, const TetMesh& mesh) { write_any(path, mesh, false); }
+void write_pvtu_with_ghost_cells(const std::string& path, const TetMesh& mesh) {
+  write_any(path, mesh, true);
+}
 
 }  // namespace collarmesh::io

@@ -26,7 +26,7 @@ constexpr std::array formats{
     SoupFormat{".stl", read_stl, write_stl},    SoupFormat{".ply", read_ply, write_ply},
     SoupFormat{".poly", read_poly, write_poly}, SoupFormat{".smesh", read_smesh, write_smesh}};
 
-const SoupFormat* find_format(const std::string& path, std::string_view format) {
+const SoupFormat* find_soup_format(const std::string& path, std::string_view format) {
   const std::string extension = format.empty() ? lower_extension(path) : std::string(format);
   for (const SoupFormat& known : formats)
     if (known.extension == extension) return &known;
@@ -44,7 +44,7 @@ std::string unknown(const std::string& path) {
 }  // namespace
 
 PolygonSoup read_soup(const std::string& path, std::string_view format) {
-  const SoupFormat* found = find_format(path, format);
+  const SoupFormat* found = find_soup_format(path, format);
   if (found == nullptr) throw ReadError(unknown(path));
   PolygonSoup soup = found->read(path);
   soup.name = path;
@@ -52,13 +52,13 @@ PolygonSoup read_soup(const std::string& path, std::string_view format) {
 }
 
 void write_soup(const std::string& path, const PolygonSoup& soup, std::string_view format) {
-  const SoupFormat* found = find_format(path, format);
+  const SoupFormat* found = find_soup_format(path, format);
   if (found == nullptr) throw WriteError(unknown(path));
   found->write(path, soup);
 }
 
 bool is_soup_format(const std::string& path, std::string_view format) {
-  return find_format(path, format) != nullptr;
+  return find_soup_format(path, format) != nullptr;
 }
 
 std::vector<std::string> soup_formats() {

@@ -14,7 +14,7 @@ namespace collarmesh::io {
 
 namespace {
 
-void write_nodes(FileWriter& out, const TetMesh& mesh) {
+void write_mesh_nodes(FileWriter& out, const TetMesh& mesh) {
   out << mesh.points.size() << " 3 0 1\n";
   write_each(out, mesh.points.size(), [&](TextBuffer& text, std::size_t i) {
     const Point& p = mesh.points[i];
@@ -43,7 +43,7 @@ std::string tetgen_sibling(const std::string& path, const char* extension) {
 void write_tetgen(const std::string& path, const TetMesh& mesh) {
   FileWriter nodes(tetgen_sibling(path, ".node")), tets(tetgen_sibling(path, ".ele")),
       faces(tetgen_sibling(path, ".face")), edges(tetgen_sibling(path, ".edge"));
-  write_nodes(nodes, mesh);
+  write_mesh_nodes(nodes, mesh);
   tets << mesh.tets.size() << (mesh.order() == 2 ? " 10 1\n" : " 4 1\n");
   write_cells(tets, mesh, mesh.tet_tag, tetgen_tet_order, nodes_of_tet);
   faces << mesh.faces.size() << " 1\n";

@@ -14,7 +14,7 @@ namespace collarmesh::io {
 
 namespace {
 
-void write_nodes(FileWriter& out, const PolygonSoup& soup) {
+void write_soup_nodes(FileWriter& out, const PolygonSoup& soup) {
   const bool markers = !soup.point_tags.empty();
   out << "# Written by collarmesh.\n" << soup.points.size() << " 3 0 " << (markers ? 1 : 0) << '\n';
   for (std::size_t i = 0; i < soup.points.size(); ++i) {
@@ -93,7 +93,7 @@ void write_holes_and_regions(FileWriter& out, const PolygonSoup& soup) {
 
 void write_poly(const std::string& path, const PolygonSoup& soup) {
   FileWriter out(path);
-  write_nodes(out, soup);
+  write_soup_nodes(out, soup);
   write_poly_facets(out, soup);
   write_holes_and_regions(out, soup);
   out.commit();
@@ -101,7 +101,7 @@ void write_poly(const std::string& path, const PolygonSoup& soup) {
 
 void write_smesh(const std::string& path, const PolygonSoup& soup) {
   FileWriter out(path);
-  write_nodes(out, soup);
+  write_soup_nodes(out, soup);
   write_smesh_facets(out, path, soup);
   write_holes_and_regions(out, soup);
   out.commit();

@@ -82,10 +82,10 @@ void TextScanner::fail(const std::string& message) const {
 }
 
 void TextScanner::fail(std::string_view expected, std::string_view found) const {
-  fail(fmt::format("expected {}, found {}", expected, quoted(found)));
+  fail(fmt::format("expected {}, found {}", expected, in_quotes(found)));
 }
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   constexpr std::size_t longest = 40;
   std::string result = "'";
   for (const char c : text.substr(0, longest)) result += c >= ' ' && c <= '~' ? c : '?';

@@ -102,6 +102,6 @@ class TextScanner {
 };
 
 /// Quotes a piece of a file for a message: short, printable.
-std::string quoted(std::string_view text);
+std::string in_quotes(std::string_view text);
 
 }  // namespace collarmesh::io

@@ -27,7 +27,7 @@ void append_real(std::string& line, double value) {
 void begin_dataset(FileWriter& out, int number) { out << fmt::format("    -1\n{:6}\n", number); }
 void end_dataset(FileWriter& out) { out << "    -1\n"; }
 
-void write_nodes(FileWriter& out, const TetMesh& mesh) {
+void write_dataset_of_nodes(FileWriter& out, const TetMesh& mesh) {
   begin_dataset(out, unv_nodes);
   std::string line;
   for (std::size_t i = 0; i < mesh.points.size(); ++i) {
@@ -39,7 +39,7 @@ void write_nodes(FileWriter& out, const TetMesh& mesh) {
   end_dataset(out);
 }
 
-const UnvType& type_of(CellKind kind, int order) {
+const UnvType& unv_type_of(CellKind kind, int order) {
   for (const UnvType& type : unv_types)
     if (type.kind == kind && type.order == order) return type;
   return unv_types.front();
@@ -50,7 +50,7 @@ class ElementWriter {
   ElementWriter(FileWriter& out, const TetMesh& mesh) : out_(out), mesh_(mesh) {}
 
   void write(CellKind kind) {
-    const UnvType& type = type_of(kind, mesh_.order());
+    const UnvType& type = unv_type_of(kind, mesh_.order());
     const std::size_t dimension = shape_of(kind).dimension;
     const std::vector<Tag>& tags = tags_of(mesh_, kind);
     for (std::size_t i = 0; i < tags.size(); ++i) {
@@ -101,7 +101,7 @@ class ElementWriter {
 
 void write_unv(const std::string& path, const TetMesh& mesh) {
   FileWriter out(path);
-  write_nodes(out, mesh);
+  write_dataset_of_nodes(out, mesh);
   begin_dataset(out, unv_elements);
   ElementWriter elements(out, mesh);
   for (const CellKind kind : all_cell_kinds) elements.write(kind);

@@ -15,21 +15,21 @@ namespace collarmesh::io {
 
 namespace {
 
-struct TypeName {
+struct XmlType {
   std::string_view name;
   VtkType type;
   std::size_t size;
 };
-constexpr std::array<TypeName, 10> types{{{"Int8", VtkType::i8, 1},
-                                          {"UInt8", VtkType::u8, 1},
-                                          {"Int16", VtkType::i16, 2},
-                                          {"UInt16", VtkType::u16, 2},
-                                          {"Int32", VtkType::i32, 4},
-                                          {"UInt32", VtkType::u32, 4},
-                                          {"Int64", VtkType::i64, 8},
-                                          {"UInt64", VtkType::u64, 8},
-                                          {"Float32", VtkType::f32, 4},
-                                          {"Float64", VtkType::f64, 8}}};
+constexpr std::array<XmlType, 10> xml_types{{{"Int8", VtkType::i8, 1},
+                                             {"UInt8", VtkType::u8, 1},
+                                             {"Int16", VtkType::i16, 2},
+                                             {"UInt16", VtkType::u16, 2},
+                                             {"Int32", VtkType::i32, 4},
+                                             {"UInt32", VtkType::u32, 4},
+                                             {"Int64", VtkType::i64, 8},
+                                             {"UInt64", VtkType::u64, 8},
+                                             {"Float32", VtkType::f32, 4},
+                                             {"Float64", VtkType::f64, 8}}};
 
 template <class T>
 T value_at(std::string_view bytes, std::size_t at, std::endian order) {
@@ -162,13 +162,13 @@ std::vector<std::int64_t> convert_to_integers(std::string_view bytes, std::endia
 }  // namespace
 
 VtkType vtk_type(std::string_view name) {
-  for (const TypeName& known : types)
+  for (const XmlType& known : xml_types)
     if (known.name == name) return known.type;
   return VtkType::unknown;
 }
 
 std::size_t vtk_size(VtkType type) {
-  for (const TypeName& known : types)
+  for (const XmlType& known : xml_types)
     if (known.type == type) return known.size;
   return 0;
 }

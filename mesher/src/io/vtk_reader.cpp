@@ -21,13 +21,13 @@ namespace collarmesh::io {
 
 namespace {
 
-struct TypeName {
+struct LegacyType {
   std::string_view name;
   VtkType type;
 };
 /// VTK writes vtkIdType with 32 bits here. "long" has 64 bits, as on the systems where most VTK files come
 /// from.
-constexpr TypeName type_names[] = {
+constexpr LegacyType legacy_types[] = {
     {"char", VtkType::i8},          {"signed_char", VtkType::i8},     {"unsigned_char", VtkType::u8},
     {"short", VtkType::i16},        {"unsigned_short", VtkType::u16}, {"int", VtkType::i32},
     {"unsigned_int", VtkType::u32}, {"long", VtkType::i64},           {"unsigned_long", VtkType::u64},
@@ -58,7 +58,7 @@ class LegacyReader {
   void read_head() {
     constexpr std::string_view magic = "# vtk DataFile Version";
     const std::string_view first = scan_.rest_of_line();
-    if (!first.starts_with(magic)) fail(fmt::format("expected '{}', found {}", magic, quoted(first)));
+    if (!first.starts_with(magic)) fail(fmt::format("expected '{}', found {}", magic, in_quotes(first)));
     version_at_least_5_ = first.substr(magic.size()).find_first_of("56789") == 1;
     scan_.rest_of_line();  // the title
     const std::string encoding = keyword("ASCII or BINARY");
@@ -91,7 +91,7 @@ class LegacyReader {
   void read_dataset() {
     const std::string kind = keyword("UNSTRUCTURED_GRID");
     if (kind != "unstructured_grid")
-      fail(fmt::format("the dataset is {}, but has to be UNSTRUCTURED_GRID", quoted(kind)));
+      fail(fmt::format("the dataset is {}, but has to be UNSTRUCTURED_GRID", in_quotes(kind)));
   }
 
   /// Rejects data that belong to an earlier item.
@@ -257,9 +257,9 @@ class LegacyReader {
 
   VtkType read_type(bool last_on_line = true) {
     const std::string name = keyword("a type of values");
-    const auto* found = std::find_if(std::begin(type_names), std::end(type_names),
-                                     [&](const TypeName& known) { return known.name == name; });
-    if (found == std::end(type_names)) scan_.fail("a type such as int or double", name);
+    const auto* found = std::find_if(std::begin(legacy_types), std::end(legacy_types),
+                                     [&](const LegacyType& known) { return known.name == name; });
+    if (found == std::end(legacy_types)) scan_.fail("a type such as int or double", name);
     if (last_on_line && !scan_.at_line_end()) scan_.fail("the end of the line", scan_.peek());
     return found->type;
   }

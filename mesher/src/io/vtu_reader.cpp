@@ -45,7 +45,7 @@ class VtuFile {
   std::vector<T> values(const pugi::xml_node& array, std::size_t count = any) const {
     const VtkType type = vtk_type(array.attribute("type").value());
     if (type == VtkType::unknown)
-      fail(array, fmt::format("unknown type of values {}", quoted(array.attribute("type").value())));
+      fail(array, fmt::format("unknown type of values {}", in_quotes(array.attribute("type").value())));
     const std::string_view format = array.attribute("format").as_string("ascii");
     std::vector<T> result = format == "ascii" ? text_values<T>(array) : stored_values<T>(array, type, format);
     if (count != any && result.size() != count)
@@ -57,7 +57,7 @@ class VtuFile {
     std::size_t value = 0;
     if (!parse(node.attribute(attribute).value(), value) || value >= none)
       fail(node, fmt::format("expected {}, a number of things, found {}", attribute,
-                             quoted(node.attribute(attribute).value())));
+                             in_quotes(node.attribute(attribute).value())));
     return value;
   }
 
@@ -70,7 +70,7 @@ class VtuFile {
 
  private:
   static std::string name(const pugi::xml_node& array) {
-    return quoted(array.attribute("Name").as_string("Points"));
+    return in_quotes(array.attribute("Name").as_string("Points"));
   }
 
   [[noreturn]] void fail_at(std::size_t offset, const std::string& message) const {
@@ -104,14 +104,14 @@ class VtuFile {
     const pugi::xml_node root = document_.child("VTKFile");
     if (!root) fail_at(0, "expected a VTKFile");
     if (const std::string_view type = root.attribute("type").value(); type != type_)
-      fail(root, fmt::format("expected the type {}, found {}", type_, quoted(type)));
+      fail(root, fmt::format("expected the type {}, found {}", type_, in_quotes(type)));
   }
 
   void read_storage() {
     const pugi::xml_node root = document_.child("VTKFile");
     const std::string_view header = root.attribute("header_type").as_string("UInt32");
     if (header != "UInt32" && header != "UInt64")
-      fail(root, fmt::format("expected the header type UInt32 or UInt64, found {}", quoted(header)));
+      fail(root, fmt::format("expected the header type UInt32 or UInt64, found {}", in_quotes(header)));
     storage_.header_bytes = header == "UInt64" ? 8 : 4;
     const std::string_view compressor = root.attribute("compressor").value();
     if (compressor == "vtkZLibDataCompressor")
@@ -121,7 +121,7 @@ class VtuFile {
     else if (!compressor.empty())
       fail(root, fmt::format("the compressor {} is not supported; save with vtkZLibDataCompressor, "
                              "vtkLZ4DataCompressor or none",
-                             quoted(compressor)));
+                             in_quotes(compressor)));
     if (std::string_view(root.attribute("byte_order").value()) == "BigEndian")
       storage_.order = std::endian::big;
   }
@@ -182,7 +182,7 @@ class VtuFile {
     std::size_t offset = 0;
     if (!parse(array.attribute("offset").value(), offset) || offset > appended_.size())
       fail(array, fmt::format("the offset {} is not among the {} appended bytes",
-                              quoted(array.attribute("offset").value()), appended_.size()));
+                              in_quotes(array.attribute("offset").value()), appended_.size()));
     first_byte = appended_begin_ + offset;
     return decode(array, appended_.substr(offset), appended_is_base64_, first_byte);
   }
@@ -206,7 +206,7 @@ class VtuFile {
   }
 
   [[noreturn]] std::string unknown_format(const pugi::xml_node& array, std::string_view format) const {
-    fail(array, fmt::format("expected the format ascii, binary or appended, found {}", quoted(format)));
+    fail(array, fmt::format("expected the format ascii, binary or appended, found {}", in_quotes(format)));
   }
 
   [[noreturn]] void fail_byte(std::size_t byte, const pugi::xml_node& array,

@@ -28,17 +28,17 @@ constexpr int fastest = 1;                    // level of zlib_pack
 constexpr std::size_t block_bytes = 1 << 18;  // a multiple of every value's size, as some readers require
 
 template <class T>
-constexpr std::string_view type_name = {};
+constexpr std::string_view xml_type_name = {};
 template <>
-constexpr std::string_view type_name<std::uint8_t> = "UInt8";
+constexpr std::string_view xml_type_name<std::uint8_t> = "UInt8";
 template <>
-constexpr std::string_view type_name<std::int32_t> = "Int32";
+constexpr std::string_view xml_type_name<std::int32_t> = "Int32";
 template <>
-constexpr std::string_view type_name<std::int64_t> = "Int64";
+constexpr std::string_view xml_type_name<std::int64_t> = "Int64";
 template <>
-constexpr std::string_view type_name<float> = "Float32";
+constexpr std::string_view xml_type_name<float> = "Float32";
 template <>
-constexpr std::string_view type_name<double> = "Float64";
+constexpr std::string_view xml_type_name<double> = "Float64";
 
 /// One array in its written form: the header (number of blocks, their size, size of the last one if it is
 /// smaller, compressed sizes) and the compressed blocks, in base64.
@@ -52,7 +52,7 @@ struct DataArray {
     std::visit(
         [this](const auto& all) {
           using T = typename std::decay_t<decltype(all)>::value_type;
-          type = type_name<T>;
+          type = xml_type_name<T>;
           bytes = {reinterpret_cast<const char*>(all.data()), all.size() * sizeof(T)};
           values = all.size();
         },
@@ -151,7 +151,7 @@ void write_vtu(const std::string& path, const TetMesh& mesh) {
 
 std::string_view vtu_type(const VtkArray& array) {
   return std::visit(
-      [](const auto& values) { return type_name<typename std::decay_t<decltype(values)>::value_type>; },
+      [](const auto& values) { return xml_type_name<typename std::decay_t<decltype(values)>::value_type>; },
       array.values);
 }
 

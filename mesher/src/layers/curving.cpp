@@ -9,6 +9,7 @@
 #include "collarmesh/curved_tet.h"
 #include "common/edge_key.h"
 #include "common/layer_jacobians.h"
+#include "common/sorted.h"
 #include "common/tet_sides.h"
 
 namespace collarmesh::layering {
@@ -96,11 +97,6 @@ class Curving {
                        core_nodes_[t][k]);
     first_of_layers_ = static_cast<Index>(mesh_.points.size());
     return true;
-  }
-
-  static std::array<Index, 3> sorted(std::array<Index, 3> corners) {
-    std::sort(corners.begin(), corners.end());
-    return corners;
   }
 
   Index node_of(Index a, Index b) {

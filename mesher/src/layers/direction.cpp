@@ -10,7 +10,7 @@ namespace collarmesh::layering {
 namespace {
 
 constexpr unsigned most_steps = 200;
-constexpr double precision = 1e-6;
+constexpr double direction_precision = 1e-6;
 // Planes and lines at a smaller sine of their angle are taken for the same.
 constexpr double parallel = 1e-4;
 // Lines may leave planes by this sine, because the normals of curved patches are means over triangles.
@@ -33,7 +33,7 @@ std::optional<Direction> DirectionSearch::best() const {
     });
     const Vector way = in_plane(*least) - nearest;
     const double gain = -dot(nearest, way);
-    if (gain <= precision * squared_norm(nearest)) break;
+    if (gain <= direction_precision * squared_norm(nearest)) break;
     nearest = nearest + std::min(1.0, gain / squared_norm(way)) * way;
   }
   return judge(nearest);

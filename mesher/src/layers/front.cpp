@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "common/contains.h"
 #include "common/edge_key.h"
 #include "common/tet_sides.h"
 #include "layers/direction.h"
@@ -15,8 +16,6 @@ namespace {
 
 // Tets around an edge that are followed at most; more are no part of a valid mesh.
 constexpr unsigned most_around = 10'000;
-
-bool contains(const auto& range, Index v) { return std::find(range.begin(), range.end(), v) != range.end(); }
 
 /// Returns whether two triangles of the same corners are oriented alike.
 bool is_alike(const std::array<Index, 3>& t, const std::array<Index, 3>& u) {

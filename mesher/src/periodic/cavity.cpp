@@ -3,16 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/contains.h"
 #include "common/tet_sides.h"
 #include "improve/shape.h"
 
 namespace collarmesh::periodicity {
-
-namespace {
-
-bool contains(const auto& range, Index v) { return std::find(range.begin(), range.end(), v) != range.end(); }
-
-}  // namespace
 
 // Makes the cavity of all tets at a simplex, whose vertices `is_of` accepts. Sides that contain the simplex
 // are removed, and faces on them become cones; other sides form the hull.

@@ -5,6 +5,7 @@
 #include <deque>
 #include <iterator>
 
+#include "common/contains.h"
 #include "common/spatial_order.h"
 #include "delaunay/predicates.h"
 
@@ -12,15 +13,13 @@ namespace collarmesh::periodicity {
 
 namespace {
 
-constexpr double near = 0.25;         // a node this near to a place is moved there; share of the edges at the
-                                      // node
-constexpr double good_removal = 0.3;  // quality that a removal must leave; otherwise the node is kept and
-                                      // inserted on the other side
-constexpr double good_enough = 0.1;   // quality that a move or a removal must leave if there may be another
-                                      // way
-constexpr double fair = 0.02;         // quality that an edge flip must leave if it is optional
-
-bool contains(const auto& range, Index v) { return std::find(range.begin(), range.end(), v) != range.end(); }
+constexpr double near_in_patch = 0.25;  // a node this near to a place is moved there; share of the edges at
+                                        // the node
+constexpr double good_patch_removal = 0.3;    // quality that a removal must leave; otherwise the node is kept
+                                              // and inserted on the other side
+constexpr double good_enough_in_patch = 0.1;  // quality that a move or a removal must leave if there may be
+                                              // another way
+constexpr double fair_flip = 0.02;            // quality that an edge flip must leave if it is optional
 
 }  // namespace
 
@@ -166,9 +165,9 @@ Index PatchEditor::move_one_to(const Point& place) {
   double shortest = INFINITY;
   for (const auto& [ends, like] : cavity.rim)
     shortest = std::min(shortest, distance(editor_.at(ends[0]), editor_.at(node)));
-  if (off(node) > near * shortest) return none;
+  if (off(node) > near_in_patch * shortest) return none;
   if (editor_.worst(cavity, place, node) <
-      std::min(good_enough, editor_.worst(cavity, editor_.at(node), node)))
+      std::min(good_enough_in_patch, editor_.worst(cavity, editor_.at(node), node)))
     return none;
   editor_.move(node, place);
   stays->second = true;
@@ -205,7 +204,7 @@ void PatchEditor::remove(Index node) {
   for (const auto& [ends, like] : cavity.rim)
     if (const double q = editor_.worst(cavity, editor_.at(ends[0]), ends[0]); q > quality)
       quality = q, onto = ends[0];
-  if (quality < good_removal) return;
+  if (quality < good_patch_removal) return;
   replace(cavity, onto);
   ++change_.removed;
   stays_.erase(node);
@@ -246,7 +245,7 @@ void PatchEditor::make_delaunay(std::vector<Edge> edges) {
     edges.pop_back();
     if (!has(a, b) || editor_.on_curve(a, b)) continue;
     const Index c = opposite(a, b), d = opposite(b, a);
-    if (c == none || d == none || is_delaunay(a, b, c, d) || !turn(a, b, fair, false)) continue;
+    if (c == none || d == none || is_delaunay(a, b, c, d) || !turn(a, b, fair_flip, false)) continue;
     ++turned;
     for (const Edge& edge : {Edge{a, d}, Edge{d, b}, Edge{b, c}, Edge{c, a}}) edges.push_back(edge);
   }

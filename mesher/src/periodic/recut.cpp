@@ -5,7 +5,9 @@
 #include <limits>
 #include <queue>
 
+#include "common/cell_shapes.h"
 #include "common/edge_key.h"
+#include "common/sorted.h"
 #include "common/tet_sides.h"
 #include "periodic/pair_choice.h"
 
@@ -14,11 +16,6 @@ namespace collarmesh::periodicity {
 namespace {
 
 std::uint64_t key_of(Index a, Index b) { return std::uint64_t{a} << 32U | b; }
-
-std::array<Index, 3> sorted(std::array<Index, 3> corners) {
-  std::sort(corners.begin(), corners.end());
-  return corners;
-}
 
 struct HashOfTriangle {
   std::size_t operator()(const std::array<Index, 3>& corners) const {
@@ -40,9 +37,6 @@ std::vector<Index> keys_of(const std::unordered_map<Index, Index>& map) {
   for (const auto& [key, value] : map) keys.push_back(key);
   return keys;
 }
-
-constexpr std::array<std::array<unsigned, 2>, 6> edges_of_tet{
-    {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
 
 }  // namespace
 
@@ -138,9 +132,9 @@ std::vector<double> Recut::distances(std::size_t k, const std::vector<Index>& fr
 
 void Recut::find_neighbours() const {
   std::vector<std::uint64_t> edges;
-  edges.reserve(edges_of_tet.size() * mesh_.tets.size());
+  edges.reserve(cell_shapes::corner_pairs.size() * mesh_.tets.size());
   for (const auto& tet : mesh_.tets)
-    for (const auto& [i, j] : edges_of_tet) edges.push_back(edge_key(tet[i], tet[j]));
+    for (const auto& [i, j] : cell_shapes::corner_pairs) edges.push_back(edge_key(tet[i], tet[j]));
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
   neighbours_.resize(mesh_.points.size());
@@ -258,7 +252,7 @@ void Recut::add_edges() {
   for (Index e = 0; e < mesh_.edges.size(); ++e)
     edge_at.emplace(edge_key(mesh_.edges[e][0], mesh_.edges[e][1]), e);
   for (Index t = 0; t < mesh_.tets.size(); ++t)
-    for (const auto& [i, j] : edges_of_tet) {
+    for (const auto& [i, j] : cell_shapes::corner_pairs) {
       const auto found = edge_at.find(edge_key(mesh_.tets[t][i], mesh_.tets[t][j]));
       if (found == edge_at.end()) continue;
       const Index a = made_.tets[t][i], b = made_.tets[t][j];
@@ -466,7 +460,7 @@ TetMesh Recut::back() const {
       }
       restored.add_side(face, behind, feature_back(2, patch, copies_[copy]), plc_, region);
     }
-    for (const auto& [i, j] : edges_of_tet)
+    for (const auto& [i, j] : cell_shapes::corner_pairs)
       if (const auto found = edge_at.find(edge_key(tet[i], tet[j])); found != edge_at.end())
         restored.add_edge(corners[i], corners[j],
                           feature_back(1, made_.edge_curve[found->second], copies_[copy]), plc_);

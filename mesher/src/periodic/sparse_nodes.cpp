@@ -9,8 +9,8 @@ namespace collarmesh::periodicity {
 
 namespace {
 
-constexpr double growth = 0.5;    // of lengths by the distance from the border
-constexpr double nearest = 0.15;  // distance that two nodes keep, relative to the length there
+constexpr double growth = 0.5;           // of lengths by the distance from the border
+constexpr double least_distance = 0.15;  // distance that two nodes keep, relative to the length there
 
 class PatchNodes {
  public:
@@ -92,7 +92,7 @@ class PatchNodes {
       const Index at = stack.back();
       stack.pop_back();
       for (const Index j : neighbours_[at]) {
-        if (!is_inside(j) || between(i, j) > nearest * lengths_[i] ||
+        if (!is_inside(j) || between(i, j) > least_distance * lengths_[i] ||
             std::find(seen.begin(), seen.end(), j) != seen.end())
           continue;
         covered_[j] = true;

@@ -8,9 +8,9 @@ namespace collarmesh {
 namespace {
 
 // A centre is inserted with a pseudo-random offset of up to this share of its ball's radius.
-constexpr double offset_per_radius = 0.05;
+constexpr double tet_offset = 0.05;
 // A cell whose volume is below this share of its longest edge cubed is flat.
-constexpr double flat_volume = 1e-11;
+constexpr double least_volume = 1e-11;
 // Largest number of cells at a new vertex for which narrow cells may exceed the ratio. Between lines a vertex
 // may have as many cells as the product of the numbers of their vertices; in a mesh with bounded ratios it
 // has at most 60.
@@ -29,7 +29,8 @@ Shape shape_of(const RefinedMesh& mesh, const std::array<Index, 4>& v) {
   const double at_a = std::min(std::min(l_ab, l_ac), l_ad);
   const double others =
       std::min(std::min(squared_distance(b, c), squared_distance(b, d)), squared_distance(c, d));
-  return {std::min(at_a, others), volume * volume < flat_volume * flat_volume * longest * longest * longest};
+  return {std::min(at_a, others),
+          volume * volume < least_volume * least_volume * longest * longest * longest};
 }
 
 }  // namespace
@@ -152,7 +153,7 @@ std::optional<Candidate> CellQuality::candidate(Index cell, RandomOffsets& rando
   const double r2 = mesh_.squared_radius(cell);
   const Point& centre = mesh_.circumcentre(cell);
   const Frame& frame = domain_.frame;
-  Point p = frame.rounded(centre + random.outside_collars(centre, offset_per_radius * std::sqrt(r2 / 3), {}));
+  Point p = frame.rounded(centre + random.outside_collars(centre, tet_offset * std::sqrt(r2 / 3), {}));
   if (!domain_.in_box(p)) p = frame.rounded(centre);
   if (!domain_.in_box(p) || !mesh_.in_conflict(cell, p)) return std::nullopt;
   return Candidate{p, r2, centre, {3, none}, cell};

@@ -9,11 +9,11 @@ namespace {
 bool outside(const Plc::Patch& patch) { return patch.regions[0] == 0 && patch.regions[1] == 0; }
 
 // The features to keep, and their new numbers by old ones; `none` for removed features.
-struct Renumbering {
+struct KeptNumbers {
   std::vector<Index> kept, number;
 
   template <class Features, class Keep>
-  Renumbering(const Features& features, const Keep& keep) : number(features.size(), none) {
+  KeptNumbers(const Features& features, const Keep& keep) : number(features.size(), none) {
     for (Index i = 0; i < features.size(); ++i) {
       if (!keep(features[i])) continue;
       number[i] = static_cast<Index>(kept.size());
@@ -32,14 +32,14 @@ struct Renumbering {
 
 FeaturesInside::FeaturesInside(const Plc& complex) : complex_(complex) {
   if (std::none_of(complex.patches.begin(), complex.patches.end(), outside)) return;
-  const Renumbering patches(complex.patches, [](const Plc::Patch& patch) { return !outside(patch); });
-  const auto keeps_some = [](const Renumbering& of, const std::vector<Index>& list) {
+  const KeptNumbers patches(complex.patches, [](const Plc::Patch& patch) { return !outside(patch); });
+  const auto keeps_some = [](const KeptNumbers& of, const std::vector<Index>& list) {
     return std::any_of(list.begin(), list.end(), [&](Index i) { return of.keeps(i); });
   };
-  const Renumbering curves(complex.curves, [&](const Plc::Curve& curve) {
+  const KeptNumbers curves(complex.curves, [&](const Plc::Curve& curve) {
     return curve.patches.empty() || keeps_some(patches, curve.patches);
   });
-  const Renumbering vertices(complex.vertices, [&](const Plc::Vertex& vertex) {
+  const KeptNumbers vertices(complex.vertices, [&](const Plc::Vertex& vertex) {
     return (vertex.patches.empty() && vertex.curves.empty()) || keeps_some(patches, vertex.patches) ||
            keeps_some(curves, vertex.curves);
   });

@@ -6,7 +6,7 @@ namespace collarmesh {
 
 namespace {
 
-constexpr unsigned most_rounds = 20;
+constexpr unsigned most_gradings = 20;
 // Elements between two surfaces are as fine as the surfaces: if the options ask for elements across gaps,
 // sizes grow from the surfaces by this much per unit length.
 constexpr double gradation_in_gaps = 0.25;
@@ -43,7 +43,7 @@ void GradedSizes::cells_made(const ConflictZone& zone, Index vertex) {
 }
 
 bool GradedSizes::spread() {
-  if (gradation_ == 0 || ++rounds_ > most_rounds) return false;
+  if (gradation_ == 0 || ++rounds_ > most_gradings) return false;
   using Entry = std::pair<double, Index>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front;
   for (Index v = 0; v < mesh_.vertex_count(); ++v) front.push({at_vertex_[v], v});

@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "common/disjoint_sets.h"
+#include "common/sorted.h"
 
 namespace collarmesh {
 
@@ -33,8 +34,6 @@ struct CurveEdge {
 
   friend bool operator<(const CurveEdge& a, const CurveEdge& b) { return a.ends < b.ends; }
 };
-
-std::array<Index, 2> sorted(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
 
 // Sorts by mesh vertices first: there are many vertices, and few entries for each.
 template <class T, class VertexOf>

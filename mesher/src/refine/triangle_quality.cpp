@@ -10,7 +10,7 @@ namespace collarmesh {
 namespace {
 
 // A centre is inserted with a pseudo-random offset of up to this share of its ball's radius.
-constexpr double offset_per_radius = 0.1;
+constexpr double triangle_offset = 0.1;
 
 }  // namespace
 
@@ -75,7 +75,7 @@ Point TriangleQuality::place(FaceId face, RandomOffsets& random) const {
     const auto v = mesh_.face_vertices(face);
     const Vector n = cross(mesh_.point(v[1]) - mesh_.point(v[0]), mesh_.point(v[2]) - mesh_.point(v[0]));
     if (squared_norm(n) > 0)
-      p = p + random.outside_collars(p, offset_per_radius * std::sqrt(t.squared_radius / 3), n);
+      p = p + random.outside_collars(p, triangle_offset * std::sqrt(t.squared_radius / 3), n);
   }
   if (domain_.plc.patches[patch].planar) p = domain_.on_plane(patch, p);
   return domain_.frame.rounded(p);

@@ -15,10 +15,10 @@ namespace {
 
 // New tets must have at least this share of the quality of the worst tet at the edge. Halves of a tet have
 // about half of its smallest angle; later improvement finds better tets.
-constexpr double least_share = 0.4;
-// Tets of at least this quality may become as bad as `least_share` times it.
-constexpr double good = 1;
-constexpr std::size_t steps_between_reports = 4096;
+constexpr double least_length_share = 0.4;
+// Tets of at least this quality may become as bad as `least_length_share` times it.
+constexpr double good_enough = 1;
+constexpr std::size_t edges_between_reports = 4096;
 
 }  // namespace
 
@@ -35,12 +35,25 @@ EdgeDivision::EdgeDivision(improvement::Workpiece& workpiece, const MeshOptions&
   workpiece_.prepare();
 }
 
+// Gives sizes to vertices without one, which improvement has inserted.
+void EdgeDivision::add_missing_sizes() {
+  std::vector<Index> region(mesh().points.size(), none);
+  for (Index t = 0; t < complex().size(); ++t)
+    if (complex()[t].alive)
+      for (const Index v : complex()[t].corners) region[v] = complex()[t].region;
+  sizes_.resize(region.size(), INFINITY);
+  for (Index v = 0; v < region.size(); ++v)
+    if (region[v] != none && !std::isfinite(sizes_[v]))
+      sizes_[v] = size_at(mesh().features[v], region[v], mesh().points[v]);
+}
+
 std::size_t EdgeDivision::divide_all(double longest, std::size_t most_vertices, const Execution& execution) {
+  add_missing_sizes();
   std::size_t count = 0, step = 0;
   for (const LongEdge& edge : long_edges(longest)) {
     if (most_vertices > 0 && mesh().points.size() >= most_vertices) break;
     if (execution.cancelled()) break;
-    if (++step % steps_between_reports == 0 && execution.progress &&
+    if (++step % edges_between_reports == 0 && execution.progress &&
         !execution.progress({"remesh", 0, mesh().points.size(), complex().size()}))
       break;
     if (divide(edge.a, edge.b)) ++count;
@@ -94,11 +107,11 @@ bool EdgeDivision::divide(Index a, Index b) {
   if (at == none) return false;
   improvement::TetComplex::Ring ring;
   complex().ring(at, a, b, ring);
-  double worst = good;
+  double worst = good_enough;
   for (const Index t : ring.tets)
     worst = std::min(worst, rule_.quality(complex().corners(t), complex()[t].corners));
   Change change;
-  operations_.divide_edge(a, b, std::max(0.0, least_share * worst), change);
+  operations_.divide_edge(a, b, std::max(0.0, least_length_share * worst), change);
   if (change.kind == Change::Kind::none || !stays_oriented(complex(), change)) return false;
   const double size =
       std::min(0.5 * (sizes_[a] + sizes_[b]), size_at(change.feature, complex()[at].region, change.place));
@@ -108,6 +121,7 @@ bool EdgeDivision::divide(Index a, Index b) {
 }
 
 double EdgeDivision::size_at(const TetMesh::VertexFeature& feature, Index region, const Point& p) const {
+  if (feature.dimension == 0 || feature.feature == none) return sizing_.default_size(p);
   return feature.dimension == 3 ? sizing_.region_size(region, p)
                                 : sizing_.feature_size(feature.dimension, feature.feature, p);
 }

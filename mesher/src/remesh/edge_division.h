@@ -33,6 +33,7 @@ class EdgeDivision {
   std::vector<LongEdge> long_edges(double longest) const;
   double ratio(Index a, Index b) const;
   double ratio_by_field(const LongEdge& edge) const;
+  void add_missing_sizes();
   bool divide(Index a, Index b);
   double size_at(const TetMesh::VertexFeature& feature, Index region, const Point& p) const;
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "collarmesh/error.h"
+#include "common/sorted.h"
 #include "remesh/mesh_sides.h"
 
 namespace collarmesh::remeshing {

@@ -6,6 +6,7 @@
 
 #include "collarmesh/error.h"
 #include "common/disjoint_sets.h"
+#include "common/sorted.h"
 #include "common/tet_sides.h"
 
 namespace collarmesh::remeshing {
@@ -43,11 +44,6 @@ std::vector<Use> uses_of(const TetMesh& mesh) {
 }
 
 }  // namespace
-
-Triangle sorted(Triangle corners) {
-  std::sort(corners.begin(), corners.end());
-  return corners;
-}
 
 MeshSides::MeshSides(const TetMesh& mesh) {
   const std::vector<Use> uses = uses_of(mesh);

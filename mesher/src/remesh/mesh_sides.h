@@ -9,8 +9,6 @@ namespace collarmesh::remeshing {
 
 using Triangle = std::array<Index, 3>;
 
-Triangle sorted(Triangle corners);
-
 /// A triangle that separates a region from another one or from the outside, or that the mesh lists as a face.
 struct MeshSide {
   Triangle corners;     ///< corners; the tet `behind` is on the triangle's back side

@@ -20,9 +20,9 @@ constexpr double share_left = 0.3;
 constexpr std::array lengths{0.05, 0.2, 0.5, 0.7};
 // Qualities. A tet within the bounds on thin tets has at least 1.
 constexpr double good = 1, better = 1.3, least = 1e-12;
-constexpr unsigned most_passes = 4, most_improvements = 3;
+constexpr unsigned most_relaxations = 4, most_improvements = 3;
 // If a pass changes fewer than this share of the vertices or tets, it is the last one of its kind.
-constexpr double least_share = 0.005;
+constexpr double least_share_changed = 0.005;
 // Vertices with more tets are not collapsed, because all these tets would have to be replaced.
 constexpr std::size_t most_tets = 400;
 constexpr unsigned most_tries = 12;
@@ -48,11 +48,11 @@ Relaxation::Relaxation(improvement::Workpiece& workpiece, const MeshOptions& opt
 void Relaxation::contract() {
   for (const double length : lengths) {
     kept_.assign(mesh().points.size(), 0);
-    for (unsigned pass = 0; pass < most_passes; ++pass)
+    for (unsigned pass = 0; pass < most_relaxations; ++pass)
       if (!contract_shorter_than(length, share_left)) break;
     for (unsigned pass = 0; pass < most_improvements; ++pass)
       if (!improve_below(good, pass == 0 ? Means::edges : Means::vertices)) break;
-    for (unsigned pass = 0; pass < most_passes; ++pass)
+    for (unsigned pass = 0; pass < most_relaxations; ++pass)
       if (!contract_shorter_than(length, share_left)) break;
   }
 }
@@ -60,7 +60,7 @@ void Relaxation::contract() {
 void Relaxation::improve() {
   for (unsigned pass = 0; pass < most_improvements; ++pass)
     if (!improve_below(better, pass == 0 ? Means::edges : Means::moves)) break;
-  for (unsigned pass = 0; pass < most_passes; ++pass)
+  for (unsigned pass = 0; pass < most_relaxations; ++pass)
     if (!contract_shorter_than(lengths.back(), share_left)) break;
   for (unsigned pass = 0; pass < most_improvements; ++pass)
     if (!improve_below(better, pass == 0 ? Means::edges : Means::vertices)) break;
@@ -95,7 +95,8 @@ bool Relaxation::contract_shorter_than(double below, double share) {
     else
       kept_[v] = ++now_;
   }
-  return static_cast<double>(contractions_ - before) > least_share * static_cast<double>(shortest.size());
+  return static_cast<double>(contractions_ - before) >
+         least_share_changed * static_cast<double>(shortest.size());
 }
 
 bool Relaxation::contract_at(Index vertex, double below, double share) {
@@ -172,7 +173,7 @@ bool Relaxation::improve_below(double enough, Means means) {
     apply(std::move(change));
     ++others_;
   }
-  return static_cast<double>(others_ - before) > least_share * static_cast<double>(complex().size());
+  return static_cast<double>(others_ - before) > least_share_changed * static_cast<double>(complex().size());
 }
 
 Change Relaxation::improvement_of(Index tet, double enough, Means means) {

@@ -7,12 +7,14 @@
 #include <cmath>
 #include <utility>
 
+#include "check/labelled.h"
 #include "coarsen/coarsen_workpiece.h"
 #include "coarsen/coarsening_rule.h"
 #include "coarsen/target_sizes.h"
 #include "collarmesh/error.h"
 #include "collarmesh/options.h"
 #include "collarmesh/partition.h"
+#include "collarmesh/project_boundary.h"
 #include "collarmesh/second_order.h"
 #include "common/layer_tets.h"
 #include "common/thread_limit.h"
@@ -40,6 +42,9 @@ constexpr double longest_at_first = 1.4142, longest_later = coarsening::Coarseni
 constexpr double any_ratio = 1e12;
 // Smaller than any ratio: with this bound angles alone decide, and slivers with a small ratio are forbidden.
 constexpr double no_ratio = 0.1;
+// Shares that are left of the distance from the complex and of the bounds on angles, if vertices will move
+// onto exact geometry.
+constexpr double distance_left = 0.75, angle_reserve = 0.05;
 // If the smallest angle of a mesh, away from creases and narrow places, is at least this (degrees), the mesh
 // keeps it.
 constexpr double good_angle = 15;
@@ -49,9 +54,10 @@ struct Ended {};
 
 class Remeshing {
  public:
-  Remeshing(const TetMesh& given, const PipelineOptions& options, const AdaptOptions& adapt,
-            const Execution& execution)
-      : given_(given), options_(options), adapt_(adapt), outer_(execution) {
+  /// `complex`: the one that the mesh was made of; null: that of its own surface.
+  Remeshing(const TetMesh& given, const Plc* complex, const PipelineOptions& options,
+            const AdaptOptions& adapt, const Execution& execution)
+      : given_(given), complex_(complex), options_(options), adapt_(adapt), outer_(execution) {
     validate({options});
     if (options.partitions > 0) require_partitioner();
     inner_.cancel = execution.cancel;
@@ -63,6 +69,7 @@ class Remeshing {
       begin("complex", 0, 0.06);
       build();
       ThreadLimit(options_.mesh.threads).run([&] { reshape(); });
+      project();
       raise_order();
       certify();
       forget_numbers();
@@ -78,8 +85,11 @@ class Remeshing {
 
   void build() {
     MeshComplex built = complex_of(given_, options_.complex);
-    made_.plc = std::move(built.plc);
     mesh() = std::move(built.mesh);
+    if (complex_ == nullptr)
+      made_.plc = std::move(built.plc);
+    else
+      follow_complex();
     if (adapt_) adapt_(made_.plc, options_);
     require_known_tags(options_.mesh, made_.plc);
     made_.remeshing.tets_before = mesh().tets.size();
@@ -88,7 +98,23 @@ class Remeshing {
     options_.mesh.edges_per_hole = 0;  // a hole may have no edges but the existing ones
     if (!options_.mesh.bounds.tolerance)
       options_.mesh.bounds.tolerance = tolerance_of(made_.plc, options_.mesh.bounds, largest_size_);
+    promised_ = options_.mesh.bounds;
+    if (options_.exact) {
+      options_.mesh.bounds.tolerance = promised_.tolerance->scaled(distance_left);
+      options_.mesh.bounds.reserve = angle_reserve;
+    }
     choose_bounds();
+  }
+
+  /// Makes the features of the given complex those of the mesh, in place of those of the mesh's own surface.
+  void follow_complex() {
+    forget_numbers();
+    mesh().features.clear();
+    std::fill(mesh().tet_region.begin(), mesh().tet_region.end(), none);
+    made_.plc = *complex_;
+    mesh() = checks::labelled(mesh(), made_.plc,
+                              {.bounds = options_.mesh.bounds, .threads = options_.mesh.threads}, inner_);
+    stop_if_asked();
   }
 
   /// Chooses the bounds that operations keep: stricter ones if all angles of the mesh are already within
@@ -208,7 +234,8 @@ class Remeshing {
     options.thin_above = keep_vertices ? 1e-3 : any_ratio;
     options.keep_vertices = keep_vertices;
     if (keep_vertices) options.passes = 1;
-    add(improve(piece, options, inner_));
+    // What is still poor when all edges fit is improved by slower means, too.
+    add(improve(piece, options, inner_, false));
   }
 
   void coarsen_and_improve() {
@@ -232,18 +259,29 @@ class Remeshing {
     made_.improvement = report;
   }
 
+  void project() {
+    if (!options_.exact) return;
+    begin("project", 0.78, 0.8);
+    made_.projection = project_boundary(mesh(), made_.plc, options_.exact,
+                                        {.bounds = promised_, .threads = options_.mesh.threads}, inner_);
+    stop_if_asked();
+    improvement::mark_thin_tets(mesh(), promised_.radius_edge);
+  }
+
   void raise_order() {
     if (options_.order == 1) return;
     begin("second order", 0.8, 0.86);
     made_.second_order = make_second_order(
-        mesh(), made_.plc, {.bounds = options_.mesh.bounds, .threads = options_.mesh.threads}, inner_);
+        mesh(), made_.plc, {.exact = options_.exact, .bounds = promised_, .threads = options_.mesh.threads},
+        inner_);
     stop_if_asked(made_.second_order.cancelled);
   }
 
   void certify() {
     begin("check", 0.86, 0.96);
-    made_.check =
-        check(mesh(), made_.plc, {.bounds = options_.mesh.bounds, .threads = options_.mesh.threads}, inner_);
+    made_.check = check(
+        mesh(), made_.plc,
+        {.bounds = promised_, .exact = options_.exact_measures, .threads = options_.mesh.threads}, inner_);
     stop_if_asked(made_.check.cancelled);
   }
 
@@ -305,13 +343,15 @@ class Remeshing {
   using Clock = std::chrono::steady_clock;
 
   const TetMesh& given_;
+  const Plc* complex_;
   PipelineOptions options_;
   const AdaptOptions& adapt_;
   const Execution& outer_;
   Execution inner_;
   RemeshResult made_;
   double largest_size_ = 0;
-  Bounds kept_;  // bounds that operations keep
+  Bounds promised_;  // bounds of the certificate
+  Bounds kept_;      // bounds that operations keep
   Clock::time_point started_ = Clock::now();
   double from_ = 0, to_ = 0, fraction_ = 0;
   bool stopped_ = false, out_of_time_ = false;
@@ -320,14 +360,28 @@ class Remeshing {
 }  // namespace
 }  // namespace remeshing
 
-RemeshResult remesh(const TetMesh& mesh, const PipelineOptions& options, const AdaptOptions& adapt,
-                    const Execution& execution) {
+namespace {
+
+RemeshResult remesh(const TetMesh& mesh, const Plc* complex, const PipelineOptions& options,
+                    const AdaptOptions& adapt, const Execution& execution) {
   if (!mesh.layers.prisms.empty() || !mesh.layers.pyramids.empty()) {
     TetMesh cut = tets_of_layers(mesh);
     cut.layers = {};
-    return remesh(cut, options, adapt, execution);
+    return remesh(cut, complex, options, adapt, execution);
   }
-  return remeshing::Remeshing(mesh, options, adapt, execution).run();
+  return remeshing::Remeshing(mesh, complex, options, adapt, execution).run();
+}
+
+}  // namespace
+
+RemeshResult remesh(const TetMesh& mesh, const PipelineOptions& options, const AdaptOptions& adapt,
+                    const Execution& execution) {
+  return remesh(mesh, nullptr, options, adapt, execution);
+}
+
+RemeshResult remesh(const TetMesh& mesh, const Plc& complex, const PipelineOptions& options,
+                    const AdaptOptions& adapt, const Execution& execution) {
+  return remesh(mesh, &complex, options, adapt, execution);
 }
 
 }  // namespace collarmesh

@@ -21,6 +21,7 @@
 #include "facets/exact.h"
 #include "facets/intersections.h"
 #include "facets/simplices.h"
+#include "repair/most_places.h"
 #include "repair/snapping.h"
 
 namespace collarmesh::repairing {
@@ -43,7 +44,6 @@ using PlaneTriangulation = CGAL::Constrained_Delaunay_triangulation_2<
 using Edge = std::array<Index, 2>;
 
 constexpr std::size_t most_rounds = 12;
-constexpr std::size_t most_places = 100;
 constexpr std::size_t work_of_a_cut = 1000;  // work of cutting a pair of facets, in units of `Work`
 
 Edge edge_key(Index a, Index b) { return a < b ? Edge{a, b} : Edge{b, a}; }

@@ -14,7 +14,7 @@ namespace {
 using namespace facets;
 
 // A triangle, rotated to begin with its smallest corner, with its soup and tag.
-struct Key {
+struct CellKey {
   Corners corners;
   Index soup;
   Tag tag;
@@ -23,15 +23,15 @@ struct Key {
   auto identity() const { return std::tie(corners, soup, tag); }
 };
 
-std::vector<Key> sorted_keys(const Draft& draft) {
-  std::vector<Key> keys;
+std::vector<CellKey> sorted_keys(const Draft& draft) {
+  std::vector<CellKey> keys;
   keys.reserve(draft.triangles.size());
   for (Index t = 0; t < draft.triangles.size(); ++t) {
     Corners c = draft.triangles[t];
     std::rotate(c.begin(), std::min_element(c.begin(), c.end()), c.end());
     keys.push_back({c, draft.origins[t].soup, draft.origins[t].tag, t});
   }
-  std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) {
+  std::sort(keys.begin(), keys.end(), [](const CellKey& a, const CellKey& b) {
     return std::tuple_cat(a.identity(), std::tie(a.triangle)) <
            std::tuple_cat(b.identity(), std::tie(b.triangle));
   });
@@ -59,7 +59,7 @@ Changes::Changes(const Draft& before, const Draft& after) : before_(before), aft
 void Changes::match() {
   of_gone_.assign(before_.triangles.size(), none);
   of_come_.assign(after_.triangles.size(), none);
-  const std::vector<Key> gone = sorted_keys(before_), come = sorted_keys(after_);
+  const std::vector<CellKey> gone = sorted_keys(before_), come = sorted_keys(after_);
   auto g = gone.begin();
   auto c = come.begin();
   while (g != gone.end() || c != come.end()) {

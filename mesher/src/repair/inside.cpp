@@ -9,6 +9,7 @@
 #include "common/disjoint_sets.h"
 #include "facets/edges.h"
 #include "facets/shells.h"
+#include "repair/most_places.h"
 #include "repair/winding_number.h"
 
 namespace collarmesh::repairing {
@@ -17,7 +18,6 @@ namespace {
 
 using namespace facets;
 
-constexpr std::size_t most_places = 100;
 constexpr std::size_t most_asked =
     3;  // number of triangles of a shell, a patch or a component at which the winding number is computed
 

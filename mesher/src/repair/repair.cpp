@@ -25,6 +25,7 @@
 #include "repair/distances.h"
 #include "repair/holes.h"
 #include "repair/inside.h"
+#include "repair/most_places.h"
 #include "repair/noise.h"
 #include "repair/repeated.h"
 #include "repair/snapping.h"
@@ -41,7 +42,6 @@ using namespace facets;
 using namespace plc;
 using namespace repairing;
 
-constexpr std::size_t most_places = 100;
 constexpr std::size_t most_rounds = 6;
 // Borders are stitched over at most this share of the diagonal: wider gaps are intended.
 constexpr double widest_stitch = 1e-3;

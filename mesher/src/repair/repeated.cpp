@@ -7,14 +7,13 @@
 
 #include "common/disjoint_sets.h"
 #include "facets/edges.h"
+#include "repair/most_places.h"
 
 namespace collarmesh::repairing {
 
 namespace {
 
 using namespace facets;
-
-constexpr std::size_t most_places = 100;
 
 // Returns for each triangle whether it is a copy of an earlier one of its soup.
 std::vector<bool> find_copies(const Draft& draft) {

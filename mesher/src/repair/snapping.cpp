@@ -5,6 +5,7 @@
 
 #include "facets/edges.h"
 #include "repair/changes.h"
+#include "repair/most_places.h"
 #include "repair/snap_corners.h"
 #include "repair/snap_cuts.h"
 #include "repair/snap_overlay.h"
@@ -19,7 +20,6 @@ namespace {
 using namespace facets;
 
 constexpr std::size_t most_rounds = 50, most_rounds_after_overlay = 12;
-constexpr std::size_t most_places = 100;
 constexpr std::size_t most_overlays = 10, few_crossings = 100;
 
 // Snaps in rounds. Each round only looks at triangles that the one before has changed.

@@ -1,10 +1,10 @@
 #include "second_order/jacobian_coefficients.h"
 
+#include "common/cell_shapes.h"
+
 namespace collarmesh::second_order {
 
 namespace {
-
-constexpr std::array<std::array<unsigned, 2>, 6> ends{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
 
 // The determinant is a product of three linear functions. A Bernstein coefficient is 8 times the mean over
 // the six ways to assign its three corners to these functions. A Way is one assignment, with its coefficient
@@ -35,7 +35,7 @@ JacobianCoefficients::JacobianCoefficients(const CurvedTet& nodes) : values_{} {
   std::array<std::array<Point, 4>, 4> bezier;
   for (std::size_t i = 0; i < 4; ++i) bezier[i][i] = nodes[i];
   for (std::size_t e = 0; e < 6; ++e) {
-    const auto [i, j] = ends[e];
+    const auto [i, j] = cell_shapes::tet_edges[e];
     bezier[i][j] = bezier[j][i] = 2 * nodes[4 + e] - 0.5 * (nodes[i] + nodes[j]);
   }
   for (std::size_t k = 0; k < 3; ++k)
@@ -72,7 +72,7 @@ std::array<Vector, 6> JacobianCoefficients::gradient(const Values& weights) cons
     }
   std::array<Vector, 6> found;
   for (std::size_t e = 0; e < 6; ++e) {
-    const auto [i, j] = ends[e];
+    const auto [i, j] = cell_shapes::tet_edges[e];
     found[e] = 2.0 * (by_bezier[i][j] + by_bezier[j][i]);
   }
   return found;

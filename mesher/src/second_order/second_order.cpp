@@ -35,7 +35,7 @@ constexpr double farthest = 0.5;
 constexpr double least_turn = 0.15;
 
 // Nodes move back by this factor; below this share of the full distance they go to the middle of their edge.
-constexpr double step = 0.8, least_share = 0.1, forward_precision = 0.04;
+constexpr double step_factor = 0.8, least_share = 0.1, forward_precision = 0.04;
 constexpr unsigned steps_per_try = 3;  // after this many steps, nodes inside regions may find room again
 
 // A node on a planar patch or a straight curve moves to the exact geometry if that is farther away than this,
@@ -330,7 +330,7 @@ class Curving {
     }
   }
 
-  static void step_back(Move& move) { move.share = move.share > least_share ? step * move.share : 0; }
+  static void step_back(Move& move) { move.share = move.share > least_share ? step_factor * move.share : 0; }
 
   // Returns the move to take back: the shortest one whose next step back makes the tet valid, otherwise the
   // longest one; none if all its edges are straight.
