@@ -22,10 +22,6 @@ using improvement::Workpiece;
 
 // Number of rounds of divisions and improvement, and number of passes of divisions in each round.
 constexpr unsigned rounds = 3, divisions = 2;
-// Most divisions of long and thin parts. Each halves the edges along the part.
-constexpr unsigned most_halvings = 12;
-// Edges shorter than this share of the target lie around or across a long and thin part.
-constexpr double around = 0.3;
 // Edges longer than this factor times the target are divided.
 constexpr double longest = coarsening::CoarseningRule::longest_new;
 
@@ -91,7 +87,6 @@ class Bringing {
 
   bool run() {
     relax([](Relaxation& relaxation) { relaxation.contract(); });
-    if (is_long_and_thin()) divide_in_rings();
     for (unsigned round = 0; round < rounds && may_go_on(); ++round) {
       for (unsigned pass = 0; pass < divisions && may_go_on(); ++pass) divide();
       relax([](Relaxation& relaxation) { relaxation.improve(); });
@@ -133,23 +128,6 @@ class Bringing {
     });
     edges.grade(mesh_.points, growth, graded);
     return tets_of(graded) <= most_times * tets_of(targets) + some ? graded : targets;
-  }
-
-  /// Returns whether sizes that grow with the distance from short edges take too many tets.
-  bool is_long_and_thin() const { return graded_sizes() == sizes(); }
-
-  /// Divides edges along long and thin parts where vertices face each other, and collapses those around such
-  /// parts that are no longer needed. Nothing is moved in between, so vertices stay in rings.
-  void divide_in_rings() {
-    for (unsigned pass = 0; pass < most_halvings && may_go_on(); ++pass) {
-      Workpiece piece = workpiece();
-      EdgeDivision division(piece, options_, sizes());
-      division.divide_facing();
-      const std::size_t divided = division.divide_all(longest, options_.max_vertices, execution_);
-      piece.complex.store();
-      if (divided == 0) break;
-      relax([](Relaxation& relaxation) { relaxation.contract_short(around); });
-    }
   }
 
   /// Estimates the number of tets for these sizes, given by vertex.
