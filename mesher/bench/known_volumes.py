@@ -319,7 +319,7 @@ def print_table(rows: list[Row]) -> None:
         for order in sorted({r.order for r in rows}):
             r = of[file, order]
             line += [r.outcome, "", f"{r.cpu:.2f}"] if not r.tets else [f"{100 * r.off:.2f}%" + ("" if r.outcome == "good" else f" ({r.outcome})"),
-                                                            str(r.tets), f"{r.cpu:.2f}"]
+                                                                        str(r.tets), f"{r.cpu:.2f}"]
         lines.append(line)
     header = ["input"]
     for order in sorted({r.order for r in rows}):

@@ -48,9 +48,9 @@ class Operations {
   /// Inserts a vertex inside a region. It replaces a tet or one of its edges, and as many tets around as is
   /// best, if all new tets are better than `least` and than `change`.
   void insert_in_cavity(Index tet, double least, Change& change);
-  /// Inserts a vertex in the middle of an edge, inside a region, in a patch or on a curve, with any number of
-  /// tets there, if all new tets are better than `least`.
-  void divide_edge(Index a, Index b, double least, Change& change);
+  /// Inserts a vertex at this share of the length of an edge, inside a region or in a patch, or in the middle
+  /// of an edge on a curve, with any number of tets there, if all new tets are better than `least`.
+  void divide_edge(Index a, Index b, double share, double least, Change& change);
   /// Collapses an edge: moves a vertex along it, within the vertex's feature, onto the other end, so that the
   /// tets at the edge vanish. No edge becomes longer than the longest one of the cavity.
   void contract_edge(Index vertex, Index onto, Change& change);

@@ -356,8 +356,8 @@ void Operations::move_to_face(Index vertex, Change& change) {
   if (place) fill_move(vertex, *place, best, change);
 }
 
-// Returns the places of the vertex' patch that are nearest to the other vertices of the current cone, and
-// those beside them along the longest edge of the cone.
+// Returns the places of the patch of the vertex that are nearest to the other vertices of the current cone,
+// and those beside them along the longest edge of the cone.
 std::vector<Point> Operations::facing_places(Index vertex, const Freedom& where) {
   const Point& p = mesh_.points[vertex];
   std::vector<Index> others;
@@ -401,13 +401,14 @@ void Operations::insert_in_cone(Index a, Index b, double least, Change& change) 
   fill(Change::inserted, change);
 }
 
-void Operations::divide_edge(Index a, Index b, double least, Change& change) {
+void Operations::divide_edge(Index a, Index b, double share, double least, Change& change) {
   if (!find_whole_ring(a, b) || !make_cone_of_edge(a, b)) return;
   if (complex_.on_curve(a, b)) return divide_curve_edge(a, b, least, change);
   if (!faces_are_of_one_patch()) return;
   const Index patch = cone_.faces.empty() ? none : mesh_.face_patch[cone_.faces[0]];
   const Freedom where = patch == none ? everywhere : Freedom{{}, 0, patch};
-  const Point place = back_on_feature(0.5 * (mesh_.points[a] + mesh_.points[b]), mesh_.points[a], where);
+  const Point on_edge = (1 - share) * mesh_.points[a] + share * mesh_.points[b];
+  const Point place = back_on_feature(on_edge, mesh_.points[a], where);
   const double quality = quality_around(place, inserted_in(patch), least);
   if (quality < 0 || !surfaces_allow(place, none)) return insert_in_cone(a, b, least, change);
   change = {};

@@ -57,6 +57,12 @@ void Relaxation::contract() {
   }
 }
 
+void Relaxation::contract_short(double below) {
+  kept_.assign(mesh().points.size(), 0);
+  for (unsigned pass = 0; pass < most_passes; ++pass)
+    if (!contract_shorter_than(below, share_left)) break;
+}
+
 void Relaxation::improve() {
   for (unsigned pass = 0; pass < most_improvements; ++pass)
     if (!improve_below(better, pass == 0 ? Means::edges : Means::moves)) break;
