@@ -21,11 +21,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from inputs import Surface
-from processes import ProgramFailed, run
+from processes import run_limited
 from tables import table
 
 diagonal = 20.0             # so that the target edge length is 1
 side = diagonal / math.sqrt(3)   # of a cube with that diagonal
+memory_limit = 12 << 30     # bytes
 cuts = {"coarse": 24, "fine": 96}   # edges per circle
 
 # The script for FreeCAD's Python. It reads lines of "NAME EXPRESSION"; an expression makes a list of solids.
@@ -284,19 +285,29 @@ def differences(made: list[float], known: list[float]) -> float:
     return max(abs(a / b - 1) for a, b in zip(sorted(made), sorted(known)))
 
 
-def measure(path: Path, program: str, order: int, limit: float) -> Row:
+def measure(path: Path, program: str, order: int, limit: int) -> Row:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         command = [program, str(path.resolve()), "-o", "mesh.vtu", "--report", "report.json", "--progress", "none", "--threads", "1",
                    "--order", str(order)]
-        try:
-            done = run(command, folder, limit, accepted=(0, 7))
-        except ProgramFailed as failure:
-            return Row(path.name, order, str(failure))
+        done = run_limited(command, folder, limit, memory_limit)
+        if done.exit_code < 0:
+            return Row(path.name, order, f"not done in {limit} s", done.cpu)
+        if done.exit_code not in (0, 7):
+            return Row(path.name, order, f"exit code {done.exit_code}", done.cpu)
         mesh = json.loads((folder / "report.json").read_text())["mesh"]
         known = json.loads(Path(f"{path}.json").read_text())
         return Row(path.name, order, "good" if done.exit_code == 0 else f"exit code {done.exit_code}", done.cpu, mesh["tets"],
                    differences(list(mesh["region_volumes"].values()), known))
+
+
+def read_rows(path: Path) -> list[Row]:
+    """Reads the rows that an earlier run wrote."""
+    if not path.exists():
+        return []
+    with open(path, newline="") as file:
+        return [Row(file_name, int(order), outcome, float(cpu), int(tets), float(off))
+                for file_name, order, outcome, cpu, tets, off in csv.reader(file, delimiter="\t")]
 
 
 def print_table(rows: list[Row]) -> None:
@@ -307,8 +318,8 @@ def print_table(rows: list[Row]) -> None:
         line = [file]
         for order in sorted({r.order for r in rows}):
             r = of[file, order]
-            line += [r.outcome, "", ""] if not r.tets else [f"{100 * r.off:.2f}%" + ("" if r.outcome == "good" else f" ({r.outcome})"),
-                                                            str(r.tets), f"{r.cpu:.2f}"]
+            line += [r.outcome, "", f"{r.cpu:.2f}"] if not r.tets else [f"{100 * r.off:.2f}%" + ("" if r.outcome == "good" else f" ({r.outcome})"),
+                                                                        str(r.tets), f"{r.cpu:.2f}"]
         lines.append(line)
     header = ["input"]
     for order in sorted({r.order for r in rows}):
@@ -327,21 +338,22 @@ def main() -> None:
     parser.add_argument("folder", type=Path)
     parser.add_argument("--program", default=str(Path(__file__).parents[2] / "collarmesh"))
     parser.add_argument("--orders", type=int, nargs="+", default=[1, 2])
-    parser.add_argument("--limit", type=float, default=120, help="seconds for one run")
+    parser.add_argument("--limit", type=int, default=120, help="CPU seconds for one run")
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--only", default="", help="names that contain this")
     parser.add_argument("--out", type=Path,
-                        help="rows as they come: file, order, outcome, CPU seconds, tets, difference")
+                        help="rows as they come: file, order, outcome, CPU seconds, tets, difference; a run that it holds is not made again")
     options = parser.parse_args()
     if options.action == "write":
         write(options.folder)
         return
     files = [Path(str(f)[:-5]) for f in sorted(options.folder.glob("*.json")) if options.only in f.name]
-    rows: list[Row] = []
+    rows = read_rows(options.out) if options.out else []
+    held = {(r.file, r.order) for r in rows}
+    jobs = [(f, order) for f in files for order in options.orders if (f.name, order) not in held]
     with contextlib.ExitStack() as stack:
-        out = stack.enter_context(open(options.out, "w", newline="")) if options.out else None
+        out = stack.enter_context(open(options.out, "a", newline="")) if options.out else None
         pool = stack.enter_context(concurrent.futures.ThreadPoolExecutor(options.jobs))
-        jobs = [(f, order) for f in files for order in options.orders]
         for row in pool.map(lambda job: measure(job[0], options.program, job[1], options.limit), jobs):
             rows.append(row)
             if out:

@@ -348,7 +348,7 @@ TEST(DividedEdges, AreUndone) {
       for (const auto& [a, b] : edges) {
         if (workpiece.complex.tet_at_edge(a, b) == none) continue;
         Change change;
-        operations.divide_edge(a, b, 0, change);
+        operations.divide_edge(a, b, 0.5, 0, change);
         if (change.kind == Change::Kind::none) continue;
         ++divided[change.feature.dimension];
         workpiece.apply(std::move(change));
@@ -383,7 +383,7 @@ TEST(DividedEdges, KeepCurvesWhole) {
   for (unsigned round = 0; round < 3; ++round)
     for (const auto& [a, b] : std::vector(given.mesh.edges)) {
       improvement::Change change;
-      operations.divide_edge(a, b, 0, change);
+      operations.divide_edge(a, b, 0.5, 0, change);
       if (change.kind == improvement::Change::Kind::none) continue;
       ++divided;
       workpiece.apply(std::move(change));

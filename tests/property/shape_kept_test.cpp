@@ -30,6 +30,19 @@ double enclosed_by(const PolygonSoup& soup) {
   return std::fabs(volume);
 }
 
+/// Returns the solid between two closed surfaces.
+PolygonSoup hollow(const PolygonSoup& outer, const PolygonSoup& inner) {
+  PolygonSoup both = outer;
+  const auto first = static_cast<Index>(both.points.size());
+  both.points.insert(both.points.end(), inner.points.begin(), inner.points.end());
+  for (Index p = 0; p < inner.polygon_count(); ++p) {
+    std::vector<Index> corners;
+    for (const Index corner : inner.polygon(p)) corners.insert(corners.begin(), first + corner);
+    both.add_facet(corners);
+  }
+  return both;
+}
+
 /// Nested surfaces, the outermost first.
 struct Nested {
   std::string name;
@@ -73,6 +86,37 @@ TEST_P(ShapeKept, EveryRegionHasItsVolume) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Order, ShapeKept, ::testing::Values(1U, 2U));
+
+/// Meshes a shell given by few facets, far thinner than the size, from constrained tetrahedra.
+SoupPipelineResult meshed_shell(unsigned segments, double thickness, unsigned order) {
+  const auto ball = [&](double radius) { return testing::uv_sphere(radius, segments / 2, segments); };
+  const double radius = 5.7735;
+  const PolygonSoup shell = hollow(ball(radius), ball(radius - thickness));
+  PipelineOptions options;
+  options.mesh = with_size(1);
+  options.order = order;
+  options.start = Start::constrained;
+  SoupPipelineResult made = run_pipeline({&shell, 1}, options);
+  const double expected = enclosed_by(ball(radius)) - enclosed_by(ball(radius - thickness));
+  EXPECT_NEAR(made.check.of_mesh.volumes.at(1), expected, (order == 1 ? 0.05 : 0.01) * expected);
+  return made;
+}
+
+TEST(ShapeKept, AShellFarThinnerThanTheSizeKeepsItsVolume) {
+  for (const unsigned order : {1U, 2U}) {
+    SCOPED_TRACE(order);
+    const SoupPipelineResult made = meshed_shell(32, 0.002, order);
+    EXPECT_EQ(made.missed(), "");
+    EXPECT_LT(made.result.mesh.tets.size(), 6000U);
+  }
+}
+
+// Facets longer than the size are divided. Tets of thin walls are long only if vertices on both sides face
+// each other.
+TEST(ShapeKept, VerticesOfACoarseThinShellFaceEachOther) {
+  const SoupPipelineResult made = meshed_shell(16, 0.02, 1);
+  EXPECT_LT(100 * made.check.findings_total, made.result.mesh.tets.size());
+}
 
 // A sphere bends in two directions, so its chords remove twice as much as those of a cylinder.
 TEST(ShapeKept, ALargeBallLosesNoMoreThanARod) {

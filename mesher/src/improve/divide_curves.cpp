@@ -50,7 +50,7 @@ std::size_t divide_curves_at_poor_tets(Workpiece& workpiece, const Bounds& bound
     const auto edge = edge_to_divide(complex, t);
     if (!edge || workpiece.is_fixed((*edge)[0]) || workpiece.is_fixed((*edge)[1])) continue;
     Change change;
-    operations.divide_edge((*edge)[0], (*edge)[1], least_divided, change);
+    operations.divide_edge((*edge)[0], (*edge)[1], 0.5, least_divided, change);
     if (change.kind == Change::Kind::none) continue;
     workpiece.apply(std::move(change));
     ++divided;

@@ -37,6 +37,9 @@ class Operations {
   void reconnect(Index tet, Change& change);
   /// Moves a vertex within its feature to a place where the worst tet around it is better.
   void move_vertex(Index vertex, Change& change);
+  /// Moves a vertex within its patch to where it faces a vertex of a tet around it, if the worst of these
+  /// tets is better then. In thin places only vertices that face each other permit long edges.
+  void move_to_face(Index vertex, Change& change);
   /// Inserts a vertex on an edge inside a region or a patch, at the best place, if the tets around it are all
   /// better than `least`.
   void split_edge(Index a, Index b, double least, Change& change);
@@ -45,9 +48,9 @@ class Operations {
   /// Inserts a vertex inside a region. It replaces a tet or one of its edges, and as many tets around as is
   /// best, if all new tets are better than `least` and than `change`.
   void insert_in_cavity(Index tet, double least, Change& change);
-  /// Inserts a vertex in the middle of an edge, inside a region, in a patch or on a curve, with any number of
-  /// tets there, if all new tets are better than `least`.
-  void divide_edge(Index a, Index b, double least, Change& change);
+  /// Inserts a vertex at this share of the length of an edge, inside a region or in a patch, or in the middle
+  /// of an edge on a curve, with any number of tets there, if all new tets are better than `least`.
+  void divide_edge(Index a, Index b, double share, double least, Change& change);
   /// Collapses an edge: moves a vertex along it, within the vertex's feature, onto the other end, so that the
   /// tets at the edge vanish. No edge becomes longer than the longest one of the cavity.
   void contract_edge(Index vertex, Index onto, Change& change);
@@ -149,6 +152,8 @@ class Operations {
   Point back_on_feature(const Point& p, const Point& from, const Freedom& freedom);
   std::pair<Point, double> best_place(const Point& start, Index id, const Freedom& freedom, double best);
   std::pair<double, double> best_way(Index vertex, double best);
+  std::vector<Point> facing_places(Index vertex, const Freedom& where);
+  void fill_move(Index vertex, const Point& place, double quality, Change& change);
   void contract_edge_above(Index vertex, Index onto, std::optional<double> least, bool any_length,
                            Change& change);
   bool may_contract(Index vertex, Index onto);

@@ -321,16 +321,59 @@ void Operations::move_vertex(Index vertex, Change& change) {
   if (after > wanted && !((!on_curve || curves_.fits(vertex, way)) && surfaces_allow(place, vertex)))
     search();
   if (after <= wanted) return;
+  fill_move(vertex, place, after, change);
+  change.way = way;
+}
+
+// Proposes the move of the vertex of the current cone.
+void Operations::fill_move(Index vertex, const Point& place, double quality, Change& change) {
   std::vector<Index> read = std::move(change.read);
   read.insert(read.end(), cone_.tets.begin(), cone_.tets.end());
   change = {};
   change.kind = Change::Kind::move;
-  change.quality = after;
+  change.quality = quality;
   change.vertex = vertex;
   change.place = place;
-  change.way = way;
   change.replacement.old_faces = cone_.faces;
   change.read = std::move(read);
+}
+
+void Operations::move_to_face(Index vertex, Change& change) {
+  const auto& feature = mesh_.features[vertex];
+  if (feature.dimension != 2 || feature.feature == none || !find_cone_of_vertex(vertex)) return;
+  const Freedom where{{}, 0, feature.feature};
+  worst_at_vertex(vertex);
+  double best = std::max(cone_.worst * (1 + rule_.least_gain()) + 1e-12, change.quality);
+  std::optional<Point> place;
+  for (const Point& p : facing_places(vertex, where)) {
+    const double quality = quality_around(p, vertex, best);
+    if (quality <= best || !edges_allowed(vertex, mesh_.points[vertex], p) || !surfaces_allow(p, vertex))
+      continue;
+    best = quality;
+    place = p;
+  }
+  if (place) fill_move(vertex, *place, best, change);
+}
+
+// Returns the places of the patch of the vertex that are nearest to the other vertices of the current cone,
+// and those beside them along the longest edge of the cone.
+std::vector<Point> Operations::facing_places(Index vertex, const Freedom& where) {
+  const Point& p = mesh_.points[vertex];
+  std::vector<Index> others;
+  for (const auto& face : cone_.hull) others.insert(others.end(), face.begin(), face.end());
+  std::sort(others.begin(), others.end());
+  others.erase(std::unique(others.begin(), others.end()), others.end());
+  Vector longest{0, 0, 0};
+  for (const Index v : others)
+    if (const Vector way = mesh_.points[v] - p; squared_norm(way) > squared_norm(longest)) longest = way;
+  std::vector<Point> places;
+  for (const Index v : others) {
+    const Vector way = mesh_.points[v] - p;
+    const double along = dot(way, longest) / squared_norm(longest);
+    if (mesh_.features[v].dimension < 3) places.push_back(back_on_feature(mesh_.points[v], p, where));
+    places.push_back(back_on_feature(p + along * longest, p, where));
+  }
+  return places;
 }
 
 void Operations::split_edge(Index a, Index b, double least, Change& change) {
@@ -357,13 +400,14 @@ void Operations::insert_in_cone(Index a, Index b, double least, Change& change) 
   fill(Change::inserted, change);
 }
 
-void Operations::divide_edge(Index a, Index b, double least, Change& change) {
+void Operations::divide_edge(Index a, Index b, double share, double least, Change& change) {
   if (!find_whole_ring(a, b) || !make_cone_of_edge(a, b)) return;
   if (complex_.on_curve(a, b)) return divide_curve_edge(a, b, least, change);
   if (!faces_are_of_one_patch()) return;
   const Index patch = cone_.faces.empty() ? none : mesh_.face_patch[cone_.faces[0]];
   const Freedom where = patch == none ? everywhere : Freedom{{}, 0, patch};
-  const Point place = back_on_feature(0.5 * (mesh_.points[a] + mesh_.points[b]), mesh_.points[a], where);
+  const Point on_edge = (1 - share) * mesh_.points[a] + share * mesh_.points[b];
+  const Point place = back_on_feature(on_edge, mesh_.points[a], where);
   const double quality = quality_around(place, inserted_in(patch), least);
   if (quality < 0 || !surfaces_allow(place, none)) return insert_in_cone(a, b, least, change);
   change = {};

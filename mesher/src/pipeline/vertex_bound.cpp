@@ -16,6 +16,13 @@ namespace {
 constexpr double always = 20000, by_feature = 160, by_square = 64, by_cube = 160;
 constexpr double sizes_per_diagonal = 20;  // as for the default size
 
+constexpr double square(double x) { return x * x; }
+
+double area_of(const Plc& plc, Index triangle) {
+  const auto& [a, b, c] = plc.triangles[triangle].points;
+  return 0.5 * norm(cross(plc.points[b] - plc.points[a], plc.points[c] - plc.points[a]));
+}
+
 /// Returns the patch's area in squares whose side is the size or, if shorter, a chord that keeps the
 /// tolerance.
 double squares_on(const Plc& plc, const Plc::Patch& patch, double size, const SurfaceTolerance& tolerance) {
@@ -25,12 +32,28 @@ double squares_on(const Plc& plc, const Plc::Patch& patch, double size, const Su
   double squares = 0;
   for (Index i = 0; i < patch.triangle_count; ++i) {
     const Index t = patch.first_triangle + i;
-    const auto& [a, b, c] = plc.triangles[t].points;
-    const double area = 0.5 * norm(cross(plc.points[b] - plc.points[a], plc.points[c] - plc.points[a]));
+    const double area = area_of(plc, t);
     const double squared_chord = 8 * tolerance.at_triangle(t) / curvature[i].largest;
     squares += area / (curvature[i].largest > 0
                            ? std::clamp(squared_chord, most_per_square * size * size, size * size)
                            : size * size);
+  }
+  return squares;
+}
+
+/// Returns the area that a patch has in squares whose sides are the longest chords that keep the tolerance,
+/// or the size if it is shorter. Chords of folds, which turn sharply, are as long as the tolerance permits
+/// anywhere.
+double squares_of_chords(const Plc& plc, const Plc::Patch& patch, double size,
+                         const SurfaceTolerance& tolerance) {
+  if (patch.planar) return 0;
+  const std::vector<Curvature> curvature = curvatures(plc, patch);
+  double squares = 0;
+  for (Index i = 0; i < patch.triangle_count; ++i) {
+    const Index t = patch.first_triangle + i;
+    if (!(curvature[i].largest > 0)) continue;
+    const double near = tolerance.at_triangle(t), radius = std::max(1 / curvature[i].largest, near);
+    squares += area_of(plc, t) / std::min(8 * near * radius, size * size);
   }
   return squares;
 }
@@ -96,6 +119,24 @@ std::size_t most_vertices_expected(const Plc& plc, const PipelineOptions& option
   if (!plain_sizes(options) && plc.regions.size() > 1)
     vertices += by_cube * prediction::count_tets(prediction::Shape(plc), mesh) / tets_per_vertex;
   return static_cast<std::size_t>(std::min((always + vertices) * by_bounds(plc, mesh), largest));
+}
+
+std::size_t most_vertices_on_rods(const Plc& plc, const MeshOptions& options) {
+  // A rod a two-hundredth of the size thin took 5 vertices for each square.
+  constexpr double by_chord = 8, most = 1e6;
+  const SurfaceTolerance tolerance = tolerance_of(plc, options.bounds, options.size);
+  const double size = smallest_size(options, plc.bounds.diagonal());
+  double squares = 0;
+  for (const Plc::Patch& patch : plc.patches) {
+    double area = 0;
+    for (Index i = 0; i < patch.triangle_count; ++i) area += area_of(plc, patch.first_triangle + i);
+    const double own = squares_of_chords(plc, patch, size, tolerance);
+    const auto is_thicker_than_chords = [&](Index region) {
+      return region == 0 || 4 * square(plc.regions[region].volume / area) > area / own;
+    };
+    if (own > 0 && std::ranges::all_of(patch.regions, is_thicker_than_chords)) squares += own;
+  }
+  return static_cast<std::size_t>(std::min(by_chord * squares, most));
 }
 
 }  // namespace collarmesh

@@ -23,7 +23,9 @@ void VertexBudget::find(const Plc& plc, const PipelineOptions& options) {
   if (given_.mesh.profile == Profile::paper) return;  // its sizes do not tell how many vertices to expect
   if (ways_ == Ways::none && given > 0) return;
   std::size_t most = most_vertices_expected(plc, options);
-  if (ways_ == Ways::none) most = std::max(times_without_other_ways * most, least_without_other_ways);
+  if (ways_ == Ways::none)
+    most = std::max({times_without_other_ways * most, least_without_other_ways,
+                     most_vertices_on_rods(plc, options.mesh)});
   if (given == 0 || given > most) most_ = most;
 }
 

@@ -22,6 +22,10 @@ using improvement::Workpiece;
 
 // Number of rounds of divisions and improvement, and number of passes of divisions in each round.
 constexpr unsigned rounds = 3, divisions = 2;
+// Most divisions of thin parts. Each halves the edges along them.
+constexpr unsigned most_halvings = 12;
+// Edges shorter than this share of the target lie around or across a thin part.
+constexpr double around = 0.3;
 // Edges longer than this factor times the target are divided.
 constexpr double longest = coarsening::CoarseningRule::longest_new;
 
@@ -87,6 +91,7 @@ class Bringing {
 
   bool run() {
     relax([](Relaxation& relaxation) { relaxation.contract(); });
+    if (is_thin()) divide_thin();
     for (unsigned round = 0; round < rounds && may_go_on(); ++round) {
       for (unsigned pass = 0; pass < divisions && may_go_on(); ++pass) divide();
       relax([](Relaxation& relaxation) { relaxation.improve(); });
@@ -128,6 +133,23 @@ class Bringing {
     });
     edges.grade(mesh_.points, growth, graded);
     return tets_of(graded) <= most_times * tets_of(targets) + some ? graded : targets;
+  }
+
+  /// Returns whether sizes that grow with the distance from short edges take too many tets.
+  bool is_thin() const { return graded_sizes() == sizes(); }
+
+  /// Divides edges along thin parts where vertices face each other, and collapses those around and across
+  /// them that are no longer needed. Nothing moves in between, so that vertices go on facing each other.
+  void divide_thin() {
+    for (unsigned pass = 0; pass < most_halvings && may_go_on(); ++pass) {
+      Workpiece piece = workpiece();
+      EdgeDivision division(piece, options_, sizes());
+      division.divide_facing();
+      const std::size_t divided = division.divide_all(longest, options_.max_vertices, execution_);
+      piece.complex.store();
+      if (divided == 0) break;
+      relax([](Relaxation& relaxation) { relaxation.contract_short(around); });
+    }
   }
 
   /// Estimates the number of tets for these sizes, given by vertex.

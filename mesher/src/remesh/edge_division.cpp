@@ -111,13 +111,34 @@ bool EdgeDivision::divide(Index a, Index b) {
   for (const Index t : ring.tets)
     worst = std::min(worst, rule_.quality(complex().corners(t), complex()[t].corners));
   Change change;
-  operations_.divide_edge(a, b, std::max(0.0, least_length_share * worst), change);
+  operations_.divide_edge(a, b, facing_ ? share_facing(a, b, ring) : 0.5,
+                          std::max(0.0, least_length_share * worst), change);
   if (change.kind == Change::Kind::none || !stays_oriented(complex(), change)) return false;
   const double size =
       std::min(0.5 * (sizes_[a] + sizes_[b]), size_at(change.feature, complex()[at].region, change.place));
   workpiece_.apply(std::move(change));
   sizes_.push_back(size);
   return true;
+}
+
+/// Returns the share of the edge's length at which a vertex faces one of the tets around, in the middle part
+/// of the edge and near it; the one nearest to the middle. One half if there is none.
+double EdgeDivision::share_facing(Index a, Index b, const improvement::TetComplex::Ring& ring) const {
+  constexpr double middle_part = 0.3, near = 0.1;  // relative to the edge
+  const Point& from = mesh().points[a];
+  const Vector along = mesh().points[b] - from;
+  const double squared = squared_norm(along);
+  double share = 0.5, off = middle_part;
+  for (const Index t : ring.tets)
+    for (const Index v : complex()[t].corners) {
+      if (v == a || v == b) continue;
+      const Vector way = mesh().points[v] - from;
+      const double at = dot(way, along) / squared;
+      if (std::fabs(at - 0.5) >= off || squared_norm(way - at * along) > near * near * squared) continue;
+      off = std::fabs(at - 0.5);
+      share = at;
+    }
+  return share;
 }
 
 double EdgeDivision::size_at(const TetMesh::VertexFeature& feature, Index region, const Point& p) const {

@@ -21,6 +21,8 @@ class EdgeDivision {
   /// first. Returns the number of divided edges. Skips edges whose division would make much worse tets. Stops
   /// at `most_vertices`; 0: no bound.
   std::size_t divide_all(double longest, std::size_t most_vertices, const Execution& execution);
+  /// Divides edges beside a vertex near them at the place that faces it, not in the middle.
+  void divide_facing() { facing_ = true; }
 
  private:
   struct LongEdge {
@@ -35,12 +37,14 @@ class EdgeDivision {
   double ratio_by_field(const LongEdge& edge) const;
   void add_missing_sizes();
   bool divide(Index a, Index b);
+  double share_facing(Index a, Index b, const improvement::TetComplex::Ring& ring) const;
   double size_at(const TetMesh::VertexFeature& feature, Index region, const Point& p) const;
 
   improvement::Workpiece& workpiece_;
   const MeshOptions& options_;
   Sizing sizing_;
   std::vector<double> sizes_;  // by vertex
+  bool facing_ = false;
   improvement::ThinShape thin_;
   improvement::CellBounds cells_;
   improvement::ThinRule rule_;

@@ -57,6 +57,12 @@ void Relaxation::contract() {
   }
 }
 
+void Relaxation::contract_short(double below) {
+  kept_.assign(mesh().points.size(), 0);
+  for (unsigned pass = 0; pass < most_passes; ++pass)
+    if (!contract_shorter_than(below, share_left)) break;
+}
+
 void Relaxation::improve() {
   for (unsigned pass = 0; pass < most_improvements; ++pass)
     if (!improve_below(better, pass == 0 ? Means::edges : Means::moves)) break;
@@ -197,6 +203,8 @@ Change Relaxation::improvement_of(Index tet, double enough, Means means) {
   if (means == Means::edges) return change;
   for (const Index v : corners)
     if (!found()) operations_.move_vertex(v, change);
+  for (const Index v : corners)
+    if (!found()) operations_.move_to_face(v, change);
   if (means == Means::moves) return change;
   for (const Index v : corners)
     for (const Index w : corners)

@@ -27,6 +27,8 @@ class Relaxation {
 
   /// Collapses short edges and improves tets, for lengths that grow up to the target.
   void contract();
+  /// Collapses edges shorter than this share of the target, without any improvement.
+  void contract_short(double below);
   /// Improves tets and collapses edges where that has become possible.
   void improve();
 
