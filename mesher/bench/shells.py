@@ -11,9 +11,9 @@ distances are measured in the same way from both meshes, in Gmsh's own format:
 - distance: the largest one of the triangles' centres from the faces, which OpenCASCADE has cut into triangles
   (`collarmesh repair`), in target edge lengths; needs the Python module vtk;
 - counts at equal distance: where Gmsh's mesh is farther from the faces than ours, Gmsh makes another one with
-  as many elements per circle as it takes (6 to 48), which is compared with ours ("equal").
+  as many elements per circle as it takes (6 to 24), which is compared with ours ("equal").
 
-`--kept FOLDER` keeps Gmsh's measures there, so that later runs need not make its meshes again.
+`--kept FOLDER` keeps Gmsh's measures and the triangles of the faces there, so that later runs are shorter.
 """
 
 import argparse
@@ -205,7 +205,7 @@ def at_equal_distance(arguments, path, share, size, folder, mine, other):
     per_circle = 0
     while distance(other) is None or distance(other) > distance(mine):
         per_circle = 2 * per_circle or 6
-        if per_circle > 48 or not other.get("measures"):
+        if per_circle > 24 or not other.get("measures"):
             return None
         other = kept_or_made(arguments, path, share, size, folder, per_circle)
     return other
@@ -251,7 +251,12 @@ def rows_of_file(arguments, path, share, folder):
     size = float(found.group(1)) / share
     reference = pathlib.Path(f"{folder}/reference.stl")
     reference.unlink(missing_ok=True)
-    run([arguments.program, "repair", str(path), "-o", str(reference)])
+    kept = pathlib.Path(arguments.kept or folder) / f"{path.name}.stl"
+    if not kept.exists():
+        kept.parent.mkdir(parents=True, exist_ok=True)
+        run([arguments.program, "repair", str(path), "-o", str(kept)])
+    if kept.exists():
+        reference.symlink_to(kept.resolve())
     mine = ours(arguments.program, str(path), size, folder)
     if arguments.without_gmsh:
         return mine, None, None
@@ -266,7 +271,7 @@ def main():
     parser.add_argument("--shares", nargs="+", type=float, default=[20, 60])
     parser.add_argument("--only", default="")
     parser.add_argument("--without-gmsh", action="store_true")
-    parser.add_argument("--kept", help="a folder for Gmsh's measures")
+    parser.add_argument("--kept", help="a folder for Gmsh's measures and the triangles of the faces")
     parser.add_argument("--rows", help="a JSON file for all rows")
     arguments = parser.parse_args()
     files = sorted(p for p in pathlib.Path(arguments.folder).iterdir() if re.search(arguments.only, p.name))

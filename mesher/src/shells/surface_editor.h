@@ -52,10 +52,10 @@ class SurfaceEditor {
     struct Neighbour {
       Index vertex;
       Point point;
-      Index changes;
       double least_shape;
     };
     std::vector<Neighbour> neighbours;
+    std::vector<std::pair<Index, Index>> changes;                 ///< of the neighbours and of theirs
     std::vector<std::pair<Index, std::array<double, 2>>> places;  ///< of the neighbours' edges on curves
   };
   Surroundings surroundings(Index vertex) const;

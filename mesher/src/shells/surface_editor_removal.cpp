@@ -156,12 +156,16 @@ SurfaceEditor::Surroundings SurfaceEditor::surroundings(Index vertex) const {
                       .first_triangle = static_cast<Index>(complex_.triangles.size()),
                       .first_edge = static_cast<Index>(complex_.edges.size()),
                       .neighbours = {},
+                      .changes = {},
                       .places = {}};
   for (const Index t : v.triangles) before.triangles.push_back(complex_.triangles[t]);
   for (const Index e : v.edges) before.edges.push_back(complex_.edges[e]);
   for (const Index n : complex_.neighbours(vertex)) {
     const auto& other = complex_.vertices[n];
-    before.neighbours.push_back({n, other.point, other.changes, least_shape_at(n)});
+    before.neighbours.push_back({n, other.point, least_shape_at(n)});
+    for (const Index t : other.triangles)
+      for (const Index c : complex_.triangles[t].corners)
+        before.changes.emplace_back(c, complex_.vertices[c].changes);
     for (const Index e : other.edges)
       if (complex_.edges[e].ends[0] != vertex && complex_.edges[e].ends[1] != vertex)
         before.places.emplace_back(e, complex_.edges[e].at);
@@ -179,7 +183,7 @@ void SurfaceEditor::restore(const Surroundings& before) {
     complex_.edges.back().tip = edge.tip;
   }
   for (const auto& t : before.triangles) complex_.add_triangle(t.corners, t.patch);
-  for (const auto& n : before.neighbours) complex_.vertices[n.vertex].changes = n.changes;
+  for (const auto& [v, changes] : before.changes) complex_.vertices[v].changes = changes;
 }
 
 }  // namespace collarmesh::shells

@@ -302,16 +302,23 @@ void SurfaceMesher::run() {
   repair_.run(rest());
   for (unsigned round = 0; round < last_rounds && repair_.approach(rest()); ++round) repair_.run(rest());
   remove_needless_vertices();
-  for (unsigned round = 0; round < last_rounds && repair_.approach(rest()); ++round) repair_.run(rest());
+  // Angles are near their bounds now, so that a new vertex in one triangle spoils those beside it: moves come
+  // first.
+  for (unsigned round = 0; round < last_rounds && repair_.approach(rest()); ++round) {
+    repair_.improve(wanted_shape);
+    repair_.run(rest());
+  }
+  repair_.improve(least_angle);
 }
 
-/// Removes vertices and moves those that stay, in turns.
+/// Removes vertices and moves those that stay, in turns, as long as that removes at least one in `few`.
 void SurfaceMesher::remove_needless_vertices() {
-  constexpr unsigned rounds = 4;
-  constexpr std::size_t few = 200;  // more rounds are not worth while if only one in so many vertices goes
+  constexpr unsigned rounds = 2;
+  constexpr std::size_t few = 30;
   VertexRemoval removal(complex_, editor_, repair_, execution_);
-  for (unsigned round = 0; round < rounds && !execution_.cancelled(); ++round) {
-    if (removal.run() < complex_.vertices.size() / few) return;
+  bool many = true;
+  for (unsigned round = 0; many && round < rounds && !execution_.cancelled(); ++round) {
+    many = removal.run() > complex_.vertices.size() / few;
     flip_all();
     repair_.improve(wanted_shape);
   }

@@ -87,17 +87,13 @@ bool VertexRemoval::remove(Index vertex) {
 }
 
 std::size_t VertexRemoval::run() {
-  constexpr unsigned most_passes = 8;
   std::size_t removed = 0;
-  for (unsigned pass = 0; pass < most_passes && !execution_.cancelled(); ++pass) {
-    std::size_t now = 0;
-    for (const Index v : candidates())
-      if (remove(v))
-        ++now;
-      else
-        tried_[v] = complex_.vertices[v].changes + 1;
-    if (now == 0) break;
-    removed += now;
+  for (const Index v : candidates()) {
+    if (execution_.cancelled()) break;
+    if (remove(v))
+      ++removed;
+    else
+      tried_[v] = complex_.vertices[v].changes + 1;
   }
   return removed;
 }

@@ -16,8 +16,8 @@ class VertexRemoval {
   VertexRemoval(const SurfaceComplex& complex, SurfaceEditor& editor, ShapeRepair& repair,
                 const Execution& execution);
 
-  /// Removes vertices as long as that is possible, those with the shortest edges first. Returns their number.
-  /// Call it again after other changes: it considers only vertices whose triangles have changed.
+  /// Tries to remove each vertex once, those with the shortest edges first. Returns the number of removed
+  /// ones. Call it again after other changes: it considers only vertices whose triangles have changed.
   std::size_t run();
 
  private:
