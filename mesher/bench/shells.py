@@ -261,6 +261,8 @@ def rows_of_file(arguments, path, share, folder):
     if arguments.without_gmsh:
         return mine, None, None
     other = kept_or_made(arguments, path, share, size, folder)
+    if arguments.without_equal:
+        return mine, other, None
     return mine, other, at_equal_distance(arguments, path, share, size, folder, mine, other)
 
 
@@ -271,6 +273,7 @@ def main():
     parser.add_argument("--shares", nargs="+", type=float, default=[20, 60])
     parser.add_argument("--only", default="")
     parser.add_argument("--without-gmsh", action="store_true")
+    parser.add_argument("--without-equal", action="store_true", help="no meshes of Gmsh at equal distance")
     parser.add_argument("--kept", help="a folder for Gmsh's measures and the triangles of the faces")
     parser.add_argument("--rows", help="a JSON file for all rows")
     arguments = parser.parse_args()
