@@ -3,17 +3,23 @@
 Each file of the folder (STEP, IGES, BREP) is meshed with triangles of 1/20 and 1/60 of its diagonal, by
 `collarmesh --dimension 2` and by Gmsh (its Python module; default algorithm, sizes between corners alone). Both
 run in a process of their own with one thread, so that the CPU seconds are those of everything from reading to
-writing. Angles, counts and distances are measured in the same way from both meshes, in Gmsh's own format:
+writing; those of reading by OpenCASCADE and of its tessellation are also shown apart. Angles, counts and
+distances are measured in the same way from both meshes, in Gmsh's own format:
 
 - angles: of all triangles ("raw"), and without those at corners of the input that are sharper than 20 degrees
   ("away"): triangles with such an angle between two sides on edges of the input, at a vertex of the input;
 - distance: the largest one of the triangles' centres from the faces, which OpenCASCADE has cut into triangles
-  (`collarmesh repair`), in target edge lengths; needs the Python module vtk.
+  (`collarmesh repair`), in target edge lengths; needs the Python module vtk;
+- counts at equal distance: where Gmsh's mesh is farther from the faces than ours, Gmsh makes another one with
+  as many elements per circle as it takes (6 to 24), which is compared with ours ("equal").
+
+`--kept FOLDER` keeps Gmsh's measures and the triangles of the faces there, so that later runs are shorter.
 """
 
 import argparse
 import json
 import math
+import os
 import pathlib
 import re
 import resource
@@ -25,8 +31,9 @@ import tempfile
 import numpy
 
 GMSH = """
-import sys, gmsh
+import sys, time, gmsh
 gmsh.initialize()
+start = time.process_time()
 gmsh.option.setNumber("General.Terminal", 0)
 gmsh.option.setNumber("General.NumThreads", 1)
 gmsh.option.setNumber("Geometry.OCCImportLabels", 0)
@@ -37,29 +44,42 @@ gmsh.option.setNumber("Mesh.MeshSizeMin", 0)
 gmsh.option.setNumber("Mesh.MeshSizeMax", size)
 gmsh.option.setNumber("Mesh.MeshSizeExtendFromBoundary", 1)
 gmsh.option.setNumber("Mesh.SaveAll", 1)
+gmsh.option.setNumber("Mesh.MeshSizeFromCurvature", float(sys.argv[4]))
+read = time.process_time()
 gmsh.model.mesh.generate(2)
+print(read - start, time.process_time() - read)
 gmsh.write(sys.argv[3])
 """
 LIMIT = 200  # seconds
 SHARP = 20  # degrees
 
 
-def run(command):
-    """Runs a command; returns its exit code (None if it exceeded the time limit) and its CPU seconds."""
+def run(command, **environment):
+    """Runs a command; returns its exit code (None if it exceeded the time limit), its CPU seconds and output."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     try:
-        code = subprocess.run(command, capture_output=True, timeout=LIMIT, check=False).returncode
+        done = subprocess.run(command, capture_output=True, text=True, timeout=LIMIT, check=False,
+                              env=os.environ | environment)
+        code, text = done.returncode, done.stdout
     except subprocess.TimeoutExpired:
-        code = None
+        code, text = None, ""
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    return code, seconds
+    return code, seconds, text
 
 
-def diagonal_of(program, path):
-    text = subprocess.run([program, "info", path], capture_output=True, text=True, check=False).stdout
-    found = re.search(r"diagonal ([\d.e+-]+)", text)
-    return float(found.group(1)) if found else None
+def stages_of(path):
+    """Returns the CPU seconds by stage, of which some are OpenCASCADE's."""
+    stages = {}
+    for line in pathlib.Path(path).read_text().splitlines()[1:]:
+        stage, _, _, _, serial, work = line.split("\t")[:6]
+        stages[stage] = stages.get(stage, 0.0) + float(serial) + float(work)
+    return stages
+
+
+def own_seconds(row):
+    """Returns the CPU seconds without those of OpenCASCADE's reading and tessellation."""
+    return row["seconds"] - row.get("reading", 0) - row.get("cutting", 0)
 
 
 def read_mesh(path):
@@ -139,23 +159,56 @@ def distance_between(points, reference, size):
 
 def ours(program, path, size, folder):
     out, report = f"{folder}/ours.msh", f"{folder}/report.json"
-    code, seconds = run([program, path, "-o", out, "--dimension", "2", "--size", str(size), "--threads", "1",
-                         "--report", report])
+    costs = f"{folder}/costs.tsv"
+    pathlib.Path(costs).unlink(missing_ok=True)
+    code, seconds, _ = run([program, path, "-o", out, "--dimension", "2", "--size", str(size), "--threads", "1",
+                            "--report", report], COLLARMESH_RECORD_COSTS=costs)
     row = {"code": code, "seconds": seconds}
     if code in (0, 7):
+        row["stages"] = stages_of(costs)
+        of_work = lambda word: sum(s for stage, s in row["stages"].items() if f": {word}" in stage)
+        row |= {"reading": of_work("reading"), "cutting": of_work("cutting")}
         row["findings"] = json.loads(pathlib.Path(report).read_text())["check"]["findings_total"]
         row["measures"] = measures_of(out, f"{folder}/reference.stl", size)
     return row
 
 
-def gmshs(path, size, folder):
+def gmshs(path, size, folder, per_circle=0):
     out = f"{folder}/gmsh.msh"
     pathlib.Path(out).unlink(missing_ok=True)
-    code, seconds = run([sys.executable, "-c", GMSH, path, str(size), out])
+    code, seconds, text = run([sys.executable, "-c", GMSH, path, str(size), out, str(per_circle)])
     row = {"code": code, "seconds": seconds}
     if code == 0 and pathlib.Path(out).exists():
+        row["reading"] = float(text.split()[-2])
         row["measures"] = measures_of(out, f"{folder}/reference.stl", size)
     return row
+
+
+def kept_or_made(arguments, path, share, size, folder, per_circle=0):
+    """Returns Gmsh's row, from the folder of kept ones if it is there."""
+    kept = pathlib.Path(arguments.kept) / f"{path.name}.{share:g}.{per_circle}.json" if arguments.kept else None
+    if kept and kept.exists():
+        return json.loads(kept.read_text())
+    row = gmshs(str(path), size, folder, per_circle)
+    if kept:
+        kept.parent.mkdir(parents=True, exist_ok=True)
+        kept.write_text(json.dumps(row))
+    return row
+
+
+def at_equal_distance(arguments, path, share, size, folder, mine, other):
+    """Returns Gmsh's row with the fewest elements per circle at which its mesh is as near to the faces as ours;
+    None if there is none."""
+    distance = lambda row: (row.get("measures") or {}).get("distance")
+    if distance(mine) is None:
+        return None
+    per_circle = 0
+    while distance(other) is None or distance(other) > distance(mine):
+        per_circle = 2 * per_circle or 6
+        if per_circle > 24 or not other.get("measures"):
+            return None
+        other = kept_or_made(arguments, path, share, size, folder, per_circle)
+    return other
 
 
 def text_of(row):
@@ -163,7 +216,7 @@ def text_of(row):
         return f"failed ({row['code']}) {row['seconds']:.1f} s"
     m = row["measures"]
     return (f"{m['count']:7d} {m['raw']:6.2f} {m['away']:6.2f} {m['largest']:6.1f} {m['poor']:6d} "
-            f"{m['distance'] or 0:.4f} {row['seconds']:6.2f} s")
+            f"{m['distance'] or 0:.4f} {row['seconds']:6.2f} s ({own_seconds(row):.2f})")
 
 
 def summary(name, rows):
@@ -178,53 +231,81 @@ def summary(name, rows):
     return (f"| {name} | {len(done)} of {len(rows)} | {column('raw'):.1f} | {column('away'):.1f} | "
             f"{share('away', 15):.0f} % | {share('away', 20):.0f} % | {column('largest'):.1f} | "
             f"{column('count'):.0f} | {column('distance'):.3f} | {statistics.median(seconds):.2f} | {at(0.95):.2f} | "
-            f"{seconds[-1]:.1f} |")
+            f"{seconds[-1]:.1f} | {sum(s <= 2 for s in seconds)}, {sum(s <= 10 for s in seconds)} | "
+            f"{sum(own_seconds(row) <= 2 for row in rows)}, {sum(own_seconds(row) <= 10 for row in rows)} |")
+
+
+def ratio_of_counts(pairs):
+    """Returns the median of the triangles of the first mesh over those of the second, and the number of pairs."""
+    counts = [a["measures"]["count"] / b["measures"]["count"] for a, b in pairs
+              if a.get("measures") and b and b.get("measures")]
+    return f"{statistics.median(counts):.2f} on {len(counts)} files" if counts else "none"
+
+
+def rows_of_file(arguments, path, share, folder):
+    """Returns the rows of a file: ours, Gmsh's, and Gmsh's at equal distance."""
+    info = subprocess.run([arguments.program, "info", path], capture_output=True, text=True, check=False).stdout
+    found = re.search(r"diagonal ([\d.e+-]+)", info)
+    if not found:
+        return {"code": 3, "seconds": 0}, None, None
+    size = float(found.group(1)) / share
+    reference = pathlib.Path(f"{folder}/reference.stl")
+    reference.unlink(missing_ok=True)
+    kept = pathlib.Path(arguments.kept or folder) / f"{path.name}.stl"
+    if not kept.exists():
+        kept.parent.mkdir(parents=True, exist_ok=True)
+        run([arguments.program, "repair", str(path), "-o", str(kept)])
+    if kept.exists():
+        reference.symlink_to(kept.resolve())
+    mine = ours(arguments.program, str(path), size, folder)
+    if arguments.without_gmsh:
+        return mine, None, None
+    other = kept_or_made(arguments, path, share, size, folder)
+    if arguments.without_equal:
+        return mine, other, None
+    return mine, other, at_equal_distance(arguments, path, share, size, folder, mine, other)
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program")
     parser.add_argument("folder")
     parser.add_argument("--shares", nargs="+", type=float, default=[20, 60])
     parser.add_argument("--only", default="")
     parser.add_argument("--without-gmsh", action="store_true")
+    parser.add_argument("--without-equal", action="store_true", help="no meshes of Gmsh at equal distance")
+    parser.add_argument("--kept", help="a folder for Gmsh's measures and the triangles of the faces")
     parser.add_argument("--rows", help="a JSON file for all rows")
     arguments = parser.parse_args()
     files = sorted(p for p in pathlib.Path(arguments.folder).iterdir() if re.search(arguments.only, p.name))
     tables, all_rows = [], []
     with tempfile.TemporaryDirectory() as folder:
         for share in arguments.shares:
-            mine, others = [], []
+            rows = []
             for path in files:
-                diagonal = diagonal_of(arguments.program, str(path))
-                if diagonal is None:
-                    print(f"{path.name}: not read")
-                    mine.append({"code": 3, "seconds": 0})
-                    continue
-                pathlib.Path(f"{folder}/reference.stl").unlink(missing_ok=True)
-                run([arguments.program, "repair", str(path), "-o", f"{folder}/reference.stl"])
-                mine.append(ours(arguments.program, str(path), diagonal / share, folder))
-                line = f"1/{share:g} {path.name[:50]:50s} {text_of(mine[-1])} findings {mine[-1].get('findings')}"
-                if not arguments.without_gmsh:
-                    others.append(gmshs(str(path), diagonal / share, folder))
-                    line += f" | Gmsh {text_of(others[-1])}"
-                all_rows.append({"share": share, "file": path.name, "ours": mine[-1],
-                                 "gmsh": others[-1] if others else None})
+                rows.append(rows_of_file(arguments, path, share, folder))
+                mine, other, equal = rows[-1]
+                all_rows.append({"share": share, "file": path.name, "ours": mine, "gmsh": other, "equal": equal})
+                line = f"1/{share:g} {path.name[:50]:50s} {text_of(mine)} findings {mine.get('findings')}"
+                if other:
+                    line += f" | Gmsh {text_of(other)}"
+                if equal:
+                    line += f" | equal {equal['measures']['count']}"
                 print(line, flush=True)
-            tables.append((f"collarmesh, 1/{share:g}", mine))
-            if others:
-                tables.append((f"Gmsh, 1/{share:g}", others))
-                counts = [a["measures"]["count"] / b["measures"]["count"] for a, b in zip(mine, others)
-                          if a.get("measures") and b.get("measures")]
-                if counts:
-                    print(f"triangles over Gmsh's, median at 1/{share:g}: {statistics.median(counts):.2f}")
+            tables.append((f"collarmesh, 1/{share:g}", [mine for mine, _, _ in rows]))
+            if not arguments.without_gmsh:
+                tables.append((f"Gmsh, 1/{share:g}", [other for _, other, _ in rows if other]))
+                print(f"triangles over Gmsh's, median at 1/{share:g}: "
+                      f"{ratio_of_counts((mine, other) for mine, other, _ in rows)}; at equal distance "
+                      f"{ratio_of_counts((mine, equal) for mine, _, equal in rows)}")
+            if arguments.rows:
+                pathlib.Path(arguments.rows).write_text(json.dumps(all_rows))
     print("| | meshed | smallest angle, raw, median | away, median | away at least 15 | at least 20 | largest, away, "
-          "median | triangles, median | distance, median | CPU s, median | 95 % | most |")
-    print("|" + "---|" * 12)
+          "median | triangles, median | distance, median | CPU s, median | 95 % | most | in 2 s, in 10 s | "
+          "without OpenCASCADE |")
+    print("|" + "---|" * 14)
     for name, rows in tables:
         print(summary(name, rows))
-    if arguments.rows:
-        pathlib.Path(arguments.rows).write_text(json.dumps(all_rows))
 
 
 if __name__ == "__main__":

@@ -40,6 +40,14 @@ bool meets_middle_plane(const TetMesh& mesh, const std::array<Index, 4>& tet, co
   return false;
 }
 
+/// Adds a point, unless it has a number.
+void add_point(const TetMesh& mesh, Index p, std::vector<std::uint32_t>& point_number, ShownMesh& shown) {
+  if (point_number[p] != none) return;
+  point_number[p] = static_cast<std::uint32_t>(shown.points.size() / 3);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    shown.points.push_back(static_cast<float>(mesh.points[p][axis] - shown.centre[axis]));
+}
+
 /// Adds the faces on patches, if all their points are shown.
 void add_faces(const TetMesh& mesh, const std::vector<std::uint32_t>& point_number, ShownMesh& shown) {
   shown.face_tags = mesh.face_tag;
@@ -61,7 +69,7 @@ ShownMesh shown_mesh(const TetMesh& mesh, const std::vector<WorstTet>& worst, st
   ShownMesh shown;
   Box box;
   for (const Point& p : mesh.points) box.add(p);
-  if (mesh.tets.empty()) return shown;
+  if (mesh.tets.empty() && mesh.faces.empty()) return shown;
   shown.centre = 0.5 * (box.min + box.max);
   shown.complete = mesh.tets.size() <= most;
   std::vector<bool> is_shown(mesh.tets.size(), true);
@@ -77,11 +85,7 @@ ShownMesh shown_mesh(const TetMesh& mesh, const std::vector<WorstTet>& worst, st
     if (!is_shown[t]) continue;
     tet_number[t] = static_cast<Index>(shown.marks.size());
     for (const Index p : mesh.tets[t]) {
-      if (point_number[p] == none) {
-        point_number[p] = static_cast<std::uint32_t>(shown.points.size() / 3);
-        for (std::size_t axis = 0; axis < 3; ++axis)
-          shown.points.push_back(static_cast<float>(mesh.points[p][axis] - shown.centre[axis]));
-      }
+      add_point(mesh, p, point_number, shown);
       shown.tets.push_back(point_number[p]);
     }
     constexpr Index largest = std::numeric_limits<std::uint16_t>::max();
@@ -90,6 +94,9 @@ ShownMesh shown_mesh(const TetMesh& mesh, const std::vector<WorstTet>& worst, st
                thin = !mesh.tet_thin.empty() && mesh.tet_thin[t] != 0;
     shown.marks.push_back(static_cast<std::uint8_t>((collar ? 1 : 0) + (thin ? 2 : 0)));
   }
+  if (mesh.tets.empty())
+    for (const auto& face : mesh.faces)
+      for (const Index p : face) add_point(mesh, p, point_number, shown);
   add_faces(mesh, point_number, shown);
   for (const WorstTet& w : worst) {
     Point centre{0, 0, 0};

@@ -170,6 +170,19 @@ class InABrowser(ReportTest):
         self.assertEqual(marked["marked"], "6")  # the edges of a tet
         self.assertIn("dihedral angles", dom)
 
+    def test_triangles_alone(self):
+        path = self.report(MODELS / "bracket.off", "--dimension", "2", "--size", "4")
+        report = json.loads(Page(path.read_text()).scripts["report"])
+        whole, dom, picture = self.look(path)
+        self.assertEqual(int(whole["triangles"]), report["mesh"]["faces"])
+        for text in ("Triangles have no small or large angle", "Smallest angle of each triangle"):
+            self.assertIn(text, dom)
+        for text in ("Tetrahedra", "Collars", "Volume of", "Worst elements"):
+            self.assertNotIn(f">{text}", dom)
+        cut, _, picture_of_cut = self.look(path, "#cut=x,0.5&colour=angle")
+        self.assertLess(int(cut["triangles"]), int(whole["triangles"]))
+        self.assertNotEqual(picture, picture_of_cut)
+
     def test_every_part_fits_into_the_view(self):
         for lengths in ((1, 1, 40), (40, 1, 1), (1, 40, 1), (30, 30, 1)):
             path = self.report(self.box(*lengths), "--size", "4", "--distance", "1")

@@ -222,6 +222,32 @@ TEST(Shells, NarrowFacesHaveGoodAngles) {
   }
 }
 
+TEST(Shells, StripsHaveHardlyMoreTrianglesThanAnglesNeed) {
+  constexpr double length = 10;
+  for (const double width : {0.3, 0.1, 0.03}) {
+    PolygonSoup strip;
+    strip.points = {{0, 0, 0}, {length, 0, 0}, {length, width, 0}, {0, width, 0}};
+    strip.add_facet(std::vector<Index>{0, 1, 2, 3}, 1);
+    const PipelineResult made = shells_of(strip, 2);
+    expect_good(made);
+    EXPECT_LT(static_cast<double>(made.result.mesh.faces.size()), 1.25 * fewest_in_strip(length, width) + 4);
+  }
+}
+
+TEST(Shells, LengthsGrowAsFastAsAnglesPermitUnlessAGradationIsGiven) {
+  PolygonSoup plate = box({0, 0, 0}, {10, 10, 0.05}, 1);
+  PipelineOptions options;
+  options.mesh.size = 2;
+  const Plc plc = complex_of(plate);
+  const PipelineResult fast = mesh_shells(plc, options);
+  options.mesh.gradation = 0.3;
+  const PipelineResult slow = mesh_shells(plc, options);
+  expect_good(fast);
+  expect_good(slow);
+  EXPECT_LT(1.3 * static_cast<double>(fast.result.mesh.faces.size()),
+            static_cast<double>(slow.result.mesh.faces.size()));
+}
+
 TEST(Shells, CurvesNearToEachOtherDoNotCross) {
   constexpr double width = 0.006;
   constexpr unsigned segments = 180;

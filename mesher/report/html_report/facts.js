@@ -56,15 +56,25 @@ const guarantees = [
   ['Regions: each tetrahedron lies in one, and volumes are kept', ['region_volume', 'volume_kept', 'thickness_kept', 'region_tag', 'positive_volume', 'distinct_tets']],
   ['Tags: faces and edges know where they are from', ['curve_tag', 'patch_tag', 'patch_regions', 'face_regions']],
   ['Shape: circumradius over shortest edge is bounded', ['radius_edge']],
+  ['Triangles have no small or large angle', ['triangle_angles']],
+  ['Faces of solids look outwards', ['shell_orientation']],
   ['Thin tetrahedra have no small or large angle', ['thin_angles']],
   ['Collars have no large angle',
     ['collar_cells', 'collar_centre', 'collar_dihedral', 'collar_disjoint', 'collar_gap']],
   ['Second order: no element is inverted', ['mid_nodes', 'mid_node_distance', 'positive_jacobian']],
 ];
 
+const ofTriangles = ['triangle_angles', 'shell_orientation'], ofTets = ['region_volume', 'radius_edge', 'thin_angles', 'collar_cells'];
+
+// Does the run give a guarantee of these names?
+function given(report, names) {
+  return (report.options.order === 2 || !names.includes('mid_nodes')) &&
+    !names.some(name => (report.check.triangles ? ofTets : ofTriangles).includes(name));
+}
+
 function guaranteeList(report, show) {
   const findings = report.check.findings, known = new Set(guarantees.flatMap(([, names]) => names));
-  const lines = guarantees.filter(([, names]) => report.options.order === 2 || !names.includes('mid_nodes'))
+  const lines = guarantees.filter(([, names]) => given(report, names))
     .map(([text, names]) => [text, findings.filter(f => names.includes(f.guarantee))]);
   const others = findings.filter(f => !known.has(f.guarantee));
   if (others.length > 0) lines.push(['The file is sound', others]);
@@ -73,7 +83,7 @@ function guaranteeList(report, show) {
       element('ul', {}, ...broken.slice(0, 50).map(f => element('li', {}, f.message + ' ', place(f.where, show)))))));
 }
 
-function histogram(title, { bin_width: width, tets: counts }, unit) {
+function histogram(title, { bin_width: width, tets, triangles: counts = tets }, unit) {
   const svg = 'http://www.w3.org/2000/svg', w = 420, h = 90, left = 4, bar = (w - 2 * left) / counts.length;
   const draw = (tag, attributes, text = '') => {
     const made = document.createElementNS(svg, tag);
@@ -147,6 +157,31 @@ function kept(check, region) {
   return found ? ` (${found.percent < 0 ? '' : '+'}${found.percent.toFixed(2)} % of the input's ${volume(found.input)})` : '';
 }
 
+function histogramsOf({ mesh, check }) {
+  if (check.triangles)
+    return [histogram('Smallest angle of each triangle', check.triangles.histograms.min_angle, '°'),
+      histogram('Largest angle', check.triangles.histograms.max_angle, '°')];
+  return [histogram('Smallest dihedral angle of each tetrahedron', mesh.histograms.min_dihedral, '°'),
+    histogram('Largest dihedral angle', mesh.histograms.max_dihedral, '°'),
+    histogram('Circumradius / shortest edge', mesh.histograms.radius_edge, '')];
+}
+
+// Rows of the table of what was made.
+function shapesOf({ mesh, check }) {
+  if (check.triangles)
+    return [['Angles', `${number(check.triangles.min_angle)}° to ${number(check.triangles.max_angle)}°`],
+      ['Triangles at sharp corners of the input', number(check.triangles.at_sharp_corners)]];
+  return [['Dihedral angles', `${number(mesh.min_dihedral)}° to ${number(mesh.max_dihedral)}°` + forced(check)],
+    ['Circumradius / shortest edge', ratios(mesh)],
+    ['Thin, in collars', `${number(check.thin_tets)}, ${number(check.collar_tets)}`]];
+}
+
+function countsOf({ mesh, check }) {
+  const nodes = ['Nodes', number(mesh.points)];
+  return check.triangles ? [['Triangles', number(mesh.faces)], nodes, ['Edges on curves', number(mesh.edges)]]
+    : [['Tetrahedra', number(mesh.tets)], nodes, ['Boundary triangles', number(mesh.faces)]];
+}
+
 function describe(report, shown, names, show) {
   const { mesh, check, complex, options } = report, name = report.inputs.map(path => path.split('/').pop()).join(', ');
   document.title = `${name}: mesh report`;
@@ -158,7 +193,7 @@ function describe(report, shown, names, show) {
   const diagonal = complex.diagonal, size = options.size ?? diagonal / 20;
   const changed = ['region_size', 'patch_size', 'curve_size'].flatMap(kind =>
     Object.entries(options[kind]).map(([tag, value]) => [`Size of ${kind.split('_')[0]} ${tag}`, number(value)]));
-  const regions = complex.regions.map(r => [`Volume of ${names.region(r.region)}`, volume(mesh.region_volumes[r.region]) + kept(check, r.region)]);
+  const regions = complex.regions.filter(r => r.region in mesh.region_volumes).map(r => [`Volume of ${names.region(r.region)}`, volume(mesh.region_volumes[r.region]) + kept(check, r.region)]);
   const periodic = (report.periodic?.pairs ?? []).map(p => [`Periodic ${p.text}`,
     `${number(p.nodes)} nodes, ${number(p.triangles)} triangles map onto their images; largest gap ${number(p.largest_gap)}`]);
   const warnings = [...report.warnings, ...complex.warnings.map(w => w.message), ...check.warnings, ...report.notes, ...check.notes];
@@ -168,19 +203,14 @@ function describe(report, shown, names, show) {
       ['Order of the elements', options.order], ['Coarsening', options.coarsen ? 'on' : 'off'],
       ['Improvement', options.improve === 0 ? 'off' : `level ${options.improve}`]]),
     element('h2', {}, 'Made'),
-    table([['Tetrahedra', number(mesh.tets)], ['Nodes', number(mesh.points)], ['Boundary triangles', number(mesh.faces)],
-      ['Median edge', `${number(check.median_edge)} (${number(check.median_edge / size)} of the size)`],
-      ['Dihedral angles', `${number(mesh.min_dihedral)}° to ${number(mesh.max_dihedral)}°` + forced(check)],
-      ['Circumradius / shortest edge', ratios(mesh)],
-      ['Thin, in collars', `${number(check.thin_tets)}, ${number(check.collar_tets)}`],
+    table([...countsOf(report), ['Median edge', `${number(check.median_edge)} (${number(check.median_edge / size)} of the size)`],
+      ...shapesOf(report),
       ['Farthest from smooth surfaces', number(check.max_surface_distance)], ...regions, ...periodic,
       ['Seconds', Object.entries(report.seconds).map(([stage, s]) => `${stage} ${Number(s.toPrecision(2))}`).join(', ')],
       ['Written to', report.output]]),
     element('h2', {}, 'Guarantees'), guaranteeList(report, show),
     ...(warnings.length > 0 ? [element('h2', {}, 'Warnings and notes'),
       element('ul', {}, ...warnings.slice(0, 50).map(text => element('li', {}, text)))] : []),
-    ...straightened(report, names, show), ...repairs(report, show), ...worst(shown, show),
-    histogram('Smallest dihedral angle of each tetrahedron', mesh.histograms.min_dihedral, '°'),
-    histogram('Largest dihedral angle', mesh.histograms.max_dihedral, '°'),
-    histogram('Circumradius / shortest edge', mesh.histograms.radius_edge, ''));
+    ...straightened(report, names, show), ...repairs(report, show),
+    ...(shown.worst.length > 0 ? worst(shown, show) : []), ...histogramsOf(report));
 }

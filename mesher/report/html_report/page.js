@@ -23,7 +23,7 @@ async function open() {
   let view = null;
   const names = namesOf(report);
   describe(report, shown, names, (where, tet) => { if (view) view.show(where, tet); });
-  if (typeof THREE === 'undefined' || shown.tets === 0) {
+  if (typeof THREE === 'undefined' || shown.tets + shown.faces === 0) {
     document.getElementById('view').remove();
     return;
   }

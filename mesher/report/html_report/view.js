@@ -1,10 +1,12 @@
-// A view of the mesh that turns and cuts: it draws the outer faces of the tetrahedra on one side of a plane.
+// A view of the mesh that turns and cuts: it draws the outer faces of the tetrahedra on one side of a plane or, of a mesh
+// of triangles alone, the triangles there. A cell is a tetrahedron or such a triangle.
 'use strict';
 
 const noNeighbour = -1;
 // Corners of the face opposite each corner, turned outwards.
 const faceCorners = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 const edgeCorners = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
+const sideCorners = [[0, 1], [0, 2], [1, 2]];
 
 async function inflate(text) {
   const packed = Uint8Array.from(atob(text.trim()), c => c.charCodeAt(0));
@@ -21,7 +23,8 @@ async function readMesh(shown, text) {
     region: new Uint16Array(data, end, tets), marks: new Uint8Array(data, end + 2 * tets, tets) };
   mesh.neighbours = findNeighbours(mesh.tets);
   mesh.tagNumber = tagNumbers(mesh.patches);
-  mesh.smallest = Float32Array.from({ length: tets }, (_, t) => dihedralAngles(mesh, t)[0]);
+  mesh.isSurface = tets === 0;
+  mesh.smallest = Float32Array.from({ length: mesh.isSurface ? faces : tets }, (_, cell) => anglesOf(mesh, cell)[0]);
   return mesh;
 }
 
@@ -68,19 +71,41 @@ function tagNumbers(patches) {
   return numbers;
 }
 
+// The three points of a drawn face.
+function pointsOfFace(mesh, face) {
+  return mesh.isSurface ? [...mesh.patches.subarray(4 * face, 4 * face + 3)]
+    : faceCorners[face & 3].map(i => mesh.tets[4 * (face >> 2) + i]);
+}
+
+// The cell that a drawn face belongs to.
+function cellOf(mesh, face) {
+  return mesh.isSurface ? face : face >> 2;
+}
+
 // Undefined for a face that is on no patch.
 function tagNumberOf(mesh, face) {
-  const corners = faceCorners[face & 3].map(i => mesh.tets[4 * (face >> 2) + i]);
-  return mesh.tagNumber.get(corners.sort((a, b) => a - b).join());
+  if (mesh.isSurface) return mesh.patches[4 * face + 3];
+  return mesh.tagNumber.get(pointsOfFace(mesh, face).sort((a, b) => a - b).join());
 }
 
-function cornersOf(mesh, tet) {
-  return [0, 1, 2, 3].map(i => new THREE.Vector3().fromArray(mesh.points, 3 * mesh.tets[4 * tet + i]));
+function pointsOfCell(mesh, cell) {
+  return mesh.isSurface ? pointsOfFace(mesh, cell) : [...mesh.tets.subarray(4 * cell, 4 * cell + 4)];
 }
 
-// The smallest and the largest, in degrees.
-function dihedralAngles(mesh, tet) {
-  const p = cornersOf(mesh, tet);
+function cornersOf(mesh, cell) {
+  return pointsOfCell(mesh, cell).map(point => new THREE.Vector3().fromArray(mesh.points, 3 * point));
+}
+
+// The smallest and the largest angle, in degrees: dihedral ones of a tetrahedron.
+function anglesOf(mesh, cell) {
+  const p = cornersOf(mesh, cell);
+  if (!mesh.isSurface) return dihedralAngles(p);
+  const angles = [0, 1, 2].map(i =>
+    p[(i + 1) % 3].clone().sub(p[i]).angleTo(p[(i + 2) % 3].clone().sub(p[i])) * 180 / Math.PI);
+  return [Math.min(...angles), Math.max(...angles)];
+}
+
+function dihedralAngles(p) {
   const normals = faceCorners.map(([i, j, k]) =>
     p[j].clone().sub(p[i]).cross(p[k].clone().sub(p[i])).normalize());
   const angles = edgeCorners.map(([i, j]) =>
@@ -106,7 +131,7 @@ function fileColour(mesh, number, region) {
 }
 
 function colourOf(mesh, face, by) {
-  const tet = face >> 2;
+  const tet = cellOf(mesh, face);
   if (by === 'face') {
     const number = tagNumberOf(mesh, face);
     return number === undefined ? markColours.plain : faceColour(number);
@@ -161,6 +186,9 @@ class View {
     this.mesh = mesh;
     this.names = names;
     document.querySelector('#colour option[value=file]').hidden = !mesh.colours;
+    for (const kind of ['region', 'collar', 'thin'])
+      document.querySelector(`#colour option[value=${kind}]`).hidden = mesh.isSurface;
+    if (mesh.isSurface) document.querySelector('#colour option[value=angle]').textContent = 'smallest angle';
     this.canvas = document.getElementById('canvas');
     this.box = new THREE.Box3().setFromArray(mesh.points);
     this.diagonal = this.box.getSize(new THREE.Vector3()).length();
@@ -176,7 +204,8 @@ class View {
     this.controls = new THREE.OrbitControls(this.camera, this.renderer.domElement);
     this.controls.addEventListener('change', () => this.draw());
     this.surface = new THREE.Mesh(new THREE.BufferGeometry(), new THREE.MeshLambertMaterial(
-      { vertexColors: THREE.VertexColors, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 }));
+      { vertexColors: THREE.VertexColors, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
+        side: mesh.isSurface ? THREE.DoubleSide : THREE.FrontSide }));
     this.lines = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial(
       { color: 0x24323f, transparent: true, opacity: 0.45 }));
     this.mark = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial(
@@ -185,7 +214,8 @@ class View {
     this.curves = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: 0x0b5cad }));
     this.balls = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: 0xd1495b }));
     this.scene.add(this.surface, this.lines, this.curves, this.balls, this.mark, this.straightened(straightened));
-    this.numbered = new THREE.Mesh(new THREE.BufferGeometry(), new THREE.MeshBasicMaterial({ vertexColors: THREE.VertexColors }));
+    this.numbered = new THREE.Mesh(new THREE.BufferGeometry(), new THREE.MeshBasicMaterial(
+      { vertexColors: THREE.VertexColors, side: this.surface.material.side }));
     this.numbers = new THREE.Scene();
     this.numbers.add(this.numbered);
     this.labels = shown.face_tags.map(tag => element('span', { hidden: '' }, names.face(tag)));
@@ -299,34 +329,40 @@ class View {
     return true;
   }
 
-  // Which tets lie on the near side of the cut?
+  // Which cells lie on the near side of the cut?
   kept() {
     const axis = 'xyz'.indexOf(document.getElementById('axis').value || '-');
     if (axis < 0) return () => true;
     const share = Number(document.getElementById('position').value);
-    const { points, tets } = this.mesh, low = this.box.min.getComponent(axis), high = this.box.max.getComponent(axis);
-    const at = 4 * (low + share * (high - low));
-    return t => [0, 1, 2, 3].reduce((sum, i) => sum + points[3 * tets[4 * t + i] + axis], 0) <= at;
+    const low = this.box.min.getComponent(axis), at = low + share * (this.box.max.getComponent(axis) - low);
+    return cell => {
+      const of = pointsOfCell(this.mesh, cell);
+      return of.reduce((sum, point) => sum + this.mesh.points[3 * point + axis], 0) <= at * of.length;
+    };
+  }
+
+  // The faces to draw: those of kept tetrahedra without a kept neighbour, or all kept triangles.
+  outerFaces() {
+    const { tets, neighbours, patches, isSurface } = this.mesh, inside = this.kept(), faces = [];
+    const keep = Uint8Array.from({ length: (isSurface ? patches : tets).length / 4 }, (_, cell) => inside(cell) ? 1 : 0);
+    for (let face = 0; face < tets.length; ++face)
+      if (keep[face >> 2] && (neighbours[face] === noNeighbour || !keep[neighbours[face]])) faces.push(face);
+    if (isSurface) keep.forEach((is, face) => { if (is) faces.push(face); });
+    return faces;
   }
 
   rebuild() {
-    const { points, tets, neighbours } = this.mesh, by = document.getElementById('colour').value;
-    const inside = this.kept(), count = tets.length / 4;
-    const keep = Uint8Array.from({ length: count }, (_, t) => inside(t) ? 1 : 0);
-    const faces = [];
-    for (let face = 0; face < tets.length; ++face)
-      if (keep[face >> 2] && (neighbours[face] === noNeighbour || !keep[neighbours[face]])) faces.push(face);
+    const { points } = this.mesh, by = document.getElementById('colour').value, faces = this.outerFaces();
     const position = new Float32Array(9 * faces.length), colour = new Float32Array(9 * faces.length);
     const line = new Float32Array(18 * faces.length), rgb = new THREE.Color(), numbers = new Float32Array(9 * faces.length);
     faces.forEach((face, f) => {
-      const t = face >> 2;
       rgb.set(colourOf(this.mesh, face, by));
       const number = tagNumberOf(this.mesh, face);
       if (number !== undefined) this.numberColour(number).forEach((value, i) => {
         for (let k = 0; k < 3; ++k) numbers[9 * f + 3 * k + i] = value / 255;
       });
-      faceCorners[face & 3].forEach((corner, k) => {
-        const from = 3 * tets[4 * t + corner];
+      pointsOfFace(this.mesh, face).forEach((point, k) => {
+        const from = 3 * point;
         for (let i = 0; i < 3; ++i) {
           const value = points[from + i];
           position[9 * f + 3 * k + i] = value;
@@ -362,7 +398,7 @@ class View {
     let reach = this.diagonal / 100;
     if (tet !== null) {
       const p = cornersOf(this.mesh, tet);
-      for (const [i, j] of edgeCorners) lines.push(...p[i].toArray(), ...p[j].toArray());
+      for (const [i, j] of p.length === 3 ? sideCorners : edgeCorners) lines.push(...p[i].toArray(), ...p[j].toArray());
       reach = Math.max(...p.map(corner => corner.distanceTo(at)));
       this.tell(tet);
     } else {
@@ -387,16 +423,16 @@ class View {
     ray.setFromCamera(new THREE.Vector2(2 * (event.clientX - box.left) / box.width - 1,
       1 - 2 * (event.clientY - box.top) / box.height), this.camera);
     const [hit] = ray.intersectObject(this.surface);
-    if (hit) this.tell(this.faces[hit.faceIndex] >> 2, this.faces[hit.faceIndex]);
+    if (hit) this.tell(cellOf(this.mesh, this.faces[hit.faceIndex]), this.faces[hit.faceIndex]);
   }
 
-  // Says what the tet is, and which face was clicked.
+  // Says what the cell is, and which face was clicked.
   tell(tet, face = null) {
-    const [smallest, largest] = dihedralAngles(this.mesh, tet), marks = this.mesh.marks[tet];
+    const [smallest, largest] = anglesOf(this.mesh, tet), marks = this.mesh.marks[tet];
     const corners = cornersOf(this.mesh, tet).map(p => `(${p.toArray().map((x, i) => number(x + this.shown.centre[i])).join(', ')})`);
     const patch = face === null ? undefined : tagNumberOf(this.mesh, face);
     const on = patch === undefined ? '' : `${this.names.face(this.shown.face_tags[patch])}; `;
-    document.getElementById('selected').textContent = `${on}${this.names.region(this.mesh.region[tet])}, dihedral angles ${number(smallest)}° to ` +
+    document.getElementById('selected').textContent = `${on}${this.mesh.isSurface ? '' : `${this.names.region(this.mesh.region[tet])}, dihedral `}angles ${number(smallest)}° to ` +
       `${number(largest)}°${marks & 1 ? ', in a collar' : ''}${marks & 2 ? ', thin' : ''}; corners ${corners.join(' ')}`;
   }
 

@@ -13,6 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/recorded_stage.h"
+
 namespace collarmesh::recorded_costs {
 
 namespace {
@@ -115,6 +117,8 @@ class Record {
     last_ = now();
   }
 
+  const std::string& stage() const { return stage_; }
+
  private:
   void end_part(bool outermost, const std::string& key) {
     const std::unique_ptr<Part> part = std::move(under_way_.back());
@@ -169,6 +173,16 @@ void run(std::size_t count, const std::function<void(std::size_t)>& work, const 
 
 void begin_stage(std::string_view stage) {
   if (the_only != nullptr && the_only->is_here()) the_only->begin_stage(stage);
+}
+
+StagePart::StagePart(std::string_view work) {
+  if (the_only == nullptr || !the_only->is_here()) return;
+  stage_ = the_only->stage();
+  begin_stage(stage_ + ": " + std::string(work));
+}
+
+StagePart::~StagePart() {
+  if (!stage_.empty()) begin_stage(stage_);
 }
 
 void write() {

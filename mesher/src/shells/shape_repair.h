@@ -23,6 +23,8 @@ class ShapeRepair {
   std::size_t run(std::size_t most_vertices);
   /// Improves triangles without new vertices, up to the shape `wanted`.
   void improve(double wanted);
+  /// Moves a vertex if that increases the least shape around it.
+  bool move_best(Index vertex);
   /// Divides triangles that are too far from their patches, with at most `most_vertices` new vertices.
   /// Returns whether it divided any.
   bool approach(std::size_t most_vertices);
@@ -45,7 +47,6 @@ class ShapeRepair {
   bool improve_connections(Index triangle, double wanted, bool may_contract);
   bool improve_by_moves(Index triangle);
   bool move_corners(Index triangle);
-  bool move_best(Index vertex);
   bool move_within(Index vertex);
   bool move_on_curve(Index vertex, const VertexFan& fan);
   bool move_on_patch(Index vertex, const VertexFan& fan);

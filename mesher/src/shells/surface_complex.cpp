@@ -17,8 +17,9 @@ void erase_one(std::vector<Index>& all, Index one) {
 
 }  // namespace
 
-Index SurfaceComplex::add_vertex(const Point& point, const TetMesh::VertexFeature& feature, double size) {
-  vertices.push_back({point, feature, size, {}, {}, 0});
+Index SurfaceComplex::add_vertex(const Point& point, const TetMesh::VertexFeature& feature, double size,
+                                 double asked) {
+  vertices.push_back({point, feature, size, asked, {}, {}, 0});
   return static_cast<Index>(vertices.size() - 1);
 }
 

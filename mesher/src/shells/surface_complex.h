@@ -43,7 +43,8 @@ class SurfaceComplex {
   struct Vertex {
     Point point;
     TetMesh::VertexFeature feature;
-    double size = 0;  ///< target edge length
+    double size = 0;   ///< target edge length
+    double asked = 0;  ///< the same, but without regard to short curves and narrow places
     std::vector<Index> triangles, edges;
     Index changes = 0;  ///< number of changes of its triangles so far
   };
@@ -57,7 +58,7 @@ class SurfaceComplex {
   }
   std::array<Point, 3> corners(Index triangle) const { return corners(triangles[triangle].corners); }
 
-  Index add_vertex(const Point& point, const TetMesh::VertexFeature& feature, double size);
+  Index add_vertex(const Point& point, const TetMesh::VertexFeature& feature, double size, double asked);
   Index add_triangle(const std::array<Index, 3>& corners, Index patch);
   void remove_triangle(Index triangle);
   void move_vertex(Index vertex, const Point& to);

@@ -192,6 +192,14 @@ std::optional<std::array<Index, 2>> SurfaceEditor::edges_around(Index vertex) co
   return in_order ? std::array{edges[0], edges[1]} : std::array{edges[1], edges[0]};
 }
 
+/// Returns the distance from its curve of a chord in place of two edges, divided by the tolerance.
+double SurfaceEditor::sag_across(const std::array<Index, 2>& two) const {
+  const auto& before = complex_.edges[two[0]];
+  const auto& behind = complex_.edges[two[1]];
+  return sag_between(plc_, paths_, tolerance_, before.curve, before.at[0],
+                     before.at[1] + (behind.at[1] - behind.at[0]));
+}
+
 bool SurfaceEditor::curve_permits(Index from, Index to, const Contraction& rule) const {
   const auto around = edges_around(from);
   const Index edge = complex_.edge_at(from, to);
@@ -200,19 +208,23 @@ bool SurfaceEditor::curve_permits(Index from, Index to, const Contraction& rule)
   const auto& behind = complex_.edges[(*around)[1]];
   const Index other = edge == (*around)[0] ? behind.ends[1] : before.ends[0];
   if (other == to || complex_.edge_at(to, other) != none) return false;
-  const double end = before.at[1] + (behind.at[1] - behind.at[0]);
-  return length(to, other) <= rule.longest * size_of_edge(to, other) &&
-         sag_between(plc_, paths_, tolerance_, before.curve, before.at[0], end) <= most_excess_;
+  return length(to, other) <= rule.longest * size_of_edge(to, other) && sag_across(*around) <= most_excess_;
 }
 
-void SurfaceEditor::merge_edges(Index from, Index to) {
-  const auto [first, second] = *edges_around(from);
+void SurfaceEditor::merge_edges(Index middle) {
+  const auto [first, second] = *edges_around(middle);
   const auto before = complex_.edges[first], behind = complex_.edges[second];
   complex_.remove_edge(first);
   complex_.remove_edge(second);
   complex_.add_edge({before.ends[0], behind.ends[1]}, before.curve,
                     {before.at[0], before.at[1] + (behind.at[1] - behind.at[0])});
-  static_cast<void>(to);
+}
+
+/// Removes a vertex with its triangles and puts new ones there.
+void SurfaceEditor::replace_vertex(Index vertex, std::span<const Created> created) {
+  for (const Index t : std::vector<Index>(complex_.vertices[vertex].triangles)) complex_.remove_triangle(t);
+  if (complex_.vertices[vertex].feature.dimension == 1) merge_edges(vertex);
+  for (const Created& n : created) complex_.add_triangle(n.corners, n.patch);
 }
 
 bool SurfaceEditor::contract(Index from, Index to, const Contraction& rule) {
@@ -230,18 +242,21 @@ bool SurfaceEditor::contract(Index from, Index to, const Contraction& rule) {
     std::replace(created.back().corners.begin(), created.back().corners.end(), from, to);
   }
   if (!fit(created, all, to)) return false;
-  for (const Index t : all) complex_.remove_triangle(t);
-  if (dimension == 1) merge_edges(from, to);
-  for (const Created& n : created) complex_.add_triangle(n.corners, n.patch);
+  replace_vertex(from, created);
   return true;
 }
 
-double SurfaceEditor::size_near(const Point& p, std::span<const Index> around, double asked) const {
-  double size = asked;
-  for (const Index n : around)
-    size = std::min(size,
-                    complex_.vertices[n].size + sizes_.gradation() * distance(p, complex_.vertices[n].point));
-  return size;
+/// Adds a vertex whose sizes keep the gradation. `asked`: the size that the options ask for there; `size`:
+/// the same, considering lengths of curves.
+Index SurfaceEditor::add_vertex(const Point& p, const TetMesh::VertexFeature& feature,
+                                std::span<const Index> around, double size, double asked) {
+  for (const Index n : around) {
+    const auto& other = complex_.vertices[n];
+    const double growth = sizes_.gradation() * distance(p, other.point);
+    size = std::min(size, other.size + growth);
+    asked = std::min(asked, other.asked + growth);
+  }
+  return complex_.add_vertex(p, feature, size, asked);
 }
 
 Index SurfaceEditor::new_vertex(const Point& p, Index patch, std::span<const Index> around) {
@@ -254,8 +269,8 @@ Index SurfaceEditor::new_vertex(const Point& p, Index patch, std::span<const Ind
     place = foot.point;
     triangle = foot.triangle;
   }
-  return complex_.add_vertex(place, {2, patch},
-                             size_near(place, around, sizes_.on_patch(patch, triangle, place)));
+  const double size = sizes_.on_patch(patch, triangle, place);
+  return add_vertex(place, {2, patch}, around, size, size);
 }
 
 Index SurfaceEditor::divide_at(Index a, Index b, std::span<const Index> triangles, const Point& p) {
@@ -293,8 +308,8 @@ Index SurfaceEditor::divide_curve_edge(Index edge, double at) {
   const auto [a, b] = old.ends;
   const std::vector<Index> triangles = complex_.triangles_at(a, b);
   const Point p = paths_.point(old.curve, at);
-  const double asked = sizes_.on_curve(old.curve, at), size = size_near(p, old.ends, asked);
-  const Index v = complex_.add_vertex(p, {1, old.curve}, size);
+  const Index v = add_vertex(p, {1, old.curve}, old.ends, sizes_.on_curve(old.curve, at),
+                             sizes_.asked_on_curve(old.curve, at));
   std::vector<Created> created;
   for (const Index t : triangles)
     for (const Index end : {a, b}) {

@@ -30,10 +30,38 @@ class SurfaceEditor {
     bool better = false;        ///< the least shape must increase
   };
 
+  /// Conditions for removing a vertex.
+  struct Removal {
+    double longest;      ///< longest new edge, relative to what the options ask for
+    double least_shape;  ///< least shape of the new triangles
+  };
+
   /// Replaces the edge ab inside a patch by the other diagonal, if the least shape increases.
   bool flip(Index a, Index b);
   /// Contracts the edge to its vertex `to`. Returns false if that is not possible.
   bool contract(Index from, Index to, const Contraction& rule);
+  /// Removes a vertex and puts the triangles there whose least shape is largest. Returns false if that is not
+  /// possible.
+  bool remove(Index vertex, const Removal& rule);
+  /// A vertex before its removal, with what surrounds it.
+  struct Surroundings {
+    Index vertex = none;
+    std::vector<SurfaceComplex::Triangle> triangles;
+    std::vector<SurfaceComplex::Edge> edges;
+    Index first_triangle = 0, first_edge = 0;  ///< numbers from which on all are new
+    struct Neighbour {
+      Index vertex;
+      Point point;
+      double least_shape;
+    };
+    std::vector<Neighbour> neighbours;
+    std::vector<std::pair<Index, Index>> changes;                 ///< of the neighbours and of theirs
+    std::vector<std::pair<Index, std::array<double, 2>>> places;  ///< of the neighbours' edges on curves
+  };
+  Surroundings surroundings(Index vertex) const;
+  /// Undoes the removal of a vertex and the moves of its neighbours since then. Precondition: nothing else
+  /// has changed.
+  void restore(const Surroundings& before);
   /// Divides an edge inside a patch in its middle. Returns the new vertex, or none if that is not possible.
   Index divide(Index a, Index b);
   /// Divides the edge of a curve at an arc length, in all patches there. Returns the new vertex, or none.
@@ -59,6 +87,7 @@ class SurfaceEditor {
 
   void set_most_excess(double share) { most_excess_ = share; }
 
+  bool planar(Index patch) const { return surfaces_.planar(patch); }
   double shape(Index triangle) const { return complex_.triangles[triangle].shape; }
   /// Returns the least shape of a vertex's triangles; ends early if one is below `bound`.
   double least_shape_at(Index vertex, double bound = 0) const;
@@ -70,6 +99,11 @@ class SurfaceEditor {
   std::vector<std::pair<Index, Point>> far_points() const;
   double size_of_edge(Index a, Index b) const {
     return 0.5 * (complex_.vertices[a].size + complex_.vertices[b].size);
+  }
+  /// Returns what the options ask for, see SurfaceComplex::Vertex.
+  double asked_of_edge(Index a, Index b) const {
+    return sizes_.gradation_is_given() ? size_of_edge(a, b)
+                                       : 0.5 * (complex_.vertices[a].asked + complex_.vertices[b].asked);
   }
   double length(Index a, Index b) const {
     return distance(complex_.vertices[a].point, complex_.vertices[b].point);
@@ -96,10 +130,26 @@ class SurfaceEditor {
   bool shapes_permit(Index from, Index to, const Contraction& rule) const;
   bool lengths_permit(Index from, Index to, const Contraction& rule) const;
   bool curve_permits(Index from, Index to, const Contraction& rule) const;
-  void merge_edges(Index from, Index to);
+  double sag_across(const std::array<Index, 2>& two) const;
+  void merge_edges(Index middle);
+  void replace_vertex(Index vertex, std::span<const Created> created);
+  /// What is left of a patch's triangles around a vertex when it is removed: their other corners in order. At
+  /// an interior vertex the first one follows upon the last; at a vertex of a curve they are its neighbours
+  /// on the curve.
+  struct Hole {
+    Index patch;
+    std::vector<Index> border;
+  };
+  std::optional<std::vector<Hole>> holes_around(Index vertex) const;
+  std::optional<Hole> hole_from(Index vertex, Index triangle, std::vector<Index>& seen) const;
+  bool fill(const Hole& hole, const Removal& rule, std::vector<Created>& created) const;
+  bool filling_fits(Index vertex, const Hole& hole, std::span<const Created> created) const;
+  bool chord_permits(Index vertex, std::span<const Hole> holes, const Removal& rule) const;
+  bool may_join(Index a, Index b, const Removal& rule) const;
+  Index add_vertex(const Point& p, const TetMesh::VertexFeature& feature, std::span<const Index> around,
+                   double size, double asked);
   Index new_vertex(const Point& p, Index patch, std::span<const Index> around);
   Index divide_at(Index a, Index b, std::span<const Index> triangles, const Point& p);
-  double size_near(const Point& p, std::span<const Index> around, double asked) const;
 
   SurfaceComplex& complex_;
   const Plc& plc_;

@@ -9,6 +9,7 @@
 
 #include "shells/curve_division.h"
 #include "shells/sharp_corners.h"
+#include "shells/vertex_removal.h"
 
 namespace collarmesh::shells {
 
@@ -36,7 +37,7 @@ void SurfaceMesher::take_complex() {
   for (const Plc::Triangle& t : plc_.triangles)
     for (const Index p : t.points) {
       if (number[p] != none) continue;
-      number[p] = complex_.add_vertex(plc_.points[p], {2, t.patch}, INFINITY);
+      number[p] = complex_.add_vertex(plc_.points[p], {2, t.patch}, INFINITY, INFINITY);
       point_of_.push_back(p);
     }
   std::vector<std::pair<Index, double>> place_on_curve(complex_.vertices.size(), {none, 0});
@@ -70,7 +71,19 @@ void SurfaceMesher::take_complex() {
       vertex.size = sizes_.on_curve(place_on_curve[i].first, place_on_curve[i].second);
     if (vertex.feature.dimension == 0) vertex.size = sizes_.at_vertex(vertex.feature.feature);
   }
+  take_asked_sizes(place_on_curve);
   grade(complex_, sizes_.gradation());
+}
+
+void SurfaceMesher::take_asked_sizes(const std::vector<std::pair<Index, double>>& place_on_curve) {
+  for (Index i = 0; i < complex_.vertices.size(); ++i) {
+    auto& vertex = complex_.vertices[i];
+    vertex.asked = vertex.size;
+    if (vertex.feature.dimension == 1)
+      vertex.asked = sizes_.asked_on_curve(place_on_curve[i].first, place_on_curve[i].second);
+    if (vertex.feature.dimension == 0) vertex.asked = sizes_.asked_at_vertex(vertex.feature.feature);
+  }
+  grade(complex_, sizes_.gradation(), &SurfaceComplex::Vertex::asked);
 }
 
 /// Returns the allowed distance of chords from each point of the complex: the tolerance or, where curves are
@@ -288,6 +301,27 @@ void SurfaceMesher::run() {
   constexpr unsigned last_rounds = 4;
   repair_.run(rest());
   for (unsigned round = 0; round < last_rounds && repair_.approach(rest()); ++round) repair_.run(rest());
+  remove_needless_vertices();
+  // Angles are near their bounds now, so that a new vertex in one triangle spoils those beside it: moves come
+  // first.
+  for (unsigned round = 0; round < last_rounds && repair_.approach(rest()); ++round) {
+    repair_.improve(wanted_shape);
+    repair_.run(rest());
+  }
+  repair_.improve(least_angle);
+}
+
+/// Removes vertices and moves those that stay, in turns, as long as that removes at least one in `few`.
+void SurfaceMesher::remove_needless_vertices() {
+  constexpr unsigned rounds = 2;
+  constexpr std::size_t few = 30;
+  VertexRemoval removal(complex_, editor_, repair_, execution_);
+  bool many = true;
+  for (unsigned round = 0; many && round < rounds && !execution_.cancelled(); ++round) {
+    many = removal.run() > complex_.vertices.size() / few;
+    flip_all();
+    repair_.improve(wanted_shape);
+  }
 }
 
 /// Moves a vertex to its place on the exact geometry, unless an angle would fall below its bound or, if it

@@ -41,6 +41,7 @@ class SurfaceMesher {
 
  private:
   void take_complex();
+  void take_asked_sizes(const std::vector<std::pair<Index, double>>& place_on_curve);
   void divide_curves(const SharpCorners& corners);
   std::vector<double> sag_limits() const;
   void divide_curve_at(Index curve, std::vector<Index>& edges, const std::array<double, 2>& tips,
@@ -50,6 +51,7 @@ class SurfaceMesher {
   void contract_short(double least_shape);
   void flip_all();
   void smooth();
+  void remove_needless_vertices();
   bool project_vertex(Index vertex, const Point& target);
 
   const Plc& plc_;

@@ -19,16 +19,25 @@ SurfaceSizes::SurfaceSizes(const Plc& plc, const CurvePaths& paths, const MeshOp
       paths_(paths),
       sizing_(plc, options, Frame()),
       gradation_(options.gradation > 0 ? options.gradation : default_gradation),
+      gradation_is_given_(options.gradation > 0),
       at_vertex_(plc.vertices.size(), INFINITY) {
   for (Index v = 0; v < plc.vertices.size(); ++v) {
-    const Point& p = plc.points[plc.vertices[v].point];
-    for (const Index patch : plc.vertices[v].patches)
-      at_vertex_[v] = std::min(at_vertex_[v], sizing_.feature_size(2, patch, p));
-    for (const Index curve : plc.vertices[v].curves) {
-      const double length = paths.length(curve), ends = plc.curves[curve].ends[0] == v ? 0 : length;
-      at_vertex_[v] = std::min({at_vertex_[v], length, asked_on_curve(curve, ends)});
-    }
+    at_vertex_[v] = asked_at_vertex(v);
+    for (const Index curve : plc.vertices[v].curves)
+      at_vertex_[v] = std::min(at_vertex_[v], paths.length(curve));
   }
+}
+
+double SurfaceSizes::asked_at_vertex(Index vertex) const {
+  const Point& p = plc_.points[plc_.vertices[vertex].point];
+  double size = INFINITY;
+  for (const Index patch : plc_.vertices[vertex].patches)
+    size = std::min(size, sizing_.feature_size(2, patch, p));
+  for (const Index curve : plc_.vertices[vertex].curves) {
+    const double end = plc_.curves[curve].ends[0] == vertex ? 0 : paths_.length(curve);
+    size = std::min(size, asked_on_curve(curve, end));
+  }
+  return size;
 }
 
 double SurfaceSizes::asked_on_curve(Index curve, double parameter) const {
@@ -45,20 +54,20 @@ double SurfaceSizes::on_curve(Index curve, double parameter) const {
   return size;
 }
 
-void grade(SurfaceComplex& complex, double gradation) {
+void grade(SurfaceComplex& complex, double gradation, double SurfaceComplex::Vertex::*sizes) {
   using Entry = std::pair<double, Index>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
   for (Index v = 0; v < complex.vertices.size(); ++v)
-    if (!complex.vertices[v].triangles.empty()) queue.emplace(complex.vertices[v].size, v);
+    if (!complex.vertices[v].triangles.empty()) queue.emplace(complex.vertices[v].*sizes, v);
   while (!queue.empty()) {
     const auto [size, v] = queue.top();
     queue.pop();
-    if (size > complex.vertices[v].size) continue;
+    if (size > complex.vertices[v].*sizes) continue;
     for (const Index n : complex.neighbours(v)) {
       auto& other = complex.vertices[n];
       const double most = size + gradation * distance(complex.vertices[v].point, other.point);
-      if (most >= other.size) continue;
-      other.size = most;
+      if (most >= other.*sizes) continue;
+      other.*sizes = most;
       queue.emplace(most, n);
     }
   }

@@ -24,18 +24,25 @@ class SurfaceSizes {
   /// Returns the target edge length on a curve, considering the lengths of the curves at its ends.
   double on_curve(Index curve, double parameter) const;
   double at_vertex(Index vertex) const { return at_vertex_[vertex]; }
+  /// Returns what the options ask for on a curve, without regard to the lengths of curves.
+  double asked_on_curve(Index curve, double parameter) const;
+  double asked_at_vertex(Index vertex) const;
+  /// Returns whether the options give a gradation. If not, angles alone limit how fast edge lengths grow away
+  /// from short curves and narrow places.
+  bool gradation_is_given() const { return gradation_is_given_; }
 
  private:
-  double asked_on_curve(Index curve, double parameter) const;
-
   const Plc& plc_;
   const CurvePaths& paths_;
   Sizing sizing_;
   double gradation_;
+  bool gradation_is_given_;
   std::vector<double> at_vertex_;
 };
 
-/// Reduces the sizes at vertices until they keep the gradation along all edges. Cost: n log n.
-void grade(SurfaceComplex& complex, double gradation);
+/// Reduces sizes at vertices (`size` or `asked`) until they keep the gradation along all edges. Cost: n log
+/// n.
+void grade(SurfaceComplex& complex, double gradation,
+           double SurfaceComplex::Vertex::*sizes = &SurfaceComplex::Vertex::size);
 
 }  // namespace collarmesh::shells

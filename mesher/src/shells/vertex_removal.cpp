@@ -1,0 +1,101 @@
+#include "shells/vertex_removal.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "shells/triangle_shape.h"
+
+namespace collarmesh::shells {
+
+namespace {
+
+// Longest new edges, relative to what the options ask for.
+constexpr double longest = 1.25;
+
+}  // namespace
+
+VertexRemoval::VertexRemoval(const SurfaceComplex& complex, SurfaceEditor& editor, ShapeRepair& repair,
+                             const Execution& execution)
+    : complex_(complex), editor_(editor), repair_(repair), execution_(execution) {}
+
+/// Returns the vertices to try, those with the shortest edges first.
+std::vector<Index> VertexRemoval::candidates() {
+  constexpr double long_enough = 0.9;  // relative to what the options ask for
+  tried_.resize(complex_.vertices.size(), 0);
+  std::vector<std::pair<double, Index>> by_length;
+  for (Index v = 0; v < complex_.vertices.size(); ++v) {
+    const auto& vertex = complex_.vertices[v];
+    if (vertex.triangles.empty() || vertex.feature.dimension == 0 || tried_[v] == vertex.changes + 1)
+      continue;
+    double shortest = INFINITY;
+    for (const Index n : complex_.neighbours(v))
+      shortest = std::min(shortest, editor_.length(v, n) / editor_.asked_of_edge(v, n));
+    if (shortest < long_enough) by_length.emplace_back(shortest, v);
+  }
+  std::sort(by_length.begin(), by_length.end());
+  std::vector<Index> vertices;
+  vertices.reserve(by_length.size());
+  for (const auto& [length, v] : by_length) vertices.push_back(v);
+  return vertices;
+}
+
+/// Returns the least shape allowed around a vertex: on curved patches there is a margin, because vertices
+/// will move onto the exact geometry.
+double VertexRemoval::least_shape_beside(Index vertex) const {
+  constexpr double planar_margin = 0.3, curved_margin = 1;
+  for (const Index t : complex_.vertices[vertex].triangles)
+    if (!editor_.planar(complex_.triangles[t].patch)) return least_angle + curved_margin;
+  return least_angle + planar_margin;
+}
+
+/// Returns whether all shapes around the former neighbours of a vertex are as good as they have to be or were
+/// before, and all edges there short enough.
+bool VertexRemoval::acceptable(const SurfaceEditor::Surroundings& before, double least_shape) const {
+  for (const auto& n : before.neighbours) {
+    if (editor_.least_shape_at(n.vertex) < std::min(n.least_shape, least_shape)) return false;
+    if (complex_.vertices[n.vertex].point == n.point) continue;
+    for (const Index other : complex_.neighbours(n.vertex))
+      if (editor_.length(n.vertex, other) > longest * editor_.asked_of_edge(n.vertex, other)) return false;
+  }
+  return true;
+}
+
+/// Removes a vertex and moves its former neighbours to places where the shapes are good; puts all back if
+/// they are not good there.
+bool VertexRemoval::remove_and_move(Index vertex, double least_shape) {
+  constexpr double least_at_first = 0.6;  // relative to the least shape afterwards
+  constexpr unsigned rounds = 3;
+  const SurfaceEditor::Surroundings before = editor_.surroundings(vertex);
+  if (!editor_.remove(vertex, {.longest = longest, .least_shape = least_at_first * least_shape}))
+    return false;
+  for (unsigned round = 0; round < rounds; ++round) {
+    bool moved = false;
+    for (const auto& n : before.neighbours)
+      if (editor_.least_shape_at(n.vertex) < std::min(n.least_shape, least_shape))
+        moved |= repair_.move_best(n.vertex);
+    if (!moved) break;
+  }
+  if (acceptable(before, least_shape)) return true;
+  editor_.restore(before);
+  return false;
+}
+
+bool VertexRemoval::remove(Index vertex) {
+  const double least_shape = least_shape_beside(vertex);
+  return editor_.remove(vertex, {.longest = longest, .least_shape = least_shape}) ||
+         remove_and_move(vertex, least_shape);
+}
+
+std::size_t VertexRemoval::run() {
+  std::size_t removed = 0;
+  for (const Index v : candidates()) {
+    if (execution_.cancelled()) break;
+    if (remove(v))
+      ++removed;
+    else
+      tried_[v] = complex_.vertices[v].changes + 1;
+  }
+  return removed;
+}
+
+}  // namespace collarmesh::shells

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <vector>
+
+#include "collarmesh/progress.h"
+#include "shells/shape_repair.h"
+#include "shells/surface_editor.h"
+
+namespace collarmesh::shells {
+
+/// Removes vertices that neither sizes, distances nor angles need: those that edge lengths which grow slowly
+/// away from short curves and narrow places have left.
+class VertexRemoval {
+ public:
+  /// Keeps all by reference.
+  VertexRemoval(const SurfaceComplex& complex, SurfaceEditor& editor, ShapeRepair& repair,
+                const Execution& execution);
+
+  /// Tries to remove each vertex once, those with the shortest edges first. Returns the number of removed
+  /// ones. Call it again after other changes: it considers only vertices whose triangles have changed.
+  std::size_t run();
+
+ private:
+  std::vector<Index> candidates();
+  double least_shape_beside(Index vertex) const;
+  bool remove(Index vertex);
+  bool remove_and_move(Index vertex, double least_shape);
+  bool acceptable(const SurfaceEditor::Surroundings& before, double least_shape) const;
+
+  const SurfaceComplex& complex_;
+  SurfaceEditor& editor_;
+  ShapeRepair& repair_;
+  const Execution& execution_;
+  std::vector<Index> tried_;  // by vertex: its number of changes, plus 1, when it last had to stay
+};
+
+}  // namespace collarmesh::shells
