@@ -228,6 +228,17 @@ TEST(Layers, AroundTwoRegionsMeetAtTheirInterface) {
   EXPECT_GT(between, 0U);
 }
 
+TEST(Layers, SlideAlongInterfacesThatArePlanarWithinTolerance) {
+  std::vector<PolygonSoup> soups{box({0, 0, 0}, {1, 1, 1}), box({1, 0, 0}, {2, 1, 1})};
+  constexpr double off = 1e-6;
+  for (PolygonSoup& soup : soups)
+    for (Point& p : soup.points)
+      if (p.x == 1 && p.y == 0 && p.z == 0) p.x += off;
+  const PipelineResult run = made(soups, with_layers({"all:first=0.02,count=2"}));
+  EXPECT_NEAR(run.layers->coverage(), 1, 1e-9);
+  EXPECT_NEAR(volume_of(run.result.mesh), 2, off);
+}
+
 TEST(Layers, OfSecondOrderFollowCurvedWalls) {
   const std::vector<PolygonSoup> soups{sphere(6, 1, {0, 0, 0})};
   PipelineOptions options = with_layers({"all"});

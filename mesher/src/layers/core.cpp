@@ -34,6 +34,11 @@ constexpr std::size_t at_once = 4096;
 // Larger than any ratio: angles alone decide.
 constexpr double any_ratio = 1e12;
 
+std::array<Index, 4> sorted(std::array<Index, 4> corners) {
+  std::sort(corners.begin(), corners.end());
+  return corners;
+}
+
 }  // namespace
 
 Core::Core(const TetMesh& mesh, const Plc& plc, const Front& front, const Heights& heights,
@@ -54,7 +59,8 @@ Core::Core(const TetMesh& mesh, const Plc& plc, const Front& front, const Height
   thin_ = std::make_unique<improvement::ThinShape>(plc, mesh_, options_.bounds.thin_angle, 0, piece_->forced,
                                                    options_.bounds.tets_across());
   fix_wall();
-  poor_at_first_ = poor_tets().size();
+  for (const Index t : poor_tets()) poor_at_first_.push_back(sorted(piece_->complex[t].corners));
+  std::sort(poor_at_first_.begin(), poor_at_first_.end());
 }
 
 /// Gives each node of the front that is to move a copy, which takes its place in the tets of its sector.
@@ -177,14 +183,14 @@ bool Core::push(Heights& heights, const std::vector<std::uint8_t>& levels) {
     }
     poor = poor_tets();
     few = poor.size() <= most_of_few;
-    if (poor.size() > poor_at_first_) {
+    if (!poor.empty()) {
       lowered = lower_at(poor, share, heights) || lowered;
       share = 0.5;
     }
     lowered = heights.settle() || lowered;
-    if (poor.size() > poor_at_first_ + most_left(heights)) break;
+    if (poor.size() > most_left(heights)) break;
     if (lowered || !reached) continue;
-    if (poor.size() > poor_at_first_) break;
+    if (!poor.empty()) break;
     improve_tets(options_.min_dihedral, false);
     return true;
   }
@@ -420,18 +426,30 @@ void Core::improve_tets(double angle, bool thoroughly) {
   cancelled_ = cancelled_ || improve(*piece_, options, execution_, thoroughly).cancelled;
 }
 
-/// Returns the tets beyond the bounds on angles.
+/// Returns the tets beyond the bounds on angles, without those that were so from the start and are what they
+/// were: the mesh was certified with them.
 std::vector<Index> Core::poor_tets() const {
   const auto& complex = piece_->complex;
   std::vector<std::uint8_t> poor(complex.size(), 0);
   parallel_for_ranges(poor.size(), at_once, [&](std::size_t begin, std::size_t end) {
     for (auto t = static_cast<Index>(begin); t < end; ++t)
-      poor[t] = complex[t].alive && !thin_->contains(corners(t), complex[t].corners) ? 1 : 0;
+      poor[t] =
+          complex[t].alive && !thin_->contains(corners(t), complex[t].corners) && !is_as_given(t) ? 1 : 0;
   });
   std::vector<Index> found;
   for (Index t = 0; t < poor.size(); ++t)
     if (poor[t] != 0) found.push_back(t);
   return found;
+}
+
+bool Core::is_as_given(Index tet) const {
+  const std::array<Index, 4>& corners = piece_->complex[tet].corners;
+  return std::binary_search(poor_at_first_.begin(), poor_at_first_.end(), sorted(corners)) &&
+         std::all_of(corners.begin(), corners.end(), [&](Index v) {
+           const bool copied = v < node_of_.size() && node_of_[v] != none;
+           const Index given = copied ? front_.nodes[node_of_[v]].vertex : v;
+           return given < given_.points.size() && mesh_.points[v] == given_.points[given];
+         });
 }
 
 /// Returns the nodes of the front that have copies, in tets at most so many rings from these.
