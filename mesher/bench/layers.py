@@ -140,6 +140,8 @@ def run(name: str, path: Path, program: str, arguments, folder: Path) -> Row:
         row.outcome = (surface.stderr.strip().splitlines() or ["no information"])[-1][:60]
         return row
     first = 0.1 * size
+    if arguments.thickness_of_three:
+        first *= sum(growth ** k for k in range(3)) / sum(growth ** k for k in range(arguments.count))
     out, report = folder / "mesh.vtu", folder / "report.json"
     started = time.monotonic()
     try:
@@ -256,6 +258,8 @@ def main() -> None:
     parser.add_argument("--most", type=int, default=20, help="parts of each folder")
     parser.add_argument("--size-share", type=float, default=20, help="the diagonal over the size")
     parser.add_argument("--count", type=int, default=3)
+    parser.add_argument("--thickness-of-three", action="store_true",
+                        help="the layers are together as thick as three are")
     parser.add_argument("--limit", type=float, default=120, help="seconds for a part")
     parser.add_argument("--only", nargs="*", help="shapes with these words in their names")
     parser.add_argument("--openfoam", action="store_true", help="let checkMesh judge the meshes")

@@ -218,6 +218,32 @@ TEST(Layers, OnBothSidesOfAnInterface) {
   EXPECT_EQ(regions.size(), 2U);
 }
 
+TEST(Layers, OnOneSideOfAnInterface) {
+  const std::vector<PolygonSoup> soups{box({0, 0, 0}, {1, 1, 1}), box({1, 0, 0}, {2, 1, 1})};
+  PipelineOptions options = with_layers({});
+  const SoupPipelineResult without = run_pipeline(soups, options);
+  Tag interface = 0;
+  for (std::size_t f = 0; f < without.result.mesh.faces.size(); ++f)
+    if (const auto& [a, b] = without.result.mesh.face_regions[f]; a != 0 && b != 0)
+      interface = without.result.mesh.face_tag[f];
+  const std::string text = std::to_string(interface) + ":first=0.02,count=2,region=";
+  for (const Index region : {1U, 2U}) {
+    const std::string only = text + std::to_string(without.plc.regions[region].tag);
+    options.layers.walls = {only};
+    const PipelineResult run = made(soups, options);
+    EXPECT_NEAR(run.layers->coverage(), 1, 1e-9);
+    EXPECT_GT(least_jacobian_of(run.result.mesh), 0);
+    EXPECT_NEAR(volume_of(run.result.mesh), 2, 1e-9);
+    ASSERT_FALSE(run.result.mesh.layers.prisms.empty());
+    for (const Index of : run.result.mesh.layers.prism_region) EXPECT_EQ(of, region);
+    // Others' layers end where they meet it.
+    options.layers.walls = {only, "all:first=0.02,count=2"};
+    const PipelineResult both = made(soups, options);
+    EXPECT_NEAR(volume_of(both.result.mesh), 2, 1e-9);
+    EXPECT_GT(both.layers->coverage(), 0.8);
+  }
+}
+
 TEST(Layers, AroundTwoRegionsMeetAtTheirInterface) {
   const std::vector<PolygonSoup> soups{box({0, 0, 0}, {1, 1, 1}), box({1, 0, 0}, {2, 1, 1})};
   const PipelineResult run = made(soups, with_layers({"all:first=0.02,count=2"}));
@@ -280,6 +306,7 @@ TEST(Layers, RefuseWallsThatAreNone) {
   EXPECT_NE(error_of({"all:first=x"}).find("no number"), std::string::npos);
   EXPECT_NE(error_of({"all:count=0"}).find("count"), std::string::npos);
   EXPECT_NE(error_of({"all:height=1"}).find("thickness"), std::string::npos);
+  EXPECT_NE(error_of({"1:region=9"}).find("no region is called '9'"), std::string::npos);
   EXPECT_NE(error_of({"all:first=0.1,thickness=1"}).find("leave one out"), std::string::npos);
 }
 

@@ -99,14 +99,18 @@ void Core::copy_faces(const Heights& heights) {
     like.push_back(side.face);
   }
   // An interface may move on one side only.
-  for (const WallSide& side : front_.sides) {
-    const bool moves =
-        std::any_of(side.nodes.begin(), side.nodes.end(), [&](Index n) { return heights[n] > 0; });
-    if (moves || replaced[side.face] == 0) continue;
+  const auto keep_side = [&](const WallSide& side) {
     faces.push_back({side.corners[0], side.corners[2], side.corners[1]});
     regions.push_back({side.region, 0});
     like.push_back(side.face);
+  };
+  for (const WallSide& side : front_.sides) {
+    const bool moves =
+        std::any_of(side.nodes.begin(), side.nodes.end(), [&](Index n) { return heights[n] > 0; });
+    if (!moves && replaced[side.face] != 0) keep_side(side);
   }
+  for (const WallSide& side : front_.bare_sides)
+    if (replaced[side.face] != 0) keep_side(side);
   for (Index t = 0; t < mesh_.tets.size(); ++t) {
     const auto& tet = front_.tet(t);
     for (unsigned corner = 0; corner < 4; ++corner) {
