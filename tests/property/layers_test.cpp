@@ -291,6 +291,42 @@ TEST(Layers, OfSecondOrderFollowCurvedWalls) {
   for (std::size_t i = 0; i < with.size(); ++i) EXPECT_LT(distance(with[i], before[i]), 1e-12);
 }
 
+TEST(Layers, OfSecondOrderKeepTheVolumesOfCurvedParts) {
+  // So thick that the core loses vertices, and other points get their numbers.
+  const std::vector<PolygonSoup> soups{sphere(6, 1, {0, 0, 0})};
+  PipelineOptions options = with_layers({"all:first=0.15,count=2"});
+  options.order = 2;
+  const SoupPipelineResult run = run_pipeline(soups, options);
+  const CheckReport report = check(run.result.mesh, run.plc, {});
+  EXPECT_TRUE(report.passed()) << (report.findings.empty() ? "" : report.findings.front().message);
+}
+
+TEST(Layers, OfSecondOrderStayValidWhereTheyEndAtCurvedWalls) {
+  // Triangles bulge more than the layers are high, so heights are 0 at nodes where the core meets the wall.
+  const std::vector<PolygonSoup> soups{sphere(3, 1, {0, 0, 0})};
+  for (const char* walls : {"all:count=1", "all:count=1,first=0.01"}) {
+    PipelineOptions options = with_layers({walls});
+    options.order = 2;
+    options.mesh.size = 0.6;
+    const SoupPipelineResult run = run_pipeline(soups, options);
+    CheckReport report;
+    checks::check_layer_cells(run.result.mesh, report);
+    EXPECT_TRUE(report.passed()) << (report.findings.empty() ? "" : report.findings.front().message);
+  }
+}
+
+TEST(Layers, OfSecondOrderKnowTheFacesOfTheirNodes) {
+  const std::vector<PolygonSoup> soups{box({0, 0, 0}, {1, 1, 1}), box({1, 0, 0}, {2, 1, 1})};
+  for (const char* walls : {"all:count=1", "1:count=1", "1:count=3"}) {
+    PipelineOptions options = with_layers({walls});
+    options.order = 2;
+    const SoupPipelineResult run = run_pipeline(soups, options);
+    ASSERT_FALSE(run.result.mesh.layers.quads.empty());
+    const CheckReport report = check(run.result.mesh, run.plc, {});
+    EXPECT_TRUE(report.passed()) << (report.findings.empty() ? "" : report.findings.front().message);
+  }
+}
+
 std::string error_of(const std::vector<std::string>& walls) {
   try {
     run_pipeline(std::vector<PolygonSoup>{box({0, 0, 0}, {1, 1, 1})}, with_layers(walls));
