@@ -3,8 +3,9 @@
 
     layer_plate.py PROGRAM MODELS [--viscosity 0.002]
 
-Air enters a box of 3 x 2 x 1 with speed 1; the floor is the plate, the ceiling and the end are open, the sides slip.
-Where x is from 1.5 to 2.5 speeds are compared with Blasius' similar solution, and so is the drag of the floor there."""
+Air enters a box of 3 x 2 x 1 with speed 1; the floor is the plate, the end is open, ceiling and sides slip. Where x is
+from 1.5 to 2.5 speeds, relative to those outside of the boundary layer there, are compared with Blasius' solution. The
+air displaced by the layer makes the flow outside some percent faster along the plate, which his solution does not know."""
 
 import argparse
 import json
@@ -18,25 +19,24 @@ import numpy as np
 
 from tables import table
 
-names = {"patches": {"walls": 2, "ceiling": 1, "sides": [3, 5], "inlet": 6, "outlet": 4}}
-open_side = "type fixedValue; value uniform 0;"
+names = {"patches": {"walls": 2, "sides": [1, 3, 5], "inlet": 6, "outlet": 4}}
 files = {
-    "system/controlDict": "endTime 600; deltaT 1; writeControl timeStep; writeInterval 600;",
-    "system/fvSchemes": "ddtSchemes { default steadyState; } gradSchemes { default leastSquares; } "
-                        "divSchemes { default none; div(phi,U) bounded Gauss linearUpwind grad(U); "
+    "system/controlDict": "endTime 400; deltaT 1; writeControl timeStep; writeInterval 400;",
+    "system/fvSchemes": "ddtSchemes { default steadyState; } gradSchemes { default leastSquares; limited cellLimited leastSquares 1; } "
+                        "divSchemes { default none; div(phi,U) bounded Gauss linearUpwindV limited; "
                         "div((nuEff*dev2(T(grad(U))))) Gauss linear; } "
-                        "laplacianSchemes { default Gauss linear limited corrected 0.5; } interpolationSchemes { default linear; } "
-                        "snGradSchemes { default limited corrected 0.5; }",
-    "system/fvSolution": "SIMPLE { consistent yes; nNonOrthogonalCorrectors 1; residualControl { p 1e-5; U 1e-5; } } "
+                        "laplacianSchemes { default Gauss linear corrected; } interpolationSchemes { default linear; } "
+                        "snGradSchemes { default corrected; }",
+    "system/fvSolution": "SIMPLE { consistent yes; nNonOrthogonalCorrectors 1; residualControl { p 1e-4; U 1e-4; } } "
                          "solvers { p { solver PCG; preconditioner DIC; tolerance 1e-10; relTol 0.01; } "
                          "U { solver PBiCGStab; preconditioner DILU; tolerance 1e-10; relTol 0.01; } } "
-                         "relaxationFactors { fields { p 0.7; } equations { U 0.8; } }",
+                         "relaxationFactors { fields { p 0.5; } equations { U 0.6; } }",
     "constant/turbulenceProperties": "simulationType laminar;",
-    "0/p": "dimensions [0 2 -2 0 0 0 0]; internalField uniform 0; boundaryField { ceiling { %s } outlet { %s } "
-           '".*" { type zeroGradient; } }' % (open_side, open_side),
+    "0/p": "dimensions [0 2 -2 0 0 0 0]; internalField uniform 0; boundaryField { "
+           'outlet { type fixedValue; value uniform 0; } ".*" { type zeroGradient; } }',
     "0/U": "dimensions [0 1 -1 0 0 0 0]; internalField uniform (1 0 0); boundaryField { walls { type noSlip; } "
            "sides { type slip; } inlet { type fixedValue; value uniform (1 0 0); } "
-           "ceiling { type pressureInletOutletVelocity; value uniform (1 0 0); } outlet { type zeroGradient; } }",
+           "outlet { type zeroGradient; } }",
 }
 kinds = {"0/p": "volScalarField", "0/U": "volVectorField"}
 
@@ -82,11 +82,11 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program")
     parser.add_argument("models", type=pathlib.Path)
-    parser.add_argument("--viscosity", type=float, default=0.002)
+    parser.add_argument("--viscosity", type=float, default=0.001)
     arguments = parser.parse_args()
     eta, slope = blasius()
     rows = []
-    for title, size, options in (("one size", 0.25, ()), ("one size", 0.15, ()), ("layers", 0.25, ("count=10",))):
+    for title, size, options in (("one size", 0.25, ()), ("one size", 0.15, ()), ("layers", 0.25, ("count=10",)), ("layers", 0.15, ("count=10",))):
         with tempfile.TemporaryDirectory() as folder:
             case = pathlib.Path(folder)
             (case / "constant" / "polyMesh").mkdir(parents=True)
@@ -103,7 +103,8 @@ def main():
             u = field(result / "U").reshape(-1, 3)[:, 0]
             chosen = (x > 1.5) & (x < 2.5)
             at = z[chosen] / np.sqrt(arguments.viscosity * x[chosen])
-            error = u[chosen] - np.interp(at, eta, slope)
+            outside = np.polyfit(x[(x > 1) & (z > 0.5)], u[(x > 1) & (z > 0.5)], 2)
+            error = u[chosen] / np.polyval(outside, x[chosen]) - np.interp(at, eta, slope)
             inside = at < 5
             rows.append([title, str(size), str(len(x)), str(int(inside.sum())), f"{100 * np.sqrt((error[inside]**2).mean()):.1f}",
                          f"{100 * np.abs(error[inside]).max():.1f}"])
