@@ -1,16 +1,19 @@
 #!/usr/bin/env python3
 """Boundary layers of shapes and of real parts: what they cover, whether cells are valid, and what they cost.
 
-    layers.py PROGRAM [--parts FOLDER_OR_FILE...] [--size-share 20] [--count 3] [--options ...]
+    layers.py PROGRAM [--parts FOLDER_OR_FILE...] [--size-share 20] [--count 3] [--openfoam] [--options ...]
 
 Every shape gets layers on all faces: three of them, the first a tenth of the size. A second reading of the file, with
-numpy alone, measures the Jacobians at corners and integration points, the volumes and the angles."""
+numpy alone, measures the Jacobians at corners and integration points, the volumes and the angles. `--openfoam` has
+checkMesh judge each mesh, too. T-junction, airfoil and fin are STEP files that FreeCAD makes; without it they are left out."""
 
 from __future__ import annotations
 
 import argparse
 import json
 import math
+import os
+import re
 import statistics
 import subprocess
 import tempfile
@@ -23,7 +26,7 @@ import numpy as np
 
 from improve_peers import dihedral_angles
 from inputs import Surface, read_surface, sphere
-from known_volumes import cube, prism, tube, rod
+from known_volumes import cube, make_step, prism, rod, tube
 from tables import table
 
 growth = 1.2
@@ -46,6 +49,9 @@ class Row:
     seconds: float = math.nan
     share: float = math.nan          # percent of the time that layers take
     why: str = ""
+    openfoam: str = ""               # the verdict of checkMesh
+    non_orthogonality: str = ""      # largest and mean, degrees
+    skewness: str = ""
 
 
 def triple(a, b, c):
@@ -134,6 +140,8 @@ def run(name: str, path: Path, program: str, arguments, folder: Path) -> Row:
         row.outcome = (surface.stderr.strip().splitlines() or ["no information"])[-1][:60]
         return row
     first = 0.1 * size
+    if arguments.thickness_of_three:
+        first *= sum(growth ** k for k in range(3)) / sum(growth ** k for k in range(arguments.count))
     out, report = folder / "mesh.vtu", folder / "report.json"
     started = time.monotonic()
     try:
@@ -157,7 +165,29 @@ def run(name: str, path: Path, program: str, arguments, folder: Path) -> Row:
     row.share = 100 * told["seconds"].get("layers", 0) / row.seconds
     row.why = "; ".join(f"{r['nodes']} {r['why'].split(',')[0][:40]}" for r in layers["reductions"])
     measure(row, out, first)
+    if arguments.openfoam:
+        judge_in_openfoam(row, program, out, folder)
     return row
+
+
+def judge_in_openfoam(row: Row, program: str, mesh: Path, folder: Path) -> None:
+    case = Path(tempfile.mkdtemp(dir=folder))
+    (case / "constant" / "polyMesh").mkdir(parents=True)
+    (case / "system").mkdir()
+    boundary = case / "constant" / "polyMesh" / "boundary"
+    subprocess.run([program, "convert", str(mesh), "-o", str(boundary), "--format", "polymesh", "--quiet"], check=True)
+    schemes = "".join(f"{kind}Schemes {{}} " for kind in ("ddt", "grad", "div", "laplacian", "interpolation", "snGrad"))
+    for name, text in {"controlDict": "deltaT 1; endTime 1; writeInterval 1;", "fvSchemes": schemes, "fvSolution": ""}.items():
+        (case / "system" / name).write_text(
+            f"FoamFile {{ version 2.0; format ascii; class dictionary; object {name}; }}\n{text}\n")
+    environment = {**os.environ, "WM_PROJECT_DIR": "/usr/share/openfoam", "FOAM_ETC": "/usr/share/openfoam/etc"}
+    said = subprocess.run(["checkMesh"], cwd=case, env=environment, capture_output=True, text=True).stdout
+    failed = re.findall(r"\*\*\*([^\n]*)", said)
+    row.openfoam = "Mesh OK" if "Mesh OK" in said else "; ".join(failed) or "no verdict"
+    if found := re.search(r"non-orthogonality Max: (\S+) average: (\S+)", said):
+        row.non_orthogonality = "{:.1f}, {:.1f}".format(*map(float, found.groups()))
+    if found := re.search(r"[Mm]ax skewness = ([\d.e+-]*\d)", said):
+        row.skewness = f"{float(found[1]):.2f}"
 
 
 def bend(around: int, along: int) -> Surface:
@@ -176,6 +206,36 @@ def bend(around: int, along: int) -> Surface:
     polygons.append(list(range(around)))
     polygons.append([along * around + i for i in reversed(range(around))])
     return Surface("bend", points, polygons)
+
+
+def airfoil() -> str:
+    """Returns the points of NACA 0012, as an expression of FreeCAD's Python: a chord of 1, the trailing edge sharp."""
+    def thickness(x: float) -> float:
+        return 0.6 * (0.2969 * math.sqrt(x) - 0.126 * x - 0.3516 * x**2 + 0.2843 * x**3 - 0.1036 * x**4)
+    along = [(1 - math.cos(math.pi * k / 40)) / 2 for k in range(41)]
+    points = [(x, thickness(x) if x < 1 else 0.0) for x in reversed(along)]
+    points += [(x, -y) for x, y in reversed(points[:-1])]
+    return "[" + ", ".join(f"V({x + 1!r}, {y + 1!r}, 0)" for x, y in points) + "]"
+
+
+# Solids, as expressions of FreeCAD's Python: a pipe that branches, the room around an airfoil between two walls, a fin
+# that leaves a sphere.
+solids = {
+    "T-junction": "[Part.makeCylinder(1, 8, V(-4, 0, 0), V(1, 0, 0)).fuse(Part.makeCylinder(0.7, 4, V(0, 0, 0), V(0, 0, 1)))"
+                  ".removeSplitter()]",
+    "airfoil in a box": "[(lambda c: (c.interpolate(" + airfoil() + "), Part.makeBox(4, 2, 1).cut(Part.Face(Part.Wire(c.toShape()))"
+                        ".extrude(V(0, 0, 1))))[1])(Part.BSplineCurve())]",
+    "sphere with a fin": "[Part.makeSphere(1).fuse(Part.makeBox(1, 0.2, 1, V(0.6, -0.1, -0.5))).removeSplitter()]",
+}
+
+
+def write_solids(folder: Path) -> list[tuple[str, Path]]:
+    paths = [(title, folder / f"{title.replace(' ', '_')}.step") for title in solids]
+    lines = "\n".join(f"{path} {solids[title]}" for title, path in paths)
+    made = subprocess.run(["/usr/bin/python3", "-c", make_step], input=lines, text=True, capture_output=True)
+    if made.returncode != 0:
+        print("FreeCAD made no solids:", made.stderr.strip().splitlines()[-1:])
+    return [(title, path) for title, path in paths if path.exists()]
 
 
 def shapes(models: Path) -> list[tuple[str, Surface | Path]]:
@@ -198,7 +258,11 @@ def main() -> None:
     parser.add_argument("--most", type=int, default=20, help="parts of each folder")
     parser.add_argument("--size-share", type=float, default=20, help="the diagonal over the size")
     parser.add_argument("--count", type=int, default=3)
+    parser.add_argument("--thickness-of-three", action="store_true",
+                        help="the layers are together as thick as three are")
     parser.add_argument("--limit", type=float, default=120, help="seconds for a part")
+    parser.add_argument("--only", nargs="*", help="shapes with these words in their names")
+    parser.add_argument("--openfoam", action="store_true", help="let checkMesh judge the meshes")
     parser.add_argument("--options", nargs=argparse.REMAINDER, default=[])
     arguments = parser.parse_args()
     models = Path(__file__).resolve().parents[2] / "resources" / "models"
@@ -207,6 +271,7 @@ def main() -> None:
         folder = Path(name)
         inputs: list[tuple[str, Path]] = []
         if not arguments.parts:
+            inputs += write_solids(folder)
             for title, shape in shapes(models):
                 if isinstance(shape, Path):
                     inputs.append((title, shape))
@@ -217,6 +282,8 @@ def main() -> None:
             files = sorted(p for p in part.iterdir() if p.is_file())[:arguments.most] if part.is_dir() else [part]
             inputs += [(f.name, f) for f in files]
         for title, path in inputs:
+            if arguments.only and not any(word in title for word in arguments.only):
+                continue
             row = run(title, path, arguments.program, arguments, folder)
             rows.append(row)
             print(row, flush=True)
@@ -226,9 +293,11 @@ def main() -> None:
 def print_table(rows: list[Row]) -> None:
     text = [[row.name, row.outcome, str(row.tets), str(row.prisms), str(row.pyramids), f"{row.coverage:.1f}",
              f"{row.full:.0f}", str(row.negative), f"{row.first_error:.1f}", f"{row.step:.2f}",
-             f"{row.smallest:.1f}", f"{row.largest:.1f}", f"{row.seconds:.1f}", f"{row.share:.0f}"] for row in rows]
+             f"{row.smallest:.1f}", f"{row.largest:.1f}", f"{row.seconds:.1f}", f"{row.share:.0f}",
+             row.openfoam, row.non_orthogonality, row.skewness] for row in rows]
     print(table(["shape", "outcome", "tets", "prisms", "pyramids", "covered %", "full thickness %", "negative Jacobians",
-                 "error of the first height %", "largest step", "smallest angle", "largest angle", "s", "layers' share %"],
+                 "error of the first height %", "largest step", "smallest angle", "largest angle", "s", "layers' share %",
+                 "checkMesh", "non-orthogonality: largest, mean", "skewness"],
                 text))
     covered = [row.coverage for row in rows if not math.isnan(row.coverage)]
     if covered:

@@ -92,7 +92,9 @@ ShownMesh shown_mesh(const TetMesh& mesh, const std::vector<WorstTet>& worst, st
     shown.region.push_back(static_cast<std::uint16_t>(std::min(largest, mesh.tet_region[t])));
     const bool collar = !mesh.tet_collar.empty() && mesh.tet_collar[t] != 0,
                thin = !mesh.tet_thin.empty() && mesh.tet_thin[t] != 0;
-    shown.marks.push_back(static_cast<std::uint8_t>((collar ? 1 : 0) + (thin ? 2 : 0)));
+    const unsigned layer = mesh.layers.tet_layer.empty() ? 0 : mesh.layers.tet_layer[t];
+    const unsigned of_layer = layer == 0 ? 0 : layer % 2 == 1 ? 8 : 16;
+    shown.marks.push_back(static_cast<std::uint8_t>((collar ? 1 : 0) + (thin ? 2 : 0) + of_layer));
   }
   if (mesh.tets.empty())
     for (const auto& face : mesh.faces)

@@ -259,6 +259,19 @@ class InABrowser(ReportTest):
                                    *(" ".join(map(str, (len(face), *face))) for face in faces), ""]))
         return path
 
+    def test_layers_are_told_and_shown(self):
+        path = self.report(MODELS / "box.off", "--layers", "1,2:first=0.02,count=4", "--size", "0.3")
+        report = json.loads(Page(path.read_text()).scripts["report"])
+        data = zlib.decompress(base64.b64decode(Page(path.read_text()).scripts["data"]))
+        marks = data[-json.loads(Page(path.read_text()).scripts["shown"])["tets"]:]
+        self.assertEqual(sum(1 for mark in marks if mark & 24), 3 * report["layers"]["prisms"])
+        _, dom, whole = self.look(path)
+        for text in ("Boundary layers", "by the share of the thickness reached", "100 % covered", "90–100%: 100 % of the area"):
+            self.assertIn(text, dom)
+        _, dom, layers = self.look(path, "#cut=x,0.5&colour=layers")
+        self.assertIn("odd layers", re.search(r'<p id="legend">.*?</p>', dom, re.S).group())
+        self.assertNotEqual(whole, layers)
+
     def test_straightened_nodes_are_marked(self):
         path = self.report(MODELS / "bracket.off", "--size", "8", "--order", "2")
         self.assertEqual(self.look(path)[0]["straightened"], "0")

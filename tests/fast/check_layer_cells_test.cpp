@@ -69,11 +69,14 @@ TEST(CheckLayerCells, FindsVolumesThatChanged) {
   TetMesh mesh = LayerMesh().make();
   const auto before = checks::volumes_with_layers(mesh);
   CheckReport report;
-  checks::check_layer_volumes(before, mesh, 1e-9, report);
+  checks::check_layer_volumes(before, mesh, {}, report);
   EXPECT_TRUE(report.passed());
   for (Point& p : mesh.points) p.z *= 1.01;
-  checks::check_layer_volumes(before, mesh, 1e-9, report);
+  checks::check_layer_volumes(before, mesh, {}, report);
   EXPECT_EQ(report.findings.size(), 2U);
+  report = {};
+  checks::check_layer_volumes(before, mesh, {{1, 0.011 * before.at(1)}}, report);
+  EXPECT_EQ(report.findings.size(), 1U);
 }
 
 }  // namespace

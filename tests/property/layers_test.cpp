@@ -218,6 +218,32 @@ TEST(Layers, OnBothSidesOfAnInterface) {
   EXPECT_EQ(regions.size(), 2U);
 }
 
+TEST(Layers, OnOneSideOfAnInterface) {
+  const std::vector<PolygonSoup> soups{box({0, 0, 0}, {1, 1, 1}), box({1, 0, 0}, {2, 1, 1})};
+  PipelineOptions options = with_layers({});
+  const SoupPipelineResult without = run_pipeline(soups, options);
+  Tag interface = 0;
+  for (std::size_t f = 0; f < without.result.mesh.faces.size(); ++f)
+    if (const auto& [a, b] = without.result.mesh.face_regions[f]; a != 0 && b != 0)
+      interface = without.result.mesh.face_tag[f];
+  const std::string text = std::to_string(interface) + ":first=0.02,count=2,region=";
+  for (const Index region : {1U, 2U}) {
+    const std::string only = text + std::to_string(without.plc.regions[region].tag);
+    options.layers.walls = {only};
+    const PipelineResult run = made(soups, options);
+    EXPECT_NEAR(run.layers->coverage(), 1, 1e-9);
+    EXPECT_GT(least_jacobian_of(run.result.mesh), 0);
+    EXPECT_NEAR(volume_of(run.result.mesh), 2, 1e-9);
+    ASSERT_FALSE(run.result.mesh.layers.prisms.empty());
+    for (const Index of : run.result.mesh.layers.prism_region) EXPECT_EQ(of, region);
+    // Others' layers end where they meet it.
+    options.layers.walls = {only, "all:first=0.02,count=2"};
+    const PipelineResult both = made(soups, options);
+    EXPECT_NEAR(volume_of(both.result.mesh), 2, 1e-9);
+    EXPECT_GT(both.layers->coverage(), 0.8);
+  }
+}
+
 TEST(Layers, AroundTwoRegionsMeetAtTheirInterface) {
   const std::vector<PolygonSoup> soups{box({0, 0, 0}, {1, 1, 1}), box({1, 0, 0}, {2, 1, 1})};
   const PipelineResult run = made(soups, with_layers({"all:first=0.02,count=2"}));
@@ -226,6 +252,17 @@ TEST(Layers, AroundTwoRegionsMeetAtTheirInterface) {
   std::size_t between = 0;
   for (const auto& [a, b] : run.result.mesh.layers.quad_regions) between += a != 0 && b != 0;
   EXPECT_GT(between, 0U);
+}
+
+TEST(Layers, SlideAlongInterfacesThatArePlanarWithinTolerance) {
+  std::vector<PolygonSoup> soups{box({0, 0, 0}, {1, 1, 1}), box({1, 0, 0}, {2, 1, 1})};
+  constexpr double off = 1e-6;
+  for (PolygonSoup& soup : soups)
+    for (Point& p : soup.points)
+      if (p.x == 1 && p.y == 0 && p.z == 0) p.x += off;
+  const PipelineResult run = made(soups, with_layers({"all:first=0.02,count=2"}));
+  EXPECT_NEAR(run.layers->coverage(), 1, 1e-9);
+  EXPECT_NEAR(volume_of(run.result.mesh), 2, off);
 }
 
 TEST(Layers, OfSecondOrderFollowCurvedWalls) {
@@ -254,6 +291,42 @@ TEST(Layers, OfSecondOrderFollowCurvedWalls) {
   for (std::size_t i = 0; i < with.size(); ++i) EXPECT_LT(distance(with[i], before[i]), 1e-12);
 }
 
+TEST(Layers, OfSecondOrderKeepTheVolumesOfCurvedParts) {
+  // So thick that the core loses vertices, and other points get their numbers.
+  const std::vector<PolygonSoup> soups{sphere(6, 1, {0, 0, 0})};
+  PipelineOptions options = with_layers({"all:first=0.15,count=2"});
+  options.order = 2;
+  const SoupPipelineResult run = run_pipeline(soups, options);
+  const CheckReport report = check(run.result.mesh, run.plc, {});
+  EXPECT_TRUE(report.passed()) << (report.findings.empty() ? "" : report.findings.front().message);
+}
+
+TEST(Layers, OfSecondOrderStayValidWhereTheyEndAtCurvedWalls) {
+  // Triangles bulge more than the layers are high, so heights are 0 at nodes where the core meets the wall.
+  const std::vector<PolygonSoup> soups{sphere(3, 1, {0, 0, 0})};
+  for (const char* walls : {"all:count=1", "all:count=1,first=0.01"}) {
+    PipelineOptions options = with_layers({walls});
+    options.order = 2;
+    options.mesh.size = 0.6;
+    const SoupPipelineResult run = run_pipeline(soups, options);
+    CheckReport report;
+    checks::check_layer_cells(run.result.mesh, report);
+    EXPECT_TRUE(report.passed()) << (report.findings.empty() ? "" : report.findings.front().message);
+  }
+}
+
+TEST(Layers, OfSecondOrderKnowTheFacesOfTheirNodes) {
+  const std::vector<PolygonSoup> soups{box({0, 0, 0}, {1, 1, 1}), box({1, 0, 0}, {2, 1, 1})};
+  for (const char* walls : {"all:count=1", "1:count=1", "1:count=3"}) {
+    PipelineOptions options = with_layers({walls});
+    options.order = 2;
+    const SoupPipelineResult run = run_pipeline(soups, options);
+    ASSERT_FALSE(run.result.mesh.layers.quads.empty());
+    const CheckReport report = check(run.result.mesh, run.plc, {});
+    EXPECT_TRUE(report.passed()) << (report.findings.empty() ? "" : report.findings.front().message);
+  }
+}
+
 std::string error_of(const std::vector<std::string>& walls) {
   try {
     run_pipeline(std::vector<PolygonSoup>{box({0, 0, 0}, {1, 1, 1})}, with_layers(walls));
@@ -269,6 +342,7 @@ TEST(Layers, RefuseWallsThatAreNone) {
   EXPECT_NE(error_of({"all:first=x"}).find("no number"), std::string::npos);
   EXPECT_NE(error_of({"all:count=0"}).find("count"), std::string::npos);
   EXPECT_NE(error_of({"all:height=1"}).find("thickness"), std::string::npos);
+  EXPECT_NE(error_of({"1:region=9"}).find("no region is called '9'"), std::string::npos);
   EXPECT_NE(error_of({"all:first=0.1,thickness=1"}).find("leave one out"), std::string::npos);
 }
 

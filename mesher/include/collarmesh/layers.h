@@ -25,8 +25,8 @@ struct WallLayers {
 };
 
 struct LayerOptions {
-  /// Each is "FACES" or "FACES:first=F,growth=G,count=N" or "FACES:thickness=T,...", FACES names or numbers
-  /// of patches with commas between them, or "all".
+  /// Each is "FACES" or "FACES:first=F,growth=G,count=N,region=R" or "FACES:thickness=T,...", FACES names or
+  /// numbers of patches with commas, or "all"; R is the only region that gets layers.
   std::vector<std::string> walls = {};
   bool tets = false;  ///< divide the prisms and pyramids into tets
 
@@ -71,8 +71,8 @@ std::vector<WallLayers> read_walls(const LayerOptions& options);
 /// Throws OptionError, with the known names, if a wall does not exist or two texts name one wall.
 void require_known_walls(const LayerOptions& options, const Plc& plc);
 
-/// Puts layers of prisms on walls, on the inner sides of boundaries and on both sides of interfaces and of
-/// facets inside regions. The tets there are pushed inwards and improved; the triangles and edges of the
+/// Puts layers of prisms on walls: inside boundaries, on both sides of interfaces or one, on both of facets
+/// inside regions. The tets there are pushed inwards and improved; the triangles and edges of the
 /// walls stay. Nodes that also lie on other patches slide along these.
 ///
 /// Layers are lower where there is little room: in gaps, where prisms would fold, and where tets would miss

@@ -43,6 +43,12 @@ function coloursOf(report, shown) {
   return [...found.faces, ...regions.values()].some(Boolean) ? found : undefined;
 }
 
+// Returns the share of the thickness that layers reach in the mean, by number in face_tags.
+function layersOf(report, shown) {
+  const numbers = new Map(shown.face_tags.map((tag, number) => [tag, number]));
+  return new Map((report.layers?.patches ?? []).map(p => [numbers.get(p.tag), p.thickness_mean / p.thickness_asked]));
+}
+
 function place(where, show) {
   const text = `(${where.map(number).join(', ')})`;
   return element('a', { class: 'place', onclick: () => show(where) }, text);
@@ -62,6 +68,9 @@ const guarantees = [
   ['Collars have no large angle',
     ['collar_cells', 'collar_centre', 'collar_dihedral', 'collar_disjoint', 'collar_gap']],
   ['Second order: no element is inverted', ['mid_nodes', 'mid_node_distance', 'positive_jacobian']],
+  ['Boundary layers: cells are valid and conform, volumes are kept, the tetrahedra beside them keep their bounds',
+    ['layer_arrays', 'layer_jacobian', 'layer_conforming', 'layer_sides', 'layer_mid_nodes', 'layer_volume', 'layer_walls',
+      'core_angles']],
 ];
 
 const ofTriangles = ['triangle_angles', 'shell_orientation'], ofTets = ['region_volume', 'radius_edge', 'thin_angles', 'collar_cells'];
@@ -69,6 +78,7 @@ const ofTriangles = ['triangle_angles', 'shell_orientation'], ofTets = ['region_
 // Does the run give a guarantee of these names?
 function given(report, names) {
   return (report.options.order === 2 || !names.includes('mid_nodes')) &&
+    (report.layers || !names.includes('layer_jacobian')) &&
     !names.some(name => (report.check.triangles ? ofTets : ofTriangles).includes(name));
 }
 
@@ -83,7 +93,7 @@ function guaranteeList(report, show) {
       element('ul', {}, ...broken.slice(0, 50).map(f => element('li', {}, f.message + ' ', place(f.where, show)))))));
 }
 
-function histogram(title, { bin_width: width, tets, triangles: counts = tets }, unit) {
+function histogram(title, { bin_width: width, tets, triangles: counts = tets }, unit, of = '') {
   const svg = 'http://www.w3.org/2000/svg', w = 420, h = 90, left = 4, bar = (w - 2 * left) / counts.length;
   const draw = (tag, attributes, text = '') => {
     const made = document.createElementNS(svg, tag);
@@ -98,11 +108,30 @@ function histogram(title, { bin_width: width, tets, triangles: counts = tets }, 
     const height = count > 0 ? Math.max(1.5, h * count / most) : 0;
     const last = i + 1 === counts.length && unit === '';
     const rect = draw('rect', { x: left + i * bar, y: h - height, width: bar - 1, height, fill: '#4c86c6' });
-    rect.append(draw('title', {}, `${number(i * width)}${last ? ' and more' : `–${number((i + 1) * width)}`}${unit}: ${number(count)}`));
+    rect.append(draw('title', {}, `${number(i * width)}${last ? ' and more' : `–${number((i + 1) * width)}`}${unit}: ${number(count)}${of}`));
     chart.append(rect);
     if (i % 3 === 0) chart.append(draw('text', { x: left + i * bar, y: h + 13 }, `${number(i * width)}${unit}`));
   });
   return element('div', {}, element('h2', {}, title), chart);
+}
+
+function layers(report, names, show) {
+  const made = report.layers;
+  if (!made) return [];
+  const whole = made.patches.reduce((sum, p) => sum + p.area, 0), percent = part => `${number(Number(part.toFixed(1)))} %`;
+  const tenths = made.patches.reduce((sums, p) => sums.map((sum, i) => sum + p.area_by_tenth_of_thickness[i]), Array(10).fill(0));
+  const most = 20, ordered = [...made.patches].sort((a, b) => a.covered / a.area - b.covered / b.area);
+  const rows = ordered.slice(0, most).map(p => [names.face(p.tag),
+    `${percent(100 * p.covered / p.area)} covered, thickness ${number(p.thickness_mean)} in the mean of ${number(p.thickness_asked)}`]);
+  const more = ordered.length > most ? [['Others', `${number(ordered.length - most)} faces, covered better`]] : [];
+  const lower = made.reductions.map(r => element('li', {},
+    `${number(r.nodes)} nodes, down to ${percent(100 * r.smallest_share)}: ${r.why}, the lowest at `, place(r.where, show)));
+  return [element('h2', {}, 'Boundary layers'),
+    table([['Covered', percent(100 * made.coverage)], ['Largest step between neighbours', number(made.largest_step)],
+      ['Cells', `${number(made.prisms)} prisms, ${number(made.pyramids)} pyramids, ${number(made.tets)} tetrahedra`], ...rows, ...more]),
+    ...(lower.length > 0 ? [element('p', {}, 'Lower than asked for:'), element('ul', {}, ...lower)] : []),
+    histogram('Area of the walls, by the share of the thickness reached',
+      { bin_width: 10, tets: tenths.map(area => Number((100 * area / whole).toPrecision(3))) }, '%', ' % of the area')];
 }
 
 function repairs(report, show) {
@@ -211,6 +240,6 @@ function describe(report, shown, names, show) {
     element('h2', {}, 'Guarantees'), guaranteeList(report, show),
     ...(warnings.length > 0 ? [element('h2', {}, 'Warnings and notes'),
       element('ul', {}, ...warnings.slice(0, 50).map(text => element('li', {}, text)))] : []),
-    ...straightened(report, names, show), ...repairs(report, show),
+    ...layers(report, names, show), ...straightened(report, names, show), ...repairs(report, show),
     ...(shown.worst.length > 0 ? worst(shown, show) : []), ...histogramsOf(report));
 }

@@ -29,6 +29,7 @@ async function open() {
   }
   const mesh = await readMesh(shown, document.getElementById('data').textContent);
   mesh.colours = coloursOf(report, shown);
+  mesh.layers = layersOf(report, shown);
   view = new View(shown, mesh, names, report.second_order ? report.second_order.straightened : []);
   view.offerSteps(json('steps'));
   await follow(location.hash, view, shown);

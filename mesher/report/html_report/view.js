@@ -15,7 +15,7 @@ async function inflate(text) {
 }
 
 // Shapes: points 3 per point, relative to shown.centre; tets 4 per tet; patches 4 per face on a patch, three corners and
-// the number of its tag in shown.face_tags; region, marks (1 collar, 2 thin) 1 per tet.
+// the number of its tag in shown.face_tags; region, marks (1 collar, 2 thin, 8 odd and 16 even layers) 1 per tet.
 async function readMesh(shown, text) {
   const data = await inflate(text), { points, tets, faces } = shown, end = 12 * points + 16 * tets + 16 * faces;
   const mesh = { points: new Float32Array(data, 0, 3 * points), tets: new Uint32Array(data, 12 * points, 4 * tets),
@@ -125,6 +125,22 @@ function faceColour(number) {
   return new THREE.Color().setHSL((0.58 + 0.381966 * number) % 1, 0.45, [0.68, 0.58, 0.76][number % 3]);
 }
 
+const layerColours = [[0, '#b2182b'], [0.1, '#ef8a62'], [0.3, '#fddbc7'], [0.6, '#d1e5f0'], [0.9, '#4393c3']];
+const cellColours = { odd: '#e3a72f', even: '#f1d38c' };  // of layers, in cuts
+
+// Faces by the share of the thickness that their layers reach in the mean, cells inside by their layers.
+function layerColour(mesh, face) {
+  const number = tagNumberOf(mesh, face), marks = mesh.marks[face >> 2];
+  if (number === undefined) return marks & 8 ? cellColours.odd : marks & 16 ? cellColours.even : markColours.plain;
+  const share = mesh.layers.get(number);
+  return share === undefined ? markColours.plain : layerColours.filter(([least]) => share >= least - 1e-6).pop()[1];
+}
+
+function layerLegend(mesh) {
+  const shares = layerColours.map(([least, colour]) => [colour, `thickness from ${Math.round(100 * least)}%`]);
+  return [...shares, [cellColours.odd, 'odd layers'], [cellColours.even, 'even layers'], [markColours.plain, 'others']];
+}
+
 // Inside of a region its own.
 function fileColour(mesh, number, region) {
   return mesh.colours && (mesh.colours.faces[number] || mesh.colours.regions.get(region)) || markColours.plain;
@@ -139,6 +155,7 @@ function colourOf(mesh, face, by) {
   if (by === 'file') return fileColour(mesh, tagNumberOf(mesh, face), mesh.region[tet]);
   if (by === 'region') return regionColours[(mesh.region[tet] + regionColours.length - 1) % regionColours.length];
   if (by === 'angle') return angleColours.filter(([least]) => mesh.smallest[tet] >= least).pop()[1];
+  if (by === 'layers') return layerColour(mesh, face);
   if (by === 'collar' && mesh.marks[tet] & 4) return markColours.ripped;
   return mesh.marks[tet] & (by === 'collar' ? 1 : 2) ? markColours.marked : markColours.plain;
 }
@@ -161,6 +178,7 @@ function legend(mesh, shown, names, by) {
   if (by === 'region')
     return [...new Set(mesh.region)].sort((a, b) => a - b)
       .map(r => [regionColours[(r + regionColours.length - 1) % regionColours.length], names.region(r)]);
+  if (by === 'layers') return layerLegend(mesh);
   const ripped = by === 'collar' && mesh.marks.some(mark => mark & 4);
   if (ripped) return [[markColours.ripped, 'about to be ripped out'], [markColours.plain, 'others']];
   return [[markColours.marked, by === 'collar' ? 'in a collar' : 'thin'], [markColours.plain, 'others']];
@@ -189,6 +207,7 @@ class View {
     for (const kind of ['region', 'collar', 'thin'])
       document.querySelector(`#colour option[value=${kind}]`).hidden = mesh.isSurface;
     if (mesh.isSurface) document.querySelector('#colour option[value=angle]').textContent = 'smallest angle';
+    document.querySelector('#colour option[value=layers]').hidden = mesh.layers.size === 0;
     this.canvas = document.getElementById('canvas');
     this.box = new THREE.Box3().setFromArray(mesh.points);
     this.diagonal = this.box.getSize(new THREE.Vector3()).length();
@@ -248,7 +267,7 @@ class View {
     const step = await this.steps[number]();
     if (this.wanted !== number) return;  // the slider has moved on
     this.steps[number] = () => step;
-    this.mesh = Object.assign(step, { colours: this.mesh.colours });
+    this.mesh = Object.assign(step, { colours: this.mesh.colours, layers: this.mesh.layers });
     document.getElementById('step').value = number;
     document.getElementById('stage').textContent = `${number + 1} of ${this.steps.length}, ${step.title}`;
     document.getElementById('position').disabled = !step.complete;

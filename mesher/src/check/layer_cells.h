@@ -33,12 +33,14 @@ void check_layer_cells(const TetMesh& mesh, CheckReport& report, std::size_t fin
 /// Returns the volumes of regions, by index, of straight tets, prisms and pyramids.
 std::map<Index, double> volumes_with_layers(const TetMesh& mesh);
 
-/// Checks that regions have these volumes within this share. Adds findings.
-void check_layer_volumes(const std::map<Index, double>& before, const TetMesh& mesh, double allowed,
-                         CheckReport& report);
+/// Checks that regions have these volumes within rounding and what is allowed for each, absolute; regions
+/// that are not listed are allowed nothing. Adds findings.
+void check_layer_volumes(const std::map<Index, double>& before, const TetMesh& mesh,
+                         const std::map<Index, double>& allowed, CheckReport& report);
 
-/// Checks the angles of the tets beside the layers: dihedral angles from below as of thin tets, dihedral and
-/// face angles by 150 degrees from above; they and the sizes of the mesh become those of the report. `walls`:
+/// Checks the tets beside the layers as without layers: circumradius / shortest edge is within its bound, or
+/// the dihedral angles are bounded from below as those of thin tets, and dihedral and face angles by 150
+/// degrees from above. The angles and the sizes of the mesh become those of the report. `walls`:
 /// by point, the one of the wall below it; none. Adds findings.
 void check_core_angles(const TetMesh& mesh, const std::vector<Index>& walls, const Plc& plc,
                        const Bounds& bounds, CheckReport& report);

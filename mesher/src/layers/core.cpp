@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/parallel_for.h"
+#include "common/sorted.h"
 #include "common/tet_sides.h"
 #include "improve/improve_workpiece.h"
 
@@ -54,7 +55,8 @@ Core::Core(const TetMesh& mesh, const Plc& plc, const Front& front, const Height
   thin_ = std::make_unique<improvement::ThinShape>(plc, mesh_, options_.bounds.thin_angle, 0, piece_->forced,
                                                    options_.bounds.tets_across());
   fix_wall();
-  poor_at_first_ = poor_tets().size();
+  for (const Index t : poor_tets()) poor_at_first_.push_back(sorted(piece_->complex[t].corners));
+  std::sort(poor_at_first_.begin(), poor_at_first_.end());
 }
 
 /// Gives each node of the front that is to move a copy, which takes its place in the tets of its sector.
@@ -93,14 +95,18 @@ void Core::copy_faces(const Heights& heights) {
     like.push_back(side.face);
   }
   // An interface may move on one side only.
-  for (const WallSide& side : front_.sides) {
-    const bool moves =
-        std::any_of(side.nodes.begin(), side.nodes.end(), [&](Index n) { return heights[n] > 0; });
-    if (moves || replaced[side.face] == 0) continue;
+  const auto keep_side = [&](const WallSide& side) {
     faces.push_back({side.corners[0], side.corners[2], side.corners[1]});
     regions.push_back({side.region, 0});
     like.push_back(side.face);
+  };
+  for (const WallSide& side : front_.sides) {
+    const bool moves =
+        std::any_of(side.nodes.begin(), side.nodes.end(), [&](Index n) { return heights[n] > 0; });
+    if (!moves && replaced[side.face] != 0) keep_side(side);
   }
+  for (const WallSide& side : front_.bare_sides)
+    if (replaced[side.face] != 0) keep_side(side);
   for (Index t = 0; t < mesh_.tets.size(); ++t) {
     const auto& tet = front_.tet(t);
     for (unsigned corner = 0; corner < 4; ++corner) {
@@ -177,14 +183,14 @@ bool Core::push(Heights& heights, const std::vector<std::uint8_t>& levels) {
     }
     poor = poor_tets();
     few = poor.size() <= most_of_few;
-    if (poor.size() > poor_at_first_) {
+    if (!poor.empty()) {
       lowered = lower_at(poor, share, heights) || lowered;
       share = 0.5;
     }
     lowered = heights.settle() || lowered;
-    if (poor.size() > poor_at_first_ + most_left(heights)) break;
+    if (poor.size() > most_left(heights)) break;
     if (lowered || !reached) continue;
-    if (poor.size() > poor_at_first_) break;
+    if (!poor.empty()) break;
     improve_tets(options_.min_dihedral, false);
     return true;
   }
@@ -420,18 +426,30 @@ void Core::improve_tets(double angle, bool thoroughly) {
   cancelled_ = cancelled_ || improve(*piece_, options, execution_, thoroughly).cancelled;
 }
 
-/// Returns the tets beyond the bounds on angles.
+/// Returns the tets beyond the bounds on angles, without those that were so from the start and are what they
+/// were: the mesh was certified with them.
 std::vector<Index> Core::poor_tets() const {
   const auto& complex = piece_->complex;
   std::vector<std::uint8_t> poor(complex.size(), 0);
   parallel_for_ranges(poor.size(), at_once, [&](std::size_t begin, std::size_t end) {
     for (auto t = static_cast<Index>(begin); t < end; ++t)
-      poor[t] = complex[t].alive && !thin_->contains(corners(t), complex[t].corners) ? 1 : 0;
+      poor[t] =
+          complex[t].alive && !thin_->contains(corners(t), complex[t].corners) && !is_as_given(t) ? 1 : 0;
   });
   std::vector<Index> found;
   for (Index t = 0; t < poor.size(); ++t)
     if (poor[t] != 0) found.push_back(t);
   return found;
+}
+
+bool Core::is_as_given(Index tet) const {
+  const std::array<Index, 4>& corners = piece_->complex[tet].corners;
+  return std::binary_search(poor_at_first_.begin(), poor_at_first_.end(), sorted(corners)) &&
+         std::all_of(corners.begin(), corners.end(), [&](Index v) {
+           const bool copied = v < node_of_.size() && node_of_[v] != none;
+           const Index given = copied ? front_.nodes[node_of_[v]].vertex : v;
+           return given < given_.points.size() && mesh_.points[v] == given_.points[given];
+         });
 }
 
 /// Returns the nodes of the front that have copies, in tets at most so many rings from these.

@@ -55,6 +55,7 @@ class Core {
   std::vector<double> shares_of(const std::vector<Vector>& moves, const std::vector<Index>& near) const;
   void improve_tets(double angle, bool thoroughly);
   std::vector<Index> poor_tets() const;
+  bool is_as_given(Index tet) const;
   bool lower_at(const std::vector<Index>& tets, double share, Heights& heights) const;
   std::vector<Index> nodes_near(const std::vector<Index>& tets, unsigned rings) const;
   improvement::Corners corners(Index tet) const { return piece_->complex.corners(tet); }
@@ -70,7 +71,7 @@ class Core {
   std::vector<double> reached_;   // by node of the front: its distance now
   std::unique_ptr<improvement::Workpiece> piece_;
   std::unique_ptr<improvement::ThinShape> thin_;
-  std::size_t poor_at_first_ = 0;
+  std::vector<std::array<Index, 4>> poor_at_first_;  // sorted corners
   Lists around_;  // by vertex near the front: those around it; none for fixed ones
   std::vector<Index> failed_;
   bool cancelled_ = false;

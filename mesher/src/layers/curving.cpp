@@ -68,6 +68,7 @@ class Curving {
     for (const auto& [a, b, c] : sides)
       for (const std::uint64_t key : {edge_key(a, b), edge_key(b, c), edge_key(a, c)}) edges.push_back(key);
     std::sort(edges.begin(), edges.end());
+    keep_front_straight(sides, core);
     core.tet_collar.assign(core.tets.size(), 0);
     core.tet_crease.assign(core.tets.size(), 0);
     for (Index f = 0; f < mesh_.faces.size(); ++f) {
@@ -90,6 +91,8 @@ class Curving {
     first_node_ = static_cast<Index>(mesh_.points.size());
     mesh_.points = std::move(core.points);
     mesh_.features = std::move(core.features);
+    for (TetMesh::VertexFeature& feature : mesh_.features)
+      if (feature.dimension == 2 && feature.feature == none) feature = {};
     core_nodes_ = std::move(core.tet_mid_nodes);
     for (std::size_t t = 0; t < core.tets.size(); ++t)
       for (unsigned k = 0; k < 6; ++k)
@@ -97,6 +100,24 @@ class Curving {
                        core_nodes_[t][k]);
     first_of_layers_ = static_cast<Index>(mesh_.points.size());
     return true;
+  }
+
+  /// Lists the sides that the core has in common with layers as faces of no patch: nodes inside regions move
+  /// where curved tets need that, those on faces without a patch stay in the middle of their edges, as the
+  /// cells of layers need. `sides`: sorted, those of all tets of the core. Call it before other faces are
+  /// listed, which decide on the edges that they share.
+  void keep_front_straight(const std::vector<std::array<Index, 3>>& sides, TetMesh& core) const {
+    std::vector<std::array<Index, 3>> listed;
+    for (const auto& face : mesh_.faces) listed.push_back(sorted(face));
+    std::sort(listed.begin(), listed.end());
+    for (std::size_t first = 0, last = 0; first < sides.size(); first = last) {
+      while (last < sides.size() && sides[last] == sides[first]) ++last;
+      if (last - first > 1 || std::binary_search(listed.begin(), listed.end(), sides[first])) continue;
+      core.faces.push_back(sides[first]);
+      core.face_regions.push_back({0, 0});
+      core.face_patch.push_back(none);
+      core.face_tag.push_back(0);
+    }
   }
 
   Index node_of(Index a, Index b) {
@@ -130,14 +151,43 @@ class Curving {
       mesh_.edge_mid_nodes.push_back(node);
       if (node >= first_of_layers_) mesh_.features[node] = {1, mesh_.edge_curve[e]};
     }
-    for (Index f = 0; f < mesh_.faces.size(); ++f)
-      for (const Index node : mesh_.face_mid_nodes[f])
+    find_wall_nodes_of_core();
+    note_patches(mesh_.face_mid_nodes, mesh_.face_patch);
+    note_patches(layers.quad_mid_nodes, layers.quad_patch);
+  }
+
+  /// Finds the edges of walls between two nodes without layers, which the core has only below a triangle of
+  /// the front, so that it left them straight.
+  void find_wall_nodes_of_core() {
+    for (std::size_t f = 0; f < mesh_.faces.size(); ++f)
+      for (unsigned k = 0; k < 3; ++k) {
+        const Index node = mesh_.face_mid_nodes[f][k];
+        if (node >= first_of_layers_ || mesh_.features[node].dimension != 3) continue;
+        mesh_.features[node] = {2, mesh_.face_patch[f]};
+        wall_nodes_.push_back({node, mesh_.faces[f][k], mesh_.faces[f][(k + 1) % 3]});
+      }
+    std::vector<bool> on_wall(mesh_.points.size(), false);
+    for (const WallNode& at : wall_nodes_) on_wall[at.node] = true;
+    for (Index t = 0; t < mesh_.tets.size(); ++t) {
+      const auto& nodes = mesh_.tet_mid_nodes[t];
+      if (in_core(t) && std::any_of(nodes.begin(), nodes.end(), [&](Index node) { return on_wall[node]; }))
+        tets_at_wall_.push_back(t);
+    }
+  }
+
+  /// Notes the patches on which nodes of layers lie.
+  template <class Nodes>
+  void note_patches(const std::vector<Nodes>& nodes, const std::vector<Index>& patches) {
+    for (std::size_t f = 0; f < nodes.size(); ++f)
+      for (const Index node : nodes[f])
         if (node >= first_of_layers_ && mesh_.features[node].dimension == 3)
-          mesh_.features[node] = {2, mesh_.face_patch[f]};
+          mesh_.features[node] = {2, patches[f]};
   }
 
   /// Places the nodes of layers: straight, and with the bulges of wall and core in proportion.
   void place_nodes() {
+    for (const auto& [node, a, b] : wall_nodes_)
+      mesh_.points[node] = 0.5 * (mesh_.points[a] + mesh_.points[b]) + bulge_between(a, b);
     for (std::size_t i = 0; i < ends_.size(); ++i) {
       const auto [a, b] = ends_[i];
       mesh_.points[first_of_layers_ + i] = 0.5 * (mesh_.points[a] + mesh_.points[b]) + bulge_between(a, b);
@@ -153,7 +203,7 @@ class Curving {
                                                 : places_.share[b];
     const auto shrunk = shrunk_.find(edge_key(at, bt));
     const double left = shrunk == shrunk_.end() ? 1 : shrunk->second;
-    return ((1 - share) * left) * bulges_(at, bt);
+    return ((1 - share) * left) * bulges_(places_.given[a], places_.given[b]);
   }
 
   /// Shrinks bulges at the cells that fold. Returns whether there were any.
@@ -175,6 +225,8 @@ class Curving {
         note(layers.pyramids[c], edges_of_pyramid);
     for (Index t = 0; t < mesh_.tets.size(); ++t)
       if (!in_core(t) && !jacobian_exceeds(curved_tet(mesh_, t))) note(mesh_.tets[t], edges_of_tet);
+    for (const Index t : tets_at_wall_)
+      if (!jacobian_exceeds(curved_tet(mesh_, t))) note(mesh_.tets[t], edges_of_tet);
     std::sort(at.begin(), at.end());
     at.erase(std::unique(at.begin(), at.end()), at.end());
     for (const std::uint64_t key : at) {
@@ -202,6 +254,11 @@ class Curving {
   std::unordered_map<std::uint64_t, double>
       shrunk_;                              // shares of bulges that are left, by edge key of the wall
   std::vector<std::array<Index, 2>> ends_;  // of the edges whose nodes are those of layers
+  struct WallNode {
+    Index node, a, b;  // between these ends
+  };
+  std::vector<WallNode> wall_nodes_;  // of walls, but nodes of the core
+  std::vector<Index> tets_at_wall_;   // tets of the core with such nodes
   Index first_node_ = 0, first_of_layers_ = 0;
 };
 

@@ -32,6 +32,7 @@ void straighten(TetMesh& mesh);
 /// all layers there.
 struct PlacesInLayers {
   std::vector<Index> wall;      ///< itself on walls; none elsewhere
+  std::vector<Index> given;     ///< the same, with the number that it had in the mesh without layers
   std::vector<double> share;    ///< from 0 on walls to 1 beside the core
   std::vector<bool> is_raised;  ///< by point of a wall: there are layers above it
 };

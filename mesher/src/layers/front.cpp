@@ -59,16 +59,7 @@ void Front::find_sides() {
   for (Index t = 0; t < complex_.size(); ++t) {
     const auto& tet = complex_[t];
     for (unsigned corner = 0; corner < 4; ++corner) {
-      if (!is_wall(tet.faces[corner])) continue;
-      const auto [a, b, c] = side_corners(tet.corners, corner);
-      WallSide side;
-      side.face = tet.faces[corner];
-      side.tet = t;
-      side.corners = {a, c, b};  // seen from outside they are counterclockwise
-      side.patch = mesh_.face_patch[side.face];
-      side.region = tet.region;
-      side_of_[4 * std::size_t{t} + corner] = static_cast<Index>(sides.size());
-      sides.push_back(side);
+      if (is_wall(tet.faces[corner])) add_side(t, corner);
     }
   }
   for (const WallSide& side : sides)
@@ -78,6 +69,28 @@ void Front::find_sides() {
     }
   std::sort(wall_edges_.begin(), wall_edges_.end());
   wall_edges_.erase(std::unique(wall_edges_.begin(), wall_edges_.end()), wall_edges_.end());
+}
+
+void Front::add_side(Index tet, unsigned corner) {
+  const auto& at = complex_[tet];
+  const auto [a, b, c] = side_corners(at.corners, corner);
+  WallSide side;
+  side.face = at.faces[corner];
+  side.tet = tet;
+  side.corners = {a, c, b};  // seen from outside they are counterclockwise
+  side.patch = mesh_.face_patch[side.face];
+  side.region = at.region;
+  if (!walls_.has_layers(side.patch, side.region)) {
+    bare_sides.push_back(side);
+    return;
+  }
+  side_of_[4 * std::size_t{tet} + corner] = static_cast<Index>(sides.size());
+  sides.push_back(side);
+}
+
+/// Returns whether the face opposite a corner is a wall that has layers on its other side only.
+bool Front::is_bare(Index tet, unsigned corner) const {
+  return is_wall(complex_[tet].faces[corner]) && side_of_[4 * std::size_t{tet} + corner] == none;
 }
 
 /// Each sector of tets at a node of the wall that has a side of the wall gets a node of the front.
@@ -103,7 +116,10 @@ void Front::find_sector(Index vertex, Index tet, std::vector<Index>& sector) {
     const auto& at = complex_[sector[i]];
     corners.insert(corners.end(), at.corners.begin(), at.corners.end());
     for (unsigned corner = 0; corner < 4; ++corner) {
-      if (at.corners[corner] == vertex || is_wall(at.faces[corner])) continue;
+      if (at.corners[corner] == vertex) continue;
+      // The other side's layers keep the triangles there.
+      if (is_bare(sector[i], corner)) nodes[node].blocked = true;
+      if (is_wall(at.faces[corner])) continue;
       if (at.faces[corner] != none) faces.push_back(at.faces[corner]);
       const Index next = at.neighbours[corner];
       if (next == none) continue;
@@ -150,6 +166,10 @@ WallSide::Edge Front::follow(const WallSide& side, unsigned corner) const {
     if (const Index other = side_of_[4 * std::size_t{tet} + across]; other != none) {
       edge.beyond = other;
       edge.blocked = met > 1;
+      return edge;
+    }
+    if (is_bare(tet, across)) {
+      edge.blocked = true;
       return edge;
     }
     if (at.faces[across] != none) {

@@ -61,6 +61,8 @@ class Front {
   Front(const improvement::TetComplex& complex, const Plc& plc, const WallChoice& walls);
 
   std::vector<WallSide> sides;
+  /// Sides of walls on which no layers are asked for, behind those on which there are: without nodes, edges.
+  std::vector<WallSide> bare_sides;
   std::vector<FrontNode> nodes;
   Lists sides_at;              ///< by node: sides with it
   Lists neighbours;            ///< by node: the others of its sides
@@ -81,6 +83,8 @@ class Front {
 
  private:
   void find_sides();
+  void add_side(Index tet, unsigned corner);
+  bool is_bare(Index tet, unsigned corner) const;
   void find_nodes();
   void find_sector(Index vertex, Index tet, std::vector<Index>& sector);
   void number_corners();

@@ -20,8 +20,9 @@ namespace collarmesh {
 namespace layering {
 namespace {
 
-// So often the layers are made again without those at places where it failed.
-constexpr unsigned most_tries = 8, last_levels = 4;
+// So often the layers are made again without those at places where it failed; the last tries leave them out
+// in ever wider rings around these.
+constexpr unsigned most_tries = 9, last_levels = 4;
 // Where it fails with heights that hardly change the tets, this share of them is tried, then none.
 constexpr double further_share = 0.25;
 
@@ -68,9 +69,10 @@ class LayerMaker {
       const bool done = core.push(reached, levels);
       if (core.cancelled()) return false;
       if (done) return take(reached, core);
+      if (attempt >= last_levels) leave_out(core.failed(), (1U << (attempt - last_levels)) - 1, heights);
       for (const Index n : core.failed()) {
         const std::uint8_t level = ++levels[n];
-        if (level > Core::strictest + 1 || attempt >= last_levels)
+        if (level > Core::strictest + 1)
           heights.lower(n, 0, Cause::core);
         else if (level > Core::strictest)
           heights.lower(n, further_share * std::min(heights[n], reached[n]), Cause::core);
@@ -79,6 +81,21 @@ class LayerMaker {
     }
     for (Index n = 0; n < heights.size(); ++n) heights.lower(n, 0, Cause::core);
     return take(heights, Core(mesh_, plc_, front_, heights, improvement_, execution_));
+  }
+
+  /// Leaves the layers out at these nodes and at so many rings of neighbours.
+  void leave_out(std::vector<Index> nodes, unsigned rings, Heights& heights) const {
+    std::vector<bool> left(heights.size(), false);
+    for (unsigned ring = 0; !nodes.empty(); ++ring) {
+      std::vector<Index> next;
+      for (const Index n : nodes) {
+        if (left[n]) continue;
+        left[n] = true;
+        heights.lower(n, 0, Cause::core);
+        if (ring < rings) next.insert(next.end(), front_.neighbours[n].begin(), front_.neighbours[n].end());
+      }
+      nodes = std::move(next);
+    }
   }
 
   bool take(const Heights& heights, const Core& core) {

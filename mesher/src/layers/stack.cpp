@@ -286,6 +286,7 @@ void Stack::drop_unused_points() {
   mesh_.points.resize(kept);
   mesh_.features.resize(kept);
   places_.wall.resize(kept), places_.share.resize(kept), places_.is_raised.resize(kept);
+  places_.given = places_.wall;
   for (Index& v : places_.wall)
     if (v != none) v = number[v];
   for_all([&](auto& cells) {

@@ -9,6 +9,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "collarmesh/error.h"
 #include "common/named_tags.h"
@@ -44,14 +45,25 @@ std::optional<double> number_in(std::string_view text) {
   throw OptionError(fmt::format("layers: '{}' {}", text, why));
 }
 
-void set(WallLayers& wall, const std::string& setting, const std::string& text) {
+/// What a text asks for: layers, and the only region that gets them, if it names one.
+struct ReadWall {
+  WallLayers layers;
+  std::string region;
+};
+
+void set(ReadWall& read, const std::string& setting, const std::string& text) {
   const std::size_t equals = setting.find('=');
   const std::string key = setting.substr(0, equals);
+  if (key == "region" && equals != std::string::npos && equals + 1 < setting.size()) {
+    read.region = setting.substr(equals + 1);
+    return;
+  }
+  WallLayers& wall = read.layers;
   const std::optional<double> value =
       equals == std::string::npos ? std::nullopt : number_in(std::string_view(setting).substr(equals + 1));
   if (key != "first" && key != "growth" && key != "count" && key != "thickness")
-    refuse(text, fmt::format("sets '{}'; after the faces give first, growth, count or thickness, as in "
-                             "inlet,wall:first=0.1,growth=1.2,count=3",
+    refuse(text, fmt::format("sets '{}'; after the faces give first, growth, count, thickness or region, "
+                             "as in inlet,wall:first=0.1,growth=1.2,count=3",
                              key));
   if (!value) refuse(text, fmt::format("gives {} no number", key));
   if (key == "growth") {
@@ -68,8 +80,9 @@ void set(WallLayers& wall, const std::string& setting, const std::string& text) 
   }
 }
 
-WallLayers read_wall(const std::string& text) {
-  WallLayers wall;
+ReadWall read_wall(const std::string& text) {
+  ReadWall read;
+  WallLayers& wall = read.layers;
   const std::size_t colon = text.find(':');
   const std::string faces = text.substr(0, colon);
   if (faces != "all") wall.faces = parts_of(faces);
@@ -77,10 +90,10 @@ WallLayers read_wall(const std::string& text) {
     if (face.empty()) refuse(text, "names no face before the colon; give names or numbers of faces, or all");
   if (colon != std::string::npos)
     for (const std::string& setting : parts_of(std::string_view(text).substr(colon + 1)))
-      set(wall, setting, text);
+      set(read, setting, text);
   if (wall.first > 0 && wall.thickness > 0)
     refuse(text, "gives both the first height and the thickness of all layers; leave one out");
-  return wall;
+  return read;
 }
 
 }  // namespace
@@ -91,12 +104,39 @@ double relative_thickness(const WallLayers& wall) {
   return sum;
 }
 
-WallChoice::WallChoice(const LayerOptions& options, const Plc& plc)
-    : walls_(read_walls(options)), wall_of_(plc.patches.size(), none) {
+WallChoice::WallChoice(const LayerOptions& options, const Plc& plc) : wall_of_(plc.patches.size(), none) {
+  for (const std::string& text : options.walls) {
+    auto [layers, region] = read_wall(text);
+    walls_.push_back(std::move(layers));
+    only_in_.push_back(std::move(region));
+  }
+  find_regions(plc);
+  put_on_named(plc);
+  put_on_all(plc);
+}
+
+void WallChoice::find_regions(const Plc& plc) {
+  for (const std::string& region : only_in_) {
+    std::set<Index>& regions = regions_.emplace_back();
+    if (region.empty()) continue;
+    const std::set<Tag> named = tags_named(region, 3, plc.names);
+    for (Index r = 1; r < plc.regions.size(); ++r)
+      if (named.contains(plc.regions[r].tag)) regions.insert(r);
+    if (regions.empty())
+      throw OptionError(
+          fmt::format("layers: no region is called '{}'; `collarmesh info` lists the regions", region));
+  }
+}
+
+void WallChoice::put_on_named(const Plc& plc) {
   const auto put = [&](Index patch, Index wall) {
+    const auto& [behind, front] = plc.patches[patch].regions;
     if (wall_of_[patch] != none)
       throw OptionError(
           fmt::format("layers: face {} gets layers twice; name it once", plc.patches[patch].tag));
+    if (!lies_in(wall, behind) && !lies_in(wall, front))
+      throw OptionError(
+          fmt::format("layers: face {} is not beside region '{}'", plc.patches[patch].tag, only_in_[wall]));
     wall_of_[patch] = wall;
   };
   for (Index w = 0; w < walls_.size(); ++w) {
@@ -112,11 +152,15 @@ WallChoice::WallChoice(const LayerOptions& options, const Plc& plc)
     for (Index p = 0; p < plc.patches.size(); ++p)
       if (tags.contains(plc.patches[p].tag)) put(p, w);
   }
-  // Those that no text names.
+}
+
+/// Puts layers on the boundaries that no text names.
+void WallChoice::put_on_all(const Plc& plc) {
   for (Index w = 0; w < walls_.size(); ++w)
     for (Index p = 0; p < plc.patches.size(); ++p)
       if (const auto& [behind, front] = plc.patches[p].regions;
-          walls_[w].faces.empty() && (behind == 0) != (front == 0) && wall_of_[p] == none)
+          walls_[w].faces.empty() && (behind == 0) != (front == 0) && wall_of_[p] == none &&
+          lies_in(w, behind == 0 ? front : behind))
         wall_of_[p] = w;
 }
 
@@ -124,7 +168,7 @@ WallChoice::WallChoice(const LayerOptions& options, const Plc& plc)
 
 std::vector<WallLayers> read_walls(const LayerOptions& options) {
   std::vector<WallLayers> walls;
-  for (const std::string& text : options.walls) walls.push_back(layering::read_wall(text));
+  for (const std::string& text : options.walls) walls.push_back(layering::read_wall(text).layers);
   return walls;
 }
 

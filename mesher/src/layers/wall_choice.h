@@ -1,5 +1,7 @@
 #pragma once
 
+#include <set>
+#include <string>
 #include <vector>
 
 #include "collarmesh/layers.h"
@@ -13,12 +15,25 @@ class WallChoice {
   WallChoice(const LayerOptions& options, const Plc& plc);
 
   bool is_wall(Index patch) const { return patch != none && wall_of_[patch] != none; }
+  /// Returns whether a patch has layers in a region beside it.
+  bool has_layers(Index patch, Index region) const {
+    return is_wall(patch) && lies_in(wall_of_[patch], region);
+  }
   /// Returns the layers of a patch. Precondition: it is a wall.
   const WallLayers& operator[](Index patch) const { return walls_[wall_of_[patch]]; }
 
  private:
+  bool lies_in(Index wall, Index region) const {
+    return only_in_[wall].empty() || regions_[wall].contains(region);
+  }
+  void find_regions(const Plc& plc);
+  void put_on_named(const Plc& plc);
+  void put_on_all(const Plc& plc);
+
   std::vector<WallLayers> walls_;
-  std::vector<Index> wall_of_;  // by patch: index of its layers; none
+  std::vector<std::string> only_in_;      // by wall: the region that the text names; empty: none
+  std::vector<std::set<Index>> regions_;  // by wall: the regions that get its layers, if it names one
+  std::vector<Index> wall_of_;            // by patch: index of its layers; none
 };
 
 /// Returns the height of all layers relative to the first one.

@@ -1,7 +1,8 @@
 #include "pipeline/wall_layers.h"
 
-#include <algorithm>
+#include <map>
 #include <set>
+#include <utility>
 
 #include "check/layer_cells.h"
 
@@ -19,17 +20,38 @@ ImproveOptions options_of_core(const MeshJob& job) {
   return options;
 }
 
-/// Returns the share of its volume by which layers may change a region: rounding, and, where they end at
-/// curved faces, what the new triangles there cut off.
-double volume_allowance(const MeshJob& job) {
-  constexpr double rounding = 1e-9, cut_off = 0.01;
+/// Areas of patches, by patch and the region beside them.
+using Areas = std::map<std::pair<Index, Index>, double>;
+
+Areas areas_of(const TetMesh& mesh) {
+  Areas areas;
+  const auto& p = mesh.points;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const auto& [a, b, c] = mesh.faces[f];
+    for (const Index region : mesh.face_regions[f])
+      areas[{mesh.face_patch[f], region}] += 0.5 * norm(cross(p[b] - p[a], p[c] - p[a]));
+  }
+  return areas;
+}
+
+/// Returns by how much layers may change the volume of each region. Walls keep their triangles, so only
+/// other patches count, along which nodes slide: before and after, their triangles are within their
+/// tolerance of the surface, so that at most twice that times the area lies between. Planar patches are as
+/// flat as the complex was built.
+std::map<Index, double> volume_allowances(const MeshJob& job, const Areas& areas,
+                                          const SurfaceTolerance& tolerance) {
   std::set<Tag> walls;
   for (const LayersReport::Patch& patch : job.made.layers->patches) walls.insert(patch.tag);
-  const auto& patches = job.plc->patches;
-  return std::all_of(patches.begin(), patches.end(),
-                     [&](const Plc::Patch& patch) { return patch.planar || walls.contains(patch.tag); })
-             ? rounding
-             : cut_off;
+  std::map<Index, double> allowed;
+  for (const auto& [at, area] : areas) {
+    const auto& [number, region] = at;
+    if (number == none) continue;
+    const Plc::Patch& patch = job.plc->patches[number];
+    if (walls.contains(patch.tag)) continue;
+    const double off = patch.planar ? job.plc->planar_tolerance : tolerance.largest_on_patch(number);
+    allowed[region] += 2 * off * area;
+  }
+  return allowed;
 }
 
 }  // namespace
@@ -39,6 +61,7 @@ void add_layers(MeshJob& job) {
   job.control.begin("layers", 0.9, 0.96);
   TetMesh& mesh = job.made.result.mesh;
   const auto volumes = checks::volumes_with_layers(mesh);
+  const Areas areas = areas_of(mesh);
   const ImproveOptions options = options_of_core(job);
   const SecondOrderOptions second_order{
       .exact = job.options.exact, .bounds = job.bounds(), .threads = job.options.mesh.threads};
@@ -46,7 +69,9 @@ void add_layers(MeshJob& job) {
   if (job.made.layers->cancelled) job.control.stop();
   checks::check_layer_cells(mesh, job.made.check);
   checks::check_core_angles(mesh, job.made.layers->walls, *job.plc, options.bounds, job.made.check);
-  checks::check_layer_volumes(volumes, mesh, volume_allowance(job), job.made.check);
+  const SurfaceTolerance tolerance =
+      options.bounds.tolerance ? *options.bounds.tolerance : tolerance_of_any_size(*job.plc, options.bounds);
+  checks::check_layer_volumes(volumes, mesh, volume_allowances(job, areas, tolerance), job.made.check);
   job.control.stop_if_asked();
 }
 
