@@ -76,7 +76,7 @@ void check_against_further(const TetMesh& mesh, ComplexInput& input, const RunOp
     repair = input.repaired();
     report.notes.push_back(
         repair.wrapped
-            ? "the mesh is one of a surface around everything"
+            ? "the mesh was made from a wrap (a closed surface around the input)"
             : fmt::format("the mesh is one of a repair with --repair-tolerance {:.3g}", further.tolerance));
     return;
   }

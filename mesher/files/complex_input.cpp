@@ -129,7 +129,7 @@ const brep::CadLabels* ComplexInput::labels() const {
 
 TagColours ComplexInput::colours() const { return labels() == nullptr ? TagColours() : labels()->colours; }
 
-/// Names features as the file or the text and the single names say.
+/// Names the features by `reading_.names` (a file, or JSON text) and then by the single names given.
 void ComplexInput::name(Plc& plc) const {
   const std::string& path = reading_.names;
   if (path.empty() && reading_.given_names.empty()) return;

@@ -7,7 +7,7 @@
 namespace collarmesh::files {
 
 /// Returns the files that writing `path` makes: the file itself and the further files of its format (its
-/// extension, or `format`). Of the pieces of a .pvtu, returns only existing ones.
+/// extension, or `format`). Pieces of a .pvtu are listed only if they exist.
 std::vector<std::filesystem::path> files_written(const std::filesystem::path& path,
                                                  const std::string& format = {});
 

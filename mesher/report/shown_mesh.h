@@ -27,7 +27,7 @@ struct ShownMesh {
   std::vector<ShownWorst> worst;      ///< the given worst tets
 };
 
-/// Returns all faces of a mesh of triangles; all tets of a mesh with up to `most` of them. Of larger meshes
+/// Returns all faces of a mesh of triangles; all tets of a mesh with up to `most` of them. For larger meshes
 /// returns the tets with a face on the boundary or an interface, those that meet the planes through the
 /// centre, and the worst ones. Cost: linear.
 ShownMesh shown_mesh(const TetMesh& mesh, const std::vector<WorstTet>& worst, std::size_t most = 100000);

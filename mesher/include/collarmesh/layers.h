@@ -49,7 +49,8 @@ struct LayersReport {
     double covered = 0;  ///< of that, beside cells of all layers, absolute
     double asked = 0;    ///< height of all layers, absolute
     double mean = 0;     ///< mean height reached, by area
-    /// Area by reached share of the height: of tenth i from 0.1 i to 0.1 (i + 1).
+    /// Histogram over the wall's area: entry i is the area where layers reach 0.1 i to 0.1 (i + 1) of the
+    /// height.
     std::array<double, 10> histogram{};
   };
   std::vector<Patch> patches;

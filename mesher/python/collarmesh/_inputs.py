@@ -288,7 +288,7 @@ def sized(options: Mapping[str, Any]) -> Dict[str, Any]:
     if size is None or isinstance(size, (int, float, numpy.number)):
         return found
     if found.get("size_field") is not None:
-        raise OptionError("size is a size field, and so is size_field; give one of them")
+        raise OptionError("size and size_field both give a size field; give only one of them")
     known = isinstance(size, (str, os.PathLike, Mapping, tuple)) or callable(size)
     return {**found, "size": None, "size_field": size if known else (found["mesh"], size)}
 

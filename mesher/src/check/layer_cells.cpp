@@ -35,7 +35,8 @@ struct CellSide {
   std::array<Index, 4> corners;
   Index cell;
   Kind kind;
-  bool turned;  // the normal of the corners in this order points into the cell, or to regions[0]
+  bool turned;  // the normal of the corners in this order points into the cell; for a listed face or
+                // quadrangle: into regions[0]
 
   bool listed() const { return kind == Kind::face || kind == Kind::quad; }
 };

@@ -41,8 +41,8 @@ inline constexpr std::array<SidePlaces, 5> pyramid_sides{
     {{4, {0, 3, 2, 1}}, {3, {0, 1, 4}}, {3, {1, 2, 4}}, {3, {2, 3, 4}}, {3, {3, 0, 4}}}};
 }  // namespace cell_shapes
 
-/// What a kind of cells consists of. In second order the mid-edge nodes follow the corners, in the order of
-/// the edges.
+/// Corners, edges and sides of a kind of cells. In second order the mid-edge nodes follow the corners, in the
+/// order of the edges.
 struct CellShape {
   std::size_t dimension, corners;
   std::span<const EdgePlaces> edges;

@@ -236,7 +236,7 @@ class ThinShape {
   double smallest_, sine_, cosine_, least_blunt_, inverse_squared_least_blunt_;
   double share_;                        // share of the forced angle that tets must keep, including the
                                         // reserve
-  std::vector<double> sine_at_vertex_;  // empty if no crease is that sharp
+  std::vector<double> sine_at_vertex_;  // empty if no crease is sharp enough to lower the bound
   std::shared_ptr<const ForcedEdges> forced_;
 };
 

@@ -49,7 +49,8 @@ struct Elements {
   std::vector<std::int64_t> corners;    ///< counted from 0; negative ones are already resolved
 };
 
-/// Ends a statement. A line that ends with a backslash continues in the next one.
+/// Returns whether the statement ends here. Skips a backslash at the end of a line, which continues the
+/// statement.
 bool end_of_statement(TextScanner& scan) {
   while (!scan.at_line_end()) {
     if (scan.peek() != "\\") return false;

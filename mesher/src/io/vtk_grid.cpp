@@ -232,7 +232,7 @@ class GridMaker {
 /// The cells of one piece by kind, as positions in its arrays.
 using CellKinds = std::array<std::vector<std::size_t>, cell_kinds>;
 
-/// What a type of VTK's cells is for us.
+/// The kind of cells that a VTK cell type is read as.
 struct ReadType {
   std::size_t nodes = 1;
   std::optional<CellKind> kind;  ///< nothing: a point, which is skipped

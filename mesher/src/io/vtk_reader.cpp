@@ -139,7 +139,7 @@ class LegacyReader {
     for (Index i = 0; i < n; ++i) {
       const std::int64_t count = at < numbers.size() ? numbers[at++] : -1;
       if (count < 0 || static_cast<std::size_t>(count) > numbers.size() - at)
-        fail(fmt::format("cell {} of {} does not fit into the {} numbers of the cells", i, n, size));
+        fail(fmt::format("cell {} of {} reaches beyond the {} integers of the section CELLS", i, n, size));
       const auto first = numbers.begin() + static_cast<std::ptrdiff_t>(at);
       piece_.connectivity.insert(piece_.connectivity.end(), first, first + count);
       piece_.ends.push_back(static_cast<std::int64_t>(piece_.connectivity.size()));
@@ -282,7 +282,8 @@ class LegacyReader {
   }
 
   std::int64_t rounded(double value) const {
-    if (!(std::fabs(value) < 0x1p62)) fail(fmt::format("the value {} is no integer that fits", value));
+    if (!(std::fabs(value) < 0x1p62))
+      fail(fmt::format("the value {} is not a number, or too large for a 64-bit integer", value));
     return std::llround(value);
   }
 

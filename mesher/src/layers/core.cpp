@@ -203,7 +203,7 @@ bool Core::push(Heights& heights, const std::vector<std::uint8_t>& levels) {
 }
 
 /// Lowers heights until tets that only move, without any change of their connections, keep a share of their
-/// bounds. What is missing is left to the engine.
+/// bounds. The engine does the rest.
 void Core::fit_tets(Heights& heights, const std::vector<std::uint8_t>& levels) {
   constexpr std::array<double, strictest + 1> shares{0.4, 1.0};
   const std::vector<Index> near = vertices_near_front(rings_moved);

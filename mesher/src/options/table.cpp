@@ -185,8 +185,9 @@ std::vector<Option> quality_options() {
        .finer = true,
        .zero = true,
        .default_text = "none",
-       .help = "Refine until largest circumradius / shortest edge at each vertex is below this, more "
-               "than 2 sqrt 2",
+       .help =
+           "Refine until at each vertex the largest circumradius over the shortest edge is below this; more "
+           "than 2 sqrt 2",
        .details = "not certified: coarsening and improvement may exceed it, so a warning asks for "
                   "`--coarsen off`",
        .commands = refining},

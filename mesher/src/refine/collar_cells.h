@@ -60,7 +60,7 @@ class CollarCells {
   GrowingArray<std::uint8_t> inside_, near_;     // flags by cell and by vertex; empty without balls
   std::unordered_map<Index, TakenIn> taken_in_;  // by cell
   std::vector<Index> balls_;                     // balls near the last vertex
-  Index last_vertex_ = none;                     // none if there are more balls
+  Index last_vertex_ = none;                     // none if there are too many to list
   std::vector<Index> cells_;                     // scratch
 };
 

@@ -59,7 +59,7 @@ void Relaxation::contract() {
 
 void Relaxation::contract_short(double below) {
   kept_.assign(mesh().points.size(), 0);
-  for (unsigned pass = 0; pass < most_passes; ++pass)
+  for (unsigned pass = 0; pass < most_relaxations; ++pass)
     if (!contract_shorter_than(below, share_left)) break;
 }
 

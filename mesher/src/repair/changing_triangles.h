@@ -127,8 +127,8 @@ class ChangingTriangles {
   facets::Draft compacted() const;
 
  private:
-  static constexpr std::size_t few = 8;  // if less than one in so many triangles has changed, changed ones
-                                         // are searched one by one
+  static constexpr std::size_t few = 8;  // while at most one triangle in eight has changed,
+                                         // each changed one is looked up alone
 
   // Returns existing triangles from this number on.
   std::vector<Index> triangles_from(Index first) const;

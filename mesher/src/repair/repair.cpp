@@ -76,8 +76,8 @@ struct LostVolume : PlcError {
 
 class Repairer {
  public:
-  /// What is repaired. Solids: fills holes, and drops parts that enclose nothing. Sheets: keeps everything,
-  /// including open borders, and cuts intersections.
+  /// Kind of input to repair. Solids: fills holes, and drops parts that enclose nothing. Sheets: keeps
+  /// everything, including open borders, and cuts intersections.
   enum class Of { solids, sheets };
 
   Repairer(std::span<const PolygonSoup> soups, const RepairOptions& options, const PlcOptions& complex,
@@ -213,7 +213,7 @@ class Repairer {
     add_places(report_.turned, turned.turned_components, 0, turned.places);
   }
 
-  // Returns a tag that the input does not use; CAD faces have their numbers as tags.
+  // Returns a tag above all tags of the input. (The tag of a CAD face is its number.)
   Tag next_tag() const {
     Tag tag = 0;
     for (const PolygonSoup& soup : soups_)

@@ -47,9 +47,9 @@ struct Renumbering {
 };
 
 /// The complex of the patches that are kept.
-class Part {
+class NamedPart {
  public:
-  Part(const Plc& whole, const std::set<Tag>& tags)
+  NamedPart(const Plc& whole, const std::set<Tag>& tags)
       : whole_(whole),
         patches_(whole.patches.size()),
         curves_(whole.curves.size()),
@@ -146,7 +146,7 @@ void ChosenPatches::adapt(PipelineOptions& options) const {
 }
 
 ChosenPatches choose_patches(const Plc& whole, const std::vector<std::string>& names) {
-  return Part(whole, tags_of(whole, names)).make();
+  return NamedPart(whole, tags_of(whole, names)).make();
 }
 
 }  // namespace collarmesh::shells

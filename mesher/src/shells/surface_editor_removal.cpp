@@ -12,9 +12,9 @@ namespace collarmesh::shells {
 namespace {
 
 // Least cosine of the angle between a new triangle and its patch.
-constexpr double least_agreement = 0.6;
+constexpr double least_agreement_left = 0.6;
 // Vertices with more triangles stay.
-constexpr std::size_t most_triangles = 12;
+constexpr std::size_t most_triangles_removed = 12;
 
 /// Returns the corner of a triangle that follows upon v.
 Index after(const SurfaceComplex::Triangle& t, Index v) {
@@ -90,7 +90,7 @@ bool SurfaceEditor::filling_fits(Index vertex, const Hole& hole, std::span<const
   for (const Created& t : created) {
     const Corners corners = complex_.corners(t.corners);
     const PatchSurfaces::Fit fit = surfaces_.fit(corners, hole.patch, most_excess_);
-    if (fit.agreement < least_agreement || fit.excess > most_excess_) return false;
+    if (fit.agreement < least_agreement_left || fit.excess > most_excess_) return false;
     squared = std::min(squared, squared_distance_to_triangle(p, corners[0], corners[1], corners[2]));
     if (surfaces_.planar(hole.patch)) continue;
     for (unsigned i = 0; i < 3; ++i) {
@@ -125,7 +125,8 @@ bool SurfaceEditor::chord_permits(Index vertex, std::span<const Hole> holes, con
 
 bool SurfaceEditor::remove(Index vertex, const Removal& rule) {
   const auto& v = complex_.vertices[vertex];
-  if (v.feature.dimension == 0 || v.triangles.size() > most_triangles || ends_tip(vertex)) return false;
+  if (v.feature.dimension == 0 || v.triangles.size() > most_triangles_removed || ends_tip(vertex))
+    return false;
   const auto holes = holes_around(vertex);
   if (!holes) return false;
   if (v.feature.dimension == 1 ? !chord_permits(vertex, *holes, rule) : (*holes)[0].border.size() < 3)
