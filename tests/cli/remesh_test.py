@@ -49,7 +49,7 @@ class Remeshing(ProgramTest):
         self.assertTrue(report["guarantees_hold"])
         self.expect(0, "check", "next.vtu", "--against", self.box)
         other = self.write("other.off", off_text([[1.5 * c for c in p] for p in box_points()], BOX_FACES))
-        self.expect(4, "remesh", "first.vtu", "-o", "last.vtu", "--against", other, says=["does not cover", "("])
+        self.expect(4, "remesh", "first.vtu", "-o", "last.vtu", "--against", other, says=["does not cover", r"\("])
         self.expect(3, "remesh", "first.vtu", "-o", "last.vtu", "--against", "missing.off", says=["missing.off"])
 
     def test_the_same_bytes(self):

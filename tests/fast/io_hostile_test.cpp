@@ -136,7 +136,7 @@ TEST(IoVtk, RefusesBadFiles) {
                  "point 1, (1, 0, nan), is not finite");
   expect_refused("a.vtk", replaced(vtk, "CELLS 3 14", "CELLS 3 2000000000"),
                  "line 8: the size of the cells is 2000000000");
-  expect_refused("a.vtk", replaced(vtk, "4 1 2 3 4", "9 1 2 3 4"), "cell 1 of 3 does not fit");
+  expect_refused("a.vtk", replaced(vtk, "4 1 2 3 4", "9 1 2 3 4"), "cell 1 of 3 reaches beyond");
   expect_refused("a.vtk", replaced(vtk, "4 1 2 3 4", "4 1 2 3 5"), "cell 1 has the corner 5");
   expect_refused("a.vtk", replaced(vtk, "10\n10\n5", "10\n12\n5"), "cell 1 has the type 12");
   expect_refused("a.vtk", replaced(vtk, "CELL_TYPES 3\n10\n", "CELL_TYPES 2\n"),
