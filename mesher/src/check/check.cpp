@@ -220,7 +220,8 @@ TetMesh labelled(const TetMesh& mesh, const Plc& plc, const CheckOptions& option
   const Subject given = make_subject(mesh, plc, options);
   if (!check_points(given, findings)) refuse_if_any();
   std::optional<TetMesh> placed = place_by_position(given, report, findings);
-  TetMesh result = placed ? std::move(*placed) : mesh;
+  TetMesh result = mesh;
+  if (placed) result = std::move(*placed);
   if (!check_labels(result, plc, findings)) refuse_if_any();
   Subject subject = make_subject(result, plc, options);
   judge(subject, report, findings, execution);
