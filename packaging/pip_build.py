@@ -72,7 +72,7 @@ def lay_out(root, folder):
 
 
 def compile_package(folder):
-    options = ["-DCMAKE_BUILD_TYPE=Release", "-DCOLLARMESH_TESTS=OFF", "-DCOLLARMESH_DISTRIBUTED=OFF",
+    options = ["-DCMAKE_BUILD_TYPE=Release", "-DCOLLARMESH_TESTS=OFF", "-DCOLLARMESH_DISTRIBUTED=OFF", "-DCOLLARMESH_IN_GROUPS=ON",
                "-DCMAKE_REQUIRE_FIND_PACKAGE_pybind11=ON",
                f"-DPYTHON_EXECUTABLE={sys.executable}", f"-DPython_EXECUTABLE={sys.executable}"]
     if shutil.which("ninja"):
