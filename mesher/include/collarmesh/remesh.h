@@ -31,10 +31,11 @@ using AdaptOptions = std::function<void(const Plc&, PipelineOptions&)>;
 /// the bounds on angles stays within them, and other meshes get better. The result is certified against the
 /// complex. For a mesh of second order, its corners are remeshed, and mid-edge nodes are made anew if
 /// `options.order` is 2.
-/// Only the options of sizes, bounds, improvement, order, partitions and budgets count. Without a size and a
-/// field the lengths stay as they are. Same mesh and options: same result, with any number of threads. Throws
-/// PlcError for a mesh whose tets do not fit each other, OptionError for sizes of tags that the mesh does not
-/// have. Cost: near linear in the tets of the mesh and of the result.
+/// Only the options of sizes, bounds, improvement, order, partitions and budgets count; exact geometry does
+/// not, as its features are those of another complex. Without a size and a field the lengths stay as they
+/// are. Same mesh and options: same result, with any number of threads. Throws PlcError for a mesh whose tets
+/// do not fit each other, OptionError for sizes of tags that the mesh does not have. Cost: near linear in the
+/// tets of the mesh and of the result.
 RemeshResult remesh(const TetMesh& mesh, const PipelineOptions& options = {}, const AdaptOptions& adapt = {},
                     const Execution& execution = {});
 

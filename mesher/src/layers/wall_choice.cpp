@@ -45,7 +45,7 @@ std::optional<double> number_in(std::string_view text) {
   throw OptionError(fmt::format("layers: '{}' {}", text, why));
 }
 
-/// What a text asks for: layers, and the only region that gets them, if it names one.
+/// The layers that a text asks for, and the only region that gets them, if it names one.
 struct ReadWall {
   WallLayers layers;
   std::string region;

@@ -91,6 +91,8 @@ class Remeshing {
     else
       follow_complex();
     if (adapt_) adapt_(made_.plc, options_);
+    if (complex_ == nullptr)
+      options_.exact = {}, options_.exact_measures = {};  // of features of another complex
     require_known_tags(options_.mesh, made_.plc);
     made_.remeshing.tets_before = mesh().tets.size();
     measure_before();
