@@ -143,12 +143,11 @@ class InABrowser(ReportTest):
     def look(self, path, link="", size="1000,800"):
         """Opens the page in a browser. Returns the attributes of its body, and the picture's bytes."""
         picture = self.folder / "picture.png"
-        common = [CHROMIUM, "--headless=new", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader",
-                  "--enable-unsafe-swiftshader", f"--window-size={size}", "--virtual-time-budget=20000",
-                  f"--user-data-dir={self.folder / 'profile'}"]
-        address = f"{path.as_uri()}{link}"
-        dom = subprocess.run([*common, "--dump-dom", address], capture_output=True, text=True, timeout=120).stdout
-        subprocess.run([*common, f"--screenshot={picture}", address], capture_output=True, timeout=120)
+        dom = subprocess.run(
+            [CHROMIUM, "--headless=new", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader",
+             "--enable-unsafe-swiftshader", f"--window-size={size}", "--virtual-time-budget=20000",
+             f"--user-data-dir={self.folder / 'profile'}", "--dump-dom", f"--screenshot={picture}",
+             f"{path.as_uri()}{link}"], capture_output=True, text=True, timeout=120).stdout
         attributes = dict(re.findall(r'data-(\w+)="([^"]*)"', re.search(r"<body[^>]*>", dom).group()))
         self.assertNotIn("error", attributes, dom[-2000:])
         self.assertEqual(attributes.get("ready"), "yes")

@@ -17,6 +17,8 @@ namespace {
 
 using namespace testing::faulty;
 
+constexpr double coarse_offset = 0.02;
+
 PolygonSoup crossing_balls() {
   return testing::joined(testing::icosphere(1, 8),
                          testing::translated(testing::icosphere(1, 8), {0.71, 0.53, 0.37}));
@@ -55,6 +57,7 @@ TEST(RepairBounds, GivesUpBeyondItsWork) {
   EXPECT_TRUE(repair({&soup, 1}).report.repaired);
   // Wrapping does not use that work.
   options.mode = RepairMode::wrap;
+  options.wrap_offset = coarse_offset;
   EXPECT_TRUE(build_repaired_plc({&soup, 1}, {}, options).report.wrapped);
 }
 
@@ -153,6 +156,7 @@ TEST(RepairBounds, WrapsAtOnce) {
   options.mode = RepairMode::wrap;
   EXPECT_FALSE(build_repaired_plc({&box, 1}, {}, options).report.repaired);
   options.wrap_at_once = true;
+  options.wrap_offset = coarse_offset;
   const RepairedPlc wrapped = build_repaired_plc({&box, 1}, {}, options);
   EXPECT_TRUE(wrapped.report.wrapped);
   EXPECT_GT(wrapped.plc.regions[1].volume, 1);

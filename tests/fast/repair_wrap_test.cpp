@@ -56,7 +56,9 @@ TEST(Wrap, GivesSheetsAVolume) {
 }
 
 TEST(Wrap, LostTagsAreTold) {
-  const auto wrapped = build_wrapped_plc(std::vector{box()}, {}, {});
+  RepairOptions options;
+  options.wrap_offset = 0.02;
+  const auto wrapped = build_wrapped_plc(std::vector{box()}, {}, options);
   ASSERT_TRUE(wrapped.has_value());
   EXPECT_EQ(wrapped->report.lost_tags, (std::vector<Tag>{2, 3, 4, 5, 6}));
 }
