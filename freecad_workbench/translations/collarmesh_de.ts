@@ -20,6 +20,10 @@
       <translation>Schranke für Diederwinkel in Kragen</translation>
     </message>
     <message>
+      <source>Boundary layers along faces</source>
+      <translation>Randschichten an Flächen</translation>
+    </message>
+    <message>
       <source>Dimension of the elements. 3D: tetrahedra in solids; 2D: triangles on faces, for shells; 1D: lines on edges, for beams; From Shape: by what the shape encloses</source>
       <translation>Dimension der Elemente. 3D: Tetraeder in Volumenkörpern; 2D: Dreiecke auf Flächen, für Schalen; 1D: Linien auf Kanten, für Balken; From Shape: danach, was die Form umschließt</translation>
     </message>
@@ -46,6 +50,10 @@
     <message>
       <source>Faces inside whose two sides get nodes of their own, as those of cracks: Face7</source>
       <translation>Flächen im Innern, deren beide Seiten eigene Knoten bekommen, wie bei Rissen: Face7</translation>
+    </message>
+    <message>
+      <source>Faces that get layers; none: all outer faces. With a solid among them, only inside that solid</source>
+      <translation>Flächen, die Schichten bekommen; keine: alle äußeren Flächen. Mit einem Körper unter ihnen nur in diesem Körper</translation>
     </message>
     <message>
       <source>Faces this near to a plane are planar, relative to the diagonal; 0: 1e-6</source>
@@ -76,12 +84,20 @@
       <translation>Wachstum der Größe je Längeneinheit, von dort weg</translation>
     </message>
     <message>
+      <source>Height of all layers, in place of the first height; 0: none</source>
+      <translation>Höhe aller Schichten, anstelle der ersten Höhe; 0: keine</translation>
+    </message>
+    <message>
       <source>Height of the box along its z axis</source>
       <translation>Höhe des Quaders entlang seiner z-Achse</translation>
     </message>
     <message>
       <source>Height of the cylinder along its z axis</source>
       <translation>Höhe des Zylinders entlang seiner z-Achse</translation>
+    </message>
+    <message>
+      <source>Height of the first layer; 0: a tenth of the edges there</source>
+      <translation>Höhe der ersten Schicht; 0: ein Zehntel der Kanten dort</translation>
     </message>
     <message>
       <source>Improve elements with smaller dihedral angles; 0: 15, 20 or 30 degrees by the level of improvement</source>
@@ -104,6 +120,10 @@
       <translation>Nie weniger als dies verlangen; 0: keine Grenze</translation>
     </message>
     <message>
+      <source>Number of layers</source>
+      <translation>Anzahl der Schichten</translation>
+    </message>
+    <message>
       <source>Order of the elements</source>
       <translation>Elementordnung</translation>
     </message>
@@ -124,16 +144,20 @@
       <translation>Radius der Kugel</translation>
     </message>
     <message>
+      <source>Ratio of the heights of a layer and the one below it, 1 to 10</source>
+      <translation>Verhältnis der Höhen einer Schicht und der darunter, 1 bis 10</translation>
+    </message>
+    <message>
       <source>Removal of slivers: 0 none, 1 quick, 2 good, 3 best</source>
       <translation>Entfernen flacher Elemente: 0 keines, 1 schnell, 2 gut, 3 am besten</translation>
     </message>
     <message>
-      <source>Sizes in spheres, boxes and cylinders and near faces and edges</source>
-      <translation>Größen in Kugeln, Quadern und Zylindern und nahe Flächen und Kanten</translation>
+      <source>Sizes and layers of collarmesh</source>
+      <translation>Größen und Schichten von collarmesh</translation>
     </message>
     <message>
-      <source>Sizes of collarmesh</source>
-      <translation>Größen von collarmesh</translation>
+      <source>Sizes in spheres, boxes and cylinders and near faces and edges</source>
+      <translation>Größen in Kugeln, Quadern und Zylindern und nahe Flächen und Kanten</translation>
     </message>
     <message>
       <source>Target edge length inside</source>
@@ -142,6 +166,10 @@
     <message>
       <source>Target edge length; 0: 1/20 of the diagonal</source>
       <translation>Angestrebte Kantenlänge; 0: 1/20 der Diagonale</translation>
+    </message>
+    <message>
+      <source>Tetrahedra in place of prisms in boundary layers</source>
+      <translation>Tetraeder anstelle von Prismen in Randschichten</translation>
     </message>
     <message>
       <source>The group of each face</source>
@@ -263,6 +291,10 @@
       <translation>Erweitert</translation>
     </message>
     <message>
+      <source>All layers are {height} mm high.</source>
+      <translation>Alle Schichten sind {height} mm hoch.</translation>
+    </message>
+    <message>
       <source>Another number gives another mesh of the same quality</source>
       <translation>Eine andere Zahl ergibt ein anderes Netz gleicher Güte</translation>
     </message>
@@ -295,8 +327,20 @@
       <translation>Eine kleinere Größe bis zu einem Abstand von den ausgewählten Flächen und Kanten verlangen</translation>
     </message>
     <message>
+      <source>Ask for thin layers of prisms along the selected faces, for flow, heat and currents at walls</source>
+      <translation>Dünne Schichten aus Prismen an den gewählten Flächen verlangen, für Strömung, Wärme und Ströme an Wänden</translation>
+    </message>
+    <message>
       <source>Bound on dihedral angles in collars</source>
       <translation>Schranke für Diederwinkel in Kragen</translation>
+    </message>
+    <message>
+      <source>Boundary layers</source>
+      <translation>Randschichten</translation>
+    </message>
+    <message>
+      <source>Boundary layers of Gmsh on edges, which collarmesh does not have: {names}</source>
+      <translation>Randschichten von Gmsh an Kanten, die collarmesh nicht hat: {names}</translation>
     </message>
     <message>
       <source>Cancel</source>
@@ -355,6 +399,10 @@
       <translation>Jedes Element hat einen Knoten im Inneren seines Körpers</translation>
     </message>
     <message>
+      <source>Each is thicker by the factor</source>
+      <translation>Jede ist dicker um den Faktor</translation>
+    </message>
+    <message>
       <source>Each solid has its volume, no element is inverted</source>
       <translation>Jeder Körper hat sein Volumen, kein Element ist umgestülpt</translation>
     </message>
@@ -381,6 +429,10 @@
     <message>
       <source>Elements know their faces and edges</source>
       <translation>Elemente kennen ihre Flächen und Kanten</translation>
+    </message>
+    <message>
+      <source>Elements of layers are not inverted and meet in whole sides</source>
+      <translation>Elemente der Schichten sind nicht umgestülpt und haben ganze Seiten gemeinsam</translation>
     </message>
     <message>
       <source>Elements of new meshes</source>
@@ -439,6 +491,10 @@
       <translation>Aufzutrennende Flächen</translation>
     </message>
     <message>
+      <source>Faces with layers: type their names, or select them in the 3D view and add them. With a solid among them, layers are inside that solid only.</source>
+      <translation>Flächen mit Schichten: ihre Namen eingeben, oder sie in der 3D-Ansicht wählen und hinzufügen. Mit einem Körper unter ihnen gibt es Schichten nur in diesem Körper.</translation>
+    </message>
+    <message>
       <source>Fill holes of open surfaces</source>
       <translation>Löcher offener Flächen füllen</translation>
     </message>
@@ -453,6 +509,10 @@
     <message>
       <source>Fineness</source>
       <translation>Feinheit</translation>
+    </message>
+    <message>
+      <source>First height</source>
+      <translation>Erste Höhe</translation>
     </message>
     <message>
       <source>First order is too stiff for bending: displacements come out too small, and stresses far too small. It is for a first look, and for solvers that ask for it.</source>
@@ -475,8 +535,8 @@
       <translation>Nach so vielen Sekunden aufgeben; 0: nie</translation>
     </message>
     <message>
-      <source>Gmsh does not heed these sizes: {names}</source>
-      <translation>Gmsh beachtet diese Größen nicht: {names}</translation>
+      <source>Gmsh does not heed these sizes and layers: {names}</source>
+      <translation>Gmsh beachtet diese Größen und Schichten nicht: {names}</translation>
     </message>
     <message>
       <source>Group of a collarmesh mesh</source>
@@ -535,6 +595,10 @@
       <translation>Verbesserung neuer Netze</translation>
     </message>
     <message>
+      <source>In all layers of this mesh, for solvers that know nothing else</source>
+      <translation>In allen Schichten dieses Netzes, für Löser, die nichts anderes kennen</translation>
+    </message>
+    <message>
       <source>Keep touching solids apart</source>
       <translation>Körper, die sich berühren, getrennt lassen</translation>
     </message>
@@ -551,6 +615,14 @@
       <translation>Größter Abstand von der Form</translation>
     </message>
     <message>
+      <source>Layers keep the faces and the volumes of solids</source>
+      <translation>Schichten behalten die Flächen und die Volumen der Körper bei</translation>
+    </message>
+    <message>
+      <source>Layers: &lt;b&gt;{prisms}&lt;/b&gt; prisms, {pyramids} pyramids and {tets} tetrahedra cover {percent}% of the faces</source>
+      <translation>Schichten: &lt;b&gt;{prisms}&lt;/b&gt; Prismen, {pyramids} Pyramiden und {tets} Tetraeder bedecken {percent}% der Flächen</translation>
+    </message>
+    <message>
       <source>Length</source>
       <translation>Länge</translation>
     </message>
@@ -561,6 +633,10 @@
     <message>
       <source>Lines</source>
       <translation>Linien</translation>
+    </message>
+    <message>
+      <source>Lower layers ({count})</source>
+      <translation>Niedrigere Schichten ({count})</translation>
     </message>
     <message>
       <source>Make a mesh of the selected solid, surface or wire, certified, with groups for its faces, or open the one that is there</source>
@@ -629,6 +705,10 @@
     <message>
       <source>Nodes off their face ({count})</source>
       <translation>Knoten neben ihrer Fläche ({count})</translation>
+    </message>
+    <message>
+      <source>Number of layers</source>
+      <translation>Anzahl der Schichten</translation>
     </message>
     <message>
       <source>Open a page with all measurements and a view of the mesh</source>
@@ -807,6 +887,14 @@
       <translation>Tetraeder</translation>
     </message>
     <message>
+      <source>Tetrahedra beside layers have no small or large angle</source>
+      <translation>Tetraeder neben Schichten haben keinen kleinen oder großen Winkel</translation>
+    </message>
+    <message>
+      <source>Tetrahedra in place of prisms</source>
+      <translation>Tetraeder anstelle von Prismen</translation>
+    </message>
+    <message>
       <source>That takes about {time}.</source>
       <translation>Das dauert etwa {time}.</translation>
     </message>
@@ -821,6 +909,14 @@
     <message>
       <source>The bound that the elements keep; at least 2 always ends</source>
       <translation>Die Schranke, die die Elemente einhalten; ab 2 endet der Lauf immer</translation>
+    </message>
+    <message>
+      <source>The first layer is {height} mm high.</source>
+      <translation>Die erste Schicht ist {height} mm hoch.</translation>
+    </message>
+    <message>
+      <source>The layers end in {count} pyramids, which FreeCAD has as bricks with equal nodes. Those of second order are inexact in CalculiX: choose tetrahedra in place of prisms, or first order.</source>
+      <translation>Die Schichten enden in {count} Pyramiden, die FreeCAD als Quader mit gleichen Knoten hat. Die von zweiter Ordnung sind in CalculiX ungenau: Tetraeder anstelle von Prismen wählen, oder erste Ordnung.</translation>
     </message>
     <message>
       <source>The mesh covers the surface: every face, edge and corner is kept</source>
@@ -893,6 +989,10 @@
     <message>
       <source>They need about {needed} GB of memory.</source>
       <translation>Sie brauchen etwa {needed} GB Speicher.</translation>
+    </message>
+    <message>
+      <source>Thickness of all</source>
+      <translation>Dicke aller</translation>
     </message>
     <message>
       <source>Thin elements have no small or large angle</source>
@@ -975,8 +1075,16 @@
       <translation>Schlechteste Elemente ({count})</translation>
     </message>
     <message>
+      <source>a tenth of the size</source>
+      <translation>ein Zehntel der Größe</translation>
+    </message>
+    <message>
       <source>about {time} left</source>
       <translation>noch etwa {time}</translation>
+    </message>
+    <message>
+      <source>all outer faces</source>
+      <translation>alle äußeren Flächen</translation>
     </message>
     <message>
       <source>and {count} more</source>
@@ -1005,6 +1113,10 @@
     <message>
       <source>best</source>
       <translation>am besten</translation>
+    </message>
+    <message>
+      <source>boundary layers</source>
+      <translation>Randschichten</translation>
     </message>
     <message>
       <source>checking</source>
@@ -1041,6 +1153,10 @@
     <message>
       <source>from shape</source>
       <translation>nach der Form</translation>
+    </message>
+    <message>
+      <source>from the first height</source>
+      <translation>aus der ersten Höhe</translation>
     </message>
     <message>
       <source>good</source>
@@ -1219,6 +1335,10 @@
       <translation>{label} verweist auf {other}, vernetzt wird aber {part}; wählen Sie dessen Flächen und Kanten.</translation>
     </message>
     <message>
+      <source>{label} refers to {other}, but {part} is meshed; choose its faces.</source>
+      <translation>{label} verweist auf {other}, aber {part} wird vernetzt; dessen Flächen wählen.</translation>
+    </message>
+    <message>
       <source>{label} refers to {other}, but {part} is meshed; choose its sub-shapes.</source>
       <translation>{label} verweist auf {other}, vernetzt wird aber {part}; wählen Sie dessen Teilformen.</translation>
     </message>
@@ -1229,6 +1349,10 @@
     <message>
       <source>{label}: a size of {size:g} mm makes no sense, it has to be more than 0.</source>
       <translation>{label}: eine Größe von {size:g} mm ist sinnlos, sie muss größer als 0 sein.</translation>
+    </message>
+    <message>
+      <source>{label}: layers are on both sides of a face, or inside one solid; {count} are chosen.</source>
+      <translation>{label}: Schichten liegen auf beiden Seiten einer Fläche oder in einem Körper; {count} sind gewählt.</translation>
     </message>
     <message>
       <source>{label}: no object is chosen to be meshed.</source>
@@ -1251,12 +1375,24 @@
       <translation>{label}: {name} ist keine Fläche und keine Kante.</translation>
     </message>
     <message>
+      <source>{label}: {name} is no face.</source>
+      <translation>{label}: {name} ist keine Fläche.</translation>
+    </message>
+    <message>
       <source>{label}: {name} is the seam of a face, which the mesh does not have; choose the face.</source>
       <translation>{label}: {name} ist die Naht einer Fläche, die das Netz nicht hat; wählen Sie die Fläche.</translation>
     </message>
     <message>
+      <source>{label}: {part} has no {name} any more; choose its faces again.</source>
+      <translation>{label}: {part} hat kein {name} mehr; die Flächen neu wählen.</translation>
+    </message>
+    <message>
       <source>{label}: {part} has no {name} any more; choose its faces and edges again.</source>
       <translation>{label}: {part} hat keine {name} mehr; wählen Sie die Flächen und Kanten neu.</translation>
+    </message>
+    <message>
+      <source>{label}: {property} is {value:g}; it has to be {least} to {most}.</source>
+      <translation>{label}: {property} ist {value:g}; möglich ist {least} bis {most}.</translation>
     </message>
     <message>
       <source>{label}: {property} is {value}, but must be positive.</source>

@@ -144,6 +144,12 @@ TEST(OptionTable, ContradictionsAreRefused) {
   EXPECT_NO_THROW(validate({{.periodic = {{"x", "1=2:rotation,z,90"}}}}));
   EXPECT_THROW(validate({{.split = {.keep_apart = true}, .periodic = {{"x"}}}}), OptionError);
   EXPECT_THROW(validate({{.coarsen = false, .periodic = {{"x"}}}}), OptionError);
+  const LayerOptions layers{.walls = {"all"}};
+  EXPECT_NO_THROW(validate({{.layers = layers}}));
+  EXPECT_THROW(validate({{.split = {.keep_apart = true}, .layers = layers}}), OptionError);
+  EXPECT_THROW(validate({{.layers = layers, .periodic = {{"x"}}}}), OptionError);
+  EXPECT_THROW(validate({{.dimension = 2, .layers = layers}}), OptionError);
+  EXPECT_THROW(validate({{.layers = {.tets = true}}}), OptionError);
 }
 
 TEST(Profile, OfThePaperSetsOthersAndRefusesContradictions) {

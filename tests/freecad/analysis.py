@@ -105,13 +105,12 @@ class Analysis:
         load.References = self.faces(place)
         load.Pressure = pressure
 
-    def mesh(self, order, size, fine_size=0, place=None, dimension=0):
+    def mesh(self, order, size, fine_size=0, place=None, **options):
         """Meshes with collarmesh, finer on the face at a place; curved faces are followed more closely than
         by default, for the stresses there."""
         finer = {int(name[4:]): fine_size for _, names in self.faces(place) for name in names} if place else {}
         self.mesh_object = collarmesh_workbench.mesh(
-            self.part, analysis=self.analysis, size=size, order=order, distance=size / 20, face_sizes=finer,
-            dimension=dimension
+            self.part, analysis=self.analysis, size=size, order=order, distance=size / 20, face_sizes=finer, **options
         )
 
     def mesh_by_gmsh(self, order, size, fine_size=0, place=None):

@@ -226,10 +226,11 @@ class Headless(unittest.TestCase):
             "PlanarTolerance": 2e-6, "WeldTolerance": 2e-9,
             "RepairTolerance": 2e-5, "RadiusEdgeRatio": 1.9, "Coarsen": False, "ImproveLevel": 3,
             "MinDihedralAngle": 25, "Seed": 7, "TimeLimit": 60, "FillHoles": True,
-            "KeepApart": True, "SplitFaces": [], "PeriodicFaces": [], "InteriorNode": False,
+            "KeepApart": True, "SplitFaces": [], "PeriodicFaces": [], "InteriorNode": False, "LayersAsTetrahedra": False,
         }
         self.assertEqual(set(values), {name for _, name, *_ in mesh_properties.PROPERTIES})
-        of_their_own = ("FillHoles", "SplitFaces", "PeriodicFaces", "InteriorNode")  # tested elsewhere
+        # tested elsewhere
+        of_their_own = ("FillHoles", "SplitFaces", "PeriodicFaces", "InteriorNode", "LayersAsTetrahedra")
         for name, value in values.items():
             setattr(obj, name, value)
             self.assertNotEqual(obj.getDocumentationOfProperty(name), "")

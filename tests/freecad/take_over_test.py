@@ -102,7 +102,7 @@ class TakeOver(WithPart):
         layer = ObjectsFem.makeMeshBoundaryLayer(self.document, old)
         _new, notes = take_over.take_over(old)
         self.assertIn("RecombineAll", notes[0])
-        self.assertIn("MeshBoundaryLayerList", notes[0])
+        self.assertIn(layer.Label, notes[1])
         self.assertIsNotNone(self.document.getObject(layer.Name))
 
     def test_there_and_back(self):

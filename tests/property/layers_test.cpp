@@ -100,6 +100,21 @@ triangles_of(const TetMesh& mesh, Tag tag) {
   return found;
 }
 
+/// A wedge whose faces of length 2 meet at this angle, in degrees.
+PolygonSoup wedge(double degrees) {
+  const double angle = degrees * M_PI / 180;
+  PolygonSoup soup;
+  for (const double z : {0.0, 1.0})
+    for (const auto& [x, y] : {std::array{0.0, 0.0}, {2.0, 0.0}, {2 * std::cos(angle), 2 * std::sin(angle)}})
+      soup.points.push_back({x, y, z});
+  soup.add_facet(std::array<Index, 3>{0, 2, 1}, 1);
+  soup.add_facet(std::array<Index, 3>{3, 4, 5}, 2);
+  soup.add_facet(std::array<Index, 4>{0, 1, 4, 3}, 3);
+  soup.add_facet(std::array<Index, 4>{1, 2, 5, 4}, 4);
+  soup.add_facet(std::array<Index, 4>{2, 0, 3, 5}, 5);
+  return soup;
+}
+
 TEST(Layers, CoverACubeWithPrismsAsHighAsAsked) {
   const std::vector<PolygonSoup> soups{box({0, 0, 0}, {1, 1, 1})};
   const PipelineResult run = made(soups, with_layers({"all:first=0.02,growth=1.5,count=3"}));
@@ -135,15 +150,19 @@ TEST(Layers, KeepTheTrianglesOfWalls) {
 }
 
 TEST(Layers, AreTheSameForAnyNumberOfThreads) {
-  const std::vector<PolygonSoup> soups{sphere(6, 1, {0, 0, 0})};
-  PipelineOptions options = with_layers({"all"});
-  options.mesh.threads = 1;
-  const PipelineResult one = made(soups, options);
-  options.mesh.threads = 4;
-  const PipelineResult four = made(soups, options);
-  EXPECT_EQ(one.result.mesh.points, four.result.mesh.points);
-  EXPECT_EQ(one.result.mesh.tets, four.result.mesh.tets);
-  EXPECT_EQ(one.result.mesh.layers.prisms, four.result.mesh.layers.prisms);
+  for (const auto& soup : {sphere(6, 1, {0, 0, 0}), wedge(20)}) {
+    PipelineOptions options = with_layers({"all"});
+    options.mesh.threads = 1;
+    const PipelineResult one = made({soup}, options);
+    for (const unsigned threads : {2U, 3U, 4U}) {
+      options.mesh.threads = threads;
+      const PipelineResult more = made({soup}, options);
+      EXPECT_EQ(one.result.mesh.points, more.result.mesh.points) << threads;
+      EXPECT_EQ(one.result.mesh.tets, more.result.mesh.tets) << threads;
+      EXPECT_EQ(one.result.mesh.layers.prisms, more.result.mesh.layers.prisms) << threads;
+      EXPECT_EQ(one.result.mesh.layers.pyramids, more.result.mesh.layers.pyramids) << threads;
+    }
+  }
 }
 
 TEST(Layers, OnOneFaceEndAtTheOthersInQuadrangles) {
@@ -183,21 +202,11 @@ TEST(Layers, DividedIntoTetsFitEachOther) {
 }
 
 TEST(Layers, StepDownIntoAWedge) {
-  const double angle = 20 * M_PI / 180;
-  PolygonSoup soup;
-  for (const double z : {0.0, 1.0})
-    for (const auto& [x, y] : {std::array{0.0, 0.0}, {2.0, 0.0}, {2 * std::cos(angle), 2 * std::sin(angle)}})
-      soup.points.push_back({x, y, z});
-  soup.add_facet(std::array<Index, 3>{0, 2, 1}, 1);
-  soup.add_facet(std::array<Index, 3>{3, 4, 5}, 2);
-  soup.add_facet(std::array<Index, 4>{0, 1, 4, 3}, 3);
-  soup.add_facet(std::array<Index, 4>{1, 2, 5, 4}, 4);
-  soup.add_facet(std::array<Index, 4>{2, 0, 3, 5}, 5);
-  const PipelineResult run = made({soup}, with_layers({"all"}));
+  const PipelineResult run = made({wedge(20)}, with_layers({"all"}));
   EXPECT_GT(run.layers->coverage(), 0.8);
   EXPECT_LE(run.layers->largest_step, 2 + 1e-6);
   EXPECT_GT(least_jacobian_of(run.result.mesh), 0);
-  EXPECT_NEAR(volume_of(run.result.mesh), 2 * std::sin(angle), 1e-9);
+  EXPECT_NEAR(volume_of(run.result.mesh), 2 * std::sin(20 * M_PI / 180), 1e-9);
   EXPECT_FALSE(run.layers->reductions.empty());
 }
 
@@ -327,9 +336,10 @@ TEST(Layers, OfSecondOrderKnowTheFacesOfTheirNodes) {
   }
 }
 
-std::string error_of(const std::vector<std::string>& walls) {
+std::string error_of(const std::vector<std::string>& walls,
+                     const std::vector<PolygonSoup>& soups = {box({0, 0, 0}, {1, 1, 1})}) {
   try {
-    run_pipeline(std::vector<PolygonSoup>{box({0, 0, 0}, {1, 1, 1})}, with_layers(walls));
+    run_pipeline(soups, with_layers(walls));
   } catch (const OptionError& error) {
     return error.what();
   }
@@ -343,6 +353,8 @@ TEST(Layers, RefuseWallsThatAreNone) {
   EXPECT_NE(error_of({"all:count=0"}).find("count"), std::string::npos);
   EXPECT_NE(error_of({"all:height=1"}).find("thickness"), std::string::npos);
   EXPECT_NE(error_of({"1:region=9"}).find("no region is called '9'"), std::string::npos);
+  const std::vector<PolygonSoup> two{box({0, 0, 0}, {1, 1, 1}), box({2, 0, 0}, {3, 1, 1})};
+  EXPECT_NE(error_of({"1:region=2"}, two).find("is not beside region '2'"), std::string::npos);
   EXPECT_NE(error_of({"all:first=0.1,thickness=1"}).find("leave one out"), std::string::npos);
 }
 

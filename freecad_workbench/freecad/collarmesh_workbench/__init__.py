@@ -35,6 +35,16 @@ def add_size(mesh_object, kind, size=0):
     return size_objects.make(mesh_object, kind, size)
 
 
+def add_layers(mesh_object, *faces):
+    """Ask for boundary layers on these faces of a mesh, "Face1", ..., or on all outer faces, and return the object for
+    them, whose properties say how high they are. They are made when the mesh is made again."""
+    from . import compatibility, layer_objects
+
+    layers = layer_objects.make(mesh_object)
+    layers.References = [(compatibility.meshed_object(mesh_object), (face,)) for face in faces]
+    return layers
+
+
 def remesh(mesh_object):
     """Make the mesh of a mesh object anew and wait; returns the program's report. Raises MesherError, with what is
     wrong and where; the object keeps its mesh then."""
@@ -58,5 +68,5 @@ def references_to_groups(mesh_object, *names):
     return constraint_faces.references(mesh_object, names)
 
 
-__all__ = ["MesherError", "Settings", "add_size", "find_program",
+__all__ = ["MesherError", "Settings", "add_layers", "add_size", "find_program",
            "mesh", "meshed_object", "references_to_groups", "remesh"]

@@ -5,8 +5,8 @@ import os
 import FreeCAD
 import FreeCADGui
 
-from . import (compatibility, inputs, mesh_menu, mesh_object, mesh_properties, new_mesh, other_panel, size_objects,
-               take_over)
+from . import (compatibility, inputs, layer_objects, layers_panel, layers_view, mesh_menu, mesh_object, mesh_properties,
+               new_mesh, other_panel, size_objects, take_over)
 from .later import later
 from .size_view import icon_of
 from .translations import mark, translate
@@ -216,6 +216,22 @@ class SizeDistance(Size):
     )
 
 
+class Layers(Size):
+    """Adds boundary layers on the selected faces to a mesh; without any, on all outer faces."""
+
+    icon = layers_view.ICON
+    menu_text = mark("collarmesh", "Boundary layers")
+    tool_tip = mark(
+        "collarmesh", "Ask for thin layers of prisms along the selected faces, for flow, heat and currents at walls"
+    )
+
+    def create(self, _document, obj):
+        layers = layer_objects.make(obj)
+        part = compatibility.meshed_object(obj)
+        layers.References = [(part, (name,)) for name in layers_panel.selected_names(part)]
+        return layers
+
+
 class TakeOver(Command):
     """Takes over mesh objects of other meshers. Also needed for Netgen's objects, which have no context menu
     of their own before FreeCAD 1.0."""
@@ -241,6 +257,7 @@ COMMANDS = {
     "Collarmesh_SizeBox": SizeBox,
     "Collarmesh_SizeCylinder": SizeCylinder,
     "Collarmesh_SizeDistance": SizeDistance,
+    "Collarmesh_Layers": Layers,
     GROUP_COMMAND: Group,
     "Collarmesh_TakeOver": TakeOver,
 }

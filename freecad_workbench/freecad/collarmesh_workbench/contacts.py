@@ -30,7 +30,7 @@ def of(shape):
 
 def in_mesh_numbers(settings, shape):
     """Returns Settings with the mesh's numbers of faces and edges. A size for a face applies to all faces
-    that have parts of it. If no solids touch, none are kept apart."""
+    that have parts of it, and so do layers. If no solids touch, none are kept apart."""
     here = of(shape)
     sizes = {}
     for field, kind in (("face_sizes", "Face"), ("edge_sizes", "Edge")):
@@ -39,7 +39,8 @@ def in_mesh_numbers(settings, shape):
             for tag in here.tags(kind, number):
                 sizes[field][tag] = min(size, sizes[field].get(tag, size))
     return dataclasses.replace(settings, size_field=_field_in_mesh_numbers(settings.size_field, here),
-                               keep_apart=settings.keep_apart and bool(here.glued_faces()), **sizes)
+                               keep_apart=settings.keep_apart and bool(here.glued_faces()),
+                               layers=[_layers_in_mesh_numbers(text, here) for text in settings.layers], **sizes)
 
 
 def _field_in_mesh_numbers(field, here):
@@ -51,6 +52,13 @@ def _field_in_mesh_numbers(field, here):
             if name in source:
                 source[name] = sorted({tag for number in source[name] for tag in here.tags(kind, number)})
     return {**field, "sources": sources}
+
+
+def _layers_in_mesh_numbers(text, here):
+    """Converts the faces of layers, "1,5:first=0.1"; keeps names."""
+    faces, colon, settings = text.partition(":")
+    tags = [here.tags("Face", int(face)) if face.isdigit() else [face] for face in faces.split(",")]
+    return ",".join(dict.fromkeys(str(tag) for each in tags for tag in each)) + colon + settings
 
 
 class Contacts:

@@ -1,4 +1,5 @@
-"""The elements of a mesh: tetrahedra if it has any, else triangles, else lines. Works without the GUI."""
+"""The elements of a mesh: tetrahedra, with prisms in boundary layers, if it has any, else triangles, else lines.
+Works without the GUI."""
 
 
 def dimension(fem_mesh):
@@ -19,6 +20,6 @@ def is_there(fem_mesh):
 
 def order(fem_mesh):
     """Returns the order of the elements, 1 or 2; 1 for an empty mesh."""
-    nodes = {3: 10, 2: 6, 1: 3}
+    nodes = {3: (10, 15, 20), 2: (6, 8), 1: (3,)}  # a pyramid is a brick with equal nodes
     first = next(iter(numbers(fem_mesh)), None)
-    return 2 if first is not None and len(fem_mesh.getElementNodes(first)) == nodes[dimension(fem_mesh)] else 1
+    return 2 if first is not None and len(fem_mesh.getElementNodes(first)) in nodes[dimension(fem_mesh)] else 1

@@ -15,6 +15,8 @@ def guarantees(report):
         groups.append((translate("collarmesh", "Periodic faces have the same nodes, edges and triangles"),
                        ("periodic_motion", "periodic_nodes", "periodic_places", "periodic_faces", "periodic_edges",
                         "periodic_corners")))
+    if report.get("layers"):
+        groups += _groups_of_layers()
     if report.get("interior_nodes"):
         groups.append((translate("collarmesh", "Each element has a node inside of its solid"), ("interior_node",)))
     findings = report["check"]["findings"]
@@ -24,6 +26,15 @@ def guarantees(report):
     if others:
         lines.append((translate("collarmesh", "The mesh is sound"), others))
     return lines
+
+
+def _groups_of_layers():
+    return [
+        (translate("collarmesh", "Elements of layers are not inverted and meet in whole sides"),
+         ("layer_arrays", "layer_jacobian", "layer_conforming", "layer_sides", "layer_mid_nodes")),
+        (translate("collarmesh", "Layers keep the faces and the volumes of solids"), ("layer_volume", "layer_walls")),
+        (translate("collarmesh", "Tetrahedra beside layers have no small or large angle"), ("core_angles",)),
+    ]
 
 
 def _groups_of_triangles():

@@ -5,8 +5,8 @@ import dataclasses
 import Fem
 import FreeCAD
 
-from . import (compatibility, constraint_faces, contact_groups, contacts, elements, groups, inputs, mesh_properties, mesh_undo,
-               open_shape, preferences, size_check, size_objects, up_to_date, views)
+from . import (compatibility, constraint_faces, contact_groups, contacts, elements, groups, inputs, layer_objects,
+               mesh_properties, mesh_undo, open_shape, preferences, size_check, size_objects, up_to_date, views)
 from .program import GUARANTEE_MISSED, Job, MesherError
 from .translations import translate
 
@@ -58,7 +58,8 @@ def start(obj, program="", settings=None):
     settings = dataclasses.replace(settings, dimension=open_shape.dimension(part, asked, settings.fill_holes))
     open_shape.check(part, settings.dimension, settings.fill_holes)
     if settings.dimension < 3:
-        settings = dataclasses.replace(settings, keep_apart=False, split=[], periodic=[], interior_node=False)
+        settings = dataclasses.replace(settings, keep_apart=False, split=[],
+                                       periodic=[], interior_node=False, layers=[])
     shape = inputs.shape_of(part)
     is_to_be_apart = settings.keep_apart
     settings = contacts.in_mesh_numbers(settings, shape)
@@ -120,6 +121,7 @@ def finish(obj, job, exit_code=0):
     contact_groups.add(job.meshed, fem_mesh, job.apart)
     groups.add_groups(obj, fem_mesh)
     report = job.report()
+    report["notes"] += layer_objects.notes(report, elements.order(fem_mesh))
     report["notes"] += groups.materials_elsewhere(obj) + ([job.word] if job.word else [])
     with compatibility.transaction(obj.Document, translate("collarmesh", "Mesh by collarmesh")):
         mesh_undo.replace(obj, fem_mesh)

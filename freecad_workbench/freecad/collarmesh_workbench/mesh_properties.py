@@ -2,7 +2,7 @@
 
 import re
 
-from . import compatibility, preferences, size_objects
+from . import compatibility, layer_objects, preferences, size_objects
 from .program import MesherError, Settings
 from .translations import doc, translate
 
@@ -124,6 +124,13 @@ PROPERTIES = (
     ),
     (
         "App::PropertyBool",
+        "LayersAsTetrahedra",
+        "layers_tets",
+        QUALITY,
+        doc("Tetrahedra in place of prisms in boundary layers"),
+    ),
+    (
+        "App::PropertyBool",
         "InteriorNode",
         "interior_node",
         QUALITY,
@@ -224,6 +231,7 @@ def add_properties(obj):
         ("MeshRegionList", doc("Finer parts of the mesh")),
         ("MeshGroupList", doc("Groups of the mesh")),
         (size_objects.PROPERTY, doc("Sizes in spheres, boxes and cylinders and near faces and edges")),
+        (layer_objects.PROPERTY, doc("Boundary layers along faces")),
     ):
         if name not in have:
             obj.addProperty("App::PropertyLinkList", name, "Base", text)
@@ -247,11 +255,12 @@ def settings_of(obj):
             continue
         add_refinement(region, compatibility.meshed_object(obj), settings)
     settings.size_field = size_objects.field_of(obj)
+    settings.layers = layer_objects.words_of(obj)
     return settings
 
 
 def apply_settings(obj, settings):
-    """Sets the properties from Settings, except sizes by sub-shape, which have no property."""
+    """Sets the properties from Settings, except sizes by sub-shape and layers, which have no property."""
     for _kind, name, field, _group, _text in PROPERTIES:
         setattr(obj, name, getattr(settings, field))
     obj.ElementOrder = ORDERS[settings.order - 1]

@@ -1,14 +1,15 @@
-"""The findings of a run, by place: problems, warnings, repairs, nodes off their faces. Independent of the
-window."""
+"""The findings of a run, by place: problems, warnings, repairs, nodes off their faces, lower layers. Independent
+of the window."""
 
 import dataclasses
 import re
 
-PROBLEM, WARNING, REPAIR, OFF_FACE, WORST = "problem", "warning", "repair", "off_face", "worst"
+PROBLEM, WARNING, REPAIR, OFF_FACE, LAYERS, WORST = "problem", "warning", "repair", "off_face", "layers", "worst"
 
 _NUMBER = r"[-+]?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?"
 _POINT = re.compile(rf"\(({_NUMBER}), ({_NUMBER}), ({_NUMBER})\)")
 _SUBSHAPE = re.compile(r"\b(?:Solid|Face|Edge|Vertex)[1-9]\d*\b")
+COVERED = 0.999  # share of a face's area from which on it counts as covered by layers
 _SHAPE_BY_DIMENSION = ("Vertex", "Edge", "Face")
 
 
@@ -45,6 +46,7 @@ def in_report(report, warnings=()):
     places += [told(WARNING, text) for text in (*report["warnings"], *report["notes"])]
     places += _repairs(report["repair"])
     places += _nodes_off_their_faces(report)
+    places += _lower_layers(report.get("layers"))
     return list({(place.kind, place.text): place for place in places}.values())
 
 
@@ -64,3 +66,17 @@ def _nodes_off_their_faces(report):
         off.append((name, each["where"], each["distance"]))
     return [told(OFF_FACE, f"{name}: {distance:.3g} mm" if distance is not None else name, [where])
             for name, where, distance in off]
+
+
+def _lower_layers(layers):
+    """Returns a Place for each reason why boundary layers are lower than asked for, where they are lowest, and
+    one for each face that they do not cover."""
+    if not layers:
+        return []
+    places = [told(LAYERS, f"{each['why']}: {each['nodes']} nodes, down to {100 * each['smallest_share']:.0f}%", [each["where"]])
+              for each in layers["reductions"]]
+    for each in layers["patches"]:
+        if each["covered"] < COVERED * each["area"]:
+            covered = 100 * each["covered"] / each["area"]
+            places.append(told(LAYERS, f"{each.get('name')}: layers cover {covered:.1f}%"))
+    return places

@@ -108,6 +108,7 @@ def _kinds():
         (places.WARNING, translate("collarmesh", "Warnings ({count})"), "#e0a040"),
         (places.REPAIR, translate("collarmesh", "Repaired ({count})"), "#4c86c6"),
         (places.OFF_FACE, translate("collarmesh", "Nodes off their face ({count})"), "#e0a040"),
+        (places.LAYERS, translate("collarmesh", "Lower layers ({count})"), "#4c86c6"),
         (places.WORST, translate("collarmesh", "Worst elements ({count})"), "#909090"),
     )
 

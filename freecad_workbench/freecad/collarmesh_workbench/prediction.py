@@ -186,6 +186,7 @@ class Predictions(QtCore.QObject):
 
 def _arguments(settings):
     """Returns the options that affect the number of elements, except the size."""
-    arguments = dataclasses.replace(settings, keep_apart=False).arguments()  # pairs of option and value, no flags
+    without_flags = dataclasses.replace(settings, keep_apart=False, interior_node=False, layers_tets=False)
+    arguments = without_flags.arguments()  # pairs of option and value
     pairs = zip(arguments[::2], arguments[1::2])
     return [word for pair in pairs if pair[0] in COUNTING for word in pair]

@@ -53,6 +53,8 @@ class Settings:
     split: list = dataclasses.field(default_factory=list)  # faces whose sides get separate nodes: "Face7"
     periodic: list = dataclasses.field(default_factory=list)  # pairs of periodic faces: "x", "Face1=Face2", ...
     interior_node: bool = False  # require that each tetrahedron has a corner on no face
+    layers: list = dataclasses.field(default_factory=list)  # boundary layers: "all", "1,5:first=0.1,growth=1.2,count=3"
+    layers_tets: bool = False  # tetrahedra in place of prisms in layers
     solid_sizes: dict = dataclasses.field(default_factory=dict)
     face_sizes: dict = dataclasses.field(default_factory=dict)
     edge_sizes: dict = dataclasses.field(default_factory=dict)
@@ -78,7 +80,9 @@ class Settings:
             arguments.append("--keep-apart")
         if self.interior_node:
             arguments.append("--interior-node")
-        for option, words in (("split", self.split), ("periodic", self.periodic)):
+        if self.layers and self.layers_tets:
+            arguments.append("--layers-tets")
+        for option, words in (("split", self.split), ("periodic", self.periodic), ("layers", self.layers)):
             for word in words:
                 arguments += [f"--{option}", word]
         for option, sizes in (("region", self.solid_sizes), ("patch", self.face_sizes), ("curve", self.edge_sizes)):

@@ -83,10 +83,19 @@ def counts_text(report):
                 + angles.format(smallest=shown(f"{triangles['min_angle']:.1f}"), largest=shown(f"{triangles['max_angle']:.1f}"),
                                 time=time))
     counts = translate("collarmesh", "<b>{tets}</b> tetrahedra, <b>{nodes}</b> nodes, <b>{faces}</b> faces")
+    layers = "<br>" + layers_text(report["layers"]) if report.get("layers") else ""
     angles = translate("collarmesh", "dihedral angles from {smallest}° to {largest}°, in {time}")
     return (counts.format(tets=_exact(mesh["tets"]), nodes=_exact(mesh["points"]), faces=_exact(mesh["faces"])) + "<br>"
             + angles.format(smallest=shown(f"{mesh['min_dihedral']:.1f}"), largest=shown(f"{mesh['max_dihedral']:.1f}"),
-                            time=time))
+                            time=time) + layers)
+
+
+def layers_text(layers):
+    """Returns the counts of elements in boundary layers, and what these cover, as text."""
+    text = translate("collarmesh", "Layers: <b>{prisms}</b> prisms, {pyramids} pyramids and {tets} tetrahedra cover {percent}% of "
+                                   "the faces")
+    return text.format(prisms=_exact(layers["prisms"]), pyramids=_exact(layers["pyramids"]), tets=_exact(layers["tets"]),
+                       percent=shown(f"{100 * layers['coverage']:.1f}"))
 
 
 def filled_text(areas):

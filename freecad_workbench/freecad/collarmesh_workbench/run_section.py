@@ -106,6 +106,7 @@ def phase_text(phase):
         "improve": translate("collarmesh", "improving"),
         "project": translate("collarmesh", "onto the exact faces"),
         "second order": translate("collarmesh", "second order"),
+        "layers": translate("collarmesh", "boundary layers"),
         "check": translate("collarmesh", "checking"),
         "write": translate("collarmesh", "writing"),
         "load": translate("collarmesh", "loading the mesh"),

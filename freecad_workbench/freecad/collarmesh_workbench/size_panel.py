@@ -5,7 +5,8 @@ import contextlib
 import FreeCADGui
 from PySide import QtCore, QtGui
 
-from . import compatibility, dock, size_objects
+from . import dock, size_objects
+from .edit_panel import EditPanel
 from .size_handles import Handles
 from .quantity_field import ANY, NOT_NEGATIVE, POSITIVE, QuantityField
 from .translations import translate
@@ -36,21 +37,11 @@ def titles():
     }
 
 
-class SizePanel:
-    """The panel. All changes are one undo step, together with the creation of a new object; "Cancel" undoes
-    them."""
-
+class SizePanel(EditPanel):
     def __init__(self, obj):
-        self.object = obj
         self.kind = size_objects.kind_of(obj)
+        super().__init__(obj, titles()[self.kind], "collarmesh_size_panel")
         self.handles = None
-        self.filling = False
-        if not obj.Document.HasPendingTransaction:
-            obj.Document.openTransaction(titles()[self.kind])
-        self.form = QtGui.QWidget()
-        self.form.setObjectName("collarmesh_size_panel")
-        self.form.setWindowTitle(titles()[self.kind])
-        self.form.setWindowIcon(QtGui.QIcon(obj.ViewObject.Proxy.getIcon()))
         layout = QtGui.QVBoxLayout(self.form)
         self.rows = QtGui.QFormLayout()
         layout.addLayout(self.rows)
@@ -185,25 +176,6 @@ class SizePanel:
         self.fill()
 
     def close(self):
-        """Closes the panel and removes its marks from the 3D view."""
         if self.handles:
             self.handles.remove()
             self.handles = None
-
-    def getStandardButtons(self):
-        return compatibility.as_number(QtGui.QDialogButtonBox.Ok | QtGui.QDialogButtonBox.Cancel)
-
-    def accept(self):
-        document = self.object.Document
-        document.commitTransaction()
-        FreeCADGui.getDocument(document.Name).resetEdit()
-        document.recompute()
-        return True
-
-    def reject(self):
-        document = self.object.Document
-        self.close()
-        document.abortTransaction()  # this also removes a new object, which the end of the edit would commit
-        FreeCADGui.getDocument(document.Name).resetEdit()
-        document.recompute()
-        return True

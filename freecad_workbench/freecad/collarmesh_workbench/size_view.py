@@ -32,13 +32,16 @@ class SizeViewProvider(compatibility.Stateless):
     def getIcon(self):
         return icon_of(size_objects.kind_of(self.Object))
 
+    def new_panel(self):
+        return SizePanel(self.Object)
+
     def setEdit(self, view, mode=0):
         if mode != 0:
             return None  # FreeCAD's own dragger, opened by "Transform" in the context menu
         if other_panel.is_in_the_way():
             return False
         view.show()
-        self.panel = SizePanel(view.Object)
+        self.panel = self.new_panel()
         FreeCADGui.Control.showDialog(self.panel)
         return True
 

@@ -18,6 +18,8 @@ def report_in_names(report, names):
         holder["message"] = in_names(holder["message"], names)
     for holder, key in ((report, "warnings"), (report, "notes"), (report["repair"], "messages")):
         holder[key] = [in_names(text, names) for text in holder[key]]
+    for each in (report.get("layers") or {}).get("patches", ()):
+        each["name"] = names("Face", each["tag"])
     for each in (report["projection"] or {}).get("exceptions", ()):
         each["name"] = names("Face", each["face"]) if "face" in each else names("Edge", each["edge"])
     for each in (report["second_order"] or {}).get("straightened", ()):

@@ -5,7 +5,7 @@ import math
 
 import ObjectsFem
 
-from . import compatibility, extent, inputs, mesh_object, mesh_properties, size_objects, up_to_date
+from . import compatibility, extent, inputs, layer_objects, mesh_object, mesh_properties, size_objects, up_to_date
 from .program import MesherError
 from .translations import doc, translate
 
@@ -19,11 +19,11 @@ FINENESS = {
 }
 COMMON = ("CharacteristicLengthMax", "CharacteristicLengthMin",
           "MeshSizeFromCurvature", "ElementOrder", "ElementDimension")
+KEPT = (size_objects.PROPERTY, layer_objects.PROPERTY)  # our objects, which Gmsh's mesh object keeps for us
 # Gmsh's settings that have no counterpart of ours: each property, and the value with which it is not used.
 ONLY_GMSH = (
     ("RecombineAll", False),
     ("Recombine3DAll", False),
-    ("MeshBoundaryLayerList", []),
     ("SecondOrderLinear", False),
 )
 
@@ -57,8 +57,10 @@ def take_over(old):
         refinements = compatibility.refinements_of(old)
         new.MeshRegionList = [each for each in refinements if compatibility.is_plain_refinement(each)]
         new.MeshGroupList = getattr(old, "MeshGroupList", [])
-        setattr(new, size_objects.PROPERTY, getattr(old, size_objects.PROPERTY, []))
+        for name in KEPT:
+            setattr(new, name, getattr(old, name, []))
         notes += take_sizes_by_place([each for each in refinements if each not in new.MeshRegionList], new)
+        notes += take_layers(getattr(old, "MeshBoundaryLayerList", []), new)
         replace(old, new)
         if new.FemMesh.NodeCount:
             # The mesh was not made by collarmesh, so it is out of date.
@@ -106,6 +108,27 @@ def take_sizes_by_place(refinements, new):
     return [text.format(names=", ".join(lost))] if lost else []
 
 
+def take_layers(layers, new):
+    """Makes our layers for those of Gmsh on faces. Returns notes on others, which are for meshes of triangles
+    and stay in the document."""
+    lost = []
+    for each in layers:
+        names = [name for _, name in size_objects.references(each)]
+        if not names or not all(name.startswith("Face") for name in names):
+            lost.append(each.Label)
+            continue
+        made = layer_objects.make(new)
+        made.References = each.References
+        made.FirstHeight = each.MinimumThickness
+        made.Growth, made.Count = max(1, each.GrowthRate), max(1, each.NumberOfLayers)
+        made.recompute()
+        label = each.Label
+        new.Document.removeObject(each.Name)
+        made.Label = label
+    text = translate("collarmesh", "Boundary layers of Gmsh on edges, which collarmesh does not have: {names}")
+    return [text.format(names=", ".join(lost))] if lost else []
+
+
 def take_netgen(old, new):
     part = compatibility.meshed_object(new)
     largest = value_of(old, "MaxSize")
@@ -142,20 +165,24 @@ def hand_over(old):
             new.SecondOrderLinear = False
         compatibility.set_refinements(new, old.MeshRegionList)
         new.MeshGroupList = old.MeshGroupList
-        sizes = getattr(old, size_objects.PROPERTY)
-        if sizes:  # Gmsh ignores them, but they are kept in case the mesh is taken over again
-            new.addProperty(
-                "App::PropertyLinkList", size_objects.PROPERTY, "Base", doc("Sizes of collarmesh"), 4
-            )
-            setattr(new, size_objects.PROPERTY, sizes)
-            names = ", ".join(each.Label for each in sizes)
-            notes.append(
-                translate("collarmesh", "Gmsh does not heed these sizes: {names}").format(names=names)
-            )
+        notes += keep_for_later(old, new)
         if inputs.triangles_of(compatibility.meshed_object(old) or old) is not None:
             notes.append(translate("collarmesh", "FreeCAD's Gmsh cannot mesh triangle meshes."))
         replace(old, new)
     return new, notes
+
+
+def keep_for_later(old, new):
+    """Keeps our sizes and layers, which Gmsh ignores, in case the mesh is taken over again. Returns notes."""
+    kept = []
+    for name in KEPT:
+        objects = getattr(old, name)
+        if objects:
+            new.addProperty("App::PropertyLinkList", name, "Base", doc("Sizes and layers of collarmesh"), 4)
+            setattr(new, name, objects)
+            kept += objects
+    text = translate("collarmesh", "Gmsh does not heed these sizes and layers: {names}")
+    return [text.format(names=", ".join(each.Label for each in kept))] if kept else []
 
 
 def replace(old, new):
@@ -168,7 +195,7 @@ def replace(old, new):
         new.ViewObject.Visibility = old.ViewObject.Visibility
     label = old.Label
     # Removing an object of some kinds also removes the objects that it lists.
-    for name in ("MeshRegionList", "MeshRefinementList", "MeshGroupList", size_objects.PROPERTY):
+    for name in ("MeshRegionList", "MeshRefinementList", "MeshGroupList", "MeshBoundaryLayerList", *KEPT):
         if name in old.PropertiesList:
             setattr(old, name, [])
     old.Document.removeObject(old.Name)

@@ -2,7 +2,7 @@
 
 import FreeCADGui
 
-from . import compatibility, elements, mesh_menu, mesh_properties, other_panel, size_objects, up_to_date, views
+from . import compatibility, elements, layer_objects, mesh_menu, mesh_properties, other_panel, size_objects, up_to_date, views
 from .task_panel import MeshTaskPanel
 from .views import ICON, OUT_OF_DATE_ICON
 
@@ -60,7 +60,8 @@ class MeshViewProvider(compatibility.Stateless):
 
     def claimChildren(self):
         sizes = getattr(self.Object, size_objects.PROPERTY, [])
-        return [*self.Object.MeshRegionList, *sizes, *self.Object.MeshGroupList]
+        layers = getattr(self.Object, layer_objects.PROPERTY, [])
+        return [*self.Object.MeshRegionList, *sizes, *layers, *self.Object.MeshGroupList]
 
     def setupContextMenu(self, _view, menu):
         mesh_menu.fill(menu, self.Object)

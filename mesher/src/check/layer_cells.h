@@ -16,9 +16,7 @@ inline constexpr char layer_conforming[] = "layer_conforming";  ///< cells meet 
 inline constexpr char layer_sides[] = "layer_sides";  ///< boundaries and interfaces are listed, once each
 inline constexpr char layer_mid_nodes[] = "layer_mid_nodes";  ///< one to an edge, in all cells at it
 inline constexpr char layer_volume[] = "layer_volume";        ///< regions have the volumes of before
-inline constexpr char layer_walls[] =
-    "layer_walls";  ///< the triangles and edges of walls are those of before
-inline constexpr char core_angles[] = "core_angles";  ///< of the tets beside the layers
+inline constexpr char core_angles[] = "core_angles";          ///< of the tets beside the layers
 
 }  // namespace collarmesh::guarantee
 

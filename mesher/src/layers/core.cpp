@@ -209,28 +209,32 @@ void Core::fit_tets(Heights& heights, const std::vector<std::uint8_t>& levels) {
   const std::vector<Index> near = vertices_near_front(rings_moved);
   find_around(near);
   const auto& complex = piece_->complex;
-  std::vector<std::uint8_t> spoilt(complex.size(), 0);
+  std::vector<Index> tets;
+  std::vector<double> least;  // margin that each is to keep
+  for (Index t = 0; t < complex.size(); ++t) {
+    double wanted = 0;
+    for (const Index v : complex[t].corners)
+      if (v < node_of_.size() && node_of_[v] != none)
+        wanted = std::max(wanted, shares[std::min(strictest, levels[node_of_[v]])]);
+    if (wanted == 0) continue;
+    tets.push_back(t);
+    least.push_back(std::min(wanted, margin(corners(t), t)));
+  }
+  std::vector<std::uint8_t> spoilt(tets.size(), 0);
   for (unsigned pass = 0; pass < most_fittings; ++pass) {
     const std::vector<Vector> moves = moves_towards(heights, near);
-    parallel_for_ranges(spoilt.size(), at_once, [&](std::size_t begin, std::size_t end) {
-      for (auto t = static_cast<Index>(begin); t < end; ++t) {
-        spoilt[t] = 0;
-        const auto& c = complex[t].corners;
-        double wanted = 0;
-        for (const Index v : c)
-          if (v < node_of_.size() && node_of_[v] != none)
-            wanted = std::max(wanted, shares[std::min(strictest, levels[node_of_[v]])]);
-        if (wanted == 0) continue;
+    parallel_for_ranges(tets.size(), at_once, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const Index t = tets[i];
         improvement::Corners p = corners(t);
-        const double before = margin(p, t);
-        for (unsigned k = 0; k < 4; ++k) p[k] = p[k] + moves[c[k]];
-        spoilt[t] = margin(p, t) < std::min(wanted, before) ? 1 : 0;
+        for (unsigned k = 0; k < 4; ++k) p[k] = p[k] + moves[complex[t].corners[k]];
+        spoilt[i] = margin(p, t) < least[i] ? 1 : 0;
       }
     });
     std::vector<Index> at;
-    for (Index t = 0; t < spoilt.size(); ++t)
-      if (spoilt[t] != 0)
-        for (const Index v : complex[t].corners)
+    for (std::size_t i = 0; i < tets.size(); ++i)
+      if (spoilt[i] != 0)
+        for (const Index v : complex[tets[i]].corners)
           if (v < node_of_.size() && node_of_[v] != none) at.push_back(node_of_[v]);
     if (at.empty()) return;
     std::sort(at.begin(), at.end());
@@ -387,31 +391,34 @@ std::vector<double> Core::shares_of(const std::vector<Vector>& moves, const std:
     if (complex[t].alive && std::any_of(complex[t].corners.begin(), complex[t].corners.end(),
                                         [&](Index v) { return shares[v] > 0 && squared_norm(moves[v]) > 0; }))
       moved.push_back(t);
-  std::vector<std::uint8_t> spoilt(moved.size(), 1);
+  std::vector<std::uint8_t> spoilt(moved.size(), 0);
+  std::vector<double> before(moved.size());
+  std::vector<bool> changed(mesh_.points.size(), true);  // in the last pass: other tets are as they were
   for (unsigned pass = 0;; ++pass) {
     parallel_for_ranges(moved.size(), at_once, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const auto& c = complex[moved[i]].corners;
+        if (std::none_of(c.begin(), c.end(), [&](Index v) { return changed[v]; })) continue;
         improvement::Corners p = corners(moved[i]);
-        const double before = improvement::shape_quality(p);
+        if (pass == 0) before[i] = improvement::shape_quality(p);
         for (unsigned k = 0; k < 4; ++k) p[k] = p[k] + shares[c[k]] * moves[c[k]];
         const double after = improvement::shape_quality(p);
-        spoilt[i] = after > 0 && (after >= good_quality || after >= quality_left * before) ? 0 : 1;
+        spoilt[i] = after > 0 && (after >= good_quality || after >= quality_left * before[i]) ? 0 : 1;
       }
     });
-    bool any = false;
     std::vector<Index> at;
     for (std::size_t i = 0; i < moved.size(); ++i)
       if (spoilt[i] != 0)
         for (const Index v : complex[moved[i]].corners)
           if (shares[v] > 0) at.push_back(v);
+    if (at.empty()) return shares;
     std::sort(at.begin(), at.end());
     at.erase(std::unique(at.begin(), at.end()), at.end());
+    changed.assign(changed.size(), false);
     for (const Index v : at) {
       shares[v] = pass < most_halvings ? 0.5 * shares[v] : 0;
-      any = true;
+      changed[v] = true;
     }
-    if (!any) return shares;
   }
 }
 

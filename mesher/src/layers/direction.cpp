@@ -1,5 +1,7 @@
 // The direction of the largest smallest cosine is that of the point of the convex hull of the normals that is
-// nearest to the origin (Aubry and Loehner, On the most normal normal, 2008). Gilbert's algorithm finds it.
+// nearest to the origin (Aubry and Loehner, On the most normal normal, 2008). The method of Frank and Wolfe
+// finds it, in the variant that moves weight from the normal that is farthest along to the one that is least.
+// Without that, 200 steps still miss the cosine by a thousandth.
 #include "layers/direction.h"
 
 #include <algorithm>
@@ -25,18 +27,34 @@ std::optional<Direction> DirectionSearch::best() const {
   if (!lines_.empty()) return std::nullopt;
   for (const Vector& plane : planes_)
     if (norm(cross(plane, planes_[0])) > parallel) return std::nullopt;
+  return judge(nearest_to_origin());
+}
+
+/// Returns the point of the convex hull of the walls' normals, in the plane if there is one, that is nearest
+/// to the origin.
+Vector DirectionSearch::nearest_to_origin() const {
+  std::vector<Vector> normals;
+  for (const Vector& n : walls_) normals.push_back(in_plane(n));
+  std::vector<double> weights(normals.size(), 1.0 / static_cast<double>(normals.size()));
   Vector nearest{};
-  for (const Vector& n : walls_) nearest = nearest + in_plane(n) / static_cast<double>(walls_.size());
+  for (std::size_t i = 0; i < normals.size(); ++i) nearest = nearest + weights[i] * normals[i];
   for (unsigned step = 0; step < most_steps; ++step) {
-    const auto least = std::min_element(walls_.begin(), walls_.end(), [&](const Vector& a, const Vector& b) {
-      return dot(in_plane(a), nearest) < dot(in_plane(b), nearest);
-    });
-    const Vector way = in_plane(*least) - nearest;
+    std::size_t least = 0, farthest = normals.size();
+    for (std::size_t i = 0; i < normals.size(); ++i) {
+      if (dot(normals[i], nearest) < dot(normals[least], nearest)) least = i;
+      if (weights[i] > 0 &&
+          (farthest == normals.size() || dot(normals[i], nearest) > dot(normals[farthest], nearest)))
+        farthest = i;
+    }
+    const Vector way = normals[least] - normals[farthest];
     const double gain = -dot(nearest, way);
     if (gain <= direction_precision * squared_norm(nearest)) break;
-    nearest = nearest + std::min(1.0, gain / squared_norm(way)) * way;
+    const double moved = std::min(weights[farthest], gain / squared_norm(way));
+    weights[least] += moved;
+    weights[farthest] = moved < weights[farthest] ? weights[farthest] - moved : 0;
+    nearest = nearest + moved * way;
   }
-  return judge(nearest);
+  return nearest;
 }
 
 /// Returns the direction of the line on which the node has to stay; nothing if there is no single one.

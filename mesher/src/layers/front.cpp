@@ -31,6 +31,24 @@ void sort_and_drop_repeated(std::vector<Index>& list) {
 
 }  // namespace
 
+std::vector<Index> within_rings(const Lists& neighbours, std::vector<Index> nodes, unsigned rings) {
+  sort_and_drop_repeated(nodes);
+  std::vector<bool> found(neighbours.size(), false);
+  for (const Index n : nodes) found[n] = true;
+  std::size_t first = 0;  // of the last ring
+  for (unsigned ring = 0; ring < rings; ++ring) {
+    const std::size_t last = nodes.size();
+    for (; first < last; ++first)
+      for (const Index other : neighbours[nodes[first]])
+        if (!found[other]) {
+          found[other] = true;
+          nodes.push_back(other);
+        }
+  }
+  std::sort(nodes.begin(), nodes.end());
+  return nodes;
+}
+
 Front::Front(const improvement::TetComplex& complex, const Plc& plc, const WallChoice& walls)
     : complex_(complex), mesh_(complex.mesh()), plc_(plc), walls_(walls) {
   find_sides();

@@ -24,6 +24,9 @@ struct Lists {
   void end_group() { first.push_back(static_cast<Index>(entries.size())); }
 };
 
+/// Returns these nodes and those at most so many steps away from one, sorted. `neighbours`: by node.
+std::vector<Index> within_rings(const Lists& neighbours, std::vector<Index> nodes, unsigned rings);
+
 /// The side of a wall's triangle on which there are to be layers.
 struct WallSide {
   Index face = none;             ///< triangle of the mesh

@@ -69,7 +69,11 @@ class LayerMaker {
       const bool done = core.push(reached, levels);
       if (core.cancelled()) return false;
       if (done) return take(reached, core);
-      if (attempt >= last_levels) leave_out(core.failed(), (1U << (attempt - last_levels)) - 1, heights);
+      if (attempt >= last_levels) {
+        const unsigned rings = (1U << (attempt - last_levels)) - 1;
+        for (const Index n : within_rings(front_.neighbours, core.failed(), rings))
+          heights.lower(n, 0, Cause::core);
+      }
       for (const Index n : core.failed()) {
         const std::uint8_t level = ++levels[n];
         if (level > Core::strictest + 1)
@@ -81,21 +85,6 @@ class LayerMaker {
     }
     for (Index n = 0; n < heights.size(); ++n) heights.lower(n, 0, Cause::core);
     return take(heights, Core(mesh_, plc_, front_, heights, improvement_, execution_));
-  }
-
-  /// Leaves the layers out at these nodes and at so many rings of neighbours.
-  void leave_out(std::vector<Index> nodes, unsigned rings, Heights& heights) const {
-    std::vector<bool> left(heights.size(), false);
-    for (unsigned ring = 0; !nodes.empty(); ++ring) {
-      std::vector<Index> next;
-      for (const Index n : nodes) {
-        if (left[n]) continue;
-        left[n] = true;
-        heights.lower(n, 0, Cause::core);
-        if (ring < rings) next.insert(next.end(), front_.neighbours[n].begin(), front_.neighbours[n].end());
-      }
-      nodes = std::move(next);
-    }
   }
 
   bool take(const Heights& heights, const Core& core) {

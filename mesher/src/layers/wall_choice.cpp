@@ -115,6 +115,14 @@ WallChoice::WallChoice(const LayerOptions& options, const Plc& plc) : wall_of_(p
   put_on_all(plc);
 }
 
+std::map<std::pair<Index, Index>, unsigned> WallChoice::counts(const Plc& plc) const {
+  std::map<std::pair<Index, Index>, unsigned> counts;
+  for (Index p = 0; p < plc.patches.size(); ++p)
+    for (const Index region : plc.patches[p].regions)
+      if (region != 0 && has_layers(p, region)) counts[{p, region}] = (*this)[p].count;
+  return counts;
+}
+
 void WallChoice::find_regions(const Plc& plc) {
   for (const std::string& region : only_in_) {
     std::set<Index>& regions = regions_.emplace_back();

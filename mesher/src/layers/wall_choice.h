@@ -1,7 +1,9 @@
 #pragma once
 
+#include <map>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "collarmesh/layers.h"
@@ -19,6 +21,8 @@ class WallChoice {
   bool has_layers(Index patch, Index region) const {
     return is_wall(patch) && lies_in(wall_of_[patch], region);
   }
+  /// Returns the numbers of layers, by patch and the region on that side of it.
+  std::map<std::pair<Index, Index>, unsigned> counts(const Plc& plc) const;
   /// Returns the layers of a patch. Precondition: it is a wall.
   const WallLayers& operator[](Index patch) const { return walls_[wall_of_[patch]]; }
 

@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "check/layer_cells.h"
+#include "check/layer_walls.h"
+#include "layers/wall_choice.h"
 
 namespace collarmesh::pipeline {
 
@@ -54,6 +56,13 @@ std::map<Index, double> volume_allowances(const MeshJob& job, const Areas& areas
   return allowed;
 }
 
+/// Measures the tets again. Regions keep the volumes of before, as those of curved prisms are not measured.
+void measure_with_layers(const TetMesh& mesh, MeshMeasures& measures) {
+  MeshMeasures measured = measure_mesh(mesh);
+  measured.region_volumes = std::move(measures.region_volumes);
+  measures = std::move(measured);
+}
+
 }  // namespace
 
 void add_layers(MeshJob& job) {
@@ -62,16 +71,20 @@ void add_layers(MeshJob& job) {
   TetMesh& mesh = job.made.result.mesh;
   const auto volumes = checks::volumes_with_layers(mesh);
   const Areas areas = areas_of(mesh);
+  const checks::AskedWalls walls = layering::WallChoice(job.options.layers, *job.plc).counts(*job.plc);
+  const checks::WallGeometry wall_geometry(mesh, walls);
   const ImproveOptions options = options_of_core(job);
   const SecondOrderOptions second_order{
       .exact = job.options.exact, .bounds = job.bounds(), .threads = job.options.mesh.threads};
   job.made.layers = make_layers(mesh, *job.plc, job.options.layers, options, second_order, job.execution());
   if (job.made.layers->cancelled) job.control.stop();
   checks::check_layer_cells(mesh, job.made.check);
+  checks::check_layer_walls(walls, wall_geometry, mesh, *job.made.layers, job.made.check);
   checks::check_core_angles(mesh, job.made.layers->walls, *job.plc, options.bounds, job.made.check);
   const SurfaceTolerance tolerance =
       options.bounds.tolerance ? *options.bounds.tolerance : tolerance_of_any_size(*job.plc, options.bounds);
   checks::check_layer_volumes(volumes, mesh, volume_allowances(job, areas, tolerance), job.made.check);
+  measure_with_layers(mesh, job.made.check.measures);
   job.control.stop_if_asked();
 }
 

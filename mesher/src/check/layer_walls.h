@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "collarmesh/check.h"
+#include "collarmesh/layers.h"
+#include "collarmesh/tet_mesh.h"
+
+namespace collarmesh::guarantee {
+
+/// Walls have the triangles and edges of before; cells of layers lie on walls, in as many layers as asked;
+/// the report's coverage is that of the cells.
+inline constexpr char layer_walls[] = "layer_walls";
+
+}  // namespace collarmesh::guarantee
+
+namespace collarmesh::checks {
+
+/// The numbers of layers that are asked for, by patch and the region on that side of it.
+using AskedWalls = std::map<std::pair<Index, Index>, unsigned>;
+
+/// The triangles of walls, and the edges of curves that are sides of these, by the places of their corners.
+struct WallGeometry {
+  struct Triangle {
+    std::array<Point, 3> corners;  ///< the first one is the lowest
+    Index patch, face;
+  };
+  struct Edge {
+    std::array<Point, 2> ends;  ///< the lower one first
+    Index curve, edge;
+  };
+  WallGeometry(const TetMesh& mesh, const AskedWalls& walls);
+
+  std::vector<Triangle> triangles;  ///< sorted
+  std::vector<Edge> edges;          ///< sorted
+};
+
+/// Checks layers against the walls that were asked for and against the mesh before them: the triangles and
+/// edges of walls are the same; each cell of a layer lies above one triangle of a wall; above each triangle
+/// there are prisms in all layers, or the tets of prisms, or pyramids and tets that leave it uncovered, or
+/// nothing; area and covered area of each patch are those that `layers` reports. Adds findings. Cost: O(n log
+/// n).
+void check_layer_walls(const AskedWalls& walls, const WallGeometry& before, const TetMesh& mesh,
+                       const LayersReport& layers, CheckReport& report);
+
+}  // namespace collarmesh::checks
