@@ -13,6 +13,7 @@ BESIDE = {
     "Collarmesh_SizeBox": "Collarmesh_SizeSphere",
     "Collarmesh_SizeCylinder": "Collarmesh_SizeBox",
     "Collarmesh_SizeDistance": "Collarmesh_SizeCylinder",
+    "Collarmesh_RefineByResult": "Collarmesh_SizeDistance",
     GROUP_COMMAND: "FEM_MeshGroup",
     "Collarmesh_TakeOver": GROUP_COMMAND,
 }
