@@ -23,6 +23,7 @@ PAGE = {  # pictures, by the test that makes them
     "shells_gui_test.py": ("freecad_shell",),
     "sizes_gui_test.py": ("freecad_size_handles", "freecad_sizes"),
     "layers_gui_test.py": ("freecad_layers_panel", "freecad_layers"),
+    "refine_by_result_gui_test.py": ("freecad_refine_by_result", "freecad_refined"),
     "document_gui_test.py": ("freecad_out_of_date", "freecad_menu", "freecad_statistics"),
 }
 LARGEST = 200000  # largest size of a picture, bytes

@@ -419,6 +419,10 @@
       <translation>Elementgröße</translation>
     </message>
     <message>
+      <source>Elements</source>
+      <translation>Elemente</translation>
+    </message>
+    <message>
       <source>Elements across gaps</source>
       <translation>Elemente quer durch Dünnes</translation>
     </message>
@@ -449,6 +453,10 @@
     <message>
       <source>End the run; the mesh stays as it is</source>
       <translation>Den Lauf beenden; das Netz bleibt, wie es ist</translation>
+    </message>
+    <message>
+      <source>Error to aim for, relative to the energy norm of the solution</source>
+      <translation>Angestrebter Fehler, relativ zur Energienorm der Lösung</translation>
     </message>
     <message>
       <source>Every guarantee held when it was made</source>
@@ -529,6 +537,10 @@
     <message>
       <source>Give each solid nodes of its own where solids touch, for contact and tie constraints; otherwise they are glued</source>
       <translation>Jedem Körper eigene Knoten geben, wo Körper sich berühren, für Kontakt- und Verbindungsbedingungen; sonst sind sie verklebt</translation>
+    </message>
+    <message>
+      <source>Give either a number of elements or an error, more than 0.</source>
+      <translation>Entweder eine Zahl von Elementen oder einen Fehler angeben, größer als 0.</translation>
     </message>
     <message>
       <source>Give up after so many seconds; 0: never</source>
@@ -647,6 +659,14 @@
       <translation>Aus einer offenen Fläche ein Volumen machen, indem ihre Löcher gefüllt werden</translation>
     </message>
     <message>
+      <source>Make the mesh finer where the error of the stresses in a result is large, and coarser where it is small</source>
+      <translation>Das Netz verfeinern, wo der Fehler der Spannungen in einem Ergebnis groß ist, und vergröbern, wo er klein ist</translation>
+    </message>
+    <message>
+      <source>Make the mesh finer where the error of the stresses is large, and coarser where it is small</source>
+      <translation>Das Netz verfeinern, wo der Fehler der Spannungen groß ist, und vergröbern, wo er klein ist</translation>
+    </message>
+    <message>
       <source>Make the selected mesh of Gmsh or Netgen one of collarmesh, with its sizes and groups</source>
       <translation>Das ausgewählte Netz von Gmsh oder Netgen zu einem von collarmesh machen, mit seinen Größen und Gruppen</translation>
     </message>
@@ -707,6 +727,10 @@
       <translation>Knoten neben ihrer Fläche ({count})</translation>
     </message>
     <message>
+      <source>Number of elements to aim for</source>
+      <translation>Angestrebte Zahl der Elemente</translation>
+    </message>
+    <message>
       <source>Number of layers</source>
       <translation>Anzahl der Schichten</translation>
     </message>
@@ -757,6 +781,18 @@
     <message>
       <source>Radius</source>
       <translation>Radius</translation>
+    </message>
+    <message>
+      <source>Refine</source>
+      <translation>Verfeinern</translation>
+    </message>
+    <message>
+      <source>Refine all the same</source>
+      <translation>Trotzdem verfeinern</translation>
+    </message>
+    <message>
+      <source>Refine by result</source>
+      <translation>Nach Ergebnis verfeinern</translation>
     </message>
     <message>
       <source>Refinement of a collarmesh mesh</source>
@@ -907,6 +943,10 @@
       <translation>Die Analyse braucht eine Dicke (FEM: Schalendicke).</translation>
     </message>
     <message>
+      <source>The analysis of {label} has no result with displacements: solve it first.</source>
+      <translation>Die Analyse von {label} hat kein Ergebnis mit Verschiebungen: erst lösen.</translation>
+    </message>
+    <message>
       <source>The bound that the elements keep; at least 2 always ends</source>
       <translation>Die Schranke, die die Elemente einhalten; ab 2 endet der Lauf immer</translation>
     </message>
@@ -949,6 +989,10 @@
     <message>
       <source>The mesher {path} is no program; correct its path in the preferences.</source>
       <translation>Der Vernetzer {path} ist kein Programm; berichtigen Sie seinen Pfad in den Einstellungen.</translation>
+    </message>
+    <message>
+      <source>The part has changed since the mesh was made: mesh it again and solve it.</source>
+      <translation>Das Teil hat sich geändert, seit das Netz gemacht wurde: neu vernetzen und lösen.</translation>
     </message>
     <message>
       <source>The part was changed while it was meshed: this is the mesh of the part as it was before. Mesh it again.</source>
@@ -1081,6 +1125,10 @@
     <message>
       <source>about {time} left</source>
       <translation>noch etwa {time}</translation>
+    </message>
+    <message>
+      <source>adapting</source>
+      <translation>wird angepasst</translation>
     </message>
     <message>
       <source>all outer faces</source>
@@ -1315,6 +1363,10 @@
       <translation>{label} hat keine Form; berechnen Sie es neu.</translation>
     </message>
     <message>
+      <source>{label} has no tetrahedra that a result could refine.</source>
+      <translation>{label} hat keine Tetraeder, die ein Ergebnis verfeinern könnte.</translation>
+    </message>
+    <message>
       <source>{label} has no triangles.</source>
       <translation>{label} hat keine Dreiecke.</translation>
     </message>
@@ -1329,6 +1381,10 @@
     <message>
       <source>{label} is no mesh of Gmsh or Netgen.</source>
       <translation>{label} ist kein Netz von Gmsh oder Netgen.</translation>
+    </message>
+    <message>
+      <source>{label} is the result of another mesh: solve the analysis again.</source>
+      <translation>{label} ist das Ergebnis eines anderen Netzes: die Analyse neu lösen.</translation>
     </message>
     <message>
       <source>{label} refers to {other}, but {part} is meshed; choose its faces and edges.</source>
@@ -1351,12 +1407,20 @@
       <translation>{label}: eine Größe von {size:g} mm ist sinnlos, sie muss größer als 0 sein.</translation>
     </message>
     <message>
+      <source>{label}: estimated error {error} % of the energy norm, with {elements} elements</source>
+      <translation>{label}: geschätzter Fehler {error} % der Energienorm, mit {elements} Elementen</translation>
+    </message>
+    <message>
       <source>{label}: layers are on both sides of a face, or inside one solid; {count} are chosen.</source>
       <translation>{label}: Schichten liegen auf beiden Seiten einer Fläche oder in einem Körper; {count} sind gewählt.</translation>
     </message>
     <message>
       <source>{label}: no object is chosen to be meshed.</source>
       <translation>{label}: es ist kein Objekt zum Vernetzen gewählt.</translation>
+    </message>
+    <message>
+      <source>{label}: nothing is deformed, so there is no error to estimate.</source>
+      <translation>{label}: nichts ist verformt, also gibt es keinen Fehler zu schätzen.</translation>
     </message>
     <message>
       <source>{label}: only a mesh of triangles needs faces for constraints, and it must be made first.</source>
@@ -1449,6 +1513,10 @@
     <message>
       <source>≈ elements</source>
       <translation>≈ Elemente</translation>
+    </message>
+    <message>
+      <source>≈ error</source>
+      <translation>≈ Fehler</translation>
     </message>
     <message>
       <source>≈ time</source>

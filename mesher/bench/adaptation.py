@@ -302,13 +302,18 @@ def study(collarmesh, problem: Problem, loops: int, first: int, growth: float, l
 
 def extreme_angles(mesh) -> tuple[float, float]:
     """Returns the extreme dihedral angles in degrees."""
-    p = mesh.points[mesh.tets]
+    angles = dihedral_angles(mesh.points[mesh.tets])
+    return float(angles[:, 0].min()), float(angles[:, 1].max())
+
+
+def dihedral_angles(p: Array) -> Array:
+    """Returns the smallest and the largest dihedral angle of each tet in degrees; `p`: its corners."""
     normals = [np.cross(p[:, b] - p[:, a], p[:, c] - p[:, a])
                for a, b, c in ((1, 3, 2), (0, 2, 3), (0, 3, 1), (0, 1, 2))]
     normals = [n / np.linalg.norm(n, axis=1)[:, None] for n in normals]
     cosines = [-(normals[i] * normals[j]).sum(1) for i in range(4) for j in range(i)]
-    angles = np.degrees(np.arccos(np.clip(np.concatenate(cosines), -1, 1)))
-    return float(angles.min()), float(angles.max())
+    angles = np.degrees(np.arccos(np.clip(np.column_stack(cosines), -1, 1)))
+    return np.column_stack([angles.min(axis=1), angles.max(axis=1)])
 
 
 # Up and down

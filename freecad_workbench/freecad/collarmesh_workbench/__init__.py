@@ -53,6 +53,18 @@ def remesh(mesh_object):
     return objects.remesh(mesh_object)
 
 
+def refine_by_result(mesh_object, elements=None, error=None):
+    """Adapt the mesh to the error of the stresses in its analysis' result, finer and coarser, and wait; returns the
+    program's report.
+
+    `elements`: the number of elements to aim for; or `error`: the error of the next result, relative to the energy norm
+    (0 to 1). Edges become 0.25 to 2 times as long, so large changes take several steps, each with a result of its own.
+    Raises MesherError if there is no result of this mesh, and as `remesh`."""
+    from . import result_refinement
+
+    return result_refinement.refine(mesh_object, elements, error)
+
+
 def meshed_object(mesh_object):
     """Return the meshed object of a mesh object; FreeCAD's versions differ in the name of its property."""
     from . import compatibility
@@ -69,4 +81,4 @@ def references_to_groups(mesh_object, *names):
 
 
 __all__ = ["MesherError", "Settings", "add_layers", "add_size", "find_program",
-           "mesh", "meshed_object", "references_to_groups", "remesh"]
+           "mesh", "meshed_object", "refine_by_result", "references_to_groups", "remesh"]

@@ -6,7 +6,7 @@ import FreeCAD
 import FreeCADGui
 
 from . import (compatibility, inputs, layer_objects, layers_panel, layers_view, mesh_menu, mesh_object, mesh_properties,
-               new_mesh, other_panel, size_objects, take_over)
+               new_mesh, other_panel, result_refinement, size_objects, take_over)
 from .later import later
 from .size_view import icon_of
 from .translations import mark, translate
@@ -250,6 +250,31 @@ class TakeOver(Command):
         later(lambda: mesh_menu.take(target))  # see `Size`
 
 
+class RefineByResult(Command):
+    """Opens the panel of a mesh at the fields that refine it by the result of its analysis. Either of the two may be
+    selected, or neither if there is only one such mesh."""
+
+    icon = os.path.join(os.path.dirname(ICON), "refine_by_result.svg")
+    menu_text = mark("collarmesh", "Refine by result")
+    tool_tip = mark(
+        "collarmesh", "Make the mesh finer where the error of the stresses in a result is large, and coarser where it is small"
+    )
+
+    def target(self):
+        found = [each for each in compatibility.mesh_objects(FreeCAD.ActiveDocument)
+                 if mesh_properties.is_ours(each) and result_refinement.is_possible(each)]
+        chosen = FreeCADGui.Selection.getSelection()
+        if chosen:
+            found = [each for each in found if each in chosen or result_refinement.result_of(each) in chosen]
+        return found[0] if len(found) == 1 else None
+
+    def Activated(self):
+        target = self.target()
+        if target is not None and not other_panel.is_in_the_way():
+            FreeCADGui.Selection.clearSelection()
+            mesh_menu.refine_by_result(target)
+
+
 COMMANDS = {
     MESH_COMMAND: MeshFromShape,
     REFINEMENT_COMMAND: Refinement,
@@ -258,6 +283,7 @@ COMMANDS = {
     "Collarmesh_SizeCylinder": SizeCylinder,
     "Collarmesh_SizeDistance": SizeDistance,
     "Collarmesh_Layers": Layers,
+    "Collarmesh_RefineByResult": RefineByResult,
     GROUP_COMMAND: Group,
     "Collarmesh_TakeOver": TakeOver,
 }

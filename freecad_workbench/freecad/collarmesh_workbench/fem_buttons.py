@@ -14,6 +14,7 @@ BESIDE = {
     "Collarmesh_SizeCylinder": "Collarmesh_SizeBox",
     "Collarmesh_SizeDistance": "Collarmesh_SizeCylinder",
     "Collarmesh_Layers": "Collarmesh_SizeDistance",
+    "Collarmesh_RefineByResult": "Collarmesh_Layers",
     GROUP_COMMAND: "FEM_MeshGroup",
     "Collarmesh_TakeOver": GROUP_COMMAND,
 }

@@ -3,7 +3,8 @@
 import FreeCADGui
 from PySide import QtCore, QtGui
 
-from . import compatibility, constraint_faces, constraint_faces_view, elements, mesh_file, statistics_dialog, take_over
+from . import compatibility, constraint_faces, constraint_faces_view, elements, mesh_file, result_refinement
+from . import statistics_dialog, take_over
 from .later import later
 from .messages import say
 from .program import MesherError
@@ -16,6 +17,8 @@ def fill(menu, obj):
     for name, text, action, enabled in (
         ("edit", translate("collarmesh", "Edit mesh"), edit, True),  # as on a double click
         ("mesh_again", translate("collarmesh", "Mesh again"), mesh_again, True),
+        ("refine_by_result", translate("collarmesh", "Refine by result"),
+         refine_by_result, result_refinement.is_possible(obj)),
         ("export", translate("collarmesh", "Export mesh..."), export, has_mesh),
         ("statistics", translate("collarmesh", "Statistics..."), statistics, has_mesh),
         ("constraint_faces", translate("collarmesh", "Faces for constraints"),
@@ -62,6 +65,14 @@ def mesh_again(obj):
     panel = obj.ViewObject.Proxy.panel
     if panel is not None:
         panel.start()
+
+
+def refine_by_result(obj):
+    """Opens the panel of the object at the fields for this."""
+    edit(obj)
+    panel = obj.ViewObject.Proxy.panel
+    if panel is not None:
+        panel.refine.unfold()
 
 
 def export(obj):

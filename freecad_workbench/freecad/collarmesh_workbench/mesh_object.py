@@ -49,10 +49,14 @@ def make(document, part=None, name="FEMMeshCollarmesh"):
 def start(obj, program="", settings=None):
     """Returns a Job that is ready to run, with the shape written. `settings` replaces the object's own.
     Raises MesherError."""
+    return prepare(obj, settings or mesh_properties.settings_of(obj), up_to_date.state_of(obj), size_objects.sources_of(obj),
+                   program)
+
+
+def prepare(obj, settings, state, sources=(), program="", adapts=False):
+    """Returns such a Job. `state`: what the object then records of what its mesh is made of; `sources`: the sizes by
+    place, with their labels; `adapts`: see Job. Raises MesherError."""
     part = mesh_properties.part_to_mesh(obj)
-    state = up_to_date.state_of(obj)
-    settings = settings or mesh_properties.settings_of(obj)
-    sources = size_objects.sources_of(obj)
     size_check.check(settings, sources, part)
     asked = settings.dimension
     settings = dataclasses.replace(settings, dimension=open_shape.dimension(part, asked, settings.fill_holes))
@@ -63,7 +67,7 @@ def start(obj, program="", settings=None):
     shape = inputs.shape_of(part)
     is_to_be_apart = settings.keep_apart
     settings = contacts.in_mesh_numbers(settings, shape)
-    job = Job(settings, program or preferences.program(), preferences.threads(), inputs.file_name(part))
+    job = Job(settings, program or preferences.program(), preferences.threads(), inputs.file_name(part), adapts)
     try:
         inputs.write(part, job.shape)
     except Exception:

@@ -55,10 +55,11 @@ def outcome_of(obj):
     return outcome if is_there else None
 
 
-def start(obj, time_left=None):
-    """Begins a run; `time_left` is a TimeLeft, if there is an estimate. Raises MesherError."""
+def start(obj, time_left=None, prepare=mesh_object.start):
+    """Begins a run of the Job that `prepare(obj)` returns; `time_left` is a TimeLeft, if there is an estimate. Raises
+    MesherError."""
     if run_of(obj) is None:
-        _runs[_key(obj)] = MeshingProcess(obj, time_left)
+        _runs[_key(obj)] = MeshingProcess(obj, time_left, prepare)
     return run_of(obj)
 
 
@@ -66,12 +67,12 @@ class MeshingProcess(QtCore.QObject):
     advanced = QtCore.Signal(object)  # a Progress
     ended = QtCore.Signal()  # the outcome is available
 
-    def __init__(self, obj, time_left=None):
+    def __init__(self, obj, time_left, prepare):
         super().__init__()
         self.object = obj
         part = compatibility.meshed_object(obj)
         self.label = part.Label if part else ""
-        self.job = mesh_object.start(obj)
+        self.job = prepare(obj)
         if self.job.dimension == 3:  # the page is about tetrahedra
             self.job.add_page()
         self.warnings = tuple(self.job.warnings())

@@ -8,11 +8,16 @@ import re
 import shutil
 import subprocess
 
-from . import subshape_words
+from . import size_file, subshape_words
 from .translations import translate
 from .work_folder import WorkFolder
 
 GUARANTEE_MISSED = 7  # exit code of a run that writes the mesh although a guarantee is missed
+# Names of settings: sizes, and those that also hold when a mesh is adapted to other sizes.
+SIZES = ("size", "size_min", "elements_across_gap", "gradation",
+         "solid_sizes", "face_sizes", "edge_sizes", "size_field")
+OF_ADAPTING = ("elements_per_circle", "radius_edge", "distance", "planar_tolerance", "min_dihedral", "time_limit", "improve",
+               "order")
 
 
 class MesherError(RuntimeError):
@@ -59,6 +64,13 @@ class Settings:
     face_sizes: dict = dataclasses.field(default_factory=dict)
     edge_sizes: dict = dataclasses.field(default_factory=dict)
     size_field: dict = None  # sizes by place: sources as in mesher/doc/sizes.md
+
+    def for_adapting(self):
+        """Returns the settings that count when a mesh is adapted to other sizes. None if there are some that only hold when
+        the shape is meshed anew."""
+        without = dataclasses.replace(self, **{name: getattr(Settings(), name) for name in (*SIZES, "seed")})
+        kept = Settings(**{name: getattr(self, name) for name in OF_ADAPTING})
+        return kept if kept == dataclasses.replace(without, dimension=0) else None
 
     def arguments(self):
         """Returns arguments for the command line."""
@@ -146,14 +158,17 @@ def as_warning(line):
 class Job:
     """One run. Its folder, with the shape, the mesh and the report, is removed at the end."""
 
-    def __init__(self, settings, program="", threads=0, input_name="shape.brep"):
+    def __init__(self, settings, program="", threads=0, input_name="shape.brep", adapts=False):
         """`threads`: largest number of threads, 0: one per core; `input_name`: name of the file that the
-        caller writes to `self.shape`."""
+        caller writes to `self.shape`; `adapts`: does not mesh the shape, but adapts the mesh of it that the caller
+        writes to `self.before`, with `for_adapting()` of the settings."""
         self.folder = WorkFolder()
         self.shape = os.path.join(self.folder.name, input_name)
+        self.before = os.path.join(self.folder.name, "before.unv")
         self.mesh = os.path.join(self.folder.name, "mesh.unv")
         self._report = os.path.join(self.folder.name, "report.json")
-        self.command = [find_program(program), self.shape, "-o", self.mesh, "--report", self._report,
+        task = ["remesh", self.before, "--against", self.shape] if adapts else [self.shape]
+        self.command = [find_program(program), *task, "-o", self.mesh, "--report", self._report,
                         "--progress", "json", "--threads", str(threads), *settings.arguments()]
         if settings.size_field:
             path = os.path.join(self.folder.name, "sizes.json")
@@ -168,6 +183,12 @@ class Job:
 
     def __exit__(self, *_):
         self.folder.cleanup()
+
+    def use_sizes(self, points, tets, lengths):
+        """Gives the program target edge lengths at the points of a mesh."""
+        path = os.path.join(self.folder.name, "sizes.vtu")
+        size_file.write(path, points, tets, lengths)
+        self.command += ["--size-field", path]
 
     def heard(self, line):
         """Handles a line of standard error; returns the Progress if it is one."""

@@ -102,6 +102,8 @@ def phase_text(phase):
         "repair": translate("collarmesh", "repairing"),
         "complex": translate("collarmesh", "faces and edges"),
         "refine": translate("collarmesh", "making elements"),
+        "remesh": translate("collarmesh", "adapting"),
+        "tetrahedralize": translate("collarmesh", "making elements"),
         "coarsen": translate("collarmesh", "coarsening"),
         "improve": translate("collarmesh", "improving"),
         "project": translate("collarmesh", "onto the exact faces"),

@@ -15,6 +15,7 @@ from .later import later
 from .order_section import OrderSection
 from .places_list import PlacesList
 from .program import MesherError
+from .refine_section import RefineSection
 from .result_section import ResultSection
 from .run_section import RunSection
 from .size_preview import SizePreview
@@ -73,6 +74,8 @@ class MeshTaskPanel:
         self.run_section = RunSection()
         self.run_section.run_clicked.connect(self.start)
         self.run_section.cancel_clicked.connect(self.cancel)
+        self.refine = RefineSection(self.object)
+        self.refine.clicked.connect(self.start_refinement)
         self.result = ResultSection()
         self.result.chart.worst_clicked.connect(self.show_worst)
         self.list = PlacesList()
@@ -88,8 +91,8 @@ class MeshTaskPanel:
         self.faces_button.setToolTip(tip)
         self.faces_button.clicked.connect(self.show_constraint_faces)
         layout = QtGui.QVBoxLayout(self.form)
-        for widget in (self.size, self.preview, self.dimension, self.order, self.advanced, self.contacts, self.run_section,
-                       self.result, self.list, self.report_button, self.faces_button):
+        for widget in (self.size, self.preview, self.dimension, self.order, self.advanced, self.contacts, self.refine,
+                       self.run_section, self.result, self.list, self.report_button, self.faces_button):
             layout.addWidget(widget)
         layout.addStretch()
         self.list.hide()
@@ -174,6 +177,16 @@ class MeshTaskPanel:
             self._clear()
             self._show_outcome(meshing_process.Outcome(error=str(error)))
 
+    def start_refinement(self):
+        """Starts a run that adapts the mesh to the error of a result."""
+        if self.run is not None or self.refine.asks():
+            return
+        try:
+            self._clear()
+            self._follow(meshing_process.start(self.object, prepare=self.refine.prepare))
+        except MesherError as error:
+            self._show_outcome(meshing_process.Outcome(error=str(error)))
+
     def _clear(self):
         """Clears the messages of the last run."""
         self.marks.clear()
@@ -216,6 +229,7 @@ class MeshTaskPanel:
     def _follow(self, run):
         self.run = run
         self.predictions.pause()
+        self.refine.refresh(busy=True)
         self.run_section.begin(run.time_left)
         run.advanced.connect(self._advance)
         run.ended.connect(self._ended)
@@ -228,6 +242,7 @@ class MeshTaskPanel:
     def _ended(self):
         self._let_go()
         self.run_section.rest()
+        self.refine.refresh()
         self._ask()
         self._show_outcome(meshing_process.outcome_of(self.object))
 
@@ -244,6 +259,7 @@ class MeshTaskPanel:
         tells_of_mesh = self.outcome is None or self.outcome.report is not None
         if self.run is None and tells_of_mesh and outcome is not self.outcome:
             self._show_outcome(outcome)
+            self.refine.refresh()
         self.result.show_out_of_date(out_of_date)
 
     def _show_outcome(self, outcome):
