@@ -48,10 +48,6 @@
       <translation>Flächen und Kanten, in deren Nähe die Größe gilt</translation>
     </message>
     <message>
-      <source>Faces inside whose two sides get nodes of their own, as those of cracks: Face7</source>
-      <translation>Flächen im Innern, deren beide Seiten eigene Knoten bekommen, wie bei Rissen: Face7</translation>
-    </message>
-    <message>
       <source>Faces that get layers; none: all outer faces. With a solid among them, only inside that solid</source>
       <translation>Flächen, die Schichten bekommen; keine: alle äußeren Flächen. Mit einem Körper unter ihnen nur in diesem Körper</translation>
     </message>
@@ -102,6 +98,10 @@
     <message>
       <source>Improve elements with smaller dihedral angles; 0: 15, 20 or 30 degrees by the level of improvement</source>
       <translation>Elemente mit kleineren Diederwinkeln verbessern; 0: 15, 20 oder 30 Grad je nach Stufe der Verbesserung</translation>
+    </message>
+    <message>
+      <source>Inner faces whose nodes are made twice, one for each side, as for cracks: Face7</source>
+      <translation>Flächen im Innern, deren beide Seiten eigene Knoten bekommen, wie bei Rissen: Face7</translation>
     </message>
     <message>
       <source>Largest distance of faces and edges of the mesh from the shape; 0: 1/10 of the size, at most 1/200 of the diagonal (2nd order: 1/550)</source>
@@ -483,10 +483,6 @@
       <translation>Flächen für Randbedingungen</translation>
     </message>
     <message>
-      <source>Faces inside whose two sides get nodes of their own, as those of cracks; their names, with spaces between them</source>
-      <translation>Flächen im Innern, deren beide Seiten eigene Knoten bekommen, wie bei Rissen; ihre Namen, durch Leerzeichen getrennt</translation>
-    </message>
-    <message>
       <source>Faces of {part}</source>
       <translation>Flächen von {part}</translation>
     </message>
@@ -609,6 +605,10 @@
     <message>
       <source>In all layers of this mesh, for solvers that know nothing else</source>
       <translation>In allen Schichten dieses Netzes, für Löser, die nichts anderes kennen</translation>
+    </message>
+    <message>
+      <source>Inner faces whose nodes are made twice, one for each side, as for cracks; their names, with spaces between them</source>
+      <translation>Flächen im Innern, deren beide Seiten eigene Knoten bekommen, wie bei Rissen; ihre Namen, durch Leerzeichen getrennt</translation>
     </message>
     <message>
       <source>Keep touching solids apart</source>

@@ -64,7 +64,7 @@ def sections():
             Row("FillHoles", translate("collarmesh", "Fill holes of open surfaces"),
                 tip=translate("collarmesh", "Make a volume of a surface that is open, by filling its holes")),
             Row("SplitFaces", translate("collarmesh", "Faces to split"), zero=none,
-                tip=translate("collarmesh", "Faces inside whose two sides get nodes of their own, as those of cracks; "
+                tip=translate("collarmesh", "Inner faces whose nodes are made twice, one for each side, as for cracks; "
                                             "their names, with spaces between them")),
             Row("PeriodicFaces", translate("collarmesh", "Periodic faces"), zero=none,
                 tip=translate("collarmesh", "Pairs of sides that get the same nodes and triangles, with spaces between "

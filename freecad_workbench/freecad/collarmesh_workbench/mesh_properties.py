@@ -113,7 +113,7 @@ PROPERTIES = (
         "SplitFaces",
         "split",
         FEATURES,
-        doc("Faces inside whose two sides get nodes of their own, as those of cracks: Face7"),
+        doc("Inner faces whose nodes are made twice, one for each side, as for cracks: Face7"),
     ),
     (
         "App::PropertyStringList",

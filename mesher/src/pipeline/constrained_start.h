@@ -6,7 +6,7 @@ namespace collarmesh::pipeline {
 
 /// Thrown if constrained tetrahedra keep poor shapes and there are other ways to make a mesh.
 struct Hopeless {};
-/// What a start from constrained tetrahedra must yield: any mesh, or one that probably keeps every guarantee.
+/// The mesh asked of a start from constrained tetrahedra: any, or one that probably keeps every guarantee.
 enum class Hope { any, good };
 
 /// Makes the constrained tetrahedra of the complex, and brings their edges to the target lengths. Throws

@@ -12,7 +12,7 @@ struct RepeatedReport {
   std::vector<Point> where;
 };
 
-/// Drops duplicate triangles. Of triangles of one soup with the same corners and orientation, keeps one,
+/// Drops duplicate triangles. Keeps one of the triangles of a soup with the same corners and orientation,
 /// unless that opens the surface (two solids may share a facet); in complexes keeps one regardless of
 /// orientation. Cost: O(n log n).
 RepeatedReport drop_repeated(facets::Draft& draft);
