@@ -10,6 +10,7 @@
 #include "common/sorted.h"
 #include "common/tet_sides.h"
 #include "improve/improve_workpiece.h"
+#include "layers/core_mesh.h"
 
 namespace collarmesh::layering {
 
@@ -44,12 +45,11 @@ Core::Core(const TetMesh& mesh, const Plc& plc, const Front& front, const Height
       front_(front),
       options_(improvement),
       execution_(execution),
-      mesh_(mesh),
       reached_(front.nodes.size(), 0) {
-  mesh_.collar_balls.clear();
-  mesh_.layers = {};
-  copy_nodes(heights);
-  copy_faces(heights);
+  CoreMesh copy(mesh, front, heights);
+  mesh_ = std::move(copy.mesh);
+  vertex_of_ = std::move(copy.vertex_of);
+  node_of_ = std::move(copy.node_of);
   piece_ = std::make_unique<Workpiece>(mesh_, plc, *options_.bounds.tolerance, 0,
                                        options_.bounds.lower_where_forced);
   thin_ = std::make_unique<improvement::ThinShape>(plc, mesh_, options_.bounds.thin_angle, 0, piece_->forced,
@@ -57,98 +57,6 @@ Core::Core(const TetMesh& mesh, const Plc& plc, const Front& front, const Height
   fix_wall();
   for (const Index t : poor_tets()) poor_at_first_.push_back(sorted(piece_->complex[t].corners));
   std::sort(poor_at_first_.begin(), poor_at_first_.end());
-}
-
-/// Gives each node of the front that is to move a copy, which takes its place in the tets of its sector.
-void Core::copy_nodes(const Heights& heights) {
-  node_of_.assign(mesh_.points.size(), none);
-  for (Index n = 0; n < front_.nodes.size(); ++n) {
-    const Index vertex = front_.nodes[n].vertex;
-    if (heights[n] == 0) {
-      vertex_of_.push_back(vertex);
-      continue;
-    }
-    vertex_of_.push_back(static_cast<Index>(mesh_.points.size()));
-    node_of_.push_back(n);
-    mesh_.points.push_back(given_.points[vertex]);
-    mesh_.features.push_back(given_.features[vertex]);
-  }
-  for (Index t = 0; t < mesh_.tets.size(); ++t)
-    for (unsigned corner = 0; corner < 4; ++corner)
-      if (const Index n = front_.node_of(t, corner); n != none) mesh_.tets[t][corner] = vertex_of_[n];
-}
-
-/// The faces of walls become those of the front, and other faces and edges get the copies, too. Edges on
-/// walls are no edges of the core.
-void Core::copy_faces(const Heights& heights) {
-  std::vector<std::uint8_t> replaced(given_.faces.size(), 0);
-  std::vector<std::array<Index, 3>> faces;
-  std::vector<std::array<Index, 2>> regions;
-  std::vector<Index> like;
-  for (const WallSide& side : front_.sides) {
-    const bool moves =
-        std::any_of(side.nodes.begin(), side.nodes.end(), [&](Index n) { return heights[n] > 0; });
-    if (!moves) continue;
-    replaced[side.face] = 1;
-    faces.push_back({vertex_of_[side.nodes[0]], vertex_of_[side.nodes[2]], vertex_of_[side.nodes[1]]});
-    regions.push_back({side.region, 0});
-    like.push_back(side.face);
-  }
-  // An interface may move on one side only.
-  const auto keep_side = [&](const WallSide& side) {
-    faces.push_back({side.corners[0], side.corners[2], side.corners[1]});
-    regions.push_back({side.region, 0});
-    like.push_back(side.face);
-  };
-  for (const WallSide& side : front_.sides) {
-    const bool moves =
-        std::any_of(side.nodes.begin(), side.nodes.end(), [&](Index n) { return heights[n] > 0; });
-    if (!moves && replaced[side.face] != 0) keep_side(side);
-  }
-  for (const WallSide& side : front_.bare_sides)
-    if (replaced[side.face] != 0) keep_side(side);
-  for (Index t = 0; t < mesh_.tets.size(); ++t) {
-    const auto& tet = front_.tet(t);
-    for (unsigned corner = 0; corner < 4; ++corner) {
-      const Index face = tet.faces[corner];
-      if (face == none || front_.is_wall(face)) continue;
-      for (Index& v : mesh_.faces[face])
-        for (unsigned i = 0; i < 4; ++i)
-          if (i != corner && given_.tets[t][i] == v) {
-            v = mesh_.tets[t][i];
-            break;
-          }
-    }
-  }
-  const auto keep = [&replaced](auto& list) {
-    std::size_t kept = 0;
-    for (std::size_t f = 0; f < list.size(); ++f)
-      if (replaced[f] == 0) list[kept++] = list[f];
-    list.resize(kept);
-  };
-  const std::vector<Index> patches = mesh_.face_patch;
-  const std::vector<Tag> tags = mesh_.face_tag;
-  keep(mesh_.faces), keep(mesh_.face_regions), keep(mesh_.face_patch), keep(mesh_.face_tag);
-  for (std::size_t k = 0; k < faces.size(); ++k) {
-    mesh_.faces.push_back(faces[k]);
-    mesh_.face_regions.push_back(regions[k]);
-    mesh_.face_patch.push_back(patches[like[k]]);
-    mesh_.face_tag.push_back(tags[like[k]]);
-  }
-  for (Index n = 0; n < front_.nodes.size(); ++n)
-    for (const Index e : front_.edges_of[n])
-      for (Index& v : mesh_.edges[e])
-        if (v == front_.nodes[n].vertex) v = vertex_of_[n];
-  std::size_t kept = 0;
-  for (std::size_t e = 0; e < mesh_.edges.size(); ++e) {
-    const auto& [a, b] = given_.edges[e];
-    if (front_.is_wall_edge(a, b)) continue;
-    mesh_.edges[kept] = mesh_.edges[e];
-    mesh_.edge_curve[kept] = mesh_.edge_curve[e];
-    mesh_.edge_tag[kept] = mesh_.edge_tag[e];
-    ++kept;
-  }
-  mesh_.edges.resize(kept), mesh_.edge_curve.resize(kept), mesh_.edge_tag.resize(kept);
 }
 
 void Core::fix_wall() {

@@ -38,8 +38,6 @@ class Core {
   Index vertex_of(Index node) const { return vertex_of_[node]; }
 
  private:
-  void copy_nodes(const Heights& heights);
-  void copy_faces(const Heights& heights);
   void fix_wall();
   void go(const Heights& heights, double enough, bool thoroughly);
   std::size_t most_left(const Heights& heights) const;

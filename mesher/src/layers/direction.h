@@ -27,6 +27,7 @@ class DirectionSearch {
  private:
   std::optional<Vector> only_way() const;
   Vector nearest_to_origin() const;
+  Vector nearest_from_mean() const;
   Vector in_plane(const Vector& v) const;
   std::optional<Direction> judge(const Vector& way) const;
 
