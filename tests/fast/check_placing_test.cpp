@@ -170,6 +170,42 @@ TEST(CheckPlacing, EdgesOnNoCurve) {
   EXPECT_EQ(report.edges, on_curve.size());
 }
 
+// The seam of a round face has a number in CAD files, which no curve of the complex has.
+TEST(CheckPlacing, SeamsAreNoCurves) {
+  MeshedComplex m = meshed_cylinder(12, 4);
+  m.plc.numbered_curves = false;
+  TetMesh mesh = without_features(m.mesh);
+  ASSERT_NE(m.plc.curves[0].tag, m.plc.curves[1].tag);
+  const std::size_t on_curves = mesh.edges.size();
+  const Point& a = mesh.points[mesh.edges[0][0]];
+  const auto above = std::find_if(mesh.points.begin(), mesh.points.end(), [&](const Point& p) {
+    return p.z == 1 - a.z && distance(p, {a.x, a.y, 1 - a.z}) < 1e-9;
+  });
+  ASSERT_NE(above, mesh.points.end());
+  mesh.edges.push_back({mesh.edges[0][0], static_cast<Index>(above - mesh.points.begin())});
+  mesh.edge_curve.push_back(none);
+  mesh.edge_tag.push_back(77);
+  const CheckReport report = check(mesh, m.plc, {.bounds = {.distance = 0.05}});
+  EXPECT_TRUE(report.passed()) << report.findings.front().message;
+  EXPECT_EQ(report.edges, on_curves);
+  mesh.edge_tag.back() = m.plc.curves[0].tag;
+  EXPECT_NE(broken(mesh, m.plc), Names{}) << "an edge with the tag of a curve has to be on it";
+}
+
+// Nodes of other programs are on exact circles, a little off the complex's polylines.
+TEST(CheckPlacing, FacesTellTheCurvesBetweenThem) {
+  MeshedComplex m = meshed_cylinder(12, 4);
+  for (Index p = 0; p < m.plc.patches.size(); ++p) m.plc.patches[p].tag = static_cast<Tag>(p + 1);
+  for (Index f = 0; f < m.mesh.faces.size(); ++f)
+    m.mesh.face_tag[f] = m.plc.patches[m.mesh.face_patch[f]].tag;
+  TetMesh mesh = without_edges(without_features(m.mesh));
+  for (Point& p : mesh.points)
+    if (std::hypot(p.x, p.y) > 0.5) p.x *= 1.001, p.y *= 1.001;
+  const CheckReport report = check(mesh, m.plc, {.bounds = {.distance = 0.05}});
+  EXPECT_TRUE(report.passed()) << report.findings.front().message;
+  EXPECT_EQ(report.edges, m.mesh.edges.size());
+}
+
 TEST(RegionLocator, PlacesInThePlanesOfTheFacets) {
   const MeshedComplex m = meshed_two_boxes(1);
   const checks::RegionLocator locator(m.plc);

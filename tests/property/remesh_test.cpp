@@ -214,6 +214,18 @@ TEST(Remesh, DoesNotDependOnThreads) {
   expect_same(one.result.mesh, remesh(mesh, of_size(0.2, 4)).result.mesh);
 }
 
+TEST(Remesh, DividesEdgesFarFromTheComplex) {
+  PipelineOptions options = of_size(0.8);
+  options.mesh.bounds.distance = 0.3;
+  const SoupPipelineResult coarse = run_pipeline(std::vector{icosphere(1, 8)}, options);
+  ASSERT_TRUE(coarse.guarantees_hold()) << coarse.missed();
+  ASSERT_GT(coarse.check.max_surface_distance, 0.05);
+  options.mesh.bounds.distance = 0.03;
+  const RemeshResult made = remesh(without_features(coarse.result.mesh), coarse.plc, options);
+  EXPECT_EQ(faults(made), "");
+  EXPECT_LT(made.check.max_surface_distance, 0.5 * coarse.check.max_surface_distance);
+}
+
 TEST(Remesh, KeepsLengthsWithoutASize) {
   const TetMesh mesh = meshed({l_shape()}, 0.2);
   const RemeshResult made = remesh(mesh, of_size(0));

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <span>
 
+#include "check/border_edges.h"
 #include "check/subject.h"
 #include "common/disjoint_sets.h"
 #include "common/distance_tree.h"
@@ -17,13 +18,19 @@ namespace {
 
 using Triangle = std::array<Index, 3>;
 
+template <class Features>
+std::vector<Tag> sorted_tags(const Features& features) {
+  std::vector<Tag> tags;
+  tags.reserve(features.size());
+  for (const auto& feature : features) tags.push_back(feature.tag);
+  std::sort(tags.begin(), tags.end());
+  return tags;
+}
+
 // Returns whether most of the entities have a tag of the complex.
 template <class Features>
 bool are_known(const std::vector<Tag>& tags, const Features& features) {
-  std::vector<Tag> known;
-  known.reserve(features.size());
-  for (const auto& feature : features) known.push_back(feature.tag);
-  std::sort(known.begin(), known.end());
+  const std::vector<Tag> known = sorted_tags(features);
   const auto count = std::count_if(
       tags.begin(), tags.end(), [&](Tag tag) { return std::binary_search(known.begin(), known.end(), tag); });
   return 2 * static_cast<std::size_t>(count) >= tags.size();
@@ -204,18 +211,21 @@ class Placement {
 
  private:
   // Returns the listed edges that lie on no curve and have no tag that requires one: other programs list the
-  // edges along which they divide faces. Empty if there are none.
+  // edges along which they divide faces, and the seams of round faces. Empty if there are none.
   std::vector<bool> stray_edges() const {
     const TetMesh& mesh = subject_.mesh;
+    if (mesh.edges.empty()) return {};
     const bool told = !plc_.numbered_curves && tell_apart(plc_.curves);
-    if (mesh.edges.empty() || plc_.curves.empty() || told) return {};
+    const std::vector<Tag> known = told ? sorted_tags(plc_.curves) : std::vector<Tag>{};
     const CurveSegments curves(plc_);
     const DistanceTree tree(curves.segments);
     std::vector<std::array<Index, 2>> off;
     std::vector<bool> is_end(mesh.points.size(), false);
-    for (const auto& [a, b] : mesh.edges) {
+    for (Index e = 0; e < mesh.edges.size(); ++e) {
+      if (std::binary_search(known.begin(), known.end(), mesh.edge_tag[e])) continue;
+      const auto& [a, b] = mesh.edges[e];
       const auto [distance, number] = tree.nearest(subject_.midpoint({a, b}));
-      if (distance <= subject_.curve_allowance[curves.curve[number]]) continue;
+      if (number != none && distance <= subject_.curve_allowance[curves.curve[number]]) continue;
       off.push_back(sorted(a, b));
       is_end[a] = is_end[b] = true;
     }
@@ -404,16 +414,22 @@ class Placement {
     mesh_.edge_tag.clear();
     auto chains = points_on_curves();
     const auto edges = edges_between(chains);
+    const auto borders =
+        new_faces_ ? std::vector<std::vector<std::array<Index, 2>>>(chains.size()) : border_edges(subject_);
+    const auto add = [&](Index curve, const std::array<Index, 2>& edge) {
+      mesh_.edges.push_back(edge);
+      mesh_.edge_curve.push_back(curve);
+      mesh_.edge_tag.push_back(plc_.curves[curve].tag);
+    };
     for (Index c = 0; c < chains.size(); ++c) {
+      for (const auto& edge : borders[c]) add(c, edge);
+      if (!borders[c].empty()) continue;
       auto& chain = chains[c];
       std::sort(chain.begin(), chain.end());
       if (plc_.curves[c].closed && chain.size() > 2) chain.push_back(chain.front());
       for (std::size_t i = 1; i < chain.size(); ++i) {
         const Index a = chain[i - 1].point, b = chain[i].point;
-        if (!std::binary_search(edges.begin(), edges.end(), sorted(a, b))) continue;
-        mesh_.edges.push_back({a, b});
-        mesh_.edge_curve.push_back(c);
-        mesh_.edge_tag.push_back(plc_.curves[c].tag);
+        if (std::binary_search(edges.begin(), edges.end(), sorted(a, b))) add(c, {a, b});
       }
     }
   }

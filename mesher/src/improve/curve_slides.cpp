@@ -130,7 +130,7 @@ bool CurveSlides::follows(Index curve, Index vertex, Index next) const {
   return mesh_.features[vertex].feature == plc_.curves[curve].ends[0];
 }
 
-std::optional<CurveSlides::Middle> CurveSlides::middle(Index curve, Index a, Index b) const {
+std::optional<CurveSlides::Part> CurveSlides::part_of_edge(Index curve, Index a, Index b) const {
   prepare();
   if (!follows(curve, a, b)) std::swap(a, b);
   if (!follows(curve, a, b)) return std::nullopt;
@@ -139,7 +139,19 @@ std::optional<CurveSlides::Middle> CurveSlides::middle(Index curve, Index a, Ind
   double to = mesh_.features[b].dimension == 1 ? places_[b].parameter : length;
   if (plc_.curves[curve].closed) to -= length * std::floor((to - from) / length);
   if (!(to > from)) return std::nullopt;
-  return Middle{{a, b}, 0.5 * (from + to)};
+  return Part{{a, b}, from, to};
+}
+
+std::optional<CurveSlides::Middle> CurveSlides::middle(Index curve, Index a, Index b) const {
+  const auto part = part_of_edge(curve, a, b);
+  if (!part) return std::nullopt;
+  return Middle{part->ends, 0.5 * (part->from + part->to)};
+}
+
+bool CurveSlides::edge_is_near(Index curve, Index a, Index b) const {
+  const auto part = part_of_edge(curve, a, b);
+  return part && edge_fits(curve, part->from, part->to - part->from, mesh_.points[part->ends[0]],
+                           mesh_.points[part->ends[1]]);
 }
 
 void CurveSlides::divided(Index vertex, const Middle& middle) {

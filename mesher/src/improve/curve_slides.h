@@ -47,6 +47,9 @@ class CurveSlides {
   /// Returns the middle of this mesh edge, by arc length; nothing if the edge's place on the curve is
   /// unknown.
   std::optional<Middle> middle(Index curve, Index a, Index b) const;
+  /// Returns whether this mesh edge and its part of the curve are within the tolerance of each other. False
+  /// if that part is unknown.
+  bool edge_is_near(Index curve, Index a, Index b) const;
   Point place(Index curve, const Middle& middle) const { return paths_.point(curve, middle.parameter); }
   /// Records that a new vertex at its middle divides the edge.
   void divided(Index vertex, const Middle& middle);
@@ -69,6 +72,12 @@ class CurveSlides {
   void find_all_places() const;
   void find_places(Index curve, std::vector<Index>& vertices, const std::array<Index, 2>& ends) const;
   bool follows(Index curve, Index vertex, Index next) const;
+  /// The part of a curve that a mesh edge follows.
+  struct Part {
+    std::array<Index, 2> ends;  // in the order of the curve
+    double from, to;            // arc lengths; `to` may be beyond the seam of a closed curve
+  };
+  std::optional<Part> part_of_edge(Index curve, Index a, Index b) const;
   double way_to_neighbour(Index vertex, unsigned side) const;
   bool edge_fits(Index curve, double from, double way, const Point& a, const Point& b) const;
 

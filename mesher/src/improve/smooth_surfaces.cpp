@@ -148,6 +148,28 @@ bool SmoothSurfaces::edges_near(std::span<const Index> old, std::span<const Face
   return true;
 }
 
+// Returns the largest squared distance of the centre and the middles of the edges from the patch.
+double SmoothSurfaces::squared_distance(Index patch, const Triangle& t) const {
+  double largest = triangles(patch).squared_distance_to(centre(t), INFINITY);
+  for (unsigned k = 0; k < 3; ++k)
+    largest =
+        std::max(largest, triangles(patch).squared_distance_to(0.5 * (t[k] + t[(k + 1) % 3]), INFINITY));
+  return largest;
+}
+
+// Returns whether the old faces are beyond the tolerance and the created ones within the accepted ratio.
+bool SmoothSurfaces::are_excused(std::span<const Index> old, std::span<const Face> created) const {
+  double farthest = 0;
+  for (const Index face : old)
+    if (smooth(face)) farthest = std::max(farthest, squared_distance(mesh_.face_patch[face], corners(face)));
+  if (farthest <= tolerance_.largest() * tolerance_.largest()) return false;
+  const double accepted = accepted_ratio_ * accepted_ratio_ * farthest;
+  return std::all_of(created.begin(), created.end(), [&](const Face& face) {
+    return face.patch == none || plc_.patches[face.patch].planar ||
+           squared_distance(face.patch, face.corners) <= accepted;
+  });
+}
+
 // Returns the cosine of the angle between a face and a triangle of the patch, regardless of orientation.
 double SmoothSurfaces::agreement(Index patch, const Triangle& t, Index triangle) const {
   const Vector n = normal(t), m = normal(triangles(patch).corners(triangle));
@@ -171,6 +193,11 @@ double SmoothSurfaces::worst_agreement(std::span<const Index> faces) const {
 
 bool SmoothSurfaces::fit(std::span<const Index> old, std::span<const Face> created,
                          double& agreement_of_old) const {
+  return fit_within(old, created, agreement_of_old) || (accepted_ratio_ > 0 && are_excused(old, created));
+}
+
+bool SmoothSurfaces::fit_within(std::span<const Index> old, std::span<const Face> created,
+                                double& agreement_of_old) const {
   double least = 1;
   std::vector<Index> near(created.size(), none);  // by created face: a triangle near its centre
   const auto is_planar = [&](const Face& face) {

@@ -40,6 +40,14 @@ class SmoothSurfaces {
   };
   /// Returns the point of a smooth patch that is nearest to p. A known point near p makes it faster.
   Nearest nearest(Index patch, const Point& p, double near = INFINITY) const;
+  /// From now on other faces may replace those that are beyond the tolerance, if their distance from the
+  /// patch is at most `ratio` times that of the old ones: for meshes that were not made within the tolerance.
+  /// 0: none.
+  void accept_distant(double ratio) { accepted_ratio_ = ratio; }
+  /// Returns whether an edge is within the tolerance of a smooth patch, judged by samples.
+  bool edge_is_near(Index patch, const Point& a, const Point& b) const {
+    return edge_near(patch, a, b, none);
+  }
   struct Face {
     Triangle corners;
     Index patch;
@@ -86,6 +94,9 @@ class SmoothSurfaces {
   Index triangle_near(Index patch, const Point& p, Index hint = none) const;
   bool edge_near(Index patch, const Point& a, const Point& b, Index hint) const;
   bool edges_near(std::span<const Index> old, std::span<const Face> created, std::size_t i, Index hint) const;
+  double squared_distance(Index patch, const Triangle& t) const;
+  bool fit_within(std::span<const Index> old, std::span<const Face> created, double& agreement_of_old) const;
+  bool are_excused(std::span<const Index> old, std::span<const Face> created) const;
   double agreement(Index patch, const Triangle& t, Index triangle) const;
   double worst_agreement(std::span<const Index> faces) const;
   Triangle corners(Index face) const;
@@ -97,6 +108,7 @@ class SmoothSurfaces {
   mutable std::vector<Surface> surfaces_;
   mutable std::vector<Index> first_sample_;   // by face: the first of its samples of its patch
   std::vector<std::array<Index, 2>> moving_;  // patch and sample of points that no face has yet
+  double accepted_ratio_ = 0;
   bool on_trial_ = false;
   UndoLog<Index> old_first_samples_;
   struct Link {

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "common/found_in_ranges.h"
+#include "common/tet_sides.h"
 #include "remesh/orientations.h"
 
 namespace collarmesh::remeshing {
@@ -49,8 +51,18 @@ void EdgeDivision::add_missing_sizes() {
 
 std::size_t EdgeDivision::divide_all(double longest, std::size_t most_vertices, const Execution& execution) {
   add_missing_sizes();
+  return divide_each(long_edges(longest), most_vertices, execution);
+}
+
+std::size_t EdgeDivision::divide_distant(std::size_t most_vertices, const Execution& execution) {
+  add_missing_sizes();
+  return divide_each(distant_edges(), most_vertices, execution);
+}
+
+std::size_t EdgeDivision::divide_each(const std::vector<LongEdge>& edges, std::size_t most_vertices,
+                                      const Execution& execution) {
   std::size_t count = 0, step = 0;
-  for (const LongEdge& edge : long_edges(longest)) {
+  for (const LongEdge& edge : edges) {
     if (most_vertices > 0 && mesh().points.size() >= most_vertices) break;
     if (execution.cancelled()) break;
     if (++step % edges_between_reports == 0 && execution.progress &&
@@ -96,6 +108,45 @@ std::vector<EdgeDivision::LongEdge> EdgeDivision::long_edges(double longest) con
       if (edge.ratio <= longest) edge.ratio = ratio_by_field(edge);
     std::erase_if(edges, [longest](const LongEdge& edge) { return edge.ratio <= longest; });
   }
+  std::stable_sort(edges.begin(), edges.end(),
+                   [](const LongEdge& x, const LongEdge& y) { return x.ratio > y.ratio; });
+  return edges;
+}
+
+std::vector<EdgeDivision::LongEdge> EdgeDivision::distant_edges() const {
+  struct Candidate {
+    Index a, b, patch;
+    auto key() const { return std::tuple(a, b, patch); }
+  };
+  auto candidates =
+      found_in_ranges<Candidate>(complex().size(), [&](std::size_t i, std::vector<Candidate>& found) {
+        const auto& tet = complex()[static_cast<Index>(i)];
+        for (unsigned corner = 0; tet.alive && corner < 4; ++corner) {
+          const Index patch = tet.faces[corner] == none ? none : mesh().face_patch[tet.faces[corner]];
+          if (patch == none || workpiece_.plc.patches[patch].planar) continue;
+          const auto side = side_corners(tet.corners, corner);
+          for (unsigned k = 0; k < 3; ++k) {
+            const auto [a, b] = std::minmax(side[k], side[(k + 1) % 3]);
+            found.push_back({a, b, patch});
+          }
+        }
+      });
+  std::sort(candidates.begin(), candidates.end(),
+            [](const Candidate& x, const Candidate& y) { return x.key() < y.key(); });
+  candidates.erase(std::unique(candidates.begin(), candidates.end(),
+                               [](const Candidate& x, const Candidate& y) { return x.key() == y.key(); }),
+                   candidates.end());
+  const auto is_near = [&](const Candidate& c) {
+    if (!complex().on_curve(c.a, c.b))
+      return workpiece_.surfaces.edge_is_near(c.patch, mesh().points[c.a], mesh().points[c.b]);
+    const Index curve = mesh().edge_curve[complex().curve_edge(c.a, c.b)];
+    return curve == none || workpiece_.curves.edge_is_near(curve, c.a, c.b);
+  };
+  std::vector<LongEdge> edges =
+      found_in_ranges<LongEdge>(candidates.size(), [&](std::size_t i, std::vector<LongEdge>& found) {
+        const Candidate& c = candidates[i];
+        if (!is_near(c)) found.push_back({ratio(c.a, c.b), c.a, c.b});
+      });
   std::stable_sort(edges.begin(), edges.end(),
                    [](const LongEdge& x, const LongEdge& y) { return x.ratio > y.ratio; });
   return edges;

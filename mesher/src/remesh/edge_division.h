@@ -21,6 +21,9 @@ class EdgeDivision {
   /// first. Returns the number of divided edges. Skips edges whose division would make much worse tets. Stops
   /// at `most_vertices`; 0: no bound.
   std::size_t divide_all(double longest, std::size_t most_vertices, const Execution& execution);
+  /// Divides once each edge on a curve or in a patch that is farther from it than the tolerance, as
+  /// `divide_all` does.
+  std::size_t divide_distant(std::size_t most_vertices, const Execution& execution);
   /// Divides edges beside a vertex near them at the place that faces it, not in the middle.
   void divide_facing() { facing_ = true; }
 
@@ -32,7 +35,10 @@ class EdgeDivision {
 
   const improvement::TetComplex& complex() const { return workpiece_.complex; }
   const TetMesh& mesh() const { return workpiece_.complex.mesh(); }
+  std::size_t divide_each(const std::vector<LongEdge>& edges, std::size_t most_vertices,
+                          const Execution& execution);
   std::vector<LongEdge> long_edges(double longest) const;
+  std::vector<LongEdge> distant_edges() const;
   double ratio(Index a, Index b) const;
   double ratio_by_field(const LongEdge& edge) const;
   void add_missing_sizes();

@@ -58,43 +58,6 @@ class Places {
   std::vector<Index> order_;
 };
 
-/// Returns the part of a mesh that remeshing keeps: its tets and their corners, and the corners of faces and
-/// edges.
-TetMesh corners_of(const TetMesh& mesh) {
-  TetMesh kept;
-  std::vector<Index> number(mesh.points.size(), none);
-  kept.tets = mesh.tets;
-  for (const auto& tet : mesh.tets)
-    for (const Index v : tet) number[v] = 0;
-  for (Index v = 0; v < mesh.points.size(); ++v) {
-    if (number[v] == none) continue;
-    number[v] = static_cast<Index>(kept.points.size());
-    kept.points.push_back(mesh.points[v]);
-    kept.features.push_back(v < mesh.features.size() ? mesh.features[v] : TetMesh::VertexFeature{});
-  }
-  for (auto& tet : kept.tets)
-    for (Index& v : tet) v = number[v];
-  kept.tet_region = mesh.tet_region;
-  kept.tet_tag = mesh.tet_tag;
-  const auto is_kept = [&](const auto& cell) {
-    return std::all_of(cell.begin(), cell.end(), [&](Index v) { return number[v] != none; });
-  };
-  for (Index f = 0; f < mesh.faces.size(); ++f) {
-    if (!is_kept(mesh.faces[f])) continue;
-    const auto& [a, b, c] = mesh.faces[f];
-    kept.faces.push_back({number[a], number[b], number[c]});
-    kept.face_tag.push_back(mesh.face_tag[f]);
-  }
-  for (Index e = 0; e < mesh.edges.size(); ++e) {
-    if (!is_kept(mesh.edges[e])) continue;
-    kept.edges.push_back({number[mesh.edges[e][0]], number[mesh.edges[e][1]]});
-    kept.edge_tag.push_back(mesh.edge_tag[e]);
-  }
-  kept.group_names = mesh.group_names;
-  kept.names = mesh.names;
-  return kept;
-}
-
 class ComplexBuilder {
  public:
   ComplexBuilder(const TetMesh& mesh, const PlcOptions& options)
@@ -316,6 +279,41 @@ class ComplexBuilder {
 };
 
 }  // namespace
+
+TetMesh corners_of(const TetMesh& mesh) {
+  TetMesh kept;
+  std::vector<Index> number(mesh.points.size(), none);
+  kept.tets = mesh.tets;
+  for (const auto& tet : mesh.tets)
+    for (const Index v : tet) number[v] = 0;
+  for (Index v = 0; v < mesh.points.size(); ++v) {
+    if (number[v] == none) continue;
+    number[v] = static_cast<Index>(kept.points.size());
+    kept.points.push_back(mesh.points[v]);
+    kept.features.push_back(v < mesh.features.size() ? mesh.features[v] : TetMesh::VertexFeature{});
+  }
+  for (auto& tet : kept.tets)
+    for (Index& v : tet) v = number[v];
+  kept.tet_region = mesh.tet_region;
+  kept.tet_tag = mesh.tet_tag;
+  const auto is_kept = [&](const auto& cell) {
+    return std::all_of(cell.begin(), cell.end(), [&](Index v) { return number[v] != none; });
+  };
+  for (Index f = 0; f < mesh.faces.size(); ++f) {
+    if (!is_kept(mesh.faces[f])) continue;
+    const auto& [a, b, c] = mesh.faces[f];
+    kept.faces.push_back({number[a], number[b], number[c]});
+    kept.face_tag.push_back(mesh.face_tag[f]);
+  }
+  for (Index e = 0; e < mesh.edges.size(); ++e) {
+    if (!is_kept(mesh.edges[e])) continue;
+    kept.edges.push_back({number[mesh.edges[e][0]], number[mesh.edges[e][1]]});
+    kept.edge_tag.push_back(mesh.edge_tag[e]);
+  }
+  kept.group_names = mesh.group_names;
+  kept.names = mesh.names;
+  return kept;
+}
 
 MeshComplex complex_of(const TetMesh& mesh, const PlcOptions& options) {
   return ComplexBuilder(mesh, options).run();

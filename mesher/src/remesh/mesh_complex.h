@@ -10,8 +10,12 @@ namespace collarmesh::remeshing {
 /// this complex at all its points, faces and edges.
 struct MeshComplex {
   Plc plc;
-  TetMesh mesh;  ///< of first order, without unused points
+  TetMesh mesh;  ///< that of `corners_of`, with the edges of all curves
 };
+
+/// Returns the part of a mesh that remeshing keeps: its tets and their corners, and the corners of its faces and
+/// edges.
+TetMesh corners_of(const TetMesh& mesh);
 
 /// Builds the complex of a mesh. Its facets are the sides of tets at a boundary or between two regions, and
 /// listed faces inside a region. If the mesh has edges along all borders between tags of its faces, these

@@ -32,6 +32,11 @@ using improvement::Workpiece;
 // Limits on rounds and passes. Each round at least halves the longest edges of most tets, but halving alone
 // does not reach far finer sizes.
 constexpr unsigned most_rounds = 40, most_passes = 3;
+// Each round divides the distance of an edge from its curve or patch by four.
+constexpr unsigned most_distance_rounds = 6;
+// The faces at one half of such an edge may be farther than those before by this factor, until the other
+// edges around are divided, too.
+constexpr double distant_halves = 2;
 // If a pass of divisions changes a smaller share of the vertices, it is the last one.
 constexpr double least_share = 0.01;
 // Edges longer than this factor times the target are divided. At first the factor is such that halves are no
@@ -99,7 +104,8 @@ class Remeshing {
     choose_size();
     options_.mesh.edges_per_hole = 0;  // a hole may have no edges but the existing ones
     if (!options_.mesh.bounds.tolerance)
-      options_.mesh.bounds.tolerance = tolerance_of(made_.plc, options_.mesh.bounds, largest_size_);
+      options_.mesh.bounds.tolerance =
+          tolerance_of(made_.plc, options_.mesh.bounds, largest_size_, static_cast<int>(options_.order));
     promised_ = options_.mesh.bounds;
     if (options_.exact) {
       options_.mesh.bounds.tolerance = promised_.tolerance->scaled(distance_left);
@@ -110,6 +116,10 @@ class Remeshing {
 
   /// Makes the features of the given complex those of the mesh, in place of those of the mesh's own surface.
   void follow_complex() {
+    TetMesh listed = corners_of(given_);  // folds and borders between faces need not be curves of the complex
+    mesh().edges = std::move(listed.edges);
+    mesh().edge_tag = std::move(listed.edge_tag);
+    mesh().edge_curve.assign(mesh().edges.size(), none);
     forget_numbers();
     mesh().features.clear();
     std::fill(mesh().tet_region.begin(), mesh().tet_region.end(), none);
@@ -222,8 +232,26 @@ class Remeshing {
       ++made_.remeshing.rounds;
       improve_shapes(piece, true);
     }
+    if (complex_ != nullptr) all += follow_features(piece, division);
     made_.remeshing.divided_edges += all;
     piece.complex.store();
+    return all;
+  }
+
+  /// Divides edges that the mesh was given too far from the curves and patches of the complex.
+  std::size_t follow_features(Workpiece& piece, EdgeDivision& division) {
+    std::size_t all = 0;
+    for (unsigned round = 0; round < most_distance_rounds; ++round) {
+      piece.surfaces.accept_distant(distant_halves);
+      const std::size_t divided = division.divide_distant(options_.mesh.max_vertices, inner_);
+      stop_if_asked();
+      require_budget();
+      if (divided == 0) break;
+      all += divided;
+      piece.surfaces.accept_distant(1);
+      improve_shapes(piece, true);
+    }
+    piece.surfaces.accept_distant(0);
     return all;
   }
 
