@@ -763,6 +763,10 @@
       <translation>Punkte, die näher beieinander liegen, sind einer, relativ zur Diagonale; 0: 1e-9</translation>
     </message>
     <message>
+      <source>Poisson's ratio {text} of the material is no number: correct it.</source>
+      <translation>Die Querkontraktionszahl {text} des Materials ist keine Zahl: korrigieren Sie sie.</translation>
+    </message>
+    <message>
       <source>Position {axis}</source>
       <translation>Position {axis}</translation>
     </message>
@@ -969,6 +973,14 @@
     <message>
       <source>The mesh follows every edge from end to end</source>
       <translation>Das Netz folgt jeder Kante von Ende zu Ende</translation>
+    </message>
+    <message>
+      <source>The mesh has flat elements, in which there are no strains: mesh the part again.</source>
+      <translation>Das Netz hat flache Elemente, in denen es keine Dehnungen gibt: vernetzen Sie das Teil neu.</translation>
+    </message>
+    <message>
+      <source>The mesh has prisms of boundary layers, which are not refined: let the layers be tetrahedra, mesh and solve again.</source>
+      <translation>Das Netz hat Prismen von Grenzschichten, die nicht verfeinert werden: wählen Sie Tetraeder für die Schichten, vernetzen und rechnen Sie neu.</translation>
     </message>
     <message>
       <source>The mesh is sound</source>
@@ -1325,6 +1337,10 @@
     <message>
       <source>{edge} at {place} is only {length} mm long, the mesh becomes very fine there: remove the edge if it is not meant (Part: Defeaturing)</source>
       <translation>{edge} bei {place} ist nur {length} mm lang, dort wird das Netz sehr fein: entfernen Sie die Kante, wenn sie nicht gewollt ist (Part: Formmerkmal entfernen)</translation>
+    </message>
+    <message>
+      <source>{file} cannot be read ({fault}): solve the analysis again.</source>
+      <translation>{file} kann nicht gelesen werden ({fault}): rechnen Sie die Analyse neu.</translation>
     </message>
     <message>
       <source>{label} encloses no volume: it is meshed with triangles, for shells.</source>

@@ -186,6 +186,7 @@ PolygonSoup thin_wave(double height) {
 TEST(ConstrainedStart, MeshesWhatIsFarThinnerThanTheSize) {
   for (const double height : {0.01, 0.001}) {
     const SoupPipelineResult made = begun_constrained({thin_wave(height)}, 0.1);
+    ASSERT_FALSE(made.result.mesh.tets.empty()) << height;
     EXPECT_LT(made.result.mesh.tets.size(), 10'000U) << height;
     for (const Finding& finding : made.check.findings)  // angles may miss their bounds, nothing else
       EXPECT_TRUE(finding.guarantee == "thin_angles" || finding.guarantee == "collar_dihedral")
@@ -223,6 +224,7 @@ TEST(ConstrainedStart, DoesNotDependOnThreads) {
   for (const unsigned threads : {1U, 2U}) {
     options.mesh.threads = threads;
     made.push_back(run_pipeline(std::vector{torus(1, 0.3, 40, 20)}, options).result.mesh);
+    ASSERT_FALSE(made.back().tets.empty());
   }
   EXPECT_EQ(made[0].points, made[1].points);
   EXPECT_EQ(made[0].tets, made[1].tets);

@@ -142,7 +142,10 @@ TEST_P(RemeshedShape, ReachesFinerAndCoarserSizes) {
     ASSERT_EQ(faults(made), "");
     expect_parts_kept(mesh, made.result.mesh, allowed);
     const double asked = factor * size;
-    if (factor < 1) expect_lengths(made.result.mesh, [asked](const Point&) { return asked; });
+    if (factor < 1)
+      expect_lengths(made.result.mesh, [asked](const Point&) { return asked; });
+    else  // by 1.8^3 where no feature keeps edges short
+      EXPECT_LT(made.result.mesh.tets.size(), 0.7 * static_cast<double>(mesh.tets.size()));
   }
 }
 
@@ -320,6 +323,31 @@ TEST(Remesh, NamesWhatDoesNotFit) {
   strange.face_tag.push_back(9);
   EXPECT_NE(message(strange).find("is no side of a tetrahedron"), std::string::npos) << message(strange);
   EXPECT_NE(message({}).find("no tetrahedra"), std::string::npos) << message({});
+  TetMesh alone = mesh;  // a node without a tet comes first, so that all others have another number inside
+  alone.points.insert(alone.points.begin(), {9, 9, 9});
+  for (auto& tet : alone.tets)
+    for (Index& v : tet) ++v;
+  for (auto& face : alone.faces)
+    for (Index& v : face) ++v;
+  for (auto& edge : alone.edges)
+    for (Index& v : edge) ++v;
+  alone.features.insert(alone.features.begin(), TetMesh::VertexFeature{});
+  TetMesh inverted = alone;
+  const auto on_boundary = std::find_if(inverted.tets.begin(), inverted.tets.end(), [&](const auto& tet) {
+    return std::count_if(tet.begin(), tet.end(),
+                         [&](Index v) { return inverted.features[v].dimension < 3; }) == 4 &&
+           std::find(tet.begin(), tet.end(), inverted.faces[0][0]) != tet.end();
+  });
+  ASSERT_NE(on_boundary, inverted.tets.end());
+  std::swap((*on_boundary)[0], (*on_boundary)[1]);
+  const std::string first =
+      "nodes " + std::to_string((*on_boundary)[0]) + ", " + std::to_string((*on_boundary)[1]) + ", ";
+  EXPECT_NE(message(inverted).find("is inverted"), std::string::npos) << message(inverted);
+  EXPECT_NE(message(inverted).find(first), std::string::npos) << message(inverted);
+  alone.faces.push_back({0, 1, 2});
+  alone.face_tag.push_back(9);
+  EXPECT_NE(message(alone).find("node 0 at (9, 9, 9) belongs to no tetrahedron"), std::string::npos)
+      << message(alone);
   EXPECT_THROW(remesh(mesh,
                       [] {
                         PipelineOptions options = of_size(0.4);
@@ -327,6 +355,15 @@ TEST(Remesh, NamesWhatDoesNotFit) {
                         return options;
                       }()),
                OptionError);
+}
+
+TEST(Remesh, MayBeginAboveABudget) {
+  const TetMesh mesh = meshed({box()}, 0.15);
+  PipelineOptions options = of_size(0.5);
+  options.mesh.max_vertices = mesh.points.size() / 2;
+  const RemeshResult made = remesh(mesh, options);
+  EXPECT_EQ(faults(made), "");
+  EXPECT_LT(made.result.mesh.points.size(), options.mesh.max_vertices);
 }
 
 TEST(Remesh, EndsAtABudget) {

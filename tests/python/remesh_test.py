@@ -136,6 +136,25 @@ class Errors(unittest.TestCase):
         self.assertEqual(errors.shape, (len(self.mesh.tets),))
         self.assertLess(errors.max(), 1e-12)
 
+    def test_jumps_of_materials_are_no_error(self):
+        mesh = collarmesh.mesh(CUBE, box((0, 0, 1), (1, 1, 2)), size=0.3)
+        height = mesh.points[:, 2]
+        field = numpy.where(height < 1, height, 1 + 10 * (height - 1))
+        self.assertEqual(len(numpy.unique(mesh.tet_tag)), 2)
+        self.assertLess(collarmesh.estimated_errors(mesh, field).max(), 1e-10)
+        self.assertGreater(collarmesh.estimated_errors(mesh, field, across_regions=True).max(), 0.1)
+
+    def test_flat_tetrahedra_are_named(self):
+        mesh = collarmesh.Mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0)], [(0, 1, 2, 3)])
+        with self.assertRaisesRegex(collarmesh.OptionError, "tetrahedron 0 .* is flat"):
+            collarmesh.estimated_errors(mesh, [1.0, 2, 3, 4])
+
+    def test_mid_edge_nodes_have_sizes_between_those_of_corners(self):
+        mesh = collarmesh.mesh(CUBE, size=0.4, order=2)
+        sizes = collarmesh.sizes_from_errors(mesh, numpy.linspace(1, 2, len(mesh.tets)), elements=500)
+        ends = sizes[mesh.tets[:, [1, 2]]].mean(axis=1)
+        numpy.testing.assert_allclose(sizes[mesh.tet_mid_nodes[:, 1]], ends)
+
     def test_the_number_of_elements_is_met(self):
         mesh = self.mesh
         for elements in (4000, 12000):
@@ -261,7 +280,8 @@ class ResultsOfCalculix(unittest.TestCase):
     def test_bad_files(self):
         whole = self.block("DISP", [(1, 1, 2, 3), (2, 4, 5, 6)])
         for text in ("", "solid cube\n", self.HEAD, self.block("DISP", [(1, 1, 2, 3)], end=""), whole.replace("E+00", "E+xx", 1),
-                     whole.replace(" -1         2", " -1        -2"), self.block("DISP", [(1, 1, 2, 3), (2, 4, 5)])):
+                     whole.replace(" -1         2", " -1        -2"), self.block("DISP", [(1, 1, 2, 3), (2, 4, 5)]),
+                     self.HEAD + " -4\n -3\n", self.block("DISP", [(9999999999, 1, 2, 3)])):
             with self.assertRaises(collarmesh.ReadError):
                 self.read(text)
         with self.assertRaises(collarmesh.ReadError):

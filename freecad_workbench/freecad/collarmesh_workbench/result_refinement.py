@@ -57,7 +57,11 @@ def plan(obj):
             translate("collarmesh", "The part has changed since the mesh was made: mesh it again and solve it."))
     label, displacements = _displacements(obj)
     solution = _solution(obj, label, displacements)
-    errors = result_errors.estimate(solution)
+    try:
+        errors = result_errors.estimate(solution)
+    except numpy.linalg.LinAlgError:
+        raise MesherError(translate("collarmesh", "The mesh has flat elements, in which there are no strains: mesh the part again.")
+                          ) from None
     if errors.energy_norm == 0:
         raise MesherError(translate("collarmesh", "{label}: nothing is deformed, so there is no error to estimate.").format(
             label=label))
@@ -67,7 +71,7 @@ def plan(obj):
 def _displacements(obj):
     """Returns the result's label, and {node: (place, displacement)}."""
     result = result_of(obj)
-    if result is not None:
+    if result is not None and result.Mesh is not None:
         places = result.Mesh.FemMesh.Nodes
         return result.Label, {number: (places[number], vector)
                               for number, vector in zip(result.NodeNumbers, result.DisplacementVectors) if number in places}
@@ -75,7 +79,11 @@ def _displacements(obj):
     if path is None:
         raise MesherError(translate("collarmesh", "The analysis of {label} has no result with displacements: solve it first."
                                     ).format(label=obj.Label))
-    read = importCcxFrdResults.read_frd_result(str(path))
+    try:
+        read = importCcxFrdResults.read_frd_result(str(path))
+    except Exception as fault:  # FreeCAD's reader raises whatever its parsing meets
+        raise MesherError(translate("collarmesh", "{file} cannot be read ({fault}): solve the analysis again.").format(
+            file=path.name, fault=fault)) from None
     moved = next((step["disp"] for step in reversed(read["Results"]) if step.get("disp")), {})
     return path.name, {number: (read["Nodes"][number], vector) for number, vector in moved.items() if number in read["Nodes"]}
 
@@ -84,7 +92,11 @@ def _solution(obj, label, displacements):
     """Returns the Solution. Raises MesherError if the result is of another mesh."""
     fem_mesh = obj.FemMesh
     numbers = sorted(fem_mesh.Volumes)
-    nodes = numpy.array([fem_mesh.getElementNodes(number) for number in numbers])
+    nodes = [fem_mesh.getElementNodes(number) for number in numbers]
+    if any(len(element) not in (4, 10) for element in nodes):
+        raise MesherError(translate("collarmesh", "The mesh has prisms of boundary layers, which are not refined: let the layers "
+                                                  "be tetrahedra, mesh and solve again."))
+    nodes = numpy.array(nodes)
     used, tets = numpy.unique(nodes, return_inverse=True)
     of_mesh = fem_mesh.Nodes
     points = numpy.array([tuple(of_mesh[node]) for node in used.tolist()])
@@ -117,7 +129,12 @@ def _moduli(card):
     """Returns Young's modulus in MPa and Poisson's ratio from a material card."""
     modulus = FreeCAD.Units.Quantity(card["YoungsModulus"]).getValueAs(
         "MPa").Value if "YoungsModulus" in card else STEEL[0]
-    return modulus, min(float(card.get("PoissonRatio", STEEL[1])), MOST_INCOMPRESSIBLE)
+    try:
+        ratio = float(card.get("PoissonRatio", STEEL[1]))
+    except ValueError:
+        raise MesherError(translate("collarmesh", "Poisson's ratio {text} of the material is no number: correct it.").format(
+            text=card["PoissonRatio"])) from None
+    return modulus, min(ratio, MOST_INCOMPRESSIBLE)
 
 
 def start(obj, made, factors):

@@ -26,16 +26,15 @@ using AdaptOptions = std::function<void(const Plc&, PipelineOptions&)>;
 /// The result follows the mesh's own surface: its boundaries, interfaces, listed faces and edges become a
 /// complex (`SoupPipelineResult::plc`). The curves of the complex are the listed edges; if these do not cover
 /// all borders between tags of faces, folds above `options.complex.feature_angle` are curves, too. Keeps
-/// regions, tags and names; the result identifies features by tags alone, like a mesh from a file. No
-/// operation makes the worst tet around it worse unless all tets there are good afterwards, so a mesh within
-/// the bounds on angles stays within them, and other meshes get better. The result is certified against the
-/// complex. For a mesh of second order, its corners are remeshed, and mid-edge nodes are made anew if
-/// `options.order` is 2.
-/// Only the options of sizes, bounds, improvement, order, partitions and budgets count; exact geometry does
-/// not, as its features are those of another complex. Without a size and a field the lengths stay as they
-/// are. Same mesh and options: same result, with any number of threads. Throws PlcError for a mesh whose tets
-/// do not fit each other, OptionError for sizes of tags that the mesh does not have. Cost: near linear in the
-/// tets of the mesh and of the result.
+/// regions, tags and names; the result identifies features by tags alone, like a mesh from a file. Divisions
+/// may make tets worse for a while; improvement after each round must restore the bounds on angles, and the
+/// certificate tells where it could not. The result is certified against the complex. For a mesh of second
+/// order, its corners are remeshed, and mid-edge nodes are made anew if `options.order` is 2. Only the
+/// options of sizes, bounds, improvement, order, partitions and budgets count; exact geometry does not, as
+/// its features are those of another complex. Without a size and a field the lengths stay as they are. Same
+/// mesh and options: same result, with any number of threads. Throws PlcError for a mesh whose tets do not
+/// fit each other, OptionError for sizes of tags that the mesh does not have. Cost: near linear in the tets
+/// of the mesh and of the result.
 RemeshResult remesh(const TetMesh& mesh, const PipelineOptions& options = {}, const AdaptOptions& adapt = {},
                     const Execution& execution = {});
 

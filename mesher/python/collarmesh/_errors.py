@@ -18,24 +18,45 @@ def _volumes(mesh: Mesh) -> Array:
     return volumes
 
 
-def _at_points(mesh: Mesh, weights: Array, values: Array) -> Array:
-    """Returns the weighted mean of the values of the tetrahedra around each point; 0 at points without one."""
-    sums = numpy.zeros((len(mesh.points), values.shape[1]))
-    total = numpy.zeros(len(mesh.points))
-    for corner in mesh.tets.T:
+def _at_corners(corners: Array, weights: Array, values: Array) -> Array:
+    """Returns the weighted mean of the values of the tetrahedra around each corner, by its number; NaN where there is none.
+
+    corners: (m, 4). weights: (m,). values: (m, k).
+    """
+    count = int(corners.max()) + 1
+    sums = numpy.zeros((count, values.shape[1]))
+    total = numpy.zeros(count)
+    for corner in corners.T:
         numpy.add.at(sums, corner, weights[:, None] * values)
         numpy.add.at(total, corner, weights)
-    means: Array = sums / numpy.where(total > 0, total, 1)[:, None]
+    means: Array = sums / numpy.where(total > 0, total, numpy.nan)[:, None]
     return means
 
 
-def estimated_errors(mesh: Mesh, values: ArrayLike) -> Array:
+def _corners_by_material(mesh: Mesh) -> Array:
+    """Returns numbers of the corners of tetrahedra, another one for each material that meets at a point."""
+    materials = numpy.unique(mesh.tet_tag, return_inverse=True)[1] if len(mesh.tet_tag) else numpy.zeros(len(mesh.tets), int)
+    pairs = mesh.tets.astype(numpy.int64) + len(mesh.points) * materials.reshape(-1, 1)
+    numbers: Array = numpy.unique(pairs, return_inverse=True)[1].reshape(pairs.shape)
+    return numbers
+
+
+def _with_mid_nodes(mesh: Mesh, values: Array) -> Array:
+    """Sets the values of mid-edge nodes to the mean of those at the ends of their edges."""
+    for nodes, (a, b) in zip(mesh.tet_mid_nodes.T, ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))):
+        values[nodes] = (values[mesh.tets[:, a]] + values[mesh.tets[:, b]]) / 2
+    return values
+
+
+def estimated_errors(mesh: Mesh, values: ArrayLike, *, across_regions: bool = False) -> Array:
     """Estimate the error of a solution that is linear in each tetrahedron (Zienkiewicz and Zhu 1987): the L2 norm over each
     tetrahedron of the difference between the solution's gradient and the mean of the gradients around.
 
     values: (n,) or (n, k), the solution at the points of the mesh, such as a temperature or displacements.
+    across_regions: if False, means are those of tetrahedra with the same `tet_tag`, as gradients jump where materials meet.
+        Pass True if all tags stand for one material.
 
-    Returns (m,), one for each tetrahedron. Raises OptionError for wrong shapes.
+    Returns (m,), one for each tetrahedron. Raises OptionError for wrong shapes and flat tetrahedra.
     """
     given = numpy.asarray(values, dtype=numpy.float64)
     one_for_each(given.reshape(-1, 1) if given.ndim == 0 else given, len(mesh.points), "values", "point")
@@ -43,9 +64,15 @@ def estimated_errors(mesh: Mesh, values: ArrayLike) -> Array:
     corners = mesh.points[mesh.tets]
     edges = corners[:, 1:] - corners[:, :1]
     rises = field[mesh.tets[:, 1:]] - field[mesh.tets[:, :1]]
-    gradients = numpy.linalg.solve(edges, rises).reshape(len(mesh.tets), -1)
+    try:
+        gradients = numpy.linalg.solve(edges, rises).reshape(len(mesh.tets), -1)
+    except numpy.linalg.LinAlgError:
+        flat = int(numpy.argmin(abs(numpy.linalg.det(edges))))
+        raise OptionError(f"tetrahedron {flat} at {corners[flat].mean(axis=0)} is flat, so that the solution has no gradient "
+                          "in it; remesh without a size first, which improves it") from None
     volumes = _volumes(mesh)
-    recovered = _at_points(mesh, volumes, gradients)[mesh.tets]
+    around = mesh.tets if across_regions else _corners_by_material(mesh)
+    recovered = _at_corners(around, volumes, gradients)[around]
     off = recovered - gradients[:, None]
     # Uses the exact integral of the square of a function that is linear between the corners.
     squares = (off**2).sum(axis=(1, 2)) + (off.sum(axis=1) ** 2).sum(axis=1)
@@ -104,7 +131,10 @@ def sizes_from_errors(
         middle = numpy.sqrt(low * high)
         low, high = (middle, high) if excess(middle) > 0 else (low, middle)
     wanted = lengths * factors(numpy.sqrt(low * high))
-    at_points = numpy.exp(_at_points(mesh, volumes, numpy.log(wanted)[:, None])[:, 0])
+    at_points = numpy.full(len(mesh.points), lengths.mean())
+    means = numpy.exp(_at_corners(mesh.tets, volumes, numpy.log(wanted)[:, None])[:, 0])
+    at_points[: len(means)] = numpy.where(numpy.isnan(means), at_points[: len(means)], means)
+    _with_mid_nodes(mesh, at_points)
     # Averaging at the points evens out lengths, which changes the number of tetrahedra.
     made = (volumes / at_points[mesh.tets].mean(axis=1) ** 3).sum()
     sizes: Array = at_points * numpy.cbrt(made / (volumes / wanted**3).sum())

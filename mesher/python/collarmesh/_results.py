@@ -9,6 +9,9 @@ from ._core import ReadError
 from ._inputs import Array, Path
 
 
+_LARGEST_NODE = 10**8  # a larger number would need more memory than its mesh could have had
+
+
 def read_frd(path: Path) -> Dict[str, Array]:
     """Read the fields on nodes from a text file of results of CalculiX (.frd; CalculiX CGX manual, "Result Format").
 
@@ -28,7 +31,10 @@ def read_frd(path: Path) -> Dict[str, Array]:
     while at < len(lines):
         at += 1
         if lines[at - 1].startswith(" -4"):
-            field = lines[at - 1].split()[1]
+            words = lines[at - 1].split()
+            if len(words) < 2:
+                raise ReadError(f"{name}, line {at}: expected the name of a field after -4")
+            field = words[1]
             while at < len(lines) and lines[at].startswith(" -5"):
                 at += 1
             fields[field], at = _values(name, field, lines, at)
@@ -55,6 +61,8 @@ def _values(name: str, field: str, lines: List[str], at: int) -> Tuple[Array, in
             at += 1
         if min(numbers, default=1) < 1:
             raise ValueError("a node below 1")
+        if max(numbers, default=1) > _LARGEST_NODE:
+            raise ValueError(f"a node above {_LARGEST_NODE}")
         known = numpy.array(rows, dtype=numpy.float64).reshape(len(rows), -1)
     except (IndexError, ValueError) as fault:
         raise ReadError(

@@ -131,6 +131,12 @@ void mesh(MeshCall& call, Watch& watch) {
   if (call.input->has_cad()) result.mesh.group_names = GroupNames::cad;
 }
 
+std::vector<std::string> warnings_of(const Plc& plc) {
+  std::vector<std::string> warnings;
+  for (const Plc::Warning& warning : plc.warnings) warnings.push_back(warning.message);
+  return warnings;
+}
+
 py::dict mesh_of(const py::list& inputs, const py::dict& options, const py::object& progress) {
   const auto call = std::make_shared<MeshCall>();
   call->inputs = inputs_of(inputs);
@@ -145,9 +151,7 @@ py::dict mesh_of(const py::list& inputs, const py::dict& options, const py::obje
   if (call->run.split) arrays["split"] = parsed(report::split_json(*call->run.split));
   arrays["notes"] = call->input->notes(call->options.dimension);
   arrays["colours"] = colours_of(call->input->colours());
-  std::vector<std::string> warnings;
-  for (const Plc::Warning& warning : call->run.plc.warnings) warnings.push_back(warning.message);
-  arrays["warnings"] = warnings;
+  arrays["warnings"] = warnings_of(call->run.plc);
   return arrays;
 }
 
@@ -193,6 +197,11 @@ py::dict remesh_mesh(const py::dict& mesh, const py::list& against, const py::di
   py::dict arrays = arrays_of(std::move(call->run.result.mesh));
   arrays["status_message"] = call->run.result.message;
   arrays["check"] = parsed(report::check_json(call->run.check));
+  if (call->input) {
+    arrays["repairs"] = describe(call->input->repaired());
+    arrays["notes"] = call->input->notes();
+    arrays["warnings"] = warnings_of(call->run.plc);
+  }
   return arrays;
 }
 

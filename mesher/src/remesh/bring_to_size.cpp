@@ -121,22 +121,30 @@ class Bringing {
   std::vector<double> sizes() const { return coarsening::target_sizes(mesh_, plc_, options_); }
 
   /// Returns sizes that grow with the distance from edges shorter than the targets. Collapses have left these
-  /// edges, so they will stay, and tets between short and long edges have poor shapes. Where graded sizes
-  /// would take very many tets, as along thin parts, returns the targets.
-  std::vector<double> graded_sizes() const {
-    const std::vector<double> targets = sizes();
-    std::vector<double> graded = targets;
+  /// edges, so they will stay, and tets between short and long edges have poor shapes.
+  std::vector<double> sizes_beside_short_edges() const {
+    std::vector<double> graded = sizes();
     const EdgeGraph edges(mesh_);
     edges.visit([&](Index a, Index b) {
       const double most = of_shortest * distance(mesh_.points[a], mesh_.points[b]);
       graded[a] = std::min(graded[a], most), graded[b] = std::min(graded[b], most);
     });
     edges.grade(mesh_.points, growth, graded);
-    return tets_of(graded) <= most_times * tets_of(targets) + some ? graded : targets;
+    return graded;
   }
 
-  /// Returns whether sizes that grow with the distance from short edges take too many tets.
-  bool is_thin() const { return graded_sizes() == sizes(); }
+  /// Returns whether sizes take far more tets than the targets, as graded ones do along thin parts.
+  bool take_too_many_tets(const std::vector<double>& graded) const {
+    return tets_of(graded) > most_times * tets_of(sizes()) + some;
+  }
+
+  /// Returns sizes beside short edges or, where they would take very many tets, the targets.
+  std::vector<double> graded_sizes() const {
+    std::vector<double> graded = sizes_beside_short_edges();
+    return take_too_many_tets(graded) ? sizes() : graded;
+  }
+
+  bool is_thin() const { return take_too_many_tets(sizes_beside_short_edges()); }
 
   /// Divides edges along thin parts where vertices face each other, and collapses those around and across
   /// them that are no longer needed. Nothing moves in between, so that vertices go on facing each other.

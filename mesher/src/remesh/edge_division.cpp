@@ -17,8 +17,8 @@ namespace {
 
 // New tets must have at least this share of the quality of the worst tet at the edge. Halves of a tet have
 // about half of its smallest angle; later improvement finds better tets.
-constexpr double least_length_share = 0.4;
-// Tets of at least this quality may become as bad as `least_length_share` times it.
+constexpr double least_quality_share = 0.4;
+// Tets of at least this quality may become as bad as `least_quality_share` times it.
 constexpr double good_enough = 1;
 constexpr std::size_t edges_between_reports = 4096;
 
@@ -163,7 +163,7 @@ bool EdgeDivision::divide(Index a, Index b) {
     worst = std::min(worst, rule_.quality(complex().corners(t), complex()[t].corners));
   Change change;
   operations_.divide_edge(a, b, facing_ ? share_facing(a, b, ring) : 0.5,
-                          std::max(0.0, least_length_share * worst), change);
+                          std::max(0.0, least_quality_share * worst), change);
   if (change.kind == Change::Kind::none || !stays_oriented(complex(), change)) return false;
   const double size =
       std::min(0.5 * (sizes_[a] + sizes_[b]), size_at(change.feature, complex()[at].region, change.place));

@@ -15,6 +15,9 @@ namespace collarmesh::remeshing {
 
 namespace {
 
+// A volume below this share of the cube of a length may be due to rounding of coordinates in files.
+constexpr double rounded_volume = 1e-6;
+
 std::string text(const Point& p) { return fmt::format("({:.9g}, {:.9g}, {:.9g})", p.x, p.y, p.z); }
 
 [[noreturn]] void refuse(PlcFault::Kind kind, const std::string& message, std::vector<Index> points,
@@ -33,8 +36,9 @@ bool less(const Point& a, const Point& b) {
 /// Finds points by their coordinates.
 class Places {
  public:
-  /// Keeps the points by reference. Throws PlcError if two are at one place.
-  explicit Places(const std::vector<Point>& points) : points_(points), order_(points.size()) {
+  /// Keeps the points by reference. Throws PlcError, with points named by `given`, if two are at one place.
+  Places(const std::vector<Point>& points, const std::vector<Index>& given)
+      : points_(points), order_(points.size()) {
     std::iota(order_.begin(), order_.end(), Index{0});
     std::sort(order_.begin(), order_.end(), [&](Index a, Index b) {
       return points_[a] != points_[b] ? less(points_[a], points_[b]) : a < b;
@@ -44,8 +48,8 @@ class Places {
         refuse(PlcFault::Kind::duplicate_points,
                fmt::format("The mesh has two nodes, {} and {}, at {}; merge such nodes first, also where the "
                            "mesh is cut open on purpose.",
-                           a, b, text(points_[a])),
-               {a, b}, points_[a]);
+                           given[a], given[b], text(points_[a])),
+               {given[a], given[b]}, points_[a]);
   }
   Index find(const Point& p) const {
     const auto found = std::lower_bound(order_.begin(), order_.end(), p,
@@ -61,22 +65,31 @@ class Places {
 class ComplexBuilder {
  public:
   ComplexBuilder(const TetMesh& mesh, const PlcOptions& options)
-      : mesh_(corners_of(mesh)), options_(options), places_(mesh_.points), found_(mesh_) {}
+      : ComplexBuilder(corners_of(mesh), options) {}
 
   MeshComplex run() {
     if (mesh_.tets.empty())
       refuse(PlcFault::Kind::empty, "The mesh has no tetrahedra; name a file that has some.", {}, {});
     require_edges();
+    require_positive_sides();
     build();
     for (const Point& p : plc_.points) point_of_.push_back(places_.find(p));
     find_triangles();
     number_regions();
+    require_positive_regions();
     set_regions_of_patches();
     label();
     return {std::move(plc_), std::move(mesh_)};
   }
 
  private:
+  ComplexBuilder(Corners corners, const PlcOptions& options)
+      : mesh_(std::move(corners.mesh)),
+        given_(std::move(corners.given)),
+        options_(options),
+        places_(mesh_.points, given_),
+        found_(mesh_, given_) {}
+
   Tag tag_of(const MeshSide& side) const { return side.face == none ? 0 : mesh_.face_tag[side.face]; }
 
   /// Throws PlcError for edges between nodes that no tet joins, because remeshing could not keep them.
@@ -92,8 +105,48 @@ class ComplexBuilder {
         refuse(PlcFault::Kind::intersection,
                fmt::format("The line of the nodes {} and {} at {} is listed but is no edge of a tetrahedron; "
                            "remove it from the file.",
-                           a, b, text(mesh_.points[a])),
-               {a, b}, mesh_.points[a]);
+                           given_[a], given_[b], text(mesh_.points[a])),
+               {given_[a], given_[b]}, mesh_.points[a]);
+  }
+
+  double six_volume_of(Index tet) const {
+    const auto& [a, b, c, d] = mesh_.tets[tet];
+    return six_volume(mesh_.points[a], mesh_.points[b], mesh_.points[c], mesh_.points[d]);
+  }
+
+  /// Throws PlcError for clearly inverted tets with a side on a boundary or an interface: these sides would
+  /// be kept, turned over. Improvement mends flat tets, and inverted ones inside.
+  void require_positive_sides() const {
+    for (const MeshSide& side : found_.sides)
+      for (const Index tet : {side.behind, side.front}) {
+        if (tet == none) continue;
+        const auto& [a, b, c, d] = mesh_.tets[tet];
+        Box box;
+        for (const Index v : mesh_.tets[tet]) box.add(mesh_.points[v]);
+        const double length = box.diagonal();
+        if (six_volume_of(tet) >= -rounded_volume * length * length * length) continue;
+        refuse(PlcFault::Kind::intersection,
+               fmt::format(
+                   "The tetrahedron of the nodes {}, {}, {} and {} at {} is inverted and has a side on a "
+                   "boundary; exchange two of its nodes, or move them until its volume is positive.",
+                   given_[a], given_[b], given_[c], given_[d], text(mesh_.points[a])),
+               {given_[a], given_[b], given_[c], given_[d]}, mesh_.points[a]);
+      }
+  }
+
+  /// Throws PlcError for regions whose tets have no volume in all.
+  void require_positive_regions() const {
+    for (Index t = 0; t < mesh_.tets.size(); ++t) {
+      const Plc::Region& region = plc_.regions[mesh_.tet_region[t]];
+      if (region.volume > 0) continue;
+      const Point& at = mesh_.points[mesh_.tets[t][0]];
+      refuse(
+          PlcFault::Kind::intersection,
+          fmt::format("The tetrahedra of {} at {} have a volume of {:.9g} in all; remove them, or turn those "
+                      "that are inverted.",
+                      region.name, text(at), region.volume),
+          {given_[mesh_.tets[t][0]]}, at);
+    }
   }
 
   void build() {
@@ -161,8 +214,8 @@ class ComplexBuilder {
         PlcFault::Kind::degenerate_facet,
         fmt::format("The side of a tetrahedron on a boundary, of the nodes {}, {} and {} at {}, has no area; "
                     "move one of its nodes.",
-                    corners[0], corners[1], corners[2], text(at)),
-        {corners.begin(), corners.end()}, at);
+                    given_[corners[0]], given_[corners[1]], given_[corners[2]], text(at)),
+        {given_[corners[0]], given_[corners[1]], given_[corners[2]]}, at);
   }
 
   Triangle in_mesh(const Plc::Triangle& t) const {
@@ -187,10 +240,8 @@ class ComplexBuilder {
       plc_.regions.push_back(region);
     }
     for (Index t = 0; t < mesh_.tets.size(); ++t) {
-      const auto& [a, b, c, d] = mesh_.tets[t];
       mesh_.tet_region[t] = number[found_.component[t]];
-      plc_.regions[mesh_.tet_region[t]].volume +=
-          six_volume(mesh_.points[a], mesh_.points[b], mesh_.points[c], mesh_.points[d]) / 6;
+      plc_.regions[mesh_.tet_region[t]].volume += six_volume_of(t) / 6;
     }
   }
 
@@ -270,6 +321,7 @@ class ComplexBuilder {
   }
 
   TetMesh mesh_;
+  const std::vector<Index> given_;  // by point: its index in the mesh that was given
   const PlcOptions& options_;
   const Places places_;
   const MeshSides found_;
@@ -280,8 +332,9 @@ class ComplexBuilder {
 
 }  // namespace
 
-TetMesh corners_of(const TetMesh& mesh) {
-  TetMesh kept;
+Corners corners_of(const TetMesh& mesh) {
+  Corners corners;
+  TetMesh& kept = corners.mesh;
   std::vector<Index> number(mesh.points.size(), none);
   kept.tets = mesh.tets;
   for (const auto& tet : mesh.tets)
@@ -289,6 +342,7 @@ TetMesh corners_of(const TetMesh& mesh) {
   for (Index v = 0; v < mesh.points.size(); ++v) {
     if (number[v] == none) continue;
     number[v] = static_cast<Index>(kept.points.size());
+    corners.given.push_back(v);
     kept.points.push_back(mesh.points[v]);
     kept.features.push_back(v < mesh.features.size() ? mesh.features[v] : TetMesh::VertexFeature{});
   }
@@ -296,23 +350,29 @@ TetMesh corners_of(const TetMesh& mesh) {
     for (Index& v : tet) v = number[v];
   kept.tet_region = mesh.tet_region;
   kept.tet_tag = mesh.tet_tag;
-  const auto is_kept = [&](const auto& cell) {
-    return std::all_of(cell.begin(), cell.end(), [&](Index v) { return number[v] != none; });
+  const auto require_kept = [&](const auto& cell, std::string_view kind) {
+    for (const Index v : cell)
+      if (number[v] == none)
+        refuse(PlcFault::Kind::intersection,
+               fmt::format(
+                   "A {} is listed whose node {} at {} belongs to no tetrahedron; remove it from the file.",
+                   kind, v, text(mesh.points[v])),
+               {v}, mesh.points[v]);
   };
   for (Index f = 0; f < mesh.faces.size(); ++f) {
-    if (!is_kept(mesh.faces[f])) continue;
+    require_kept(mesh.faces[f], "face");
     const auto& [a, b, c] = mesh.faces[f];
     kept.faces.push_back({number[a], number[b], number[c]});
     kept.face_tag.push_back(mesh.face_tag[f]);
   }
   for (Index e = 0; e < mesh.edges.size(); ++e) {
-    if (!is_kept(mesh.edges[e])) continue;
+    require_kept(mesh.edges[e], "line");
     kept.edges.push_back({number[mesh.edges[e][0]], number[mesh.edges[e][1]]});
     kept.edge_tag.push_back(mesh.edge_tag[e]);
   }
   kept.group_names = mesh.group_names;
   kept.names = mesh.names;
-  return kept;
+  return corners;
 }
 
 MeshComplex complex_of(const TetMesh& mesh, const PlcOptions& options) {

@@ -10,12 +10,18 @@ namespace collarmesh::remeshing {
 /// this complex at all its points, faces and edges.
 struct MeshComplex {
   Plc plc;
-  TetMesh mesh;  ///< that of `corners_of`, with the edges of all curves
+  TetMesh mesh;  ///< that of `Corners`, with the edges of all curves
 };
 
-/// Returns the part of a mesh that remeshing keeps: its tets and their corners, and the corners of its faces and
+/// The part of a mesh that remeshing keeps: its tets and their corners, and the corners of its faces and
 /// edges.
-TetMesh corners_of(const TetMesh& mesh);
+struct Corners {
+  TetMesh mesh;
+  std::vector<Index> given;  ///< by point: its index in the whole mesh
+};
+
+/// Returns this part. Throws PlcError for faces and edges with nodes that belong to no tet.
+Corners corners_of(const TetMesh& mesh);
 
 /// Builds the complex of a mesh. Its facets are the sides of tets at a boundary or between two regions, and
 /// listed faces inside a region. If the mesh has edges along all borders between tags of its faces, these

@@ -35,8 +35,10 @@ std::vector<Use> uses_of(const TetMesh& mesh) {
   return uses;
 }
 
-[[noreturn]] void refuse(const TetMesh& mesh, const Triangle& corners, const std::string& wrong) {
+[[noreturn]] void refuse(const TetMesh& mesh, const std::vector<Index>& given, Triangle corners,
+                         const std::string& wrong) {
   const Point at = (mesh.points[corners[0]] + mesh.points[corners[1]] + mesh.points[corners[2]]) / 3;
+  for (Index& v : corners) v = given[v];
   const std::string message =
       fmt::format("The triangle of the nodes {}, {} and {} at ({:.9g}, {:.9g}, {:.9g}) {}", corners[0],
                   corners[1], corners[2], at.x, at.y, at.z, wrong);
@@ -45,7 +47,7 @@ std::vector<Use> uses_of(const TetMesh& mesh) {
 
 }  // namespace
 
-MeshSides::MeshSides(const TetMesh& mesh) {
+MeshSides::MeshSides(const TetMesh& mesh, const std::vector<Index>& given) {
   const std::vector<Use> uses = uses_of(mesh);
   DisjointSets connected(mesh.tets.size());
   for (std::size_t i = 0, j = 0; i < uses.size(); i = j) {
@@ -55,10 +57,10 @@ MeshSides::MeshSides(const TetMesh& mesh) {
                                                             [](const Use& use) { return use.tet == none; }) -
                                                (uses.begin() + static_cast<std::ptrdiff_t>(i)));
     if (tets == 0)
-      refuse(mesh, uses[i].key,
+      refuse(mesh, given, uses[i].key,
              "is listed as a face but is no side of a tetrahedron; remove it from the file.");
     if (tets > 2)
-      refuse(mesh, uses[i].key,
+      refuse(mesh, given, uses[i].key,
              fmt::format("is a side of {} tetrahedra; remove those that overlap others.", tets));
     const bool listed = i + tets < j;
     const Index first = uses[i].tet, second = tets == 2 ? uses[i + 1].tet : none;

@@ -18,9 +18,9 @@ struct MeshSide {
 
 /// Finds these triangles, in the order of their tets, and which tets are connected without crossing such a
 /// triangle. Throws PlcError for sides that more than two tets share, and for listed faces that are no side
-/// of a tet. Cost: O(n log n).
+/// of a tet; messages name points by `given`. Cost: O(n log n).
 struct MeshSides {
-  explicit MeshSides(const TetMesh& mesh);
+  MeshSides(const TetMesh& mesh, const std::vector<Index>& given);
 
   std::vector<MeshSide> sides;
   std::vector<Index> component;  ///< by tet: the first tet connected to it

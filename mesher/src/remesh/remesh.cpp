@@ -116,7 +116,8 @@ class Remeshing {
 
   /// Makes the features of the given complex those of the mesh, in place of those of the mesh's own surface.
   void follow_complex() {
-    TetMesh listed = corners_of(given_);  // folds and borders between faces need not be curves of the complex
+    TetMesh listed =
+        corners_of(given_).mesh;  // folds and borders between faces need not be curves of the complex
     mesh().edges = std::move(listed.edges);
     mesh().edge_tag = std::move(listed.edge_tag);
     mesh().edge_curve.assign(mesh().edges.size(), none);
@@ -192,6 +193,7 @@ class Remeshing {
   std::vector<double> target_sizes() { return coarsening::target_sizes(mesh(), made_.plc, options_.mesh); }
 
   void reshape() {
+    if (is_full()) coarsen_and_improve();  // a mesh that is to become coarser may begin above the limit
     for (unsigned pass = 0; pass < most_passes; ++pass) {
       const double from = 0.06 + 0.24 * pass;
       begin("remesh", from, from + 0.12);
@@ -264,7 +266,7 @@ class Remeshing {
     options.thin_above = keep_vertices ? 1e-3 : any_ratio;
     options.keep_vertices = keep_vertices;
     if (keep_vertices) options.passes = 1;
-    // What is still poor when all edges fit is improved by slower means, too.
+    // `coarsen_and_improve` also tries the slower operations on tets that are still poor.
     add(improve(piece, options, inner_, false));
   }
 
@@ -329,12 +331,17 @@ class Remeshing {
     partition(mesh(), options_.partitions);
   }
 
-  void require_budget() {
+  bool is_full() {
     const std::size_t most = options_.mesh.max_vertices;
-    if (most == 0 || mesh().points.size() < most) return;
+    return most != 0 && mesh().points.size() >= most;
+  }
+
+  void require_budget() {
+    if (!is_full()) return;
     made_.result.status = MeshStatus::budget_hit;
     made_.result.message =
-        fmt::format("{} vertices were reached; raise --max-vertices, or the sizes for a coarser mesh", most);
+        fmt::format("{} vertices were reached; raise --max-vertices, or the sizes for a coarser mesh",
+                    options_.mesh.max_vertices);
     throw Ended();
   }
 
