@@ -11,6 +11,7 @@
 #include "collarmesh/error.h"
 #include "collarmesh/mesh_measures.h"
 #include "collarmesh/remesh.h"
+#include "common/sorted.h"
 #include "improve/operations.h"
 #include "remesh/mesh_complex.h"
 #include "support/meshes.h"
@@ -295,6 +296,21 @@ TEST(Remesh, FindsFeaturesOfAMeshWithoutTags) {
   EXPECT_EQ(made.plc.patches.size(), 8U);
   EXPECT_EQ(made.plc.curves.size(), 18U);
   EXPECT_NEAR(volumes(made.result.mesh).begin()->second, volume, 1e-9);
+}
+
+TEST(Remesh, IgnoresThatEverySideIsListed) {
+  TetMesh mesh = meshed({box()}, 0.5);
+  std::set<std::array<Index, 3>> listed;
+  for (const auto& face : mesh.faces) listed.insert(sorted(face));
+  for (const auto& [a, b, c, d] : std::vector(mesh.tets))
+    for (const std::array<Index, 3>& side : {std::array{b, c, d}, {a, d, c}, {a, b, d}, {a, c, b}})
+      if (listed.insert(sorted(side)).second) mesh.faces.push_back(side);
+  mesh.face_tag.resize(mesh.faces.size(), 0);
+  mesh.face_patch.resize(mesh.faces.size(), none);
+  mesh.face_regions.resize(mesh.faces.size(), {1, 1});
+  const RemeshResult made = remesh(mesh, of_size(0.3));
+  ASSERT_EQ(faults(made), "");
+  EXPECT_EQ(made.plc.patches.size(), 6U);
 }
 
 TEST(Remesh, NamesWhatDoesNotFit) {
