@@ -11,6 +11,7 @@
 #include "collarmesh/error.h"
 #include "collarmesh/mesh_measures.h"
 #include "collarmesh/remesh.h"
+#include "common/sorted.h"
 #include "improve/operations.h"
 #include "remesh/mesh_complex.h"
 #include "support/meshes.h"
@@ -300,6 +301,21 @@ TEST(Remesh, FindsFeaturesOfAMeshWithoutTags) {
   EXPECT_NEAR(volumes(made.result.mesh).begin()->second, volume, 1e-9);
 }
 
+TEST(Remesh, IgnoresThatEverySideIsListed) {
+  TetMesh mesh = meshed({box()}, 0.5);
+  std::set<std::array<Index, 3>> listed;
+  for (const auto& face : mesh.faces) listed.insert(sorted(face));
+  for (const auto& [a, b, c, d] : std::vector(mesh.tets))
+    for (const std::array<Index, 3>& side : {std::array{b, c, d}, {a, d, c}, {a, b, d}, {a, c, b}})
+      if (listed.insert(sorted(side)).second) mesh.faces.push_back(side);
+  mesh.face_tag.resize(mesh.faces.size(), 0);
+  mesh.face_patch.resize(mesh.faces.size(), none);
+  mesh.face_regions.resize(mesh.faces.size(), {1, 1});
+  const RemeshResult made = remesh(mesh, of_size(0.3));
+  ASSERT_EQ(faults(made), "");
+  EXPECT_EQ(made.plc.patches.size(), 6U);
+}
+
 TEST(Remesh, NamesWhatDoesNotFit) {
   const TetMesh mesh = meshed({box()}, 0.5);
   const auto message = [](const TetMesh& wrong) -> std::string {
@@ -333,10 +349,10 @@ TEST(Remesh, NamesWhatDoesNotFit) {
     for (Index& v : edge) ++v;
   alone.features.insert(alone.features.begin(), TetMesh::VertexFeature{});
   TetMesh inverted = alone;
+  const auto& side = inverted.faces[0];
   const auto on_boundary = std::find_if(inverted.tets.begin(), inverted.tets.end(), [&](const auto& tet) {
-    return std::count_if(tet.begin(), tet.end(),
-                         [&](Index v) { return inverted.features[v].dimension < 3; }) == 4 &&
-           std::find(tet.begin(), tet.end(), inverted.faces[0][0]) != tet.end();
+    return std::all_of(side.begin(), side.end(),
+                       [&](Index v) { return std::find(tet.begin(), tet.end(), v) != tet.end(); });
   });
   ASSERT_NE(on_boundary, inverted.tets.end());
   std::swap((*on_boundary)[0], (*on_boundary)[1]);

@@ -16,6 +16,7 @@ namespace {
 
 // Before an edge is removed, edges around it may be removed first, recursively to this depth.
 constexpr unsigned most_depth = 2;
+constexpr double most_errors = 512;       // rounding errors by which a point may be off its edge
 constexpr std::size_t most_rings = 1000;  // rings triangulated before edges around are removed first
 // Limit of added points: `most_times` times the number of points of the complex, plus `some`.
 constexpr std::size_t most_times = 20, some = 1000;
@@ -310,19 +311,47 @@ bool BoundaryRecovery::clear_edge(const std::vector<CrossedFace>& crossed, const
   return changed;
 }
 
-/// Adds a point where the edge crosses a face; near its middle if possible.
+/// Adds a point on an edge: where it crosses a face, near its middle if possible; else between two such
+/// places, or a few rounding errors beside one, as the rounded point may lie beyond a feature.
 Index BoundaryRecovery::divide_at_crossing(Index a, Index b, std::vector<CrossedFace>& crossed) {
   if (++added_ > most_added_) fail(a, "An edge");
   std::ranges::sort(crossed, {}, [](const CrossedFace& c) { return std::fabs(c.place - 0.5); });
-  for (const CrossedFace& c : crossed) {
-    const Point x = mesh_.point(a) + c.place * (mesh_.point(b) - mesh_.point(a));
-    if (x == mesh_.point(a) || x == mesh_.point(b)) continue;
-    const Index made = changes_.insert(x, {c.face.tet, mesh_.beyond(c.face)});
-    if (made == none) continue;
-    mesh_.keep();
+  const auto insert = [&](const Point& x, const std::vector<Index>& cavity) {
+    if (x == mesh_.point(a) || x == mesh_.point(b)) return none;
+    const Index made = changes_.insert(x, cavity);
+    if (made != none) mesh_.keep();
     return made;
-  }
+  };
+  const auto on_edge = [&](double place) {
+    return mesh_.point(a) + place * (mesh_.point(b) - mesh_.point(a));
+  };
+  for (const CrossedFace& c : crossed)
+    if (const Index x = insert(on_edge(c.place), {c.face.tet, mesh_.beyond(c.face)}); x != none) return x;
+  for (const CrossedFace& c : crossed)
+    for (const auto& [place, tet] : places_beside(c, crossed))
+      if (const Index x = insert(on_edge(place), {tet}); x != none) return x;
+  for (double errors = 1; errors <= most_errors; errors *= 8)
+    for (const CrossedFace& c : crossed)
+      for (unsigned way = 0; way < 6; ++way) {
+        Point x = on_edge(c.place);
+        const double largest = std::max({std::fabs(x.x), std::fabs(x.y), std::fabs(x.z)});
+        double& coordinate = way < 2 ? x.x : way < 4 ? x.y : x.z;
+        coordinate += (way % 2 == 0 ? 1 : -1) * errors * 0x1p-52 * largest;
+        if (const Index made = insert(x, {c.face.tet, mesh_.beyond(c.face)}); made != none) return made;
+      }
   return none;
+}
+
+/// Returns the middles of the parts of an edge before and behind a crossed face, and the tetrahedra there.
+std::array<std::pair<double, Index>, 2> BoundaryRecovery::places_beside(
+    const CrossedFace& face, const std::vector<CrossedFace>& crossed) const {
+  double before = 0, behind = 1;
+  for (const CrossedFace& c : crossed) {
+    if (c.place < face.place) before = std::max(before, c.place);
+    if (c.place > face.place) behind = std::min(behind, c.place);
+  }
+  return {
+      {{0.5 * (before + face.place), face.face.tet}, {0.5 * (face.place + behind), mesh_.beyond(face.face)}}};
 }
 
 /// Adds a point inside a tetrahedron that the edge crosses, so that the mesh can be changed there.

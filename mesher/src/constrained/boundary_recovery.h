@@ -6,6 +6,7 @@
 #include <functional>
 #include <unordered_map>
 #include <unordered_set>
+#include <utility>
 #include <vector>
 
 #include "collarmesh/plc.h"
@@ -71,6 +72,8 @@ class BoundaryRecovery {
   Index find_crossed(Index a, Index b, std::vector<CrossedFace>& crossed) const;
   bool clear_edge(const std::vector<CrossedFace>& crossed, const Obstacles& obstacles, unsigned depth);
   Index divide_at_crossing(Index a, Index b, std::vector<CrossedFace>& crossed);
+  std::array<std::pair<double, Index>, 2> places_beside(const CrossedFace& face,
+                                                        const std::vector<CrossedFace>& crossed) const;
   bool add_room(const std::vector<CrossedFace>& crossed);
   void recover_facet(Index facet);
   std::vector<Ends> find_piercing(const Facet& facet, const Obstacles& obstacles) const;

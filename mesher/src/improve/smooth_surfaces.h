@@ -48,6 +48,10 @@ class SmoothSurfaces {
   bool edge_is_near(Index patch, const Point& a, const Point& b) const {
     return edge_near(patch, a, b, none);
   }
+  /// Returns whether the centre of a triangle is within the tolerance of a smooth patch.
+  bool centre_is_near(Index patch, const Triangle& t) const {
+    return triangle_near(patch, (t[0] + t[1] + t[2]) / 3) != none;
+  }
   struct Face {
     Triangle corners;
     Index patch;

@@ -113,39 +113,49 @@ std::vector<EdgeDivision::LongEdge> EdgeDivision::long_edges(double longest) con
   return edges;
 }
 
+// Adds the edges of a face on a smooth patch, each with the patch; and the longest one, with none, if the
+// centre of the face is too far from the patch.
+void EdgeDivision::add_edges_of_face(const std::array<Index, 3>& face, Index patch,
+                                     std::vector<EdgeOfPatch>& found) const {
+  const auto& p = mesh().points;
+  std::array<EdgeOfPatch, 3> edges;
+  for (unsigned k = 0; k < 3; ++k) {
+    const auto [a, b] = std::minmax(face[k], face[(k + 1) % 3]);
+    edges[k] = {a, b, patch};
+    found.push_back(edges[k]);
+  }
+  if (workpiece_.surfaces.centre_is_near(patch, {p[face[0]], p[face[1]], p[face[2]]})) return;
+  const auto longest = std::ranges::max_element(
+      edges, {}, [&](const EdgeOfPatch& e) { return squared_distance(p[e.a], p[e.b]); });
+  found.push_back({longest->a, longest->b, none});
+}
+
+bool EdgeDivision::is_near(const EdgeOfPatch& edge) const {
+  if (edge.patch == none) return false;
+  if (!complex().on_curve(edge.a, edge.b))
+    return workpiece_.surfaces.edge_is_near(edge.patch, mesh().points[edge.a], mesh().points[edge.b]);
+  const Index curve = mesh().edge_curve[complex().curve_edge(edge.a, edge.b)];
+  return curve == none || workpiece_.curves.edge_is_near(curve, edge.a, edge.b);
+}
+
 std::vector<EdgeDivision::LongEdge> EdgeDivision::distant_edges() const {
-  struct Candidate {
-    Index a, b, patch;
-    auto key() const { return std::tuple(a, b, patch); }
-  };
   auto candidates =
-      found_in_ranges<Candidate>(complex().size(), [&](std::size_t i, std::vector<Candidate>& found) {
+      found_in_ranges<EdgeOfPatch>(complex().size(), [&](std::size_t i, std::vector<EdgeOfPatch>& found) {
         const auto& tet = complex()[static_cast<Index>(i)];
         for (unsigned corner = 0; tet.alive && corner < 4; ++corner) {
           const Index patch = tet.faces[corner] == none ? none : mesh().face_patch[tet.faces[corner]];
-          if (patch == none || workpiece_.plc.patches[patch].planar) continue;
-          const auto side = side_corners(tet.corners, corner);
-          for (unsigned k = 0; k < 3; ++k) {
-            const auto [a, b] = std::minmax(side[k], side[(k + 1) % 3]);
-            found.push_back({a, b, patch});
-          }
+          if (patch != none && !workpiece_.plc.patches[patch].planar)
+            add_edges_of_face(side_corners(tet.corners, corner), patch, found);
         }
       });
-  std::sort(candidates.begin(), candidates.end(),
-            [](const Candidate& x, const Candidate& y) { return x.key() < y.key(); });
-  candidates.erase(std::unique(candidates.begin(), candidates.end(),
-                               [](const Candidate& x, const Candidate& y) { return x.key() == y.key(); }),
-                   candidates.end());
-  const auto is_near = [&](const Candidate& c) {
-    if (!complex().on_curve(c.a, c.b))
-      return workpiece_.surfaces.edge_is_near(c.patch, mesh().points[c.a], mesh().points[c.b]);
-    const Index curve = mesh().edge_curve[complex().curve_edge(c.a, c.b)];
-    return curve == none || workpiece_.curves.edge_is_near(curve, c.a, c.b);
-  };
+  const auto key = [](const EdgeOfPatch& e) { return std::tuple(e.a, e.b, e.patch); };
+  std::ranges::sort(candidates, {}, key);
+  const auto repeated = std::ranges::unique(candidates, {}, key);
+  candidates.erase(repeated.begin(), repeated.end());
   std::vector<LongEdge> edges =
       found_in_ranges<LongEdge>(candidates.size(), [&](std::size_t i, std::vector<LongEdge>& found) {
-        const Candidate& c = candidates[i];
-        if (!is_near(c)) found.push_back({ratio(c.a, c.b), c.a, c.b});
+        const EdgeOfPatch& e = candidates[i];
+        if (!is_near(e)) found.push_back({ratio(e.a, e.b), e.a, e.b});
       });
   std::stable_sort(edges.begin(), edges.end(),
                    [](const LongEdge& x, const LongEdge& y) { return x.ratio > y.ratio; });

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "collarmesh/mesher.h"
@@ -39,6 +40,12 @@ class EdgeDivision {
                           const Execution& execution);
   std::vector<LongEdge> long_edges(double longest) const;
   std::vector<LongEdge> distant_edges() const;
+  struct EdgeOfPatch {
+    Index a, b, patch;
+  };
+  void add_edges_of_face(const std::array<Index, 3>& face, Index patch,
+                         std::vector<EdgeOfPatch>& found) const;
+  bool is_near(const EdgeOfPatch& edge) const;
   double ratio(Index a, Index b) const;
   double ratio_by_field(const LongEdge& edge) const;
   void add_missing_sizes();

@@ -45,10 +45,21 @@ std::vector<Use> uses_of(const TetMesh& mesh) {
   throw PlcError(message, {{PlcFault::Kind::intersection, message, {corners.begin(), corners.end()}, at}});
 }
 
+/// Returns whether the mesh lists every side of its tets as a face, as some programs do. Then being listed
+/// says nothing about a face inside a region.
+bool lists_every_side(const std::vector<Use>& uses) {
+  for (std::size_t i = 0, j = 0; i < uses.size(); i = j) {
+    for (j = i; j < uses.size() && uses[j].key == uses[i].key;) ++j;
+    if (uses[j - 1].tet != none) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 MeshSides::MeshSides(const TetMesh& mesh, const std::vector<Index>& given) {
   const std::vector<Use> uses = uses_of(mesh);
+  const bool every_side = lists_every_side(uses);
   DisjointSets connected(mesh.tets.size());
   for (std::size_t i = 0, j = 0; i < uses.size(); i = j) {
     for (j = i; j < uses.size() && uses[j].key == uses[i].key;) ++j;
@@ -63,8 +74,9 @@ MeshSides::MeshSides(const TetMesh& mesh, const std::vector<Index>& given) {
       refuse(mesh, given, uses[i].key,
              fmt::format("is a side of {} tetrahedra; remove those that overlap others.", tets));
     const bool listed = i + tets < j;
+    const bool counts = listed && !(every_side && mesh.face_tag[uses[i + tets].place] == 0);
     const Index first = uses[i].tet, second = tets == 2 ? uses[i + 1].tet : none;
-    if (!listed && second != none && mesh.tet_region[first] == mesh.tet_region[second])
+    if (!counts && second != none && mesh.tet_region[first] == mesh.tet_region[second])
       connected.unite(first, second);
     else
       sides.push_back({side_corners(mesh.tets[first], uses[i].place), first, second,

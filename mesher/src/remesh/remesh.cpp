@@ -47,8 +47,8 @@ constexpr double longest_at_first = 1.4142, longest_later = coarsening::Coarseni
 constexpr double any_ratio = 1e12;
 // Smaller than any ratio: with this bound angles alone decide, and slivers with a small ratio are forbidden.
 constexpr double no_ratio = 0.1;
-// Shares that are left of the distance from the complex and of the bounds on angles, if vertices will move
-// onto exact geometry.
+// Shares that are left of the distance from a given complex, for what lies between the places where
+// operations measure it and for moves onto exact geometry, and of the bounds on angles, for these moves.
 constexpr double distance_left = 0.75, angle_reserve = 0.05;
 // If the smallest angle of a mesh, away from creases and narrow places, is at least this (degrees), the mesh
 // keeps it.
@@ -107,10 +107,8 @@ class Remeshing {
       options_.mesh.bounds.tolerance =
           tolerance_of(made_.plc, options_.mesh.bounds, largest_size_, static_cast<int>(options_.order));
     promised_ = options_.mesh.bounds;
-    if (options_.exact) {
-      options_.mesh.bounds.tolerance = promised_.tolerance->scaled(distance_left);
-      options_.mesh.bounds.reserve = angle_reserve;
-    }
+    if (complex_ != nullptr) options_.mesh.bounds.tolerance = promised_.tolerance->scaled(distance_left);
+    if (options_.exact) options_.mesh.bounds.reserve = angle_reserve;
     choose_bounds();
   }
 
