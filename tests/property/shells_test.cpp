@@ -293,5 +293,39 @@ TEST(Shells, OneTriangleClosesACuspOfALineAndAnArc) {
   EXPECT_LT(made.result.mesh.faces.size(), 150U);
 }
 
+TEST(Shells, TheTriangleInACuspCrossesNoCurveBesideIt) {
+  constexpr double radius = 2, end = 0.5, width = 0.01;
+  constexpr unsigned segments = 40, hole_segments = 10;
+  PolygonSoup faces;
+  const auto at = [](double from_centre, double angle) {
+    return Point{from_centre * std::sin(angle), radius - from_centre * std::cos(angle), 0};
+  };
+  std::vector<Index> arc, hole;
+  for (unsigned i = 0; i <= segments; ++i) {
+    arc.push_back(static_cast<Index>(faces.points.size()));
+    faces.points.push_back(at(radius, end * i / segments));
+  }
+  const auto first = static_cast<Index>(faces.points.size());
+  faces.points.insert(faces.points.end(), {{1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  for (unsigned i = 0; i <= hole_segments; ++i)  // along the arc, nearer to it than the cusp's chord
+    faces.points.push_back(at(radius - width, 0.05 + 0.1 * i / hole_segments));
+  faces.points.insert(faces.points.end(), {at(radius - 0.2, 0.15), at(radius - 0.2, 0.05)});
+  for (auto i = static_cast<Index>(first + 3); i < faces.points.size(); ++i) hole.push_back(i);
+  std::vector<Index> cusp(arc.rbegin(), arc.rend()), beside = arc;
+  cusp.push_back(first);
+  beside.insert(beside.end(), {first + 1, first + 2});
+  faces.add_facet(cusp, 1);
+  faces.begin_facet(2);
+  faces.add_polygon(beside);
+  faces.add_polygon(hole);
+  faces.facet_holes.push_back({1, at(radius - 0.1, 0.1)});
+  PipelineOptions options;
+  options.mesh.size = 0.5;
+  options.mesh.bounds.distance = 0.04;
+  const PipelineResult made = mesh_shells(complex_of(faces), options);
+  EXPECT_TRUE(made.guarantees_hold()) << made.missed();
+  EXPECT_LT(made.result.mesh.faces.size(), 150U);
+}
+
 }  // namespace
 }  // namespace collarmesh

@@ -13,7 +13,7 @@ namespace {
 constexpr double length_per_width = 2.5;
 // Approximate limit on the number of edges in narrow places. In narrower places edges are longer than good
 // angles need.
-constexpr double most_edges = 32'000;
+constexpr double most_edges = 45'000;
 
 }  // namespace
 

@@ -1,6 +1,7 @@
 #include "shells/sharp_corners.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "shells/curve_division.h"
 #include "shells/triangle_shape.h"
@@ -53,44 +54,44 @@ Fan fan_from(const SurfaceComplex& complex, Index vertex, Index first, std::vect
 }  // namespace
 
 SharpCorners::SharpCorners(const SurfaceComplex& complex, const Plc& plc, const CurvePaths& paths,
-                           const SurfaceSizes& sizes, const SurfaceTolerance& tolerance)
+                           const SurfaceSizes& sizes, const ChordLimits& limits)
     : tips_(plc.curves.size(), {0, 0}) {
-  std::vector<std::pair<Index, std::vector<End>>> corners;  // vertices of the complex, each with the ends of
-                                                            // its curves
+  std::vector<Corner> corners;
   for (Index v = 0; v < complex.vertices.size(); ++v) {
     if (complex.vertices[v].feature.dimension != 0) continue;
-    std::vector<End> ends;
-    find(complex, v, ends);
-    for (const auto& [curve, end] : ends) tips_[curve][end] = 1;
-    if (!ends.empty()) corners.emplace_back(complex.vertices[v].feature.feature, std::move(ends));
+    Corner corner = find(complex, v);
+    for (const auto& [curve, end] : corner.ends) tips_[curve][end] = 1;
+    if (!corner.ends.empty()) corners.push_back(std::move(corner));
   }
   std::vector<double> lengths;
   lengths.reserve(corners.size());
-  for (const auto& [vertex, ends] : corners)
-    lengths.push_back(tip_length(plc, paths, sizes, tolerance, vertex, ends));
+  for (const Corner& corner : corners) lengths.push_back(tip_length(plc, paths, sizes, limits, corner));
   for (std::size_t i = 0; i < corners.size(); ++i)
-    for (const auto& [curve, end] : corners[i].second) tips_[curve][end] = lengths[i];
+    for (const auto& [curve, end] : corners[i].ends) tips_[curve][end] = lengths[i];
 }
 
-void SharpCorners::find(const SurfaceComplex& complex, Index vertex, std::vector<End>& ends) const {
+SharpCorners::Corner SharpCorners::find(const SurfaceComplex& complex, Index vertex) const {
+  Corner corner{complex.vertices[vertex].feature.feature, {}, {}};
   std::vector<Index> seen;
   for (const Index t : complex.vertices[vertex].triangles) {
     if (std::find(seen.begin(), seen.end(), t) != seen.end()) continue;
     const Fan fan = fan_from(complex, vertex, t, seen);
     if (fan.angle >= sharp || fan.edges.size() != 2 || fan.edges[0] == fan.edges[1]) continue;
     for (const Index edge : fan.edges)
-      ends.push_back({complex.edges[edge].curve, end_of(complex.edges[edge], vertex)});
+      corner.ends.push_back({complex.edges[edge].curve, end_of(complex.edges[edge], vertex)});
+    corner.patches.push_back(complex.triangles[t].patch);
   }
+  return corner;
 }
 
 /// Returns a length for tips that is as long as the sizes permit, and that leaves no much shorter edge behind
-/// the tip.
+/// the tip. Its chords may cross none but those of the curves in the corner, which its triangle closes.
 double SharpCorners::tip_length(const Plc& plc, const CurvePaths& paths, const SurfaceSizes& sizes,
-                                const SurfaceTolerance& tolerance, Index vertex,
-                                const std::vector<End>& ends) const {
+                                const ChordLimits& limits, const Corner& corner) const {
   constexpr unsigned most_steps = 40;
   constexpr double least_rest = 0.4, same = 1e-6;
-  double tip = sizes.at_vertex(vertex);
+  double tip = sizes.at_vertex(corner.vertex);
+  const SagLimit limit = [&](Index point) { return limits.at_point(point, corner.patches); };
   const auto divide = [&](const End& end) {
     const double length = paths.length(end.curve), rest = length - tip;
     const double most = tips_[end.curve][0] > 0 && tips_[end.curve][1] > 0
@@ -99,11 +100,11 @@ double SharpCorners::tip_length(const Plc& plc, const CurvePaths& paths, const S
     if (tip > most * (1 + same)) return tip = most, true;
     if (rest > same * length && rest < least_rest * tip) return tip = length / 2, true;
     const double from = end.end == 0 ? 0 : rest;
-    if (sag_between(plc, paths, tolerance, end.curve, from, from + tip) > 1) return tip /= 2, true;
+    if (sag_between(plc, paths, limit, end.curve, from, from + tip) > 1) return tip /= 2, true;
     return false;
   };
   for (unsigned step = 0; step < most_steps; ++step)
-    if (std::none_of(ends.begin(), ends.end(), divide)) break;
+    if (std::none_of(corner.ends.begin(), corner.ends.end(), divide)) break;
   return tip;
 }
 

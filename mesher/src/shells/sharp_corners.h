@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "collarmesh/surface_tolerance.h"
+#include "shells/chord_limits.h"
 #include "shells/surface_complex.h"
 #include "shells/surface_sizes.h"
 
@@ -16,7 +16,7 @@ class SharpCorners {
  public:
   /// Finds the corners. `complex` has triangles on the patches of `plc`. Cost: linear.
   SharpCorners(const SurfaceComplex& complex, const Plc& plc, const CurvePaths& paths,
-               const SurfaceSizes& sizes, const SurfaceTolerance& tolerance);
+               const SurfaceSizes& sizes, const ChordLimits& limits);
 
   /// Returns the lengths of the first and of the last edge of a curve; 0 if that end is not at a sharp
   /// corner.
@@ -29,9 +29,14 @@ class SharpCorners {
     Index curve;
     unsigned end;  // 0: the beginning of the curve, 1: its end
   };
-  void find(const SurfaceComplex& complex, Index vertex, std::vector<End>& ends) const;
+  struct Corner {
+    Index vertex;                // of the input
+    std::vector<End> ends;       // of the curves of its sharp angles
+    std::vector<Index> patches;  // with these angles
+  };
+  Corner find(const SurfaceComplex& complex, Index vertex) const;
   double tip_length(const Plc& plc, const CurvePaths& paths, const SurfaceSizes& sizes,
-                    const SurfaceTolerance& tolerance, Index vertex, const std::vector<End>& ends) const;
+                    const ChordLimits& limits, const Corner& corner) const;
 
   std::vector<std::array<double, 2>> tips_;
 };

@@ -35,14 +35,26 @@ class SurfaceEditor {
     double longest;      ///< longest new edge, relative to what the options ask for
     double least_shape;  ///< least shape of the new triangles
   };
+  /// A triangle that does not exist yet.
+  struct Created {
+    std::array<Index, 3> corners;
+    Index patch;
+  };
+  /// Triangles in place of those around a vertex.
+  struct Filling {
+    std::vector<Created> triangles;
+    double least_shape = INFINITY;
+  };
 
   /// Replaces the edge ab inside a patch by the other diagonal, if the least shape increases.
   bool flip(Index a, Index b);
   /// Contracts the edge to its vertex `to`. Returns false if that is not possible.
   bool contract(Index from, Index to, const Contraction& rule);
-  /// Removes a vertex and puts the triangles there whose least shape is largest. Returns false if that is not
+  /// Returns the triangles whose least shape is largest if a vertex is removed; nothing if that is not
   /// possible.
-  bool remove(Index vertex, const Removal& rule);
+  std::optional<Filling> filling_without(Index vertex, const Removal& rule) const;
+  /// Removes a vertex. `filling`: what filling_without returned for it; nothing has changed since then.
+  void remove(Index vertex, const Filling& filling) { replace_vertex(vertex, filling.triangles); }
   /// A vertex before its removal, with what surrounds it.
   struct Surroundings {
     Index vertex = none;
@@ -118,11 +130,6 @@ class SurfaceEditor {
   }
 
  private:
-  struct Created {
-    std::array<Index, 3> corners;
-    Index patch;
-  };
-
   bool fit(std::span<const Created> created, std::span<const Index> removed, Index centre) const;
   PatchSurfaces::Fit misfit_around(Index vertex) const;
   PatchSurfaces::Fit worst_fit(std::span<const Index> triangles) const;

@@ -123,30 +123,34 @@ bool SurfaceEditor::chord_permits(Index vertex, std::span<const Hole> holes, con
   return complex_.triangles_at(a, b).size() == 2 * flat;
 }
 
-bool SurfaceEditor::remove(Index vertex, const Removal& rule) {
+std::optional<SurfaceEditor::Filling> SurfaceEditor::filling_without(Index vertex,
+                                                                     const Removal& rule) const {
   const auto& v = complex_.vertices[vertex];
   if (v.feature.dimension == 0 || v.triangles.size() > most_triangles_removed || ends_tip(vertex))
-    return false;
+    return std::nullopt;
   const auto holes = holes_around(vertex);
-  if (!holes) return false;
+  if (!holes) return std::nullopt;
   if (v.feature.dimension == 1 ? !chord_permits(vertex, *holes, rule) : (*holes)[0].border.size() < 3)
-    return false;
-  std::vector<Created> created;
+    return std::nullopt;
+  Filling filling;
+  std::vector<Created>& created = filling.triangles;
   std::vector<std::size_t> first{0};
   for (const Hole& hole : *holes) {
-    if (!fill(hole, rule, created)) return false;
+    if (!fill(hole, rule, created)) return std::nullopt;
     first.push_back(created.size());
   }
   const std::span<const Created> all(created);
   for (std::size_t i = 0; i < holes->size(); ++i)
-    if (!filling_fits(vertex, (*holes)[i], all.subspan(first[i], first[i + 1] - first[i]))) return false;
+    if (!filling_fits(vertex, (*holes)[i], all.subspan(first[i], first[i + 1] - first[i])))
+      return std::nullopt;
   const auto exists = [&](const Created& t) {
     return std::ranges::any_of(complex_.triangles_at(t.corners[0], t.corners[1]),
                                [&](Index other) { return complex_.triangles[other].has(t.corners[2]); });
   };
-  if (std::ranges::any_of(created, exists)) return false;
-  replace_vertex(vertex, created);
-  return true;
+  if (std::ranges::any_of(created, exists)) return std::nullopt;
+  for (const Created& t : created)
+    filling.least_shape = std::min(filling.least_shape, shape_of(complex_.corners(t.corners)));
+  return filling;
 }
 
 SurfaceEditor::Surroundings SurfaceEditor::surroundings(Index vertex) const {

@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "shells/chord_limits.h"
 #include "shells/curve_division.h"
 #include "shells/sharp_corners.h"
 #include "shells/vertex_removal.h"
@@ -86,28 +87,12 @@ void SurfaceMesher::take_asked_sizes(const std::vector<std::pair<Index, double>>
   grade(complex_, sizes_.gradation(), &SurfaceComplex::Vertex::asked);
 }
 
-/// Returns the allowed distance of chords from each point of the complex: the tolerance or, where curves are
-/// near each other, so much less that their edges do not cross.
-std::vector<double> SurfaceMesher::sag_limits() const {
-  constexpr double share = 0.1, least = 1e-3;  // relative to the width, and to the tolerance
-  std::vector<double> limits(plc_.points.size());
-  for (Index p = 0; p < limits.size(); ++p) limits[p] = tolerance_.at_point(p);
-  for_narrow_triangles(complex_, [&](const NarrowTriangle& narrow) {
-    for (const Index v : complex_.triangles[narrow.triangle].corners) {
-      const Index p = point_of_[v];
-      const double limit = std::max(share * narrow.width, least * tolerance_.at_point(p));
-      limits[p] = std::min(limits[p], limit);
-    }
-  });
-  return limits;
-}
-
 /// Inserts vertices where the curve is divided. `edges` are the curve's edges in order.
 void SurfaceMesher::divide_curve_at(Index curve, std::vector<Index>& edges, const std::array<double, 2>& tips,
-                                    const std::vector<double>& limits) {
+                                    const ChordLimits& limits) {
   constexpr double same = 1e-6;
   const std::vector<double> places = divide_curve(
-      plc_, paths_, [&](Index p) { return limits[p]; }, sizes_, curve, tips);
+      plc_, paths_, [&](Index p) { return limits.at_point(p); }, sizes_, curve, tips);
   std::size_t next = 0;
   for (const Index first : edges) {
     Index edge = first;
@@ -132,7 +117,7 @@ void SurfaceMesher::divide_curve_at(Index curve, std::vector<Index>& edges, cons
 
 void SurfaceMesher::divide_curves(const SharpCorners& corners) {
   kept_.assign(complex_.vertices.size(), false);
-  const std::vector<double> limits = sag_limits();
+  const ChordLimits limits(complex_, plc_, point_of_, tolerance_);
   std::vector<std::vector<Index>> edges(plc_.curves.size());
   for (Index e = 0; e < complex_.edges.size(); ++e) edges[complex_.edges[e].curve].push_back(e);
   for (Index curve = 0; curve < plc_.curves.size(); ++curve)
@@ -265,7 +250,8 @@ void SurfaceMesher::run() {
   constexpr unsigned rounds = 4;
   constexpr double any_shape = 2;
   take_complex();
-  const SharpCorners corners(complex_, plc_, paths_, sizes_, tolerance_);
+  const SharpCorners corners(complex_, plc_, paths_, sizes_,
+                             ChordLimits(complex_, plc_, point_of_, tolerance_));
   flip_all();
   divide_curves(corners);
   contract_on_curves();

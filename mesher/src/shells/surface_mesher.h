@@ -14,6 +14,7 @@
 
 namespace collarmesh::shells {
 
+class ChordLimits;
 class SharpCorners;
 
 /// Meshes the patches of a complex in steps. Makes the triangles of the complex editable; divides curves by
@@ -43,9 +44,8 @@ class SurfaceMesher {
   void take_complex();
   void take_asked_sizes(const std::vector<std::pair<Index, double>>& place_on_curve);
   void divide_curves(const SharpCorners& corners);
-  std::vector<double> sag_limits() const;
   void divide_curve_at(Index curve, std::vector<Index>& edges, const std::array<double, 2>& tips,
-                       const std::vector<double>& limits);
+                       const ChordLimits& limits);
   void contract_on_curves();
   void divide_long();
   void contract_short(double least_shape);

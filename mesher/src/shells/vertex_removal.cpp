@@ -62,12 +62,10 @@ bool VertexRemoval::acceptable(const SurfaceEditor::Surroundings& before, double
 
 /// Removes a vertex and moves its former neighbours to places where the shapes are good; puts all back if
 /// they are not good there.
-bool VertexRemoval::remove_and_move(Index vertex, double least_shape) {
-  constexpr double least_at_first = 0.6;  // relative to the least shape afterwards
+bool VertexRemoval::remove_and_move(Index vertex, const SurfaceEditor::Filling& filling, double least_shape) {
   constexpr unsigned rounds = 3;
   const SurfaceEditor::Surroundings before = editor_.surroundings(vertex);
-  if (!editor_.remove(vertex, {.longest = longest, .least_shape = least_at_first * least_shape}))
-    return false;
+  editor_.remove(vertex, filling);
   for (unsigned round = 0; round < rounds; ++round) {
     bool moved = false;
     for (const auto& n : before.neighbours)
@@ -81,9 +79,14 @@ bool VertexRemoval::remove_and_move(Index vertex, double least_shape) {
 }
 
 bool VertexRemoval::remove(Index vertex) {
+  constexpr double least_before_moves = 0.6;  // relative to the least shape afterwards
   const double least_shape = least_shape_beside(vertex);
-  return editor_.remove(vertex, {.longest = longest, .least_shape = least_shape}) ||
-         remove_and_move(vertex, least_shape);
+  const auto filling =
+      editor_.filling_without(vertex, {.longest = longest, .least_shape = least_before_moves * least_shape});
+  if (!filling) return false;
+  if (filling->least_shape < least_shape) return remove_and_move(vertex, *filling, least_shape);
+  editor_.remove(vertex, *filling);
+  return true;
 }
 
 std::size_t VertexRemoval::run() {

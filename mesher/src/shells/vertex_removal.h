@@ -24,7 +24,7 @@ class VertexRemoval {
   std::vector<Index> candidates();
   double least_shape_beside(Index vertex) const;
   bool remove(Index vertex);
-  bool remove_and_move(Index vertex, double least_shape);
+  bool remove_and_move(Index vertex, const SurfaceEditor::Filling& filling, double least_shape);
   bool acceptable(const SurfaceEditor::Surroundings& before, double least_shape) const;
 
   const SurfaceComplex& complex_;
