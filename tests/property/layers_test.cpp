@@ -382,6 +382,32 @@ TEST(Layers, ThickerThanThePartAreLower) {
   EXPECT_GT(run.layers->coverage(), 0.8);
 }
 
+TEST(Layers, ThatCoverLittleAreWarnedOf) {
+  PipelineOptions options = with_layers({"all"});
+  const PipelineResult good = made({box({0, 0, 0}, {1, 1, 1})}, options);
+  EXPECT_TRUE(good.check.warnings.empty());
+  options.mesh.size = 1;
+  const PipelineResult poor = made({box({0, 0, 0}, {5, 5, 0.1})}, options);
+  ASSERT_LT(poor.layers->coverage(), 0.8);
+  ASSERT_FALSE(poor.check.warnings.empty());
+  const std::string& warning = poor.check.warnings.back();
+  for (const char* part : {"layers cover only", "thickness", "count", "size"})
+    EXPECT_NE(warning.find(part), std::string::npos) << warning;
+}
+
+TEST(Layers, AreInTheMeshThatIsJudged) {
+  const PipelineResult run =
+      made({box({0, 0, 0}, {1, 1, 1}), box({1, 0, 0}, {2, 1, 1})}, with_layers({"1:first=0.02,count=2"}));
+  const CheckReport& report = run.check;
+  EXPECT_EQ(report.tets, run.result.mesh.tets.size());
+  EXPECT_EQ(report.faces, run.result.mesh.faces.size());
+  ASSERT_EQ(report.region_volumes.size(), 3U);
+  for (const Index region : {1U, 2U}) EXPECT_NEAR(report.region_volumes[region], 1, 1e-9);
+  ASSERT_EQ(report.of_mesh.areas.size(), report.of_input.areas.size());
+  for (std::size_t p = 0; p < report.of_mesh.areas.size(); ++p)
+    EXPECT_NEAR(report.of_mesh.areas[p], report.of_input.areas[p], 1e-9);
+}
+
 TEST(Layers, MuchThickerThanThePartAreLowerToo) {
   const PipelineResult run = made({box({0, 0, 0}, {1, 1, 1})}, with_layers({"all:thickness=100"}));
   EXPECT_NEAR(volume_of(run.result.mesh), 1, 1e-9);
