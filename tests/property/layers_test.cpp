@@ -356,6 +356,21 @@ TEST(Layers, RefuseWallsThatAreNone) {
   const std::vector<PolygonSoup> two{box({0, 0, 0}, {1, 1, 1}), box({2, 0, 0}, {3, 1, 1})};
   EXPECT_NE(error_of({"1:region=2"}, two).find("is not beside region '2'"), std::string::npos);
   EXPECT_NE(error_of({"all:first=0.1,thickness=1"}).find("leave one out"), std::string::npos);
+  EXPECT_NE(error_of({"all:count=3", "all:count=5"}).find("gets layers twice"), std::string::npos);
+  EXPECT_NE(error_of({"all:region=1", "all:count=5"}, two).find("gets layers twice"), std::string::npos);
+  EXPECT_NE(error_of({"1,2,3,4,5,6", "all:count=5"}).find("'all:count=5' puts layers on no face"),
+            std::string::npos);
+}
+
+TEST(Layers, RefuseFirstLayersThinnerThanCoordinatesTell) {
+  for (const char* wall : {"all:growth=10,count=1000", "all:growth=10,count=20", "all:first=1e-30",
+                           "all:thickness=1e-11", "all:thickness=0.1,growth=2,count=60"}) {
+    const std::string error = error_of({wall});
+    EXPECT_NE(error.find(wall), std::string::npos) << wall << ": " << error;
+    for (const char* setting : {"first height", "growth", "count"})
+      EXPECT_NE(error.find(setting), std::string::npos) << error;
+  }
+  made({box({0, 0, 0}, {1, 1, 1})}, with_layers({"all:first=1e-8"}));
 }
 
 TEST(Layers, ThickerThanThePartAreLower) {
@@ -365,6 +380,63 @@ TEST(Layers, ThickerThanThePartAreLower) {
   EXPECT_NEAR(volume_of(run.result.mesh), 0.2, 1e-9);
   ASSERT_FALSE(run.layers->reductions.empty());
   EXPECT_GT(run.layers->coverage(), 0.8);
+}
+
+TEST(Layers, ThatCoverLittleAreWarnedOf) {
+  PipelineOptions options = with_layers({"all"});
+  const PipelineResult good = made({box({0, 0, 0}, {1, 1, 1})}, options);
+  EXPECT_TRUE(good.check.warnings.empty());
+  options.mesh.size = 1;
+  const PipelineResult poor = made({box({0, 0, 0}, {5, 5, 0.1})}, options);
+  ASSERT_LT(poor.layers->coverage(), 0.8);
+  ASSERT_FALSE(poor.check.warnings.empty());
+  const std::string& warning = poor.check.warnings.back();
+  for (const char* part : {"layers cover only", "thickness", "count", "size"})
+    EXPECT_NE(warning.find(part), std::string::npos) << warning;
+}
+
+TEST(Layers, AreInTheMeshThatIsJudged) {
+  const PipelineResult run =
+      made({box({0, 0, 0}, {1, 1, 1}), box({1, 0, 0}, {2, 1, 1})}, with_layers({"1:first=0.02,count=2"}));
+  const CheckReport& report = run.check;
+  EXPECT_EQ(report.tets, run.result.mesh.tets.size());
+  EXPECT_EQ(report.faces, run.result.mesh.faces.size());
+  ASSERT_EQ(report.region_volumes.size(), 3U);
+  for (const Index region : {1U, 2U}) EXPECT_NEAR(report.region_volumes[region], 1, 1e-9);
+  ASSERT_EQ(report.of_mesh.areas.size(), report.of_input.areas.size());
+  for (std::size_t p = 0; p < report.of_mesh.areas.size(); ++p)
+    EXPECT_NEAR(report.of_mesh.areas[p], report.of_input.areas[p], 1e-9);
+}
+
+TEST(Layers, MuchThickerThanThePartAreLowerToo) {
+  const PipelineResult run = made({box({0, 0, 0}, {1, 1, 1})}, with_layers({"all:thickness=100"}));
+  EXPECT_NEAR(volume_of(run.result.mesh), 1, 1e-9);
+  EXPECT_GT(run.layers->coverage(), 0.8);
+}
+
+TEST(Layers, OfNeighboursDifferInHeightByAFactorOfTwo) {
+  for (const double degrees : {12.0, 20.0, 45.0}) {
+    const PipelineResult run = made({wedge(degrees)}, with_layers({"all"}));
+    const TetMesh& mesh = run.result.mesh;
+    std::vector<Vector> way(mesh.points.size());  // by vertex of the wall: to the top of its layers
+    for (Index v = 0; v < run.layers->walls.size(); ++v)
+      if (const Index wall = run.layers->walls[v]; wall != none && wall != v)
+        if (const Vector up = mesh.points[v] - mesh.points[wall]; norm(up) > norm(way[wall])) way[wall] = up;
+    std::vector<double> height(mesh.points.size(), INFINITY);
+    for (const auto& face : mesh.faces) {
+      const auto& [a, b, c] = face;
+      const Vector normal = cross(mesh.points[b] - mesh.points[a], mesh.points[c] - mesh.points[a]);
+      for (const Index v : face)
+        height[v] = std::min(height[v], std::fabs(dot(way[v], normal)) / norm(normal));
+    }
+    double largest = 1;
+    for (const auto& face : mesh.faces)
+      for (const Index v : face)
+        for (const Index w : face)
+          if (height[v] > 0 && height[w] > 0) largest = std::max(largest, height[v] / height[w]);
+    EXPECT_LE(largest, 2 + 1e-6) << degrees;
+    EXPECT_NEAR(largest, run.layers->largest_step, 1e-6) << degrees;
+  }
 }
 
 }  // namespace

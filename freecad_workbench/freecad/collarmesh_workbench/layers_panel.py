@@ -1,6 +1,7 @@
 """The panel of boundary layers: their faces, heights and number. Changes take effect at once."""
 
 import contextlib
+import math
 import re
 
 import FreeCADGui
@@ -103,7 +104,7 @@ class LayersPanel(EditPanel):
 
     def _show_note(self):
         """Shows which height follows from the others, if it is known."""
-        relative = sum(self.object.Growth**k for k in range(self.object.Count))
+        relative = relative_thickness(self.object.Growth, self.object.Count)
         first, thickness = self.object.FirstHeight.Value, self.object.Thickness.Value
         self.first.widget.setEnabled(thickness == 0)
         text = ""
@@ -153,6 +154,14 @@ class LayersPanel(EditPanel):
         names += selected_names(self.part)
         self._set_references(names)
         self.fill()
+
+
+def relative_thickness(growth, count):
+    """Returns the height of all layers relative to the first one; infinite beyond the largest number."""
+    try:
+        return count if growth == 1 else (growth**count - 1) / (growth - 1)
+    except OverflowError:
+        return math.inf
 
 
 def selected_names(part):

@@ -14,6 +14,7 @@
 #include "check/findings.h"
 #include "collarmesh/curved_tet.h"
 #include "collarmesh/plc_builder.h"
+#include "common/cell_shapes.h"
 #include "common/layer_jacobians.h"
 #include "common/tet_sides.h"
 #include "tolerance/forced_edges.h"
@@ -56,14 +57,7 @@ CellSide side_of(std::array<Index, 4> corners, Index cell, Kind kind) {
   return {corners, cell, kind, turned};
 }
 
-constexpr std::array<std::array<std::uint8_t, 2>, 6> edges_of_tet{
-    {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
-constexpr std::array<std::array<std::uint8_t, 2>, 9> edges_of_prism{
-    {{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}}};
-constexpr std::array<std::array<std::uint8_t, 2>, 8> edges_of_pyramid{
-    {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 4}, {1, 4}, {2, 4}, {3, 4}}};
-constexpr std::array<std::array<std::uint8_t, 2>, 3> edges_of_triangle{{{0, 1}, {1, 2}, {2, 0}}};
-constexpr std::array<std::array<std::uint8_t, 2>, 4> edges_of_quad{{{0, 1}, {1, 2}, {2, 3}, {3, 0}}};
+constexpr std::array<EdgePlaces, 3> triangle_edges{{{0, 1}, {1, 2}, {2, 0}}};
 
 class LayerCheck {
  public:
@@ -286,11 +280,11 @@ class LayerCheck {
           all.push_back({{std::min(a, b), std::max(a, b)}, nodes[c][k]});
         }
     };
-    add(mesh_.tets, mesh_.tet_mid_nodes, edges_of_tet);
-    add(mesh_.faces, mesh_.face_mid_nodes, edges_of_triangle);
-    add(layers_.prisms, layers_.prism_mid_nodes, edges_of_prism);
-    add(layers_.pyramids, layers_.pyramid_mid_nodes, edges_of_pyramid);
-    add(layers_.quads, layers_.quad_mid_nodes, edges_of_quad);
+    add(mesh_.tets, mesh_.tet_mid_nodes, cell_shapes::tet_edges);
+    add(mesh_.faces, mesh_.face_mid_nodes, triangle_edges);
+    add(layers_.prisms, layers_.prism_mid_nodes, cell_shapes::prism_edges);
+    add(layers_.pyramids, layers_.pyramid_mid_nodes, cell_shapes::pyramid_edges);
+    add(layers_.quads, layers_.quad_mid_nodes, cell_shapes::quadrangle_edges);
     std::sort(all.begin(), all.end(), [](const MidNode& a, const MidNode& b) {
       return std::tie(a.ends, a.node) < std::tie(b.ends, b.node);
     });

@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "collarmesh/curved_tet.h"
+#include "common/cell_shapes.h"
 #include "common/edge_key.h"
 #include "common/layer_jacobians.h"
 #include "common/sorted.h"
@@ -16,14 +17,7 @@ namespace collarmesh::layering {
 
 namespace {
 
-constexpr std::array<std::array<std::uint8_t, 2>, 6> edges_of_tet{
-    {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
-constexpr std::array<std::array<std::uint8_t, 2>, 9> edges_of_prism{
-    {{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}}};
-constexpr std::array<std::array<std::uint8_t, 2>, 8> edges_of_pyramid{
-    {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 4}, {1, 4}, {2, 4}, {3, 4}}};
-constexpr std::array<std::array<std::uint8_t, 2>, 3> edges_of_triangle{{{0, 1}, {1, 2}, {2, 0}}};
-constexpr std::array<std::array<std::uint8_t, 2>, 4> edges_of_quad{{{0, 1}, {1, 2}, {2, 3}, {3, 0}}};
+constexpr std::array<EdgePlaces, 3> triangle_edges{{{0, 1}, {1, 2}, {2, 0}}};
 
 // Bulges shrink by this factor, so often at most, where cells fold; then they are left out.
 constexpr double shrinking = 0.5;
@@ -96,8 +90,9 @@ class Curving {
     core_nodes_ = std::move(core.tet_mid_nodes);
     for (std::size_t t = 0; t < core.tets.size(); ++t)
       for (unsigned k = 0; k < 6; ++k)
-        nodes_.emplace(edge_key(core.tets[t][edges_of_tet[k][0]], core.tets[t][edges_of_tet[k][1]]),
-                       core_nodes_[t][k]);
+        nodes_.emplace(
+            edge_key(core.tets[t][cell_shapes::tet_edges[k][0]], core.tets[t][cell_shapes::tet_edges[k][1]]),
+            core_nodes_[t][k]);
     first_of_layers_ = static_cast<Index>(mesh_.points.size());
     return true;
   }
@@ -140,11 +135,11 @@ class Curving {
 
   void give_nodes() {
     LayerCells& layers = mesh_.layers;
-    give(mesh_.tets, mesh_.tet_mid_nodes, edges_of_tet);
-    give(layers.prisms, layers.prism_mid_nodes, edges_of_prism);
-    give(layers.pyramids, layers.pyramid_mid_nodes, edges_of_pyramid);
-    give(mesh_.faces, mesh_.face_mid_nodes, edges_of_triangle);
-    give(layers.quads, layers.quad_mid_nodes, edges_of_quad);
+    give(mesh_.tets, mesh_.tet_mid_nodes, cell_shapes::tet_edges);
+    give(layers.prisms, layers.prism_mid_nodes, cell_shapes::prism_edges);
+    give(layers.pyramids, layers.pyramid_mid_nodes, cell_shapes::pyramid_edges);
+    give(mesh_.faces, mesh_.face_mid_nodes, triangle_edges);
+    give(layers.quads, layers.quad_mid_nodes, cell_shapes::quadrangle_edges);
     mesh_.edge_mid_nodes.clear();
     for (Index e = 0; e < mesh_.edges.size(); ++e) {
       const Index node = node_of(mesh_.edges[e][0], mesh_.edges[e][1]);
@@ -218,15 +213,15 @@ class Curving {
     const LayerCells& layers = mesh_.layers;
     for (Index c = 0; c < layers.prisms.size(); ++c)
       if (!(least_jacobian_at_points(points_of(layers.prisms[c]), points_of(layers.prism_mid_nodes[c])) > 0))
-        note(layers.prisms[c], edges_of_prism);
+        note(layers.prisms[c], cell_shapes::prism_edges);
     for (Index c = 0; c < layers.pyramids.size(); ++c)
       if (!(least_jacobian_at_points(points_of(layers.pyramids[c]), points_of(layers.pyramid_mid_nodes[c])) >
             0))
-        note(layers.pyramids[c], edges_of_pyramid);
+        note(layers.pyramids[c], cell_shapes::pyramid_edges);
     for (Index t = 0; t < mesh_.tets.size(); ++t)
-      if (!in_core(t) && !jacobian_exceeds(curved_tet(mesh_, t))) note(mesh_.tets[t], edges_of_tet);
+      if (!in_core(t) && !jacobian_exceeds(curved_tet(mesh_, t))) note(mesh_.tets[t], cell_shapes::tet_edges);
     for (const Index t : tets_at_wall_)
-      if (!jacobian_exceeds(curved_tet(mesh_, t))) note(mesh_.tets[t], edges_of_tet);
+      if (!jacobian_exceeds(curved_tet(mesh_, t))) note(mesh_.tets[t], cell_shapes::tet_edges);
     std::sort(at.begin(), at.end());
     at.erase(std::unique(at.begin(), at.end()), at.end());
     for (const std::uint64_t key : at) {

@@ -23,7 +23,7 @@ constexpr double of_shared_gap = 0.3, of_gap = 0.5;
 // The least Jacobian in a stack, relative to the largest one.
 constexpr double least_jacobian_share = 0.15;
 constexpr double largest_step_of_neighbours = 2, rounding = 1e-9;
-// Lower stacks than this share of what is asked are left out.
+// Lower stacks than this share of what is asked, or of what gaps have room for, are left out.
 constexpr double least_share = 0.01;
 // The part of the layers' height above which edges of the wall may not bulge.
 constexpr double most_bulging = 0.4;
@@ -53,7 +53,7 @@ std::string text_of(Cause cause) {
       return "the faces there meet so sharply that no steep direction leads away from all";
     case Cause::patch: return "a curved face without layers would be left";
     case Cause::gap: return "the gap to the opposite face is narrow";
-    case Cause::fold: return "cells would fold, as the surface is curved";
+    case Cause::fold: return "cells would fold, at a sharp edge or a curved wall";
     case Cause::core: return "tetrahedra beside the layers would miss their bounds";
     case Cause::step: return "neighbours are lower";
     default: return "";
@@ -65,6 +65,7 @@ Heights::Heights(const Front& front, const TetMesh& mesh, const Plc& plc, const 
   const std::size_t n = front.nodes.size();
   length_.assign(n, 0);
   asked_.assign(n, 0);
+  possible_.assign(n, 0);
   asked_height_.assign(n, 0);
   cause_.assign(n, Cause::none);
   walls_at_.assign(n, nullptr);
@@ -92,11 +93,11 @@ void Heights::ask() {
     }
     asked_height_[n] = height;
     if (node.blocked || !alike) {
-      asked_[n] = height;
+      asked_[n] = possible_[n] = height;
       lower(n, 0, Cause::ends);
       continue;
     }
-    asked_[n] = length_[n] = height / std::max(node.cosine, flat);
+    asked_[n] = possible_[n] = length_[n] = height / std::max(node.cosine, flat);
     if (node.cosine < flat) cause_[n] = Cause::direction;
     if (node.cosine < flattest) lower(n, 0, Cause::direction);
   }
@@ -116,7 +117,7 @@ Point Heights::place(Index node, double distance) const {
 }
 
 void Heights::lower(Index node, double to, Cause cause) {
-  if (to < least_share * asked_[node]) to = 0;
+  if (to < least_share * possible_[node]) to = 0;
   if (to >= length_[node] && to > 0) return;
   if (cause_[node] != Cause::none && length_[node] == 0) return;
   length_[node] = to;
@@ -128,13 +129,16 @@ void Heights::fit_gaps() {
   for (std::size_t f = 0; f < boxes.size(); ++f)
     for (const Index v : mesh_.faces[f]) boxes[f].add(mesh_.points[v]);
   const BoxTree tree(boxes);
+  Box all;
+  for (const Box& box : boxes) all.add(box);
+  const double farthest = all.diagonal() * (1 + rounding);
   std::vector<double> room(size(), INFINITY);
   parallel_for_ranges(size(), nodes_at_once, [&](std::size_t first, std::size_t last) {
     for (auto n = static_cast<Index>(first); n < last; ++n) {
       if (length_[n] == 0) continue;
       const Index vertex = front_.nodes[n].vertex;
       const Point& from = mesh_.points[vertex];
-      const double reach = length_[n] / of_shared_gap;
+      const double reach = std::min(length_[n] / of_shared_gap, farthest);
       tree.for_each_near_segment(from, place(n, reach), [&](Index f) {
         const auto& [a, b, c] = mesh_.faces[f];
         if (a == vertex || b == vertex || c == vertex) return;
@@ -146,7 +150,10 @@ void Heights::fit_gaps() {
     }
   });
   for (Index n = 0; n < size(); ++n)
-    if (room[n] < length_[n]) lower(n, room[n], Cause::gap);
+    if (room[n] < length_[n]) {
+      possible_[n] = room[n];
+      lower(n, room[n], Cause::gap);
+    }
 }
 
 void Heights::fit_patches(const improvement::SmoothSurfaces& surfaces, const SurfaceTolerance& tolerance) {
@@ -236,23 +243,23 @@ bool Heights::unfold(bool strictly) {
   return !at.empty();
 }
 
-/// Lowers distances to twice those of neighbours, lowest first.
+/// Lowers stacks to twice the heights of neighbours, lowest first.
 bool Heights::limit_steps() {
   using Item = std::pair<double, Index>;
   std::priority_queue<Item, std::vector<Item>, std::greater<>> queue;
   for (Index n = 0; n < size(); ++n)
-    if (length_[n] > 0) queue.emplace(length_[n], n);
+    if (length_[n] > 0) queue.emplace(height(n), n);
   bool any = false;
   while (!queue.empty()) {
-    const auto [length, n] = queue.top();
+    const auto [low, n] = queue.top();
     queue.pop();
-    if (length != length_[n]) continue;
-    const double most = largest_step_of_neighbours * length * (1 - rounding);
+    if (low != height(n)) continue;
+    const double most = largest_step_of_neighbours * low * (1 - rounding);
     for (const Index other : front_.neighbours[n]) {
-      if (length_[other] <= most * (1 + 0.5 * rounding)) continue;
-      lower(other, most, Cause::step);
+      if (height(other) <= most * (1 + 0.5 * rounding)) continue;
+      lower(other, most / front_.nodes[other].cosine, Cause::step);
       any = true;
-      if (length_[other] > 0) queue.emplace(length_[other], other);
+      if (length_[other] > 0) queue.emplace(height(other), other);
     }
   }
   return any;
@@ -271,7 +278,7 @@ double Heights::largest_step() const {
   double largest = 1;
   for (Index n = 0; n < size(); ++n)
     for (const Index other : front_.neighbours[n])
-      if (length_[n] > 0 && length_[other] > 0) largest = std::max(largest, length_[n] / length_[other]);
+      if (length_[n] > 0 && length_[other] > 0) largest = std::max(largest, height(n) / height(other));
   return largest;
 }
 

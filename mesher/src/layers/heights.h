@@ -50,10 +50,10 @@ class Heights {
   void fit_patches(const improvement::SmoothSurfaces& surfaces, const SurfaceTolerance& tolerance);
   /// Lowers distances where curved edges of the wall would rise above a part of the layers.
   void fit_bulges(const Bulges& bulges);
-  /// Lowers distances where cells would fold, and where neighbours have less than half. Returns whether it
-  /// lowered any.
+  /// Lowers distances where cells would fold, and where neighbours have less than half the height. Returns
+  /// whether it lowered any.
   bool settle();
-  /// Returns the largest ratio of neighbours' distances.
+  /// Returns the largest ratio of neighbours' heights.
   double largest_step() const;
 
  private:
@@ -67,6 +67,7 @@ class Heights {
   const Plc& plc_;
   const WallChoice& walls_;
   std::vector<double> length_, asked_, asked_height_;
+  std::vector<double> possible_;  // the distance asked for, or that for which gaps have room
   std::vector<Cause> cause_;
   std::vector<const WallLayers*> walls_at_;
 };

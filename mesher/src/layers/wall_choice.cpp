@@ -110,9 +110,33 @@ WallChoice::WallChoice(const LayerOptions& options, const Plc& plc) : wall_of_(p
     walls_.push_back(std::move(layers));
     only_in_.push_back(std::move(region));
   }
+  require_heights(options, plc);
   find_regions(plc);
   put_on_named(plc);
-  put_on_all(plc);
+  put_on_all(options, plc);
+}
+
+/// Throws OptionError where layers would be too thin for the coordinates to tell their sides apart, however
+/// high all are together: at most as the shape.
+void WallChoice::require_heights(const LayerOptions& options, const Plc& plc) const {
+  constexpr double least_share_of_shape = 1e-10;
+  Box box;
+  for (const Point& p : plc.points) box.add(p);
+  for (std::size_t w = 0; w < walls_.size(); ++w) {
+    const WallLayers& wall = walls_[w];
+    const double relative = relative_thickness(wall), asked = wall.thickness > 0 ? wall.thickness
+                                                              : wall.first > 0   ? wall.first * relative
+                                                                                 : INFINITY;
+    const double first = std::min(asked, box.diagonal()) / relative,
+                 least = least_share_of_shape * box.diagonal();
+    if (first < least)
+      refuse(
+          options.walls[w],
+          fmt::format("makes the first of {} layers with a growth of {} at most {:.3g} high, too little for "
+                      "a shape of {:.6g}; use a larger first height (at least {:.3g}) or thickness, a "
+                      "smaller growth or a smaller count",
+                      wall.count, wall.growth, first, box.diagonal(), least));
+  }
 }
 
 std::map<std::pair<Index, Index>, unsigned> WallChoice::counts(const Plc& plc) const {
@@ -163,13 +187,24 @@ void WallChoice::put_on_named(const Plc& plc) {
 }
 
 /// Puts layers on the boundaries that no text names.
-void WallChoice::put_on_all(const Plc& plc) {
-  for (Index w = 0; w < walls_.size(); ++w)
-    for (Index p = 0; p < plc.patches.size(); ++p)
-      if (const auto& [behind, front] = plc.patches[p].regions;
-          walls_[w].faces.empty() && (behind == 0) != (front == 0) && wall_of_[p] == none &&
-          lies_in(w, behind == 0 ? front : behind))
-        wall_of_[p] = w;
+void WallChoice::put_on_all(const LayerOptions& options, const Plc& plc) {
+  for (Index w = 0; w < walls_.size(); ++w) {
+    if (!walls_[w].faces.empty()) continue;
+    bool any = false;
+    for (Index p = 0; p < plc.patches.size(); ++p) {
+      const auto& [behind, front] = plc.patches[p].regions;
+      if ((behind == 0) == (front == 0) || !lies_in(w, behind == 0 ? front : behind)) continue;
+      const Index other = wall_of_[p];
+      if (other != none && !walls_[other].faces.empty()) continue;
+      if (other != none)
+        throw OptionError(fmt::format("layers: face {} gets layers twice, by '{}' and '{}'; leave one out",
+                                      plc.patches[p].tag, options.walls[other], options.walls[w]));
+      wall_of_[p] = w;
+      any = true;
+    }
+    if (!any)
+      refuse(options.walls[w], "puts layers on no face: others name all boundaries, or there are none");
+  }
 }
 
 }  // namespace layering

@@ -13,7 +13,8 @@ namespace collarmesh::layering {
 /// The layers that the options ask for, by patch of a complex.
 class WallChoice {
  public:
-  /// Throws OptionError if a wall does not exist or is named twice.
+  /// Throws OptionError if a wall does not exist or gets layers twice, if a text puts layers on none, or if
+  /// first layers would be too thin for the shape's coordinates.
   WallChoice(const LayerOptions& options, const Plc& plc);
 
   bool is_wall(Index patch) const { return patch != none && wall_of_[patch] != none; }
@@ -30,9 +31,10 @@ class WallChoice {
   bool lies_in(Index wall, Index region) const {
     return only_in_[wall].empty() || regions_[wall].contains(region);
   }
+  void require_heights(const LayerOptions& options, const Plc& plc) const;
   void find_regions(const Plc& plc);
   void put_on_named(const Plc& plc);
-  void put_on_all(const Plc& plc);
+  void put_on_all(const LayerOptions& options, const Plc& plc);
 
   std::vector<WallLayers> walls_;
   std::vector<std::string> only_in_;      // by wall: the region that the text names; empty: none

@@ -36,14 +36,14 @@ std::size_t count_misshapen(const MeshJob& job, const TetMesh& mesh) {
 
 void certify(MeshJob& job, const SurfaceTolerance& tolerance) {
   job.control.begin("check", 0.86, job.given.partitions > 0 ? 0.96 : 1);
-  Bounds promised = job.bounds();
-  promised.tolerance = tolerance;
+  job.promised = job.bounds();
+  job.promised.tolerance = tolerance;
   PipelineResult& made = job.made;
   if (made.periodic) periodicity::finish_map(made.result.mesh, *made.periodic);
-  made.check =
-      check(made.result.mesh, *job.plc,
-            {.bounds = promised, .exact = job.options.exact_measures, .threads = job.options.mesh.threads},
-            job.execution());
+  made.check = check(
+      made.result.mesh, *job.plc,
+      {.bounds = job.promised, .exact = job.options.exact_measures, .threads = job.options.mesh.threads},
+      job.execution());
   if (!made.result.mesh.periodic.empty()) checks::check_periodic(made.result.mesh, made.check);
   job.control.stop_if_asked();
 }

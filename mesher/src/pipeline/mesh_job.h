@@ -38,6 +38,7 @@ struct MeshJob {
   /// Sizes and bounds of refinement, coarsening and improvement. They are tighter than those of the finished
   /// mesh if vertices will move onto exact geometry.
   MeshOptions refined_with;
+  Bounds promised;             ///< the bounds that the finished mesh was judged by
   TetMesh refined;             ///< the mesh before coarsening, for periodic faces
   KnownNeighbours neighbours;  ///< neighbours in the refined mesh
 };

@@ -1,8 +1,13 @@
 #include "pipeline/wall_layers.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <map>
 #include <set>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "check/layer_cells.h"
 #include "check/layer_walls.h"
@@ -56,18 +61,41 @@ std::map<Index, double> volume_allowances(const MeshJob& job, const Areas& areas
   return allowed;
 }
 
-/// Measures the tets again. Regions keep the volumes of before, as those of curved prisms are not measured.
-void measure_with_layers(const TetMesh& mesh, MeshMeasures& measures) {
-  MeshMeasures measured = measure_mesh(mesh);
-  measured.region_volumes = std::move(measures.region_volumes);
-  measures = std::move(measured);
+/// Returns a warning if layers cover little; empty otherwise.
+std::string warning_of(const LayersReport& layers) {
+  constexpr double enough = 0.8;
+  if (layers.coverage() >= enough) return {};
+  std::string text = fmt::format("layers cover only {:.1f}% of the walls", 100 * layers.coverage());
+  const auto most = std::max_element(
+      layers.reductions.begin(), layers.reductions.end(),
+      [](const LayersReport::Reduction& a, const LayersReport::Reduction& b) { return a.nodes < b.nodes; });
+  if (most != layers.reductions.end())
+    text += fmt::format(", at {} nodes because {}", most->nodes, most->why);
+  return text + "; use a smaller first height or thickness, a smaller count or a smaller size";
+}
+
+/// Checks all guarantees again. Keeps what the stages before noted.
+void certify_with_layers(MeshJob& job) {
+  job.control.begin("check layers", 0.94, 0.96);
+  CheckReport& made = job.made.check;
+  CheckReport now = check(
+      job.made.result.mesh, *job.plc,
+      {.bounds = job.promised, .exact = job.options.exact_measures, .threads = job.options.mesh.threads},
+      job.execution());
+  std::vector<std::string> notes = std::move(made.notes);
+  for (std::string& note : now.notes)
+    if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(std::move(note));
+  now.notes = std::move(notes);
+  made = std::move(now);
+  if (std::string warning = warning_of(*job.made.layers); !warning.empty())
+    made.warnings.push_back(std::move(warning));
 }
 
 }  // namespace
 
 void add_layers(MeshJob& job) {
   if (!job.given.layers.any()) return;
-  job.control.begin("layers", 0.9, 0.96);
+  job.control.begin("layers", 0.9, 0.94);
   TetMesh& mesh = job.made.result.mesh;
   const auto volumes = checks::volumes_with_layers(mesh);
   const Areas areas = areas_of(mesh);
@@ -78,13 +106,11 @@ void add_layers(MeshJob& job) {
       .exact = job.options.exact, .bounds = job.bounds(), .threads = job.options.mesh.threads};
   job.made.layers = make_layers(mesh, *job.plc, job.options.layers, options, second_order, job.execution());
   if (job.made.layers->cancelled) job.control.stop();
-  checks::check_layer_cells(mesh, job.made.check);
+  certify_with_layers(job);
   checks::check_layer_walls(walls, wall_geometry, mesh, *job.made.layers, job.made.check);
-  checks::check_core_angles(mesh, job.made.layers->walls, *job.plc, options.bounds, job.made.check);
   const SurfaceTolerance tolerance =
       options.bounds.tolerance ? *options.bounds.tolerance : tolerance_of_any_size(*job.plc, options.bounds);
   checks::check_layer_volumes(volumes, mesh, volume_allowances(job, areas, tolerance), job.made.check);
-  measure_with_layers(mesh, job.made.check.measures);
   job.control.stop_if_asked();
 }
 
