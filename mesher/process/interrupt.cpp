@@ -86,7 +86,8 @@ std::string coarser_text() {
   if (stage == "complex")
     return "or try another --repair-tolerance, as facets that intersect in many places take the time, or "
            "--repair wrap";
-  return "or --size for a coarser mesh; `collarmesh mesh` also has --repair wrap, which ignores detail much finer than the size";
+  return "or --size for a coarser mesh; `collarmesh mesh` also has --repair wrap, which ignores detail much "
+         "finer than the size";
 }
 
 Stopped reason_to_stop() {

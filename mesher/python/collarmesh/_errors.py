@@ -35,7 +35,8 @@ def _at_corners(corners: Array, weights: Array, values: Array) -> Array:
 
 def _corners_by_material(mesh: Mesh) -> Array:
     """Returns numbers of the corners of tetrahedra, another one for each material that meets at a point."""
-    materials = numpy.unique(mesh.tet_tag, return_inverse=True)[1] if len(mesh.tet_tag) else numpy.zeros(len(mesh.tets), int)
+    materials = numpy.unique(mesh.tet_tag, return_inverse=True)[1] if len(
+        mesh.tet_tag) else numpy.zeros(len(mesh.tets), int)
     pairs = mesh.tets.astype(numpy.int64) + len(mesh.points) * materials.reshape(-1, 1)
     numbers: Array = numpy.unique(pairs, return_inverse=True)[1].reshape(pairs.shape)
     return numbers
