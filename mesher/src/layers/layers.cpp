@@ -28,7 +28,7 @@ constexpr unsigned most_tries = 9, last_levels = 4;
 constexpr double further_share = 0.25;
 // So often layers are left out where curved cells fold, in ever wider rings; then edges of walls get
 // straighter.
-constexpr unsigned most_refoldings = 3;
+constexpr unsigned most_refoldings = 2;
 
 class LayerMaker {
  public:
