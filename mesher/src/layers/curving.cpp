@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <tuple>
 #include <unordered_map>
 
 #include "collarmesh/curved_tet.h"
@@ -156,16 +157,29 @@ class Curving {
     note_patches(layers.quad_mid_nodes, layers.quad_patch);
   }
 
-  /// Finds the edges of walls between two nodes without layers, which the core has only below a triangle of
-  /// the front, so that it left them straight.
+  /// Finds the edges of walls between two nodes without layers, which the core has: it left them straight
+  /// below triangles of the front, and elsewhere may place their nodes otherwise than before.
   void find_wall_nodes_of_core() {
     for (std::size_t f = 0; f < mesh_.faces.size(); ++f)
       for (unsigned k = 0; k < 3; ++k) {
         const Index node = mesh_.face_mid_nodes[f][k];
-        if (node >= first_of_layers_ || mesh_.features[node].dimension != 3) continue;
-        mesh_.features[node] = {2, mesh_.face_patch[f]};
-        wall_nodes_.push_back({node, mesh_.faces[f][k], mesh_.faces[f][(k + 1) % 3]});
+        if (node >= first_of_layers_) continue;
+        const Index a = mesh_.faces[f][k], b = mesh_.faces[f][(k + 1) % 3];
+        const bool is_new = mesh_.features[node].dimension == 3;
+        if (is_new) mesh_.features[node] = {2, mesh_.face_patch[f]};
+        if (is_new || (is_on_wall(a, b) && bulges_.knows(places_.given[a], places_.given[b])))
+          wall_nodes_.push_back({node, std::min(a, b), std::max(a, b), is_new});
       }
+    std::sort(wall_nodes_.begin(), wall_nodes_.end(), [](const WallNode& x, const WallNode& y) {
+      return std::tie(x.node, y.is_new) < std::tie(y.node, x.is_new);
+    });
+    wall_nodes_.erase(std::unique(wall_nodes_.begin(), wall_nodes_.end(),
+                                  [](const WallNode& x, const WallNode& y) { return x.node == y.node; }),
+                      wall_nodes_.end());
+    std::erase_if(made_.report.straightened, [this](const SecondOrderReport::Straightened& of) {
+      return std::any_of(wall_nodes_.begin(), wall_nodes_.end(),
+                         [&of](const WallNode& at) { return at.node == of.point; });
+    });
     std::vector<bool> on_wall(mesh_.points.size(), false);
     for (const WallNode& at : wall_nodes_) on_wall[at.node] = true;
     for (Index t = 0; t < mesh_.tets.size(); ++t) {
@@ -186,7 +200,7 @@ class Curving {
 
   /// Places the nodes of layers: straight, and with the bulges of wall and core in proportion.
   void place_nodes() {
-    for (const auto& [node, a, b] : wall_nodes_)
+    for (const auto& [node, a, b, is_new] : wall_nodes_)
       mesh_.points[node] = 0.5 * (mesh_.points[a] + mesh_.points[b]) + bulge_between(a, b);
     for (std::size_t i = 0; i < ends_.size(); ++i) {
       const auto [a, b] = ends_[i];
@@ -256,16 +270,18 @@ class Curving {
   void describe() {
     SecondOrderReport& report = made_.report;
     report.nodes = mesh_.points.size() - first_node_;
-    for (const auto& [node, a, b] : wall_nodes_) describe_node(node, a, b);
-    for (Index i = 0; i < ends_.size(); ++i) describe_node(first_of_layers_ + i, ends_[i][0], ends_[i][1]);
+    for (const WallNode& at : wall_nodes_) describe_node(at.node, at.a, at.b, at.is_new);
+    for (Index i = 0; i < ends_.size(); ++i)
+      describe_node(first_of_layers_ + i, ends_[i][0], ends_[i][1], true);
     std::sort(report.straightened.begin(), report.straightened.end(),
               [](const auto& x, const auto& y) { return x.point < y.point; });
   }
 
-  void describe_node(Index node, Index a, Index b) {
+  void describe_node(Index node, Index a, Index b, bool is_new) {
     const Point &where = mesh_.points[node], middle = 0.5 * (mesh_.points[a] + mesh_.points[b]);
     const TetMesh::VertexFeature& feature = mesh_.features[node];
-    if (where != middle) ++(feature.dimension < 3 ? made_.report.curved : made_.report.moved_inside);
+    if (is_new && where != middle)
+      ++(feature.dimension < 3 ? made_.report.curved : made_.report.moved_inside);
     if (!is_on_wall(a, b)) return;
     const double left = share_left(left_on_walls_, a, b);
     if (left == 1) return;
@@ -295,6 +311,7 @@ class Curving {
   std::vector<Edge> ends_;                          // of the edges whose nodes are those of layers
   struct WallNode {
     Index node, a, b;  // between these ends
+    bool is_new;       // the core knew no feature of it
   };
   std::vector<WallNode> wall_nodes_;  // of walls, but nodes of the core
   std::vector<Index> tets_at_wall_;   // tets of the core with such nodes
@@ -307,7 +324,7 @@ class Curving {
 Bulges::Bulges(const TetMesh& mesh) {
   const auto add = [&](Index a, Index b, Index node) {
     const Vector bulge = mesh.points[node] - 0.5 * (mesh.points[a] + mesh.points[b]);
-    if (squared_norm(bulge) > 0) bulges_.emplace_back(edge_key(a, b), bulge);
+    bulges_.emplace_back(edge_key(a, b), bulge);
   };
   for (std::size_t f = 0; f < mesh.face_mid_nodes.size(); ++f)
     for (unsigned i = 0; i < 3; ++i)
@@ -319,6 +336,11 @@ Bulges::Bulges(const TetMesh& mesh) {
   bulges_.erase(std::unique(bulges_.begin(), bulges_.end(),
                             [](const auto& x, const auto& y) { return x.first == y.first; }),
                 bulges_.end());
+}
+
+bool Bulges::knows(Index a, Index b) const {
+  return std::binary_search(bulges_.begin(), bulges_.end(), std::pair(edge_key(a, b), Vector{}),
+                            [](const auto& x, const auto& y) { return x.first < y.first; });
 }
 
 Vector Bulges::operator()(Index a, Index b) const {

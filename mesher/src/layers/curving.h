@@ -20,6 +20,8 @@ class Bulges {
   bool empty() const { return bulges_.empty(); }
   /// Returns that of the edge between two points; none where it is straight or not known.
   Vector operator()(Index a, Index b) const;
+  /// Returns whether there was an edge between two points.
+  bool knows(Index a, Index b) const;
 
  private:
   std::vector<std::pair<std::uint64_t, Vector>> bulges_;  // by edge key
