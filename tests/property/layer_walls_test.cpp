@@ -75,7 +75,7 @@ std::vector<PolygonSoup> wedge() {
   for (const double z : {0.0, 1.0}) {
     soup.points.push_back({0, 0, z});
     soup.points.push_back({2, 0, z});
-    soup.points.push_back({1.88, 0.68, z});
+    soup.points.push_back({1.98, 0.28, z});
   }
   soup.add_facet(std::array<Index, 3>{0, 2, 1}, 1);
   soup.add_facet(std::array<Index, 3>{3, 4, 5}, 2);

@@ -324,6 +324,52 @@ TEST(Layers, OfSecondOrderStayValidWhereTheyEndAtCurvedWalls) {
   }
 }
 
+TEST(Layers, OfSecondOrderKeepTheNodesOfCoarseCurvedWalls) {
+  // Triangles bulge about as much as layers are high.
+  for (const char* walls :
+       {"all:count=1", "all:count=3", "all:count=1,first=0.05", "all:count=2,first=0.1"}) {
+    PipelineOptions options = with_layers({});
+    options.order = 2;
+    options.mesh.size = 0.6;
+    const SoupPipelineResult without =
+        run_pipeline(std::vector<PolygonSoup>{sphere(3, 1, {0, 0, 0})}, options);
+    TetMesh mesh = without.result.mesh;
+    make_layers(mesh, without.plc, {.walls = {walls}}, improve_options(2));
+    const auto nodes_of = [](const TetMesh& mesh) {
+      std::vector<std::array<Point, 3>> nodes;
+      for (std::size_t f = 0; f < mesh.faces.size(); ++f)
+        for (unsigned k = 0; k < 3; ++k) {
+          std::array<Point, 3> at{mesh.points[mesh.faces[f][k]], mesh.points[mesh.faces[f][(k + 1) % 3]],
+                                  mesh.points[mesh.face_mid_nodes[f][k]]};
+          nodes.push_back(at);
+        }
+      return nodes;
+    };
+    const auto before = nodes_of(without.result.mesh), with = nodes_of(mesh);
+    ASSERT_EQ(before.size(), with.size());
+    std::size_t moved = 0;
+    for (const auto& [a, b, node] : with) {
+      const Point &from = a, &to = b;
+      const auto same = std::find_if(before.begin(), before.end(), [&](const std::array<Point, 3>& other) {
+        return (other[0] == from && other[1] == to) || (other[0] == to && other[1] == from);
+      });
+      ASSERT_NE(same, before.end());
+      if (distance((*same)[2], node) > 1e-12) ++moved;
+    }
+    EXPECT_EQ(moved, 0U) << walls;
+    // The report is that of the mesh with layers.
+    options.layers.walls = {walls};
+    const SoupPipelineResult run = run_pipeline(std::vector<PolygonSoup>{sphere(3, 1, {0, 0, 0})}, options);
+    EXPECT_TRUE(run.check.passed()) << walls << ": " << run.missed();
+    std::size_t first = run.result.mesh.points.size();
+    for (const auto& mid : run.result.mesh.tet_mid_nodes)
+      for (const Index node : mid) first = std::min<std::size_t>(first, node);
+    EXPECT_EQ(run.second_order.nodes, run.result.mesh.points.size() - first);
+    for (const auto& straight : run.second_order.straightened)
+      EXPECT_LT(distance(straight.where, run.result.mesh.points[straight.point]), 1e-12);
+  }
+}
+
 TEST(Layers, OfSecondOrderKnowTheFacesOfTheirNodes) {
   const std::vector<PolygonSoup> soups{box({0, 0, 0}, {1, 1, 1}), box({1, 0, 0}, {2, 1, 1})};
   for (const char* walls : {"all:count=1", "1:count=1", "1:count=3"}) {

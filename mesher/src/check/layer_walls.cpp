@@ -26,6 +26,10 @@ bool comes_before(const WallGeometry::Triangle& a, const WallGeometry::Triangle&
   return a.patch != b.patch ? a.patch < b.patch : are_lower(a.corners, b.corners);
 }
 
+bool comes_before(const WallGeometry::MidNode& a, const WallGeometry::MidNode& b) {
+  return are_lower(a.ends, b.ends);
+}
+
 bool comes_before(const WallGeometry::Edge& a, const WallGeometry::Edge& b) {
   return a.curve != b.curve ? a.curve < b.curve : are_lower(a.ends, b.ends);
 }
@@ -65,6 +69,29 @@ class WallCheck {
     report_difference(before.triangles, now.triangles, "triangle",
                       [](const auto& triangle) { return triangle.corners[0]; });
     report_difference(before.edges, now.edges, "edge", [](const auto& edge) { return edge.ends[0]; });
+  }
+
+  /// `straightened`: nodes that may have moved.
+  void check_mid_nodes(const WallGeometry& before,
+                       std::span<const SecondOrderReport::Straightened> straightened) {
+    constexpr double rounding = 1e-9;
+    std::vector<std::uint64_t> allowed;
+    for (const auto& node : straightened) allowed.push_back(edge_key(node.edge[0], node.edge[1]));
+    std::sort(allowed.begin(), allowed.end());
+    const WallGeometry now(mesh_, walls_);
+    auto then = before.mid_nodes.begin();
+    for (const WallGeometry::MidNode& node : now.mid_nodes) {
+      then = std::find_if(then, before.mid_nodes.end(),
+                          [&node](const auto& other) { return !comes_before(other, node); });
+      if (then == before.mid_nodes.end()) return;  // the walls differ, which is reported elsewhere
+      const double off = distance(then->place, node.place);
+      if (then->ends != node.ends || off <= rounding * distance(node.ends[0], node.ends[1]) ||
+          std::binary_search(allowed.begin(), allowed.end(), edge_key(node.edge[0], node.edge[1])))
+        continue;
+      findings_.add(guarantee::layer_walls, node.place, {node.edge[0], node.edge[1]},
+                    "The node of the wall's edge from point {} to {} at {} moved by {:.3g} with the layers.",
+                    node.edge[0], node.edge[1], At{node.place}, off);
+    }
   }
 
   void check_cells() {
@@ -255,6 +282,14 @@ WallGeometry::WallGeometry(const TetMesh& mesh, const AskedWalls& walls) {
                 std::min_element(triangle.corners.begin(), triangle.corners.end(), is_lower),
                 triangle.corners.end());
     triangles.push_back(triangle);
+    for (unsigned k = 0; k < 3 && f < mesh.face_mid_nodes.size(); ++k) {
+      std::array<Index, 2> edge{mesh.faces[f][k], mesh.faces[f][(k + 1) % 3]};
+      if (is_lower(mesh.points[edge[1]], mesh.points[edge[0]])) std::swap(edge[0], edge[1]);
+      mid_nodes.push_back({{mesh.points[edge[0]], mesh.points[edge[1]]},
+                           mesh.points[mesh.face_mid_nodes[f][k]],
+                           edge,
+                           mesh.face_mid_nodes[f][k]});
+    }
   }
   std::sort(sides.begin(), sides.end());
   for (Index e = 0; e < mesh.edges.size(); ++e) {
@@ -267,14 +302,17 @@ WallGeometry::WallGeometry(const TetMesh& mesh, const AskedWalls& walls) {
   const auto order = [](const auto& a, const auto& b) { return comes_before(a, b); };
   std::sort(triangles.begin(), triangles.end(), order);
   std::sort(edges.begin(), edges.end(), order);
+  std::sort(mid_nodes.begin(), mid_nodes.end(), order);
 }
 
 void check_layer_walls(const AskedWalls& walls, const WallGeometry& before, const TetMesh& mesh,
-                       const LayersReport& layers, CheckReport& report) {
+                       const LayersReport& layers, CheckReport& report,
+                       std::span<const SecondOrderReport::Straightened> straightened) {
   constexpr std::size_t listed = 20;
   Findings findings(report, listed);
   WallCheck check(walls, mesh, layers, findings);
   check.check_geometry(before);
+  check.check_mid_nodes(before, straightened);
   check.check_cells();
   check.check_areas();
 }

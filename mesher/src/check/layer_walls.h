@@ -2,11 +2,13 @@
 
 #include <array>
 #include <map>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "collarmesh/check.h"
 #include "collarmesh/layers.h"
+#include "collarmesh/second_order.h"
 #include "collarmesh/tet_mesh.h"
 
 namespace collarmesh::guarantee {
@@ -32,18 +34,28 @@ struct WallGeometry {
     std::array<Point, 2> ends;  ///< the lower one first
     Index curve, edge;
   };
+  /// A mid-edge node of the sides of triangles.
+  struct MidNode {
+    std::array<Point, 2> ends;  ///< the lower one first
+    Point place;
+    std::array<Index, 2> edge;  ///< points of the mesh
+    Index node;
+  };
   WallGeometry(const TetMesh& mesh, const AskedWalls& walls);
 
   std::vector<Triangle> triangles;  ///< sorted
   std::vector<Edge> edges;          ///< sorted
+  std::vector<MidNode> mid_nodes;   ///< sorted by their ends; several may be one; none in first order
 };
 
 /// Checks layers against the walls that were asked for and against the mesh before them: the triangles and
-/// edges of walls are the same; each cell of a layer lies above one triangle of a wall; above each triangle
+/// edges of walls are the same, and in second order their nodes, but for those that are listed as
+/// straightened; each cell of a layer lies above one triangle of a wall; above each triangle
 /// there are prisms in all layers, or the tets of prisms, or pyramids and tets that leave it uncovered, or
 /// nothing; area and covered area of each patch are those that `layers` reports. Adds findings. Cost: O(n log
 /// n).
 void check_layer_walls(const AskedWalls& walls, const WallGeometry& before, const TetMesh& mesh,
-                       const LayersReport& layers, CheckReport& report);
+                       const LayersReport& layers, CheckReport& report,
+                       std::span<const SecondOrderReport::Straightened> straightened = {});
 
 }  // namespace collarmesh::checks

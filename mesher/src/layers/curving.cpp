@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <tuple>
 #include <unordered_map>
 
 #include "collarmesh/curved_tet.h"
@@ -29,18 +30,22 @@ class Curving {
           const SecondOrderOptions& options, const Execution& execution)
       : mesh_(mesh), plc_(plc), bulges_(bulges), places_(places), options_(options), execution_(execution) {}
 
-  bool run() {
-    if (!curve_core()) return false;
+  CurvedLayers run(bool may_move_walls) {
+    if (!curve_core()) return std::move(made_);
     give_nodes();
-    for (unsigned pass = 0; pass <= most_shrinkings; ++pass) {
-      place_nodes();
-      if (!shrink(pass == most_shrinkings)) break;
-    }
-    place_nodes();
-    return true;
+    std::vector<Edge> folded = straighten_while_folded(left_above_);
+    if (!folded.empty() && may_move_walls) folded = straighten_while_folded(left_on_walls_);
+    for (const auto& edge : folded)
+      for (const Index end : edge) made_.folded.push_back(places_.given[end]);
+    describe();
+    return std::move(made_);
   }
 
  private:
+  using Edge = std::array<Index, 2>;
+  using Shares =
+      std::unordered_map<std::uint64_t, double>;  // of bulges that are left, by edge key of the wall
+
   bool in_core(Index tet) const { return mesh_.layers.tet_layer[tet] == 0; }
 
   /// Makes the core a mesh of second order on its own, which keeps its tets.
@@ -81,7 +86,8 @@ class Curving {
     }
     SecondOrderOptions options = options_;
     options.bounds.thin_angle = 0;  // the tets stay, because layers share their sides
-    if (make_second_order(core, plc_, options, execution_).cancelled) return false;
+    made_.report = make_second_order(core, plc_, options, execution_);
+    if (made_.report.cancelled) return false;
     first_node_ = static_cast<Index>(mesh_.points.size());
     mesh_.points = std::move(core.points);
     mesh_.features = std::move(core.features);
@@ -151,16 +157,29 @@ class Curving {
     note_patches(layers.quad_mid_nodes, layers.quad_patch);
   }
 
-  /// Finds the edges of walls between two nodes without layers, which the core has only below a triangle of
-  /// the front, so that it left them straight.
+  /// Finds the edges of walls between two nodes without layers, which the core has: it left them straight
+  /// below triangles of the front, and elsewhere may place their nodes otherwise than before.
   void find_wall_nodes_of_core() {
     for (std::size_t f = 0; f < mesh_.faces.size(); ++f)
       for (unsigned k = 0; k < 3; ++k) {
         const Index node = mesh_.face_mid_nodes[f][k];
-        if (node >= first_of_layers_ || mesh_.features[node].dimension != 3) continue;
-        mesh_.features[node] = {2, mesh_.face_patch[f]};
-        wall_nodes_.push_back({node, mesh_.faces[f][k], mesh_.faces[f][(k + 1) % 3]});
+        if (node >= first_of_layers_) continue;
+        const Index a = mesh_.faces[f][k], b = mesh_.faces[f][(k + 1) % 3];
+        const bool is_new = mesh_.features[node].dimension == 3;
+        if (is_new) mesh_.features[node] = {2, mesh_.face_patch[f]};
+        if (is_new || (is_on_wall(a, b) && bulges_.knows(places_.given[a], places_.given[b])))
+          wall_nodes_.push_back({node, std::min(a, b), std::max(a, b), is_new});
       }
+    std::sort(wall_nodes_.begin(), wall_nodes_.end(), [](const WallNode& x, const WallNode& y) {
+      return std::tie(x.node, y.is_new) < std::tie(y.node, x.is_new);
+    });
+    wall_nodes_.erase(std::unique(wall_nodes_.begin(), wall_nodes_.end(),
+                                  [](const WallNode& x, const WallNode& y) { return x.node == y.node; }),
+                      wall_nodes_.end());
+    std::erase_if(made_.report.straightened, [this](const SecondOrderReport::Straightened& of) {
+      return std::any_of(wall_nodes_.begin(), wall_nodes_.end(),
+                         [&of](const WallNode& at) { return at.node == of.point; });
+    });
     std::vector<bool> on_wall(mesh_.points.size(), false);
     for (const WallNode& at : wall_nodes_) on_wall[at.node] = true;
     for (Index t = 0; t < mesh_.tets.size(); ++t) {
@@ -181,7 +200,7 @@ class Curving {
 
   /// Places the nodes of layers: straight, and with the bulges of wall and core in proportion.
   void place_nodes() {
-    for (const auto& [node, a, b] : wall_nodes_)
+    for (const auto& [node, a, b, is_new] : wall_nodes_)
       mesh_.points[node] = 0.5 * (mesh_.points[a] + mesh_.points[b]) + bulge_between(a, b);
     for (std::size_t i = 0; i < ends_.size(); ++i) {
       const auto [a, b] = ends_[i];
@@ -196,18 +215,38 @@ class Curving {
     const double share = raised && other_raised ? 0.5 * (places_.share[a] + places_.share[b])
                          : raised               ? places_.share[a]
                                                 : places_.share[b];
-    const auto shrunk = shrunk_.find(edge_key(at, bt));
-    const double left = shrunk == shrunk_.end() ? 1 : shrunk->second;
+    const double left = share_left(is_on_wall(a, b) ? left_on_walls_ : left_above_, at, bt);
     return ((1 - share) * left) * bulges_(places_.given[a], places_.given[b]);
   }
 
-  /// Shrinks bulges at the cells that fold. Returns whether there were any.
-  bool shrink(bool wholly) {
-    std::vector<std::uint64_t> at;
+  bool is_on_wall(Index a, Index b) const { return places_.wall[a] == a && places_.wall[b] == b; }
+
+  static double share_left(const Shares& shares, Index a, Index b) {
+    const auto found = shares.find(edge_key(a, b));
+    return found == shares.end() ? 1 : found->second;
+  }
+
+  /// Places the nodes of layers, and shrinks bulges at the cells that fold as long as there are any. Returns
+  /// the edges of walls at those that still fold.
+  std::vector<Edge> straighten_while_folded(Shares& left) {
+    for (unsigned pass = 0;; ++pass) {
+      place_nodes();
+      std::vector<Edge> folded = find_folded();
+      if (folded.empty() || pass > most_shrinkings) return folded;
+      for (const auto& [a, b] : folded) {
+        double& share = left.emplace(edge_key(a, b), 1.0).first->second;
+        share = pass == most_shrinkings ? 0 : shrinking * share;
+      }
+    }
+  }
+
+  /// Finds the edges of walls below the cells that fold.
+  std::vector<Edge> find_folded() const {
+    std::vector<Edge> at;
     const auto note = [&](const auto& corners, const auto& edges) {
       for (const auto& [i, j] : edges) {
         const Index a = places_.wall[corners[i]], b = places_.wall[corners[j]];
-        if (a != none && b != none && a != b) at.push_back(edge_key(a, b));
+        if (a != none && b != none && a != b) at.push_back({std::min(a, b), std::max(a, b)});
       }
     };
     const LayerCells& layers = mesh_.layers;
@@ -224,11 +263,33 @@ class Curving {
       if (!jacobian_exceeds(curved_tet(mesh_, t))) note(mesh_.tets[t], cell_shapes::tet_edges);
     std::sort(at.begin(), at.end());
     at.erase(std::unique(at.begin(), at.end()), at.end());
-    for (const std::uint64_t key : at) {
-      double& left = shrunk_.emplace(key, 1.0).first->second;
-      left = wholly ? 0 : shrinking * left;
-    }
-    return !at.empty();
+    return at;
+  }
+
+  /// Adds the nodes of layers to the report.
+  void describe() {
+    SecondOrderReport& report = made_.report;
+    report.nodes = mesh_.points.size() - first_node_;
+    for (const WallNode& at : wall_nodes_) describe_node(at.node, at.a, at.b, at.is_new);
+    for (Index i = 0; i < ends_.size(); ++i)
+      describe_node(first_of_layers_ + i, ends_[i][0], ends_[i][1], true);
+    std::sort(report.straightened.begin(), report.straightened.end(),
+              [](const auto& x, const auto& y) { return x.point < y.point; });
+  }
+
+  void describe_node(Index node, Index a, Index b, bool is_new) {
+    const Point &where = mesh_.points[node], middle = 0.5 * (mesh_.points[a] + mesh_.points[b]);
+    const TetMesh::VertexFeature& feature = mesh_.features[node];
+    if (is_new && where != middle)
+      ++(feature.dimension < 3 ? made_.report.curved : made_.report.moved_inside);
+    if (!is_on_wall(a, b)) return;
+    const double left = share_left(left_on_walls_, a, b);
+    if (left == 1) return;
+    const double off = (1 - left) * norm(bulges_(places_.given[a], places_.given[b]));
+    const Tag tag = feature.feature == none  ? 0
+                    : feature.dimension == 1 ? plc_.curves[feature.feature].tag
+                                             : plc_.patches[feature.feature].tag;
+    if (off > 0) made_.report.straightened.push_back({node, {a, b}, feature, tag, where, off});
   }
 
   template <std::size_t n>
@@ -246,15 +307,16 @@ class Curving {
   const Execution& execution_;
   std::vector<std::array<Index, 6>> core_nodes_;
   std::unordered_map<std::uint64_t, Index> nodes_;  // by edge key
-  std::unordered_map<std::uint64_t, double>
-      shrunk_;                              // shares of bulges that are left, by edge key of the wall
-  std::vector<std::array<Index, 2>> ends_;  // of the edges whose nodes are those of layers
+  Shares left_above_, left_on_walls_;               // of edges above walls, and on these
+  std::vector<Edge> ends_;                          // of the edges whose nodes are those of layers
   struct WallNode {
     Index node, a, b;  // between these ends
+    bool is_new;       // the core knew no feature of it
   };
   std::vector<WallNode> wall_nodes_;  // of walls, but nodes of the core
   std::vector<Index> tets_at_wall_;   // tets of the core with such nodes
   Index first_node_ = 0, first_of_layers_ = 0;
+  CurvedLayers made_;
 };
 
 }  // namespace
@@ -262,7 +324,7 @@ class Curving {
 Bulges::Bulges(const TetMesh& mesh) {
   const auto add = [&](Index a, Index b, Index node) {
     const Vector bulge = mesh.points[node] - 0.5 * (mesh.points[a] + mesh.points[b]);
-    if (squared_norm(bulge) > 0) bulges_.emplace_back(edge_key(a, b), bulge);
+    bulges_.emplace_back(edge_key(a, b), bulge);
   };
   for (std::size_t f = 0; f < mesh.face_mid_nodes.size(); ++f)
     for (unsigned i = 0; i < 3; ++i)
@@ -274,6 +336,11 @@ Bulges::Bulges(const TetMesh& mesh) {
   bulges_.erase(std::unique(bulges_.begin(), bulges_.end(),
                             [](const auto& x, const auto& y) { return x.first == y.first; }),
                 bulges_.end());
+}
+
+bool Bulges::knows(Index a, Index b) const {
+  return std::binary_search(bulges_.begin(), bulges_.end(), std::pair(edge_key(a, b), Vector{}),
+                            [](const auto& x, const auto& y) { return x.first < y.first; });
 }
 
 Vector Bulges::operator()(Index a, Index b) const {
@@ -293,9 +360,9 @@ void straighten(TetMesh& mesh) {
   mesh.tet_mid_nodes.clear(), mesh.face_mid_nodes.clear(), mesh.edge_mid_nodes.clear();
 }
 
-bool curve(TetMesh& mesh, const Plc& plc, const Bulges& bulges, const PlacesInLayers& places,
-           const SecondOrderOptions& options, const Execution& execution) {
-  return Curving(mesh, plc, bulges, places, options, execution).run();
+CurvedLayers curve(TetMesh& mesh, const Plc& plc, const Bulges& bulges, const PlacesInLayers& places,
+                   const SecondOrderOptions& options, const Execution& execution, bool may_move_walls) {
+  return Curving(mesh, plc, bulges, places, options, execution).run(may_move_walls);
 }
 
 }  // namespace collarmesh::layering

@@ -20,6 +20,8 @@ class Bulges {
   bool empty() const { return bulges_.empty(); }
   /// Returns that of the edge between two points; none where it is straight or not known.
   Vector operator()(Index a, Index b) const;
+  /// Returns whether there was an edge between two points.
+  bool knows(Index a, Index b) const;
 
  private:
   std::vector<std::pair<std::uint64_t, Vector>> bulges_;  // by edge key
@@ -37,10 +39,17 @@ struct PlacesInLayers {
   std::vector<bool> is_raised;  ///< by point of a wall: there are layers above it
 };
 
+struct CurvedLayers {
+  SecondOrderReport report;
+  /// Points of walls at cells that fold, by their numbers in the mesh without layers.
+  std::vector<Index> folded;
+};
+
 /// Gives a mesh with layers nodes of second order. Edges of walls keep their bulges, which fade towards the
-/// core. The core gets its nodes as any mesh does, but keeps its tets. Bulges of walls shrink where cells
-/// would fold. Returns false if cancelled.
-bool curve(TetMesh& mesh, const Plc& plc, const Bulges& bulges, const PlacesInLayers& places,
-           const SecondOrderOptions& options, const Execution& execution);
+/// core. The core gets its nodes as any mesh does, but keeps its tets. Where cells would fold, edges above
+/// the walls get straighter. `may_move_walls`: where that is not enough, those of walls do, too, and the
+/// report lists them; otherwise these cells stay folded.
+CurvedLayers curve(TetMesh& mesh, const Plc& plc, const Bulges& bulges, const PlacesInLayers& places,
+                   const SecondOrderOptions& options, const Execution& execution, bool may_move_walls);
 
 }  // namespace collarmesh::layering

@@ -12,6 +12,7 @@
 #include "layers/curving.h"
 #include "layers/front.h"
 #include "layers/heights.h"
+#include "layers/make.h"
 #include "layers/stack.h"
 #include "layers/wall_choice.h"
 
@@ -25,6 +26,9 @@ namespace {
 constexpr unsigned most_tries = 9, last_levels = 4;
 // Where it fails with heights that hardly change the tets, this share of them is tried, then none.
 constexpr double further_share = 0.25;
+// So often layers are left out where curved cells fold, in ever wider rings; then edges of walls get
+// straighter.
+constexpr unsigned most_refoldings = 2;
 
 class LayerMaker {
  public:
@@ -42,12 +46,16 @@ class LayerMaker {
         complex_(mesh),
         front_(complex_, plc, walls_) {}
 
-  LayersReport run() {
-    if (!make()) report_.cancelled = true;
+  /// `second_order`: gets a report if the mesh has second order.
+  LayersReport run(SecondOrderReport& second_order) {
+    if (make() == Outcome::cancelled) report_.cancelled = true;
+    second_order = std::move(made_second_order_);
     return report_;
   }
 
  private:
+  enum class Outcome { taken, folded, cancelled };
+
   /// Makes a mesh one of first order. Returns whether it was one of second order.
   static bool straightened(TetMesh& mesh) {
     if (mesh.order() == 1) return false;
@@ -55,7 +63,7 @@ class LayerMaker {
     return true;
   }
 
-  bool make() {
+  Outcome make() {
     Heights heights(front_, mesh_, plc_, walls_);
     heights.fit_gaps();
     heights.fit_patches(improvement::SmoothSurfaces(plc_, mesh_, *improvement_.bounds.tolerance),
@@ -63,14 +71,19 @@ class LayerMaker {
     heights.fit_bulges(bulges_);
     heights.settle();
     std::vector<std::uint8_t> levels(heights.size(), 0);
-    for (unsigned attempt = 0; attempt < most_tries; ++attempt) {
+    for (unsigned attempt = 0, refoldings = 0; attempt < most_tries + refoldings; ++attempt) {
       Heights reached = heights;
       Core core(mesh_, plc_, front_, reached, improvement_, execution_);
       const bool done = core.push(reached, levels);
-      if (core.cancelled()) return false;
-      if (done) return take(reached, core);
-      if (attempt >= last_levels) {
-        const unsigned rings = (1U << (attempt - last_levels)) - 1;
+      if (core.cancelled()) return Outcome::cancelled;
+      if (done) {
+        const Outcome outcome = take(reached, core, refoldings == most_refoldings);
+        if (outcome != Outcome::folded) return outcome;
+        leave_out_folded(heights, (1U << refoldings++) - 1);
+        continue;
+      }
+      if (attempt - refoldings >= last_levels) {
+        const unsigned rings = (1U << (attempt - refoldings - last_levels)) - 1;
         for (const Index n : within_rings(front_.neighbours, core.failed(), rings))
           heights.lower(n, 0, Cause::core);
       }
@@ -84,18 +97,34 @@ class LayerMaker {
       heights.settle();
     }
     for (Index n = 0; n < heights.size(); ++n) heights.lower(n, 0, Cause::core);
-    return take(heights, Core(mesh_, plc_, front_, heights, improvement_, execution_));
+    return take(heights, Core(mesh_, plc_, front_, heights, improvement_, execution_), true);
   }
 
-  bool take(const Heights& heights, const Core& core) {
+  /// Leaves layers out at nodes where curved cells fold, and so many steps around.
+  void leave_out_folded(Heights& heights, unsigned rings) {
+    std::vector<Index> nodes;
+    for (Index n = 0; n < front_.nodes.size(); ++n)
+      if (std::binary_search(folded_.begin(), folded_.end(), front_.nodes[n].vertex)) nodes.push_back(n);
+    for (const Index n : within_rings(front_.neighbours, nodes, rings)) heights.lower(n, 0, Cause::fold);
+    heights.settle();
+  }
+
+  /// Makes the mesh of layers with these heights. `at_last`: whatever curved cells need.
+  Outcome take(const Heights& heights, const Core& core, bool at_last) {
     Stack stack(mesh_, front_, heights, core, options_.tets);
     TetMesh made = stack.build();
-    if (is_second_order_ && !curve(made, plc_, bulges_, stack.places(), second_order_, execution_))
-      return false;
+    if (is_second_order_) {
+      CurvedLayers curved = curve(made, plc_, bulges_, stack.places(), second_order_, execution_, at_last);
+      if (curved.report.cancelled) return Outcome::cancelled;
+      folded_ = std::move(curved.folded);
+      std::sort(folded_.begin(), folded_.end());
+      if (!folded_.empty() && !at_last) return Outcome::folded;
+      made_second_order_ = std::move(curved.report);
+    }
     describe(heights, made);
     report_.walls = stack.places().wall;
     mesh_ = std::move(made);
-    return true;
+    return Outcome::taken;
   }
 
   double area_of(const WallSide& side) const {
@@ -174,10 +203,30 @@ class LayerMaker {
   bool is_second_order_;
   improvement::TetComplex complex_;
   Front front_;
+  std::vector<Index> folded_;  // vertices of walls at curved cells that folded, sorted
   LayersReport report_;
+  SecondOrderReport made_second_order_;
 };
 
 }  // namespace
+
+LayersReport make(TetMesh& mesh, const Plc& plc, const LayerOptions& options,
+                  const ImproveOptions& improvement, const SecondOrderOptions& second_order,
+                  const Execution& execution, SecondOrderReport& made) {
+  const auto started = std::chrono::steady_clock::now();
+  ImproveOptions with_tolerance = improvement;
+  if (!with_tolerance.bounds.tolerance)
+    with_tolerance.bounds.tolerance = tolerance_of_any_size(plc, improvement.bounds);
+  LayersReport report;
+  ThreadLimit(improvement.threads).run([&] {
+    report = LayerMaker(mesh, plc, options, with_tolerance, second_order, execution).run(made);
+    if (!report.cancelled && with_tolerance.bounds.thin_angle > 0)
+      improvement::mark_cells(mesh, plc, with_tolerance.bounds);
+  });
+  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+  return report;
+}
+
 }  // namespace layering
 
 double LayersReport::coverage() const {
@@ -192,18 +241,8 @@ double LayersReport::coverage() const {
 LayersReport make_layers(TetMesh& mesh, const Plc& plc, const LayerOptions& options,
                          const ImproveOptions& improvement, const SecondOrderOptions& second_order,
                          const Execution& execution) {
-  const auto started = std::chrono::steady_clock::now();
-  ImproveOptions with_tolerance = improvement;
-  if (!with_tolerance.bounds.tolerance)
-    with_tolerance.bounds.tolerance = tolerance_of_any_size(plc, improvement.bounds);
-  LayersReport report;
-  ThreadLimit(improvement.threads).run([&] {
-    report = layering::LayerMaker(mesh, plc, options, with_tolerance, second_order, execution).run();
-    if (!report.cancelled && with_tolerance.bounds.thin_angle > 0)
-      improvement::mark_cells(mesh, plc, with_tolerance.bounds);
-  });
-  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
-  return report;
+  SecondOrderReport made;
+  return layering::make(mesh, plc, options, improvement, second_order, execution, made);
 }
 
 }  // namespace collarmesh

@@ -11,6 +11,7 @@
 
 #include "check/layer_cells.h"
 #include "check/layer_walls.h"
+#include "layers/make.h"
 #include "layers/wall_choice.h"
 
 namespace collarmesh::pipeline {
@@ -61,6 +62,26 @@ std::map<Index, double> volume_allowances(const MeshJob& job, const Areas& areas
   return allowed;
 }
 
+/// Lists the nodes of walls that were straightened before there were layers, with their numbers of now.
+void keep_straightened(const checks::WallGeometry& before, const checks::WallGeometry& now,
+                       const SecondOrderReport& given, SecondOrderReport& made) {
+  if (before.mid_nodes.size() != now.mid_nodes.size()) return;  // the walls differ, which the check reports
+  std::map<Index, const SecondOrderReport::Straightened*> straightened;  // by their numbers before
+  for (const auto& node : given.straightened) straightened.emplace(node.point, &node);
+  std::set<Index> listed;
+  for (const auto& node : made.straightened) listed.insert(node.point);
+  for (std::size_t i = 0; i < now.mid_nodes.size(); ++i) {
+    const auto found = straightened.find(before.mid_nodes[i].node);
+    if (found == straightened.end() || !listed.insert(now.mid_nodes[i].node).second) continue;
+    SecondOrderReport::Straightened kept = *found->second;
+    kept.point = now.mid_nodes[i].node;
+    kept.edge = now.mid_nodes[i].edge;
+    made.straightened.push_back(kept);
+  }
+  std::sort(made.straightened.begin(), made.straightened.end(),
+            [](const auto& a, const auto& b) { return a.point < b.point; });
+}
+
 /// Returns a warning if layers cover little; empty otherwise.
 std::string warning_of(const LayersReport& layers) {
   constexpr double enough = 0.8;
@@ -104,10 +125,17 @@ void add_layers(MeshJob& job) {
   const ImproveOptions options = options_of_core(job);
   const SecondOrderOptions second_order{
       .exact = job.options.exact, .bounds = job.bounds(), .threads = job.options.mesh.threads};
-  job.made.layers = make_layers(mesh, *job.plc, job.options.layers, options, second_order, job.execution());
+  SecondOrderReport made;
+  job.made.layers =
+      layering::make(mesh, *job.plc, job.options.layers, options, second_order, job.execution(), made);
   if (job.made.layers->cancelled) job.control.stop();
+  const std::vector<SecondOrderReport::Straightened> moved = made.straightened;
+  if (mesh.order() == 2) {
+    keep_straightened(wall_geometry, checks::WallGeometry(mesh, walls), job.made.second_order, made);
+    job.made.second_order = std::move(made);
+  }
   certify_with_layers(job);
-  checks::check_layer_walls(walls, wall_geometry, mesh, *job.made.layers, job.made.check);
+  checks::check_layer_walls(walls, wall_geometry, mesh, *job.made.layers, job.made.check, moved);
   const SurfaceTolerance tolerance =
       options.bounds.tolerance ? *options.bounds.tolerance : tolerance_of_any_size(*job.plc, options.bounds);
   checks::check_layer_volumes(volumes, mesh, volume_allowances(job, areas, tolerance), job.made.check);

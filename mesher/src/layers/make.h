@@ -1,0 +1,13 @@
+#pragma once
+
+#include "collarmesh/layers.h"
+
+namespace collarmesh::layering {
+
+/// Makes layers as `make_layers` does. In second order, `made` gets a report of the nodes of the whole mesh;
+/// of the nodes on walls that were straight before, it lists none.
+LayersReport make(TetMesh& mesh, const Plc& plc, const LayerOptions& options,
+                  const ImproveOptions& improvement, const SecondOrderOptions& second_order,
+                  const Execution& execution, SecondOrderReport& made);
+
+}  // namespace collarmesh::layering
