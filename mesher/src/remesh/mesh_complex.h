@@ -13,8 +13,8 @@ struct MeshComplex {
   TetMesh mesh;  ///< that of `corners_of`, with the edges of all curves
 };
 
-/// Returns the part of a mesh that remeshing keeps: its tets and their corners, and the corners of its faces and
-/// edges.
+/// Returns the part of a mesh that remeshing keeps: its tets and their corners, and the corners of its faces
+/// and edges.
 TetMesh corners_of(const TetMesh& mesh);
 
 /// Builds the complex of a mesh. Its facets are the sides of tets at a boundary or between two regions, and
