@@ -11,6 +11,7 @@
 #include "collarmesh/io/mesh_surface_io.h"
 #include "collarmesh/io/tet_mesh_io.h"
 #include "files/edit_distance.h"
+#include "files/surface_files.h"
 
 namespace collarmesh::files {
 
@@ -87,6 +88,12 @@ std::optional<TetMesh> read_mesh_if_there(const std::string& path, const std::st
 TetMesh read_mesh_or_triangles(const std::string& path) {
   std::optional<TetMesh> mesh = read_mesh_if_there(path);
   if (mesh) return std::move(*mesh);
+  if (!io::is_mesh_surface_format(path) && is_surface_format(path)) {
+    existing_file(path);
+    throw ReadError(fmt::format(
+        "{}: {} has no edges of curves and cannot be checked; write the mesh in another format, too: {}",
+        path, fs::path(path).extension().string(), fmt::join(io::read_tet_mesh_formats(), " ")));
+  }
   if (!io::is_mesh_surface_format(path)) return read_mesh(path);
   TetMesh mesh_of_triangles = io::read_mesh_cells(existing_file(path));
   if (!mesh_of_triangles.layers.quads.empty())

@@ -63,6 +63,10 @@ class Shells(ProgramTest):
         self.expect(2, self.box, "-o", "a.stl", "--dimension", "2", "--order", "2", says=["second order"])
         self.expect(2, self.box, "-o", "a.vtu", "--dimension", "4", says=["--dimension"])
 
+    def test_formats_without_curves_are_not_checked(self):
+        self.expect(0, self.box, "-o", "a.off", "--size", "0.3", "--dimension", "2")
+        self.expect(3, "check", "a.off", "--against", self.box, says=["no edges of curves", r"\.vtu", r"\.msh"])
+
     def test_some_faces_of_a_solid(self):
         named = (self.box, "--dimension", "2", "--size", "0.3", "--name", "lid=2")
         self.expect(0, *named, "--faces", "lid", "--faces", "patch_3",

@@ -165,7 +165,7 @@ class Layers(unittest.TestCase):
 
     def test_places_of_lower_layers_and_pyramids(self):
         """At the sharp edge of a wedge, layers end in pyramids."""
-        self.part.Shape = wedge(20)
+        self.part.Shape = wedge(8)
         self.obj.ElementOrder = "2nd"
         self.on()
         report = mesh_object.remesh(self.obj)

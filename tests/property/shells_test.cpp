@@ -192,6 +192,102 @@ TEST(Shells, TheCertificateFindsFaults) {
   EXPECT_TRUE(found(edges, "curve_cover") || found(edges, "curve_present"));
 }
 
+/// Returns the squares between successive points of a polyline in the plane y = 0, which is moved by 1 in y.
+/// Each one has a tag of its own, from 1; every second one is turned over if asked.
+PolygonSoup squares_along(const std::vector<Point>& line, bool alternating = false) {
+  PolygonSoup soup;
+  for (const Point& p : line) soup.points.insert(soup.points.end(), {p, p + Vector{0, 1, 0}});
+  for (Index i = 0; i + 1 < line.size(); ++i) {
+    std::vector<Index> square{2 * i, 2 * i + 1, 2 * i + 3, 2 * i + 2};
+    if (alternating && i % 2 == 1) std::reverse(square.begin(), square.end());
+    soup.add_facet(square, 1 + static_cast<Tag>(i));
+  }
+  return soup;
+}
+
+/// Returns a ring of strips, each with a tag of its own, that turns by some half turns on its way.
+PolygonSoup twisted_ring(unsigned half_turns) {
+  constexpr Index strips = 24;
+  PolygonSoup ring;
+  for (Index i = 0; i < strips; ++i) {
+    const double way = 2 * std::numbers::pi * i / strips, tilt = 0.5 * half_turns * way;
+    for (const double side : {-0.5, 0.5}) {
+      const double radius = 3 + side * std::cos(tilt);
+      ring.points.push_back({radius * std::cos(way), radius * std::sin(way), side * std::sin(tilt)});
+    }
+  }
+  for (Index i = 0; i < strips; ++i) {
+    const bool swapped = i + 1 == strips && half_turns % 2 == 1;
+    const Index next = 2 * ((i + 1) % strips), a = next + (swapped ? 1 : 0), b = next + (swapped ? 0 : 1);
+    ring.add_facet(std::vector<Index>{2 * i, a, b}, 1 + static_cast<Tag>(i));
+    ring.add_facet(std::vector<Index>{2 * i, b, 2 * i + 1}, 1 + static_cast<Tag>(i));
+  }
+  return ring;
+}
+
+TetMesh with_tag_turned(TetMesh mesh, Tag tag) {
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f)
+    if (mesh.face_tag[f] == tag) std::swap(mesh.faces[f][0], mesh.faces[f][1]);
+  return mesh;
+}
+
+/// Returns the places where a mesh is said to be turned.
+std::vector<Point> turned_places(const TetMesh& mesh, const Plc& plc) {
+  std::vector<Point> places;
+  for (const Finding& finding : check_shells(mesh, plc).findings) {
+    EXPECT_EQ(finding.guarantee, "shell_orientation") << finding.message;
+    places.push_back(finding.where);
+  }
+  return places;
+}
+
+PipelineResult shells_of(const Plc& plc, double size) {
+  PipelineOptions options;
+  options.mesh.size = size;
+  return mesh_shells(plc, options);
+}
+
+TEST(Shells, TheCertificateFindsPatchesTurnedAgainstTheirNeighbours) {
+  const std::vector<Point> line{{0, 0, 0}, {1, 0, 0}, {1, 0, 1}, {2, 0, 1}, {2, 0, 2}, {3, 0, 2}};
+  for (const std::size_t count : {2U, 5U})
+    for (const bool alternating : {false, true}) {
+      const Plc plc =
+          complex_of(squares_along({line.begin(), line.begin() + static_cast<long>(count) + 1}, alternating));
+      const PipelineResult made = shells_of(plc, 0.4);
+      expect_good(made);
+      for (std::size_t i = 0; i < count; ++i) {
+        const auto places = turned_places(with_tag_turned(made.result.mesh, 1 + static_cast<Tag>(i)), plc);
+        const bool at_end = i == 0 || i + 1 == count;
+        EXPECT_EQ(places.size(), at_end ? 1U : 2U);
+        for (const Point& p : places)
+          EXPECT_TRUE((p.x == line[i].x && p.z == line[i].z) ||
+                      (p.x == line[i + 1].x && p.z == line[i + 1].z));
+      }
+    }
+}
+
+TEST(Shells, OnlyOrientableSurfacesMustBeOrientedAlike) {
+  for (const unsigned half_turns : {1U, 2U}) {
+    const Plc plc = complex_of(twisted_ring(half_turns));
+    const PipelineResult made = shells_of(plc, 0.4);
+    expect_good(made);
+    const bool orientable = half_turns % 2 == 0;
+    EXPECT_EQ(sides_of(made.result.mesh).count(0), orientable ? 0U : 1U);
+    EXPECT_EQ(turned_places(with_tag_turned(made.result.mesh, 5), plc).empty(), !orientable);
+  }
+}
+
+TEST(Shells, PatchesAtAJunctionOfThreeMayBeOrientedInAnyWay) {
+  PolygonSoup soup = squares_along({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}});
+  soup.points.insert(soup.points.end(), {{1, 0, 1}, {1, 1, 1}});
+  soup.add_facet(std::vector<Index>{2, 3, 7, 6}, 3);
+  const Plc plc = complex_of(soup);
+  const PipelineResult made = shells_of(plc, 0.4);
+  expect_good(made);
+  for (const Tag tag : {1, 2, 3})
+    EXPECT_TRUE(turned_places(with_tag_turned(made.result.mesh, tag), plc).empty());
+}
+
 TEST(Shells, SharpCornersAreTold) {
   PolygonSoup triangle;
   triangle.points = {{0, 0, 0}, {1, 0, 0}, {1, 0.1, 0}};

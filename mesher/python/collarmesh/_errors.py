@@ -42,11 +42,12 @@ def _corners_by_material(mesh: Mesh) -> Array:
     return numbers
 
 
-def _with_mid_nodes(mesh: Mesh, values: Array) -> Array:
+def _set_mid_nodes(mesh: Mesh, values: Array) -> None:
     """Sets the values of mid-edge nodes to the mean of those at the ends of their edges."""
+    if len(mesh.tet_mid_nodes) == 0:
+        return
     for nodes, (a, b) in zip(mesh.tet_mid_nodes.T, ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))):
         values[nodes] = (values[mesh.tets[:, a]] + values[mesh.tets[:, b]]) / 2
-    return values
 
 
 def estimated_errors(mesh: Mesh, values: ArrayLike, *, across_regions: bool = False) -> Array:
@@ -135,7 +136,7 @@ def sizes_from_errors(
     at_points = numpy.full(len(mesh.points), lengths.mean())
     means = numpy.exp(_at_corners(mesh.tets, volumes, numpy.log(wanted)[:, None])[:, 0])
     at_points[: len(means)] = numpy.where(numpy.isnan(means), at_points[: len(means)], means)
-    _with_mid_nodes(mesh, at_points)
+    _set_mid_nodes(mesh, at_points)
     # Averaging at the points evens out lengths, which changes the number of tetrahedra.
     made = (volumes / at_points[mesh.tets].mean(axis=1) ** 3).sum()
     sizes: Array = at_points * numpy.cbrt(made / (volumes / wanted**3).sum())

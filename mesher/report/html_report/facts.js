@@ -63,7 +63,7 @@ const guarantees = [
   ['Tags: faces and edges know where they are from', ['curve_tag', 'patch_tag', 'patch_regions', 'face_regions']],
   ['Shape: circumradius over shortest edge is bounded', ['radius_edge']],
   ['Triangles have no small or large angle', ['triangle_angles']],
-  ['Faces of solids look outwards', ['shell_orientation']],
+  ['Faces of solids look outwards, those of open surfaces are oriented alike', ['shell_orientation']],
   ['Thin tetrahedra have no small or large angle', ['thin_angles']],
   ['Collars have no large angle',
     ['collar_cells', 'collar_centre', 'collar_dihedral', 'collar_disjoint', 'collar_gap']],

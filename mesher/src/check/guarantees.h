@@ -75,6 +75,7 @@ inline constexpr char triangle_angles[] =
     "triangle_angles";  ///< angles of triangles, away from sharp corners of the input
 inline constexpr char patch_present[] = "patch_present";          ///< each patch has faces
 inline constexpr char curve_present[] = "curve_present";          ///< each curve has edges
-inline constexpr char shell_orientation[] = "shell_orientation";  ///< faces of solids point outwards
+inline constexpr char shell_orientation[] = "shell_orientation";  ///< faces of solids point outwards, those
+                                                                  ///< of other surfaces are oriented alike
 
 }  // namespace collarmesh::guarantee

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "check/feature_sizes.h"
+#include "check/shell_orientation.h"
 #include "check/subject.h"
-#include "common/distance_tree.h"
 #include "common/edge_key.h"
 #include "common/thread_limit.h"
 
@@ -118,36 +118,6 @@ void check_edges(const Subject& subject, Findings& findings) {
   }
 }
 
-/// Checks that faces of solids point outwards. `plc` has the regions.
-void check_outward(const Subject& subject, const Plc& plc, Findings& findings) {
-  const Grouping by_patch(subject.match.face_patch, plc.patches.size());
-  for (Index p = 0; p < plc.patches.size(); ++p) {
-    const auto& [behind, front] = plc.patches[p].regions;
-    if ((behind == 0) == (front == 0)) continue;
-    double wrong = 0;
-    const Plc::Patch& patch = plc.patches[p];
-    std::vector<DistanceTree::Triangle> triangles;
-    for (Index t = patch.first_triangle; t < patch.first_triangle + patch.triangle_count; ++t)
-      triangles.push_back({subject.plc_corner(plc.triangles[t], 0), subject.plc_corner(plc.triangles[t], 1),
-                           subject.plc_corner(plc.triangles[t], 2)});
-    const DistanceTree tree(triangles);
-    Point where{};
-    const auto normal = [](const Point& a, const Point& b, const Point& c) { return cross(b - a, c - a); };
-    for (const Index* f = by_patch.begin(p); f != by_patch.end(p); ++f) {
-      where = subject.centroid(subject.mesh.faces[*f]);
-      const auto& [a, b, c] = triangles[tree.nearest(where).triangle];
-      const auto& [i, j, k] = subject.mesh.faces[*f];
-      const double agreement =
-          dot(normal(a, b, c), normal(subject.point(i), subject.point(j), subject.point(k)));
-      wrong += agreement < 0 ? 1 : -1;
-    }
-    if ((wrong > 0) == (behind > 0) && wrong != 0)
-      findings.add(guarantee::shell_orientation, where, {p},
-                   "The faces of patch {} (tag {}) at {} look into its solid; turn them.", p, patch.tag,
-                   At{where});
-  }
-}
-
 /// Returns the normal of a curved triangle at parameters (s, t); its length is the Jacobian.
 Vector jacobian_at(const CurvedTriangle& n, double s, double t) {
   const double r = 1 - s - t;
@@ -213,7 +183,7 @@ void judge_shells(const TetMesh& given, const Plc& given_plc, const CheckOptions
   check_curves(subject, report, findings);
   check_patches(subject, report, findings);
   if ((report.cancelled = execution.cancelled())) return;
-  check_outward(subject, given_plc, findings);
+  check_shell_orientation(subject, given_plc, findings);
   check_second_order(subject, report, findings);
   check_triangle_jacobians(subject, findings);
   measure_without_tets(subject, 2, report);

@@ -68,8 +68,6 @@ class ComplexBuilder {
       : ComplexBuilder(corners_of(mesh), options) {}
 
   MeshComplex run() {
-    if (mesh_.tets.empty())
-      refuse(PlcFault::Kind::empty, "The mesh has no tetrahedra; name a file that has some.", {}, {});
     require_edges();
     require_positive_sides();
     build();
@@ -333,6 +331,8 @@ class ComplexBuilder {
 }  // namespace
 
 Corners corners_of(const TetMesh& mesh) {
+  if (mesh.tets.empty())
+    refuse(PlcFault::Kind::empty, "The mesh has no tetrahedra; name a file that has some.", {}, {});
   Corners corners;
   TetMesh& kept = corners.mesh;
   std::vector<Index> number(mesh.points.size(), none);
