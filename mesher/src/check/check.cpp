@@ -141,7 +141,6 @@ void note_layers(const TetMesh& mesh, CheckReport& report) {
 
 /// Judges the angles of the tets beside layers. `subject`: the mesh with its layers cut into tets.
 void check_core(const TetMesh& mesh, const Subject& subject, CheckReport& report) {
-  constexpr double least_angle = 8;  // where the bounds have no angle
   TetMesh labelled = mesh;
   labelled.features = features_of(subject);
   labelled.features.resize(mesh.points.size());
@@ -149,7 +148,7 @@ void check_core(const TetMesh& mesh, const Subject& subject, CheckReport& report
       subject.match.face_patch.begin(),
       subject.match.face_patch.begin() + static_cast<std::ptrdiff_t>(mesh.faces.size()));
   Bounds bounds = subject.options.bounds;
-  if (bounds.thin_angle == 0) bounds.thin_angle = least_angle;
+  if (bounds.thin_angle == 0) bounds.thin_angle = least_core_angle;
   check_core_angles(labelled, walls_below(mesh), subject.plc, bounds, report);
 }
 

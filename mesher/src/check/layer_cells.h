@@ -22,6 +22,9 @@ inline constexpr char core_angles[] = "core_angles";          ///< of the tets b
 
 namespace collarmesh::checks {
 
+/// The least dihedral angle of tets beside layers, in degrees, where the bounds have none.
+inline constexpr double least_core_angle = 8;
+
 /// Checks the cells of boundary layers together with the tets, by the mesh alone: arrays; positive Jacobians;
 /// each side of a cell has another cell behind it, turned the other way, or is listed among the faces or
 /// quadrangles; sides between regions are listed, too; nodes of second order. Adds findings. A mesh without

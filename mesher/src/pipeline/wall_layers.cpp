@@ -19,11 +19,10 @@ namespace collarmesh::pipeline {
 namespace {
 
 ImproveOptions options_of_core(const MeshJob& job) {
-  constexpr double least_angle = 8;  // where the profile bounds no angles
   ImproveOptions options = improve_options(job.options.improve == 0 ? 2 : job.options.improve);
   options.bounds = job.bounds();
   options.bounds.tolerance = job.refined_with.bounds.tolerance;
-  if (options.bounds.thin_angle == 0) options.bounds.thin_angle = least_angle;
+  if (options.bounds.thin_angle == 0) options.bounds.thin_angle = checks::least_core_angle;
   options.threads = job.options.mesh.threads;
   return options;
 }
