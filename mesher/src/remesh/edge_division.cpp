@@ -150,8 +150,9 @@ std::vector<EdgeDivision::LongEdge> EdgeDivision::distant_edges() const {
       });
   const auto key = [](const EdgeOfPatch& e) { return std::tuple(e.a, e.b, e.patch); };
   std::ranges::sort(candidates, {}, key);
-  const auto repeated = std::ranges::unique(candidates, {}, key);
-  candidates.erase(repeated.begin(), repeated.end());
+  candidates.erase(std::unique(candidates.begin(), candidates.end(),
+                               [&](const EdgeOfPatch& x, const EdgeOfPatch& y) { return key(x) == key(y); }),
+                   candidates.end());
   std::vector<LongEdge> edges =
       found_in_ranges<LongEdge>(candidates.size(), [&](std::size_t i, std::vector<LongEdge>& found) {
         const EdgeOfPatch& e = candidates[i];
