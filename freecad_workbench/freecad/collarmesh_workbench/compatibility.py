@@ -25,6 +25,17 @@ class Stateless:
         return None
 
 
+class WithProperties(Stateless):
+    """A proxy that adds the properties that its object lacks, when it is made and when an older document is opened."""
+
+    def __init__(self, obj):
+        obj.Proxy = self
+        self.add_properties(obj)
+
+    def onDocumentRestored(self, obj):
+        self.add_properties(obj)
+
+
 def add_mesh_object(document, name):
     """Adds an empty mesh object with a Python proxy. FreeCAD 1.0 has a base class with the meshed shape."""
     try:

@@ -21,15 +21,8 @@ PROPERTIES = (
 )
 
 
-class Layers(compatibility.Stateless):
+class Layers(compatibility.WithProperties):
     Type = TYPE
-
-    def __init__(self, obj):
-        obj.Proxy = self
-        self.add_properties(obj)
-
-    def onDocumentRestored(self, obj):
-        self.add_properties(obj)
 
     def add_properties(self, obj):
         for kind, name, value, text in PROPERTIES:

@@ -14,17 +14,10 @@ DEFAULT_SHARE = 0.1  # radius of a new sphere, relative to the part's diagonal
 TURNED = 1e-9  # rad
 
 
-class Size(compatibility.Stateless):
+class Size(compatibility.WithProperties):
     """The common part of all size objects: the size inside, and its growth outside."""
 
     lengths = ()  # lengths of the body: name, share for a new object, text
-
-    def __init__(self, obj):
-        obj.Proxy = self
-        self.add_properties(obj)
-
-    def onDocumentRestored(self, obj):
-        self.add_properties(obj)
 
     def add_properties(self, obj):
         have = obj.PropertiesList

@@ -23,7 +23,7 @@ def _at_corners(corners: Array, weights: Array, values: Array) -> Array:
 
     corners: (m, 4). weights: (m,). values: (m, k).
     """
-    count = int(corners.max()) + 1
+    count = int(corners.max(initial=-1)) + 1
     sums = numpy.zeros((count, values.shape[1]))
     total = numpy.zeros(count)
     for corner in corners.T:
