@@ -8,14 +8,11 @@
 #include <vector>
 
 #include "arguments.h"
+#include "help_text.h"
 
 namespace collarmesh::cli {
 
 namespace {
-
-std::vector<const CLI::App*> subcommands(const CLI::App& app) {
-  return app.get_subcommands([](const CLI::App*) { return true; });
-}
 
 std::string names_of_subcommands(const CLI::App& app) {
   std::string names;

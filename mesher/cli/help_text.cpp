@@ -36,6 +36,10 @@ std::string wrapped(std::string_view text, std::size_t width = columns - first_c
 
 }  // namespace
 
+std::vector<const CLI::App*> subcommands(const CLI::App& app) {
+  return app.get_subcommands([](const CLI::App*) { return true; });
+}
+
 HelpText::HelpText() { column_width(first_column); }
 
 std::string HelpText::make_usage(const CLI::App* app, std::string name) const {

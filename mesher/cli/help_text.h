@@ -2,8 +2,12 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 namespace collarmesh::cli {
+
+/// Returns all commands of the program, or of a command.
+std::vector<const CLI::App*> subcommands(const CLI::App& app);
 
 /// The help of CLI11 with our own usage lines, wrapped for a terminal of 80 columns.
 class HelpText : public CLI::Formatter {

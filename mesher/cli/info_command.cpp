@@ -68,8 +68,7 @@ std::vector<Prediction> predictions(const InfoArguments& arguments, const Plc& p
 }
 
 void print_complex(const InfoArguments& arguments) {
-  using Clock = std::chrono::steady_clock;
-  const Clock::time_point begin = Clock::now();
+  const auto begin = std::chrono::steady_clock::now();
   files::ComplexInput input(arguments.inputs, interruptible({.format = {},
                                                              .overlap = arguments.overlap,
                                                              .threads = arguments.mesh.threads,
@@ -77,7 +76,7 @@ void print_complex(const InfoArguments& arguments) {
                                                              .given_names = arguments.given_names}));
   const Plc plc = build_any(input, arguments);
   process::stop_if_interrupted();
-  const double read = std::chrono::duration<double>(Clock::now() - begin).count();
+  const double read = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const std::vector<Prediction> predicted = predictions(arguments, plc, read);
   const PlcSummary summary = summarize(plc, arguments.mesh.bounds.crease_angle);
   const GroupNames names = input.has_cad() ? GroupNames::cad : GroupNames::complex;

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "help_text.h"
 #include "usage_error.h"
 
 namespace collarmesh::cli {
@@ -27,10 +28,6 @@ std::string roff(std::string_view text) {
       result += c;
   }
   return result;
-}
-
-std::vector<const CLI::App*> subcommands(const CLI::App& app) {
-  return app.get_subcommands([](const CLI::App*) { return true; });
 }
 
 void add_option(std::string& text, const CLI::Option& option) {

@@ -23,6 +23,7 @@
 #include <map>
 
 #include "outline_triangles.h"
+#include "points.h"
 #include "topology.h"
 
 namespace collarmesh::brep {
@@ -32,7 +33,6 @@ namespace {
 using Ends = std::array<Index, 2>;
 using Parameters = std::array<double, 2>;
 
-Point to_point(const gp_Pnt& p) { return {p.X(), p.Y(), p.Z()}; }
 Ends sorted(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
 
 /// Returns the sides that an odd number of triangles share.

@@ -2,6 +2,7 @@
 #include "free_chords.h"
 
 #include "free_parts.h"
+#include "points.h"
 
 #include <fmt/format.h>
 #include <BRepAdaptor_Curve.hxx>
@@ -21,10 +22,6 @@
 namespace collarmesh::brep {
 
 namespace {
-
-Point to_point(const gp_Pnt& p) { return {p.X(), p.Y(), p.Z()}; }
-
-bool is_edge(const TopoDS_Shape& part) { return part.ShapeType() == TopAbs_EDGE; }
 
 class Cutter {
  public:

@@ -31,8 +31,6 @@ namespace collarmesh::brep {
 
 namespace {
 
-bool is_edge(const TopoDS_Shape& part) { return part.ShapeType() == TopAbs_EDGE; }
-
 double tolerance_of(const TopoDS_Shape& part) {
   double largest = Precision::Confusion();
   if (is_edge(part)) largest = std::max(largest, BRep_Tool::Tolerance(TopoDS::Edge(part)));

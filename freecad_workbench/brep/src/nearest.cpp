@@ -1,6 +1,8 @@
 // Finds nearest points on exact edges and surfaces.
 #include "nearest.h"
 
+#include "points.h"
+
 #define BOOST_ALLOW_DEPRECATED_HEADERS  // for Boost itself
 #include <BRepAdaptor_Curve.hxx>
 #include <BRepAdaptor_Surface.hxx>
@@ -30,8 +32,6 @@ using TreeBox = bg::model::box<TreePoint>;
 using Tree = bg::index::rtree<std::pair<TreeBox, std::size_t>, bg::index::quadratic<16>>;
 
 gp_Pnt to_gp(const Point& p) { return {p.x, p.y, p.z}; }
-Point to_point(const gp_Pnt& p) { return {p.X(), p.Y(), p.Z()}; }
-
 /// Keeps the nearer of two results.
 void keep_nearer(std::optional<Point>& best, const std::optional<Point>& other, const Point& p) {
   if (other && (!best || squared_distance(*other, p) < squared_distance(*best, p))) best = other;

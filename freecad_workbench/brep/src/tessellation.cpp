@@ -5,6 +5,7 @@
 #include "flat_triangles.h"
 #include "folded_triangles.h"
 #include "free_chords.h"
+#include "points.h"
 
 #include <fmt/format.h>
 #include <BRepAdaptor_Curve.hxx>
@@ -35,8 +36,6 @@
 namespace collarmesh::brep {
 
 namespace {
-
-Point to_point(const gp_Pnt& p) { return {p.X(), p.Y(), p.Z()}; }
 
 class Tessellator {
  public:

@@ -53,6 +53,8 @@ struct Topology {
   std::string name(const TopoDS_Shape& shape) const;
 };
 
+inline bool is_edge(const TopoDS_Shape& part) { return part.ShapeType() == TopAbs_EDGE; }
+
 /// Finds the solids of a shape. Sews faces if there is no solid or one is open, and makes solids that touch
 /// share faces. A shape of edges alone keeps these as free parts. Throws PlcError for a shape without faces
 /// and edges.
