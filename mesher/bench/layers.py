@@ -119,14 +119,16 @@ def measure(row: Row, path: Path, first: float) -> None:
 
 
 def measure_first_heights(row: Row, prisms: np.ndarray, layers: np.ndarray, first: float) -> None:
-    """The 95th percentile of the errors of the first heights, where no node has less than was asked."""
+    """The 95th percentile of the errors of the first heights, where no node has less than nine tenths of what was asked.
+
+    A node has one height above a wall, but its triangles, which deviate from a curved wall to both sides, several."""
     p = prisms[layers == 1]
     if not len(p):
         return
     normal = np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0])
     normal /= np.linalg.norm(normal, axis=1)[:, None]
     heights = np.abs(np.stack([np.einsum("ij,ij->i", p[:, k + 3] - p[:, k], normal) for k in range(3)]))
-    kept = heights.min(axis=0) > 0.999 * first   # elsewhere the height was reduced
+    kept = heights.min(axis=0) > 0.9 * first   # elsewhere the height was reduced
     if kept.any():
         row.first_error = 100 * float(np.quantile(np.abs(heights[:, kept].mean(axis=0) / first - 1), 0.95))
 
