@@ -6,7 +6,7 @@ import unittest
 import collarmesh
 import numpy
 
-from module_test import MODELS, box
+from module_test import MODELS, SANITIZED, box
 
 CUBE = box((0, 0, 0), (1, 1, 1))
 
@@ -157,7 +157,7 @@ class Errors(unittest.TestCase):
 
     def test_the_number_of_elements_is_met(self):
         mesh = self.mesh
-        for elements in (4000, 12000):
+        for elements in (4000, 3000 if SANITIZED else 12000):
             for _ in range(3):
                 errors = collarmesh.estimated_errors(mesh, self.solution(mesh.points))
                 mesh = mesh.adapt(collarmesh.sizes_from_errors(mesh, errors, elements=elements))
@@ -169,7 +169,7 @@ class Errors(unittest.TestCase):
 
         def total(mesh):
             return numpy.linalg.norm(collarmesh.estimated_errors(mesh, self.solution(mesh.points)))
-        goal = total(mesh) / 3
+        goal = total(mesh) / (1.5 if SANITIZED else 3)
         for _ in range(4):
             errors = collarmesh.estimated_errors(mesh, self.solution(mesh.points))
             mesh = mesh.adapt(collarmesh.sizes_from_errors(mesh, errors, error=goal))
@@ -203,7 +203,7 @@ def block_with_wires():
 class PoorMeshes(unittest.TestCase):
     def test_vertices_of_the_improvement_have_sizes(self):
         mesh = collarmesh.mesh(block_with_wires(), size=0.4)
-        for size in (None, 0.3):
+        for size in (None,) if SANITIZED else (None, 0.3):
             made = [mesh.adapt(size) for _ in range(2)]
             numpy.testing.assert_allclose(sorted(volumes(made[0]).values()), [0.0002, 0.0002, 1.9996])
             self.assertLess(len(made[0].tets), 2500)
@@ -221,7 +221,7 @@ class AgainstTheInput(unittest.TestCase):
     def test_nodes_lie_on_the_faces_of_a_cad_shape(self):
         flange = MODELS / "flange.step"
         first = mesh = collarmesh.mesh(flange, size=6)
-        for size in (3, 8, 4):
+        for size in (8, 4) if SANITIZED else (3, 8, 4):
             mesh = mesh.adapt(size, against=flange)
             self.assertTrue(mesh.passed, mesh.findings)
             self.assertLess(numpy.quantile(self.on_the_rim(mesh), 0.98), 1e-9)

@@ -157,17 +157,45 @@ double SmoothSurfaces::squared_distance(Index patch, const Triangle& t) const {
   return largest;
 }
 
-// Returns whether the old faces are beyond the tolerance and the created ones within the accepted ratio.
+// Returns whether each sample of the old faces is within its tolerance, or within the bound if that is
+// larger, of a created face.
+bool SmoothSurfaces::samples_are_near(std::span<const Index> old, std::span<const Face> created,
+                                      double least_squared_bound) const {
+  std::size_t last = 0;  // try first the face of the last point
+  for (const Index face : old) {
+    if (!smooth(face)) continue;
+    const Index patch = mesh_.face_patch[face];
+    const Surface& of = surface(patch);
+    const auto has_face = [&](Index s) {
+      const Point& sample = of.samples[s];
+      const double squared_bound = std::max(squared_tolerance(of, s), least_squared_bound);
+      for (std::size_t tried = 0; tried < created.size(); ++tried) {
+        const auto& [t, patch_of_face] = created[last];
+        if (patch_of_face == patch && is_within(squared_bound, sample, t[0], t[1], t[2])) return true;
+        last = last + 1 < created.size() ? last + 1 : 0;
+      }
+      return false;
+    };
+    for (Index s = first_sample_[face]; s != none; s = of.next_sample[s])
+      if (!has_face(s)) return false;
+  }
+  return true;
+}
+
+// Returns whether the created faces are no farther from the patches than the old ones or, where these are
+// beyond the tolerance, within the accepted ratio.
 bool SmoothSurfaces::are_excused(std::span<const Index> old, std::span<const Face> created) const {
   double farthest = 0;
   for (const Index face : old)
     if (smooth(face)) farthest = std::max(farthest, squared_distance(mesh_.face_patch[face], corners(face)));
-  if (farthest <= tolerance_.largest() * tolerance_.largest()) return false;
-  const double accepted = accepted_ratio_ * accepted_ratio_ * farthest;
-  return std::all_of(created.begin(), created.end(), [&](const Face& face) {
-    return face.patch == none || plc_.patches[face.patch].planar ||
-           squared_distance(face.patch, face.corners) <= accepted;
-  });
+  const bool beyond = farthest > tolerance_.largest() * tolerance_.largest();
+  const double accepted = beyond ? accepted_ratio_ * accepted_ratio_ * farthest : farthest;
+  return std::ranges::all_of(created,
+                             [&](const Face& face) {
+                               return face.patch == none || plc_.patches[face.patch].planar ||
+                                      squared_distance(face.patch, face.corners) <= accepted;
+                             }) &&
+         (beyond || samples_are_near(old, created, accepted));
 }
 
 // Returns the cosine of the angle between a face and a triangle of the patch, regardless of orientation.
@@ -214,24 +242,7 @@ bool SmoothSurfaces::fit_within(std::span<const Index> old, std::span<const Face
     if (std::isnan(agreement_of_old)) agreement_of_old = worst_agreement(old);
     if (least < agreement_of_old) return false;
   }
-  std::size_t last = 0;  // try first the face of the last point
-  for (const Index face : old) {
-    if (!smooth(face)) continue;
-    const Index patch = mesh_.face_patch[face];
-    const Surface& of = surface(patch);
-    const auto has_face = [&](Index s) {
-      const Point& sample = of.samples[s];
-      const double squared_bound = squared_tolerance(of, s);
-      for (std::size_t tried = 0; tried < created.size(); ++tried) {
-        const auto& [t, patch_of_face] = created[last];
-        if (patch_of_face == patch && is_within(squared_bound, sample, t[0], t[1], t[2])) return true;
-        last = last + 1 < created.size() ? last + 1 : 0;
-      }
-      return false;
-    };
-    for (Index s = first_sample_[face]; s != none; s = of.next_sample[s])
-      if (!has_face(s)) return false;
-  }
+  if (!samples_are_near(old, created, 0)) return false;
   for (std::size_t i = 0; i < created.size(); ++i)
     if (!is_planar(created[i]) && !edges_near(old, created, i, near[i])) return false;
   return true;

@@ -40,9 +40,9 @@ class SmoothSurfaces {
   };
   /// Returns the point of a smooth patch that is nearest to p. A known point near p makes it faster.
   Nearest nearest(Index patch, const Point& p, double near = INFINITY) const;
-  /// From now on other faces may replace those that are beyond the tolerance, if their distance from the
-  /// patch is at most `ratio` times that of the old ones: for meshes that were not made within the tolerance.
-  /// 0: none.
+  /// From now on faces may be replaced by others beyond the tolerance that are no farther from the patch;
+  /// where the old ones are beyond all tolerances, by others at most `ratio` times as far: for meshes that
+  /// were not made within the tolerance. 0: never.
   void accept_distant(double ratio) { accepted_ratio_ = ratio; }
   /// Returns whether an edge is within the tolerance of a smooth patch, judged by samples.
   bool edge_is_near(Index patch, const Point& a, const Point& b) const {
@@ -100,6 +100,8 @@ class SmoothSurfaces {
   bool edges_near(std::span<const Index> old, std::span<const Face> created, std::size_t i, Index hint) const;
   double squared_distance(Index patch, const Triangle& t) const;
   bool fit_within(std::span<const Index> old, std::span<const Face> created, double& agreement_of_old) const;
+  bool samples_are_near(std::span<const Index> old, std::span<const Face> created,
+                        double least_squared_bound) const;
   bool are_excused(std::span<const Index> old, std::span<const Face> created) const;
   double agreement(Index patch, const Triangle& t, Index triangle) const;
   double worst_agreement(std::span<const Index> faces) const;

@@ -12,6 +12,10 @@
 
 namespace collarmesh::pipeline {
 
+bool may_start_constrained(const PipelineOptions& options) {
+  return options.start == Start::automatic && options.coarsen && !options.periodic.any();
+}
+
 void tetrahedralize(MeshJob& job) {
   job.control.begin("tetrahedralize", 0.06, 0.2);
   MeshResult& result = job.made.result;

@@ -9,6 +9,10 @@ struct Hopeless {};
 /// The mesh asked of a start from constrained tetrahedra: any, or one that probably keeps every guarantee.
 enum class Hope { any, good };
 
+/// Returns whether the options permit a start from constrained tetrahedra where refinement takes too many
+/// vertices.
+bool may_start_constrained(const PipelineOptions& options);
+
 /// Makes the constrained tetrahedra of the complex, and brings their edges to the target lengths. Throws
 /// Ended.
 void tetrahedralize(MeshJob& job);

@@ -12,7 +12,6 @@
 #include "periodic/tolerance_across.h"
 #include "pipeline/certification.h"
 #include "pipeline/exact_shape.h"
-#include "pipeline/explosion.h"
 #include "pipeline/periodic_faces.h"
 #include "pipeline/refinement.h"
 #include "pipeline/reshaping.h"
@@ -77,22 +76,18 @@ bool MeshMaker::replace_refined() {
   return false;
 }
 
-void MeshMaker::make_refined_or_constrained(const Plc& plc) { make_or_take_constrained(plc, nullptr); }
-
 void MeshMaker::make_anyhow(const Plc& plc, const std::string& why) {
-  if (!take_constrained(plc, why)) make_or_take_constrained(plc, &why);
+  if (!take_constrained(plc, why)) make_or_take_constrained(plc, why);
 }
 
 /// Meshes a complex by refinement; if that hits the bound on vertices, from constrained tetrahedra. `why` is
-/// the reason that a note gives for these; null: the failure of the refinement.
-void MeshMaker::make_or_take_constrained(const Plc& plc, const std::string* why) {
+/// the reason that a note gives for these.
+void MeshMaker::make_or_take_constrained(const Plc& plc, const std::string& why) {
   try {
     return make(plc, job_.given.mesh.seed);
   } catch (const Ended&) {
     if (!job_.hit_bound()) throw;
-    const std::string reason =
-        why != nullptr ? *why : describe_explosion(plc, job_.budget.most(), job_.made.result.where);
-    std::optional<PipelineResult> constrained = from_constrained(plc, reason, Hope::any);
+    std::optional<PipelineResult> constrained = from_constrained(plc, why, Hope::any);
     if (!constrained) throw;
     is_constrained_ = true;
     job_.made = std::move(*constrained);
@@ -112,7 +107,7 @@ bool MeshMaker::take_constrained(const Plc& plc, const std::string& why) {
 
 std::optional<PipelineResult> MeshMaker::from_constrained(const Plc& plc, const std::string& why, Hope hope) {
   const PipelineOptions& given = job_.given;
-  if (given.start != Start::automatic || !given.coarsen || given.periodic.any()) return {};
+  if (!may_start_constrained(given)) return {};
   PipelineResult& made = job_.made;
   PipelineResult before = std::exchange(made, {});
   std::optional<PipelineResult> found;

@@ -23,9 +23,6 @@ class MeshMaker {
   /// constrained tetrahedra that must yield a good mesh (Hope::good), but many tets miss their bounds.
   void make(const Plc& plc, std::uint64_t seed);
 
-  /// Meshes a complex by refinement or, if that takes far too many vertices, from its constrained tetrahedra.
-  void make_refined_or_constrained(const Plc& plc);
-
   /// Meshes a complex when other ways have failed: from its constrained tetrahedra if that keeps every
   /// guarantee; else by refinement within the budgets; else from constrained tetrahedra even if guarantees
   /// are missed.
@@ -49,7 +46,7 @@ class MeshMaker {
   bool is_far_too_fine() const;
   bool replace_refined();
   bool take_constrained(const Plc& plc, const std::string& why);
-  void make_or_take_constrained(const Plc& plc, const std::string* why);
+  void make_or_take_constrained(const Plc& plc, const std::string& why);
   const SurfaceTolerance& tolerance(const Plc& plc);
   SurfaceTolerance tolerance(const Plc& plc, int order) const;
 

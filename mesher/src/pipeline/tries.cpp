@@ -29,8 +29,14 @@ void require_kept(const SoupPipelineResult& finer, const SoupPipelineResult& coa
 }  // namespace
 
 void Tries::mesh(const Plc& plc) {
-  job_.budget.bound(Ways::none);
-  maker_.make_refined_or_constrained(plc);
+  job_.budget.bound(may_start_constrained(job_.given) ? Ways::others : Ways::none);
+  std::exception_ptr error;
+  const auto [end, why] = attempt(plc, error);
+  if (end == End::refused) std::rethrow_exception(error);
+  if (end == End::exploded) {
+    job_.budget.bound(Ways::none);
+    maker_.make_anyhow(plc, why);
+  }
   try_seeds(plc);
 }
 

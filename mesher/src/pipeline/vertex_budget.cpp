@@ -2,12 +2,14 @@
 
 #include <algorithm>
 
+#include "pipeline/constrained_start.h"
 #include "pipeline/vertex_bound.h"
 
 namespace collarmesh::pipeline {
 
 void VertexBudget::bound(Ways ways) {
-  ways_ = given_.repair.mode == RepairMode::off || given_.repair.wrap_at_once ? Ways::none : ways;
+  const bool repairs = given_.repair.mode != RepairMode::off && !given_.repair.wrap_at_once;
+  ways_ = repairs || may_start_constrained(given_) ? ways : Ways::none;
   is_known_ = false;
 }
 
