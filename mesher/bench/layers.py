@@ -14,6 +14,7 @@ import json
 import math
 import os
 import re
+import resource
 import statistics
 import subprocess
 import tempfile
@@ -46,7 +47,7 @@ class Row:
     step: float = math.nan
     smallest: float = math.nan       # dihedral angles of the tets beside the layers
     largest: float = math.nan
-    seconds: float = math.nan
+    seconds: float = math.nan        # of all cores
     share: float = math.nan          # percent of the time that layers take
     why: str = ""
     openfoam: str = ""               # the verdict of checkMesh
@@ -119,16 +120,24 @@ def measure(row: Row, path: Path, first: float) -> None:
 
 
 def measure_first_heights(row: Row, prisms: np.ndarray, layers: np.ndarray, first: float) -> None:
-    """The 95th percentile of the errors of the first heights, where no node has less than was asked."""
+    """The 95th percentile of the errors of the first heights, where no node has less than nine tenths of what was asked.
+
+    A node has one height above a wall, but its triangles, which deviate from a curved wall to both sides, several."""
     p = prisms[layers == 1]
     if not len(p):
         return
     normal = np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0])
     normal /= np.linalg.norm(normal, axis=1)[:, None]
     heights = np.abs(np.stack([np.einsum("ij,ij->i", p[:, k + 3] - p[:, k], normal) for k in range(3)]))
-    kept = heights.min(axis=0) > 0.999 * first   # elsewhere the height was reduced
+    kept = heights.min(axis=0) > 0.9 * first   # elsewhere the height was reduced
     if kept.any():
         row.first_error = 100 * float(np.quantile(np.abs(heights[:, kept].mean(axis=0) / first - 1), 0.95))
+
+
+def cpu_seconds() -> float:
+    """Returns those of all programs that have been run."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 def run(name: str, path: Path, program: str, arguments, folder: Path) -> Row:
@@ -143,7 +152,7 @@ def run(name: str, path: Path, program: str, arguments, folder: Path) -> Row:
     if arguments.thickness_of_three:
         first *= sum(growth ** k for k in range(3)) / sum(growth ** k for k in range(arguments.count))
     out, report = folder / "mesh.vtu", folder / "report.json"
-    started = time.monotonic()
+    started, used = time.monotonic(), cpu_seconds()
     try:
         made = subprocess.run([program, str(path), "-o", str(out), "--size", repr(size), "--report", str(report),
                                "--layers", f"all:first={first!r},growth={growth},count={arguments.count}", "--quiet",
@@ -151,7 +160,8 @@ def run(name: str, path: Path, program: str, arguments, folder: Path) -> Row:
     except subprocess.TimeoutExpired:
         row.outcome = "past the limit"
         return row
-    row.seconds = time.monotonic() - started
+    elapsed = time.monotonic() - started
+    row.seconds = cpu_seconds() - used
     if made.returncode not in (0, 7):
         row.outcome = (made.stderr.strip().splitlines() or ["failed"])[-1][:60]
         return row
@@ -162,7 +172,7 @@ def run(name: str, path: Path, program: str, arguments, folder: Path) -> Row:
     row.coverage, row.step = 100 * layers["coverage"], layers["largest_step"]
     area = sum(p["area"] for p in layers["patches"])
     row.full = 100 * sum(p["area_by_tenth_of_thickness"][9] for p in layers["patches"]) / area
-    row.share = 100 * told["seconds"].get("layers", 0) / row.seconds
+    row.share = 100 * told["seconds"].get("layers", 0) / elapsed
     row.why = "; ".join(f"{r['nodes']} {r['why'].split(',')[0][:40]}" for r in layers["reductions"])
     measure(row, out, first)
     if arguments.openfoam:
@@ -296,7 +306,7 @@ def print_table(rows: list[Row]) -> None:
              f"{row.smallest:.1f}", f"{row.largest:.1f}", f"{row.seconds:.1f}", f"{row.share:.0f}",
              row.openfoam, row.non_orthogonality, row.skewness] for row in rows]
     print(table(["shape", "outcome", "tets", "prisms", "pyramids", "covered %", "full thickness %", "negative Jacobians",
-                 "error of the first height %", "largest step", "smallest angle", "largest angle", "s", "layers' share %",
+                 "error of the first height %", "largest step", "smallest angle", "largest angle", "CPU s", "layers' share %",
                  "checkMesh", "non-orthogonality: largest, mean", "skewness"],
                 text))
     covered = [row.coverage for row in rows if not math.isnan(row.coverage)]

@@ -103,6 +103,34 @@ TEST(CheckLayers, EdgesOfPrismsLeadToTheWall) {
   EXPECT_EQ(walls[18], none);
 }
 
+/// Two layers, on one triangle of the wall as tets, on the next one as pyramids.
+TetMesh tets_and_pyramids() {
+  TetMesh mesh;
+  mesh.points = {{0, 0, 0},   {1, 0, 0},   {0, 1, 0},   {-1, 0, 0},
+                 {0, 0, 0.1}, {0, 0, 0.2}, {0, 1, 0.1}, {0, 1, 0.2}};
+  mesh.faces = {{0, 2, 1}, {0, 3, 2}};
+  mesh.tets = {{0, 1, 2, 4}, {4, 1, 2, 5}, {5, 1, 2, 7}};
+  mesh.layers.tet_layer = {1, 2, 0};
+  mesh.layers.pyramids = {{0, 2, 6, 4, 3}, {4, 6, 7, 5, 3}};
+  mesh.layers.pyramid_layer = {1, 2};
+  return mesh;
+}
+
+TEST(CheckLayers, EdgesOfTetsAndPyramidsLeadToTheWall) {
+  const TetMesh mesh = tets_and_pyramids();
+  EXPECT_EQ(walls_below(mesh), (std::vector<Index>{none, none, none, none, 0, 0, 2, 2}));
+}
+
+TEST(CheckLayers, CellsAboveNoListedTriangleLeadToNoWall) {
+  TetMesh mesh = tets_and_pyramids();
+  mesh.faces.pop_back();
+  EXPECT_EQ(walls_below(mesh), std::vector<Index>(8, none));
+  mesh = tets_and_pyramids();
+  mesh.layers.pyramids.clear();
+  mesh.tets[0] = {1, 2, 4, 0};
+  EXPECT_EQ(walls_below(mesh), std::vector<Index>(8, none));
+}
+
 TEST(CheckLayers, ARightMeshPasses) {
   for (const int order : {1, 2}) {
     const TetMesh mesh = without_features(order == 1 ? layer_mesh() : second_order(layer_mesh()));

@@ -60,6 +60,35 @@ TEST(LayerDirection, IsTheSteepest) {
     }
 }
 
+/// A plane, and triangles on both sides of a curved wall.
+TEST(LayerDirection, IsAsSteepAboveMeansOfWalls) {
+  const double sine = std::sqrt(0.5);
+  DirectionSearch search;
+  search.add_wall({0, 0, 1});
+  search.add_wall({1, 0, 0});
+  search.add_wall({399.0 / 401, 0, -40.0 / 401});
+  const auto above_all = search.best();
+  ASSERT_TRUE(above_all);
+  search.add_mean({0, 0, 1});
+  search.add_mean({1, 0, 0});
+  const auto found = search.best();
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(distance(found->direction, {sine, 0, sine}), 0, 1e-6);
+  EXPECT_NEAR(found->least_cosine, (399.0 - 40.0) / 401 * sine, 1e-6);
+  EXPECT_LT(found->least_cosine, above_all->least_cosine);
+}
+
+TEST(LayerDirection, IsNotThatOfMeansWhereItWouldBeFlat) {
+  DirectionSearch search;
+  search.add_wall({0, 0, 1});
+  search.add_wall({0.96, 0, 0.28});
+  const auto above_all = search.best();
+  search.add_mean({0, 0, 1});
+  const auto found = search.best();
+  ASSERT_TRUE(above_all && found);
+  EXPECT_NEAR(distance(found->direction, above_all->direction), 0, 1e-9);
+}
+
 TEST(LayerDirection, ThereIsNoneBetweenOppositeWalls) {
   DirectionSearch search;
   search.add_wall({0, 0, 1});

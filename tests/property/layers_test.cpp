@@ -7,12 +7,14 @@
 #include <map>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "check/layer_cells.h"
 #include "collarmesh/error.h"
 #include "collarmesh/layers.h"
 #include "collarmesh/pipeline.h"
+#include "common/layer_tets.h"
 #include "support/plc_shapes.h"
 
 namespace collarmesh {
@@ -199,6 +201,64 @@ TEST(Layers, DividedIntoTetsFitEachOther) {
     EXPECT_GT(least_jacobian_of(mesh), 0);
     EXPECT_NEAR(volume_of(mesh), 1, 1e-9);
   }
+}
+
+TEST(Layers, LeadToTheWallsBelowThem) {
+  for (const bool tets : {false, true})
+    for (const auto& [soup, walls] : {std::pair{wedge(20), "all"},
+                                      {wedge(20), "5:first=0.02,count=2"},
+                                      {box({0, 0, 0}, {1, 1, 1}), "all:first=0.02,count=1"}}) {
+      PipelineOptions options = with_layers({walls});
+      options.layers.tets = tets;
+      const PipelineResult run = made({soup}, options);
+      const std::vector<Index>& known = run.layers->walls;
+      const std::vector<Index> found = walls_below(run.result.mesh);
+      ASSERT_GE(found.size(), known.size());
+      for (Index v = 0; v < found.size(); ++v) {
+        const Index wall = v < known.size() ? known[v] : none;
+        EXPECT_EQ(found[v], wall == v ? none : wall) << walls << ", tets " << tets << ", point " << v;
+      }
+    }
+}
+
+/// Heights above a triangle of a curved wall vary, as its triangles deviate to both sides; their mean is that
+/// asked for.
+TEST(Layers, AreAsHighAboveCurvedWallsAsAsked) {
+  constexpr double first = 0.02;
+  for (const auto& soup : {cylinder(40, 1, 2), sphere(6, 1, {0, 0, 0})}) {
+    PipelineOptions options = with_layers({"all:first=0.02,count=1"});
+    options.mesh.size = 0.3;
+    const PipelineResult run = made({soup}, options);
+    const auto& p = run.result.mesh.points;
+    std::vector<double> errors;
+    double sum = 0;
+    for (const auto& prism : run.result.mesh.layers.prisms) {
+      const Vector n = cross(p[prism[1]] - p[prism[0]], p[prism[2]] - p[prism[0]]);
+      std::array<double, 3> heights{};
+      for (unsigned k = 0; k < 3; ++k) heights[k] = dot(p[prism[k + 3]] - p[prism[k]], n) / norm(n) / first;
+      if (*std::min_element(heights.begin(), heights.end()) < 0.9) continue;  // lowered
+      const double error = (heights[0] + heights[1] + heights[2]) / 3 - 1;
+      errors.push_back(std::fabs(error));
+      sum += error;
+    }
+    ASSERT_GT(errors.size(), run.layers->prisms / 2);
+    std::sort(errors.begin(), errors.end());
+    EXPECT_LT(errors[errors.size() * 19 / 20], 0.02);
+    EXPECT_LT(std::fabs(sum / static_cast<double>(errors.size())), 0.002);
+  }
+}
+
+/// Where faces meet at less than 16 degrees, tets may have smaller angles than elsewhere; the engine makes
+/// none that are better but too poor for their place.
+TEST(Layers, KeepTheBoundsOfTheCoreBesideSharpEdges) {
+  for (const double degrees : {4.0, 7.0, 10.0, 13.0})
+    for (const double of_size : {0.1, 0.25}) {
+      PipelineOptions options = with_layers({"all:first=0.01,count=3"});
+      options.mesh.size = of_size;
+      const SoupPipelineResult run = run_pipeline(std::vector<PolygonSoup>{wedge(degrees)}, options);
+      EXPECT_TRUE(run.check.passed()) << degrees << ": " << run.missed();
+      EXPECT_GT(run.layers->coverage(), 0.5) << degrees;
+    }
 }
 
 TEST(Layers, StepDownIntoAWedge) {

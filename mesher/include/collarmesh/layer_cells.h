@@ -18,7 +18,7 @@ struct LayerCells {
   std::vector<Tag> prism_tag;              ///< tag of that region
   std::vector<std::uint16_t> prism_layer;  ///< number of the layer, from 1 at the wall
 
-  /// Corners a, b, c, d of the base of a pyramid, counterclockwise as seen from the apex e, then e.
+  /// Corners a, b, c, d of a pyramid's base, counterclockwise from the apex e, d above a, c above b; then e.
   std::vector<std::array<Index, 5>> pyramids;
   std::vector<Index> pyramid_region;
   std::vector<Tag> pyramid_tag;
@@ -38,7 +38,7 @@ struct LayerCells {
   std::vector<std::array<Index, 4>> quad_mid_nodes;
 
   /// By tet of the mesh: the number of its layer, from 1 at the wall; 0 for tets of no layer. Empty: no tet
-  /// is in a layer.
+  /// is in a layer. The last corner of a tet in a layer lies above the first one.
   std::vector<std::uint16_t> tet_layer;
 
   bool empty() const { return prisms.empty() && pyramids.empty() && tet_layer.empty(); }

@@ -11,6 +11,7 @@
 
 #include "collarmesh/error.h"
 #include "common/cell_shapes.h"
+#include "common/sorted.h"
 
 namespace collarmesh {
 
@@ -171,19 +172,77 @@ void require_tets_alone(const TetMesh& mesh, std::string_view what) {
 
 TetMesh tets_of_layers(const TetMesh& mesh) { return Cutter(mesh).cut(); }
 
-std::vector<Index> walls_below(const TetMesh& mesh) {
-  std::vector<Index> below(mesh.points.size(), none);
-  for (const auto& prism : mesh.layers.prisms)
-    for (std::size_t k = 0; k < 3; ++k) below[prism[k + 3]] = prism[k];
-  std::vector<Index> walls(mesh.points.size(), none);
-  for (Index v = 0; v < below.size(); ++v) {
-    Index wall = below[v];
-    // Edges rise towards the core; a mesh whose edges go round in circles has no wall there.
-    for (std::size_t steps = 0; wall != none && below[wall] != none && steps <= below.size(); ++steps)
-      wall = below[wall];
-    walls[v] = wall;
+namespace {
+
+/// Finds the points of walls below those of layers.
+class WallSearch {
+ public:
+  explicit WallSearch(const TetMesh& mesh) : mesh_(mesh), below_(mesh.points.size(), none) {}
+
+  std::vector<Index> run() {
+    for (const auto& prism : mesh_.layers.prisms)
+      for (std::size_t k = 0; k < 3; ++k) rise(prism[k], prism[k + 3]);
+    for (const auto& pyramid : mesh_.layers.pyramids) {
+      rise(pyramid[0], pyramid[3]);
+      rise(pyramid[1], pyramid[2]);
+    }
+    for_each_tet([this](const auto& tet) { rise(tet[0], tet[3]); });
+    follow_down();
+    keep_those_on_listed_faces();
+    return std::move(walls_);
   }
-  return walls;
-}
+
+ private:
+  void rise(Index from, Index to) { below_[to] = from; }
+
+  template <class Visit>
+  void for_each_tet(const Visit& visit) const {
+    for (std::size_t t = 0; t < mesh_.layers.tet_layer.size(); ++t)
+      if (mesh_.layers.tet_layer[t] > 0) visit(mesh_.tets[t]);
+  }
+
+  void follow_down() {
+    walls_.assign(below_.size(), none);
+    for (Index v = 0; v < below_.size(); ++v) {
+      Index wall = below_[v];
+      // Edges rise towards the core; a mesh whose edges go round in circles has no wall there.
+      for (std::size_t steps = 0; wall != none && below_[wall] != none && steps <= below_.size(); ++steps)
+        wall = below_[wall];
+      walls_[v] = wall;
+    }
+  }
+
+  /// Forgets the walls of cells that do not lie above one listed triangle.
+  void keep_those_on_listed_faces() {
+    for (const auto& face : mesh_.faces) listed_.push_back(sorted(face));
+    std::sort(listed_.begin(), listed_.end());
+    std::vector<Index> doubtful;
+    const auto see = [&](const auto& cell) {
+      if (!has_wall(cell)) doubtful.insert(doubtful.end(), cell.begin(), cell.end());
+    };
+    for (const auto& prism : mesh_.layers.prisms) see(prism);
+    for (const auto& pyramid : mesh_.layers.pyramids) see(pyramid);
+    for_each_tet(see);
+    for (const Index v : doubtful) walls_[v] = none;
+  }
+
+  template <std::size_t n>
+  bool has_wall(std::array<Index, n> cell) const {
+    for (Index& v : cell)
+      if (walls_[v] != none) v = walls_[v];
+    std::sort(cell.begin(), cell.end());
+    const auto end = std::unique(cell.begin(), cell.end());
+    if (end - cell.begin() != 3) return false;
+    return std::binary_search(listed_.begin(), listed_.end(), std::array{cell[0], cell[1], cell[2]});
+  }
+
+  const TetMesh& mesh_;
+  std::vector<Index> below_, walls_;          // by point
+  std::vector<std::array<Index, 3>> listed_;  // corners of listed faces, sorted
+};
+
+}  // namespace
+
+std::vector<Index> walls_below(const TetMesh& mesh) { return WallSearch(mesh).run(); }
 
 }  // namespace collarmesh

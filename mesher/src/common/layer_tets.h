@@ -17,7 +17,10 @@ TetMesh tets_of_layers(const TetMesh& mesh);
 /// Throws OptionError if the mesh has prisms or pyramids. `what`: begins the message.
 void require_tets_alone(const TetMesh& mesh, std::string_view what);
 
-/// Returns for each point the one at the wall from which the edges of prisms rise to it; none for others.
+/// Returns for each point the one at the wall from which the edges of cells of layers rise to it; none for
+/// others. These edges lead from the first three corners of a prism to the others, from the first two of a
+/// pyramid to the next two, from the first of a tet to the last. Cells that do not lie above one listed
+/// triangle do not count. Cost: O(n log n).
 std::vector<Index> walls_below(const TetMesh& mesh);
 
 }  // namespace collarmesh

@@ -29,12 +29,13 @@ constexpr double above_bound = 1.05;
 // So many poor tets are improved by slow means, too.
 constexpr std::size_t most_of_few = 20;
 constexpr unsigned most_advances = 6, most_rounds = 4, most_fittings = 40;
-constexpr double fitting = 0.85;  // by this factor heights are lowered to fit tets
+constexpr unsigned most_rings = 64;  // of tets around poor ones in which the front is sought
+constexpr double fitting = 0.85;     // by this factor heights are lowered to fit tets
 // Heights count as reached within this share.
 constexpr double precision = 1e-9;
 constexpr std::size_t at_once = 4096;
-// Larger than any ratio: angles alone decide.
-constexpr double any_ratio = 1e12;
+// Larger than the ratio of any tet, and smaller.
+constexpr double any_ratio = 1e12, no_ratio = 0;
 
 }  // namespace
 
@@ -99,10 +100,12 @@ bool Core::push(Heights& heights, const std::vector<std::uint8_t>& levels) {
     if (poor.size() > most_left(heights)) break;
     if (lowered || !reached) continue;
     if (!poor.empty()) break;
-    improve_tets(options_.min_dihedral, false);
+    piece_->leave({});
+    improve_by(options_.min_dihedral, false, no_ratio);
     return true;
   }
-  failed_ = nodes_near(poor, 2);
+  for (unsigned rings = 2; failed_.empty() && !poor.empty() && rings <= most_rings; rings *= 2)
+    failed_ = nodes_near(poor, rings);
   for (Index n = 0; n < heights.size(); ++n)
     if (!is_reached(n, heights)) failed_.push_back(n);
   std::sort(failed_.begin(), failed_.end());
@@ -330,11 +333,26 @@ std::vector<double> Core::shares_of(const std::vector<Vector>& moves, const std:
   }
 }
 
-/// Improves tets below this angle. `thoroughly`: by slow means, too.
+/// Improves tets below this angle: first by tets within their bounds alone, then those that are poor by any
+/// better ones. A better tet may miss its bound where a worse one does not: at a crease, or at a forced edge.
+/// `thoroughly`: by slow means, too.
 void Core::improve_tets(double angle, bool thoroughly) {
+  piece_->leave({});
+  improve_by(angle, thoroughly, no_ratio);
+  const std::vector<Index> poor = poor_tets();
+  if (poor.empty()) return;
+  const std::vector<std::uint8_t> near = vertices_near(poor, 1);
+  std::vector<bool> far(near.size());
+  for (std::size_t v = 0; v < near.size(); ++v) far[v] = near[v] == 0;
+  piece_->leave(std::move(far));
+  improve_by(angle, thoroughly, any_ratio);
+}
+
+/// `ratio`: tets beyond it have to keep their bounds on angles.
+void Core::improve_by(double angle, bool thoroughly, double ratio) {
   ImproveOptions options = options_;
   options.min_dihedral = std::min(angle, options.min_dihedral);
-  options.bounds.radius_edge = any_ratio;
+  options.bounds.radius_edge = ratio;
   options.bounds.thin_in_narrow_places_only = false;
   options.thin_above = any_ratio;
   options.keep_vertices = false;
@@ -367,8 +385,8 @@ bool Core::is_as_given(Index tet) const {
          });
 }
 
-/// Returns the nodes of the front that have copies, in tets at most so many rings from these.
-std::vector<Index> Core::nodes_near(const std::vector<Index>& tets, unsigned rings) const {
+/// Marks the vertices of tets at most so many rings from these.
+std::vector<std::uint8_t> Core::vertices_near(const std::vector<Index>& tets, unsigned rings) const {
   const auto& complex = piece_->complex;
   std::vector<std::uint8_t> near(mesh_.points.size(), 0);
   for (const Index t : tets)
@@ -383,6 +401,12 @@ std::vector<Index> Core::nodes_near(const std::vector<Index>& tets, unsigned rin
     }
     near = std::move(wider);
   }
+  return near;
+}
+
+/// Returns the nodes of the front that have copies, in tets at most so many rings from these.
+std::vector<Index> Core::nodes_near(const std::vector<Index>& tets, unsigned rings) const {
+  const std::vector<std::uint8_t> near = vertices_near(tets, rings);
   std::vector<Index> nodes;
   for (std::size_t v = given_.points.size(); v < node_of_.size(); ++v)
     if (near[v] != 0) nodes.push_back(node_of_[v]);

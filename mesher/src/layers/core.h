@@ -52,9 +52,11 @@ class Core {
   void constrain(Index vertex, Vector& move) const;
   std::vector<double> shares_of(const std::vector<Vector>& moves, const std::vector<Index>& near) const;
   void improve_tets(double angle, bool thoroughly);
+  void improve_by(double angle, bool thoroughly, double ratio);
   std::vector<Index> poor_tets() const;
   bool is_as_given(Index tet) const;
   bool lower_at(const std::vector<Index>& tets, double share, Heights& heights) const;
+  std::vector<std::uint8_t> vertices_near(const std::vector<Index>& tets, unsigned rings) const;
   std::vector<Index> nodes_near(const std::vector<Index>& tets, unsigned rings) const;
   improvement::Corners corners(Index tet) const { return piece_->complex.corners(tet); }
 

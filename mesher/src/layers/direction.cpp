@@ -18,6 +18,8 @@ constexpr unsigned most_steps = 200;
 constexpr double direction_precision = 1e-6;
 // Walls with a smaller cosine to the best direction meet sharply.
 constexpr double narrow = 0.6;
+// A direction above means of normals has at least this share of the best one's least cosine.
+constexpr double steep_enough = 0.85;
 // Planes and lines at a smaller sine of their angle are taken for the same.
 constexpr double parallel = 1e-4;
 // Lines may leave planes by this sine, because the normals of curved patches are means over triangles.
@@ -32,15 +34,19 @@ std::optional<Direction> DirectionSearch::best() const {
   if (!lines_.empty()) return std::nullopt;
   for (const Vector& plane : planes_)
     if (norm(cross(plane, planes_[0])) > parallel) return std::nullopt;
-  const std::optional<Direction> steepest = judge(nearest_to_origin());
-  return steepest && steepest->least_cosine > narrow ? steepest : judge(nearest_from_mean());
+  const std::optional<Direction> steepest = judge(nearest_to_origin(walls_));
+  if (!steepest || steepest->least_cosine <= narrow) return judge(nearest_from_mean());
+  if (means_.empty()) return steepest;
+  const std::optional<Direction> above_means = judge(nearest_to_origin(means_));
+  const double enough = std::max(narrow, steep_enough * steepest->least_cosine);
+  return above_means && above_means->least_cosine > enough ? above_means : steepest;
 }
 
-/// Returns the point of the convex hull of the walls' normals, in the plane if there is one, that is nearest
-/// to the origin.
-Vector DirectionSearch::nearest_to_origin() const {
+/// Returns the point of the convex hull of these normals, in the plane if there is one, that is nearest to
+/// the origin.
+Vector DirectionSearch::nearest_to_origin(const std::vector<Vector>& of) const {
   std::vector<Vector> normals;
-  for (const Vector& n : walls_) normals.push_back(in_plane(n));
+  for (const Vector& n : of) normals.push_back(in_plane(n));
   std::vector<double> weights(normals.size(), 1.0 / static_cast<double>(normals.size()));
   Vector nearest{};
   for (std::size_t i = 0; i < normals.size(); ++i) nearest = nearest + weights[i] * normals[i];

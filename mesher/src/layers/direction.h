@@ -18,6 +18,9 @@ class DirectionSearch {
  public:
   /// Unit vectors; the normal points away from the wall.
   void add_wall(const Vector& normal) { walls_.push_back(normal); }
+  /// Adds the mean of the normals of walls that approximate one curved wall. The direction is that as steep
+  /// as possible above these, if there are any, unless it is much flatter above one of the walls.
+  void add_mean(const Vector& normal) { means_.push_back(normal); }
   void stay_in_plane(const Vector& normal) { planes_.push_back(normal); }
   void stay_on_line(const Vector& way) { lines_.push_back(way); }
 
@@ -26,12 +29,12 @@ class DirectionSearch {
 
  private:
   std::optional<Vector> only_way() const;
-  Vector nearest_to_origin() const;
+  Vector nearest_to_origin(const std::vector<Vector>& of) const;
   Vector nearest_from_mean() const;
   Vector in_plane(const Vector& v) const;
   std::optional<Direction> judge(const Vector& way) const;
 
-  std::vector<Vector> walls_, planes_, lines_;
+  std::vector<Vector> walls_, means_, planes_, lines_;
 };
 
 }  // namespace collarmesh::layering

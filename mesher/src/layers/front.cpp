@@ -250,6 +250,9 @@ void Front::find_direction(Index node, std::span<const Index> sector_faces,
   FrontNode& at = nodes[node];
   DirectionSearch search;
   for (const Index s : sides_at[node]) search.add_wall(normal(sides[s]));
+  const std::vector<PatchNormal> normals = normals_of_patches(node);
+  for (const PatchNormal& of : normals)
+    if (const double length = norm(of.mean); length > 0) search.add_mean(of.mean / length);
   const Point& p = mesh_.points[at.vertex];
   std::vector<std::pair<Index, Vector>> patches;  // with the sum of the normals of their faces
   for (const Index f : sector_faces) {
@@ -287,7 +290,31 @@ void Front::find_direction(Index node, std::span<const Index> sector_faces,
     return;
   }
   at.direction = found->direction;
-  at.cosine = found->least_cosine;
+  at.least_cosine = found->least_cosine;
+  // Triangles deviate from curved walls to both sides, so that their means, not the least, are the walls'.
+  at.cosine = 1;
+  for (const PatchNormal& of : normals) at.cosine = std::min(at.cosine, dot(of.mean, at.direction));
+}
+
+std::vector<Front::PatchNormal> Front::normals_of_patches(Index node) const {
+  std::vector<PatchNormal> normals;
+  for (const Index s : sides_at[node]) {
+    const WallSide& side = sides[s];
+    const auto i =
+        static_cast<std::size_t>(std::find(side.nodes.begin(), side.nodes.end(), node) - side.nodes.begin());
+    const Point& p = mesh_.points[side.corners[i]];
+    const Vector u = mesh_.points[side.corners[(i + 1) % 3]] - p;
+    const Vector v = mesh_.points[side.corners[(i + 2) % 3]] - p;
+    const double angle = std::atan2(norm(cross(u, v)), dot(u, v));
+    auto found = std::find_if(normals.begin(), normals.end(),
+                              [&](const PatchNormal& of) { return of.patch == side.patch; });
+    if (found == normals.end()) found = normals.insert(found, {side.patch, 0, {}});
+    found->angle += angle;
+    found->mean = found->mean + angle * normal(side);
+  }
+  for (PatchNormal& of : normals)
+    if (of.angle > 0) of.mean = of.mean / of.angle;
+  return normals;
 }
 
 }  // namespace collarmesh::layering

@@ -50,9 +50,11 @@ struct WallSide {
 /// A node of the mesh as seen by the layers of one sector of the tets around it: between walls.
 struct FrontNode {
   Index vertex = none;
-  Vector direction{};    ///< unit; into the sector
-  double cosine = 0;     ///< the least one between the direction and the normals of the wall's sides
-  bool blocked = false;  ///< there can be no layer
+  Vector direction{};  ///< unit; into the sector
+  double cosine = 0;   ///< between the direction and the normals of the wall's sides: the mean over those
+                       ///< of a patch, by their angles; the least of all patches
+  double least_cosine = 0;  ///< the least one of all sides
+  bool blocked = false;     ///< there can be no layer
   /// The features without layers along which the node slides.
   TetMesh::VertexFeature slides_on = {};
 };
@@ -96,6 +98,13 @@ class Front {
   void list_sides();
   void find_directions();
   void find_direction(Index node, std::span<const Index> sector_faces, std::span<const Index> sector_edges);
+  /// The mean of unit normals of sides of one patch at a node, by their angles there.
+  struct PatchNormal {
+    Index patch;
+    double angle;
+    Vector mean;
+  };
+  std::vector<PatchNormal> normals_of_patches(Index node) const;
 
   const improvement::TetComplex& complex_;
   const TetMesh& mesh_;

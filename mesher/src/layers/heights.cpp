@@ -99,7 +99,7 @@ void Heights::ask() {
     }
     asked_[n] = possible_[n] = length_[n] = height / std::max(node.cosine, flat);
     if (node.cosine < flat) cause_[n] = Cause::direction;
-    if (node.cosine < flattest) lower(n, 0, Cause::direction);
+    if (node.least_cosine < flattest) lower(n, 0, Cause::direction);
   }
 }
 

@@ -155,6 +155,7 @@ void Stack::fill(const WallSide& side) {
   }
 }
 
+/// `corners`: the last one lies above the first.
 void Stack::add_tet(std::array<Index, 4> corners, const WallSide& side, unsigned layer) {
   mesh_.tets.push_back(corners);
   mesh_.tet_region.push_back(side.region);
@@ -180,8 +181,8 @@ void Stack::add_pyramid(const std::array<Index, 5>& corners, bool from_first, co
     return;
   }
   const auto& [a, b, c, d, apex] = corners;
-  add_tet(from_first ? std::array{a, b, c, apex} : std::array{a, b, d, apex}, side, layer);
-  add_tet(from_first ? std::array{a, c, d, apex} : std::array{b, c, d, apex}, side, layer);
+  add_tet(from_first ? std::array{b, a, apex, c} : std::array{a, apex, b, d}, side, layer);
+  add_tet(from_first ? std::array{a, apex, c, d} : std::array{b, d, apex, c}, side, layer);
 }
 
 /// Divides a prism so that diagonals begin below at the smaller node of the wall.
@@ -196,9 +197,9 @@ void Stack::divide_prism(const WallSide& side, unsigned layer) {
     high[i] = node(side.nodes[order[i]], layer);
   }
   for (std::array<Index, 4> tet :
-       {std::array{low[0], low[1], low[2], high[2]}, std::array{low[0], low[1], high[2], high[1]},
-        std::array{low[0], high[0], high[1], high[2]}}) {
-    if (!even) std::swap(tet[2], tet[3]);
+       {std::array{low[2], low[0], low[1], high[2]}, std::array{low[1], high[2], low[0], high[1]},
+        std::array{low[0], high[1], high[2], high[0]}}) {
+    if (!even) std::swap(tet[1], tet[2]);
     add_tet(tet, side, layer);
   }
 }
