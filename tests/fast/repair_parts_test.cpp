@@ -281,6 +281,31 @@ TEST(Arrangement, RandomPairsAndHandfuls) {
   }
 }
 
+// Spheres turned by tiny angles: their cuts are slivers, and merging corners of slivers can make facets meet
+// ever anew, so merges are only kept where they do not.
+TEST(Arrangement, EndsWhereSheetsNearlyCoincide) {
+  for (unsigned member = 0; member < members(6); ++member) {
+    const double angle = std::pow(0.1, 2 + member % 3), grain = member % 2 == 0 ? 1e-3 : 1e-2;
+    SCOPED_TRACE(fmt::format("angle {}, grain {}", angle, grain));
+    std::vector<PolygonSoup> soups;
+    for (unsigned i = 0; i < 4; ++i) {
+      PolygonSoup sphere = testing::icosphere(1, 1);
+      const double c = std::cos(i * angle), s = std::sin(i * angle);
+      for (Point& p : sphere.points) {
+        p = {c * p.x - s * p.y, s * p.x + c * p.y, p.z};
+        p = {p.x, c * p.y - s * p.z, s * p.y + c * p.z};
+      }
+      soups.push_back(sphere);
+    }
+    Draft draft = draft_of(joined(soups));
+    const ArrangementReport arranged =
+        arrange(draft, grain * angle, nullptr, true, KeptMerges::where_nothing_meets);
+    EXPECT_TRUE(arranged.clean);
+    EXPECT_GT(arranged.intersecting_pairs, 0U);
+    EXPECT_EQ(arrange(draft, 0).intersecting_pairs, 0U);
+  }
+}
+
 // snap_near_features
 
 // Returns whether each soup uses every edge equally often in both directions.
@@ -713,6 +738,28 @@ TEST(Changes, ThatMakeTroubleAreTakenBack) {
   EXPECT_GT(volume_of(better.draft), less + 0.01);
   EXPECT_LT(volume_of(better.draft), whole - 0.01);
   EXPECT_TRUE(better_places(before, {}, after, {}, 0.5).taken_back.empty());
+}
+
+// The same boxes, with a triangle inside of the second one, which the moved corner would cut off: this move
+// is taken back.
+TEST(Changes, ThatMakeFacetsMeetAreTakenBack) {
+  PolygonSoup sheet;
+  sheet.points = {{5.9, 0.01, 0.01}, {5.99, 0.01, 0.01}, {5.9, 0.3, 0.3}};
+  sheet.add_facet(std::array<Index, 3>{0, 1, 2}, 7);
+  std::vector<PolygonSoup> soups{soup_of({{0, 0, 0}, {1, 1, 1}}), soup_of({{5, 0, 0}, {6, 1, 1}})};
+  for (const bool with_sheet : {false, true}) {
+    if (with_sheet) soups.push_back(sheet);
+    const Draft before = draft_of(joined(soups));
+    const Draft after = with_moved_corners(before);
+    std::vector<bool> taken_back(2, false);
+    const Draft mixed = without_what_meets(Changes(before, after), taken_back);
+    EXPECT_EQ(std::count(taken_back.begin(), taken_back.end(), true), with_sheet ? 1 : 0);
+    EXPECT_EQ(brute_force_intersections(mixed), 0U);
+    EXPECT_LT(volume_of(mixed), volume_of(before) - 0.01);
+    if (with_sheet) {
+      EXPECT_GT(volume_of(mixed), volume_of(after) + 0.01);
+    }
+  }
 }
 
 // turn_components

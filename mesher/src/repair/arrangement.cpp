@@ -21,6 +21,7 @@
 #include "facets/exact.h"
 #include "facets/intersections.h"
 #include "facets/simplices.h"
+#include "repair/changes.h"
 #include "repair/most_places.h"
 #include "repair/snapping.h"
 
@@ -467,8 +468,8 @@ class Settled {
 // each other.
 class GrainSnapper {
  public:
-  GrainSnapper(Draft& draft, double reach, Work* work, bool cancel)
-      : draft_(draft), reach_(reach), work_(work), cancel_(cancel) {}
+  GrainSnapper(Draft& draft, double reach, Work* work, bool cancel, KeptMerges kept)
+      : draft_(draft), reach_(reach), work_(work), cancel_(cancel), kept_(kept) {}
 
   // Pauses or resumes snapping after a round that did not help: if snapping undoes cuts, rounds without
   // snapping may help.
@@ -481,18 +482,31 @@ class GrainSnapper {
     std::vector<bool> known;
     known.reserve(draft_.triangles.size());
     for (const Corners& t : draft_.triangles) known.push_back(known_.has(t));
-    snap_near_features(draft_, reach_, SnapWhat::corners, work_, known, cancel_);
+    if (kept_ == KeptMerges::all)
+      snap_near_features(draft_, reach_, SnapWhat::corners, work_, known, cancel_);
+    else
+      snap_where_nothing_meets(known);
     known_.clear();
     for (const Corners& t : draft_.triangles) known_.add(t);
     known_.close();
   }
 
  private:
+  void snap_where_nothing_meets(const std::vector<bool>& known) {
+    const Draft before = draft_;
+    snap_near_features(draft_, reach_, SnapWhat::corners, work_, known, cancel_);
+    const Draft after = std::move(draft_);
+    const Changes changes(before, after);
+    std::vector<bool> taken_back(changes.places(), false);
+    draft_ = without_what_meets(changes, taken_back);
+  }
+
   Draft& draft_;
   double reach_;
   bool pausing_ = false;
   Work* work_;
   bool cancel_;
+  KeptMerges kept_;
   KnownSimplices known_;
 };
 
@@ -527,11 +541,11 @@ void unify_equal_points(Draft& draft) {
   for (Index& p : draft.loose_points) p = merged[p];
 }
 
-ArrangementReport arrange(Draft& draft, double grain, Work* work, bool cancel_twins) {
+ArrangementReport arrange(Draft& draft, double grain, Work* work, bool cancel_twins, KeptMerges kept) {
   ArrangementReport report;
   constexpr std::size_t few = 1000;
   Settled settled;
-  GrainSnapper snapper(draft, grain, work, cancel_twins);
+  GrainSnapper snapper(draft, grain, work, cancel_twins, kept);
   std::optional<Draft> clean_before;
   for (std::size_t fewest = none;; ++report.rounds) {
     unify_equal_points(draft);

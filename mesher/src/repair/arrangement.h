@@ -18,6 +18,12 @@ struct ArrangementReport {
   std::vector<Point> places;  ///< some places where triangles met, in the first round
 };
 
+/// Which merges of near corners are kept.
+enum class KeptMerges {
+  all,                 ///< all merges, unless rounds of cutting do not end with them
+  where_nothing_meets  ///< only merges at places whose facets then meet nothing
+};
+
 /// Cuts the triangles and segments of a draft along their intersections until they only meet in common
 /// corners and edges. Points are constructed exactly, then rounded.
 /// Corners that come within `grain` (absolute) of other corners or edges are merged with them, unless that
@@ -29,7 +35,8 @@ struct ArrangementReport {
 /// Throws WorkStopped; the draft is then unusable. Pieces keep their triangle's origin, except
 /// `Origin::facet`, which is renumbered. Cost: O(n log n), and for k intersecting pairs O(k log k) exact
 /// constructions.
-ArrangementReport arrange(facets::Draft& draft, double grain, Work* work = nullptr, bool cancel_twins = true);
+ArrangementReport arrange(facets::Draft& draft, double grain, Work* work = nullptr, bool cancel_twins = true,
+                          KeptMerges kept = KeptMerges::all);
 
 /// Merges points with equal coordinates, and drops triangles and segments that thereby lose a corner.
 void unify_equal_points(facets::Draft& draft);

@@ -5,8 +5,6 @@
 #include <utility>
 
 #include "common/distance_tree.h"
-#include "facets/edges.h"
-#include "facets/intersections.h"
 #include "repair/changes.h"
 
 namespace collarmesh::repairing {
@@ -36,18 +34,6 @@ std::vector<double> costs(const Draft& draft, const std::vector<Index>& place_of
   return cost;
 }
 
-// Returns the places whose triangles intersect others.
-std::vector<Index> places_that_meet(Draft draft, const std::vector<Index>& place) {
-  for (Index t = 0; t < draft.origins.size(); ++t) draft.origins[t].facet = t;
-  const EdgeTable edges(draft.triangles, draft.points.size());
-  const Simplices simplices(draft, edges);
-  std::vector<Index> met;
-  for (const auto& [i, j] : intersecting_pairs(draft, simplices))
-    for (const Index k : {i, j})
-      if (k < place.size() && place[k] != none) met.push_back(place[k]);
-  return met;
-}
-
 }  // namespace
 
 BetterPlaces better_places(const Draft& before, const std::vector<Trouble>& troubles_before,
@@ -61,17 +47,7 @@ BetterPlaces better_places(const Draft& before, const std::vector<Trouble>& trou
   for (Index p = 0; p < changes.places(); ++p) taken_back[p] = cost_after[p] > cost_before[p];
   BetterPlaces result;
   result.places = changes.places();
-  // Find the changes to undo so that the draft is as clean as before.
-  constexpr unsigned most_rounds = 8;
-  for (unsigned round = 0;; ++round) {
-    std::vector<Index> place;
-    result.draft = changes.without(taken_back, place);
-    if (std::find(taken_back.begin(), taken_back.end(), true) == taken_back.end()) break;
-    const std::vector<bool> before_round = taken_back;
-    for (const Index p : places_that_meet(result.draft, place)) taken_back[p] = true;
-    if (taken_back == before_round) break;
-    if (round == most_rounds) taken_back.assign(taken_back.size(), true);
-  }
+  result.draft = without_what_meets(changes, taken_back);
   std::vector<bool> told(changes.places(), false);
   for (Index t = 0; t < before.triangles.size(); ++t) {
     const Index p = changes.place_of_gone()[t];

@@ -6,6 +6,9 @@
 #include <utility>
 
 #include "common/disjoint_sets.h"
+#include "facets/edges.h"
+#include "facets/intersections.h"
+#include "facets/simplices.h"
 
 namespace collarmesh::repairing {
 
@@ -46,6 +49,21 @@ bool same(const Segment& s, const Segment& t) {
 bool in_order(const Segment& s, const Segment& t) {
   const auto key = [](const Segment& x) { return std::tuple(edge_of(x.a, x.b), x.tag, x.soup); };
   return key(s) < key(t);
+}
+
+// Returns the places whose triangles meet others. Triangles outside of all places are not compared with each
+// other.
+std::vector<Index> places_that_meet(Draft draft, const std::vector<Index>& place) {
+  for (Index t = 0; t < draft.origins.size(); ++t) draft.origins[t].facet = t;
+  const EdgeTable edges(draft.triangles, draft.points.size());
+  const Simplices simplices(draft, edges);
+  std::vector<bool> unchanged(simplices.list().size(), false);
+  for (Index t = 0; t < place.size(); ++t) unchanged[t] = place[t] == none;
+  std::vector<Index> met;
+  for (const auto& [i, j] : intersecting_pairs(draft, simplices, unchanged))
+    for (const Index k : {i, j})
+      if (k < place.size() && place[k] != none) met.push_back(place[k]);
+  return met;
 }
 
 }  // namespace
@@ -153,6 +171,19 @@ void Changes::mix_loose_points(const std::vector<bool>& taken_back, Draft& mixed
   for (std::size_t i = 0; i < std::min(before_.loose_points.size(), mixed.loose_points.size()); ++i) {
     const Index place = place_at_point[before_.loose_points[i]];
     if (place != none && taken_back[place]) mixed.loose_points[i] = before_.loose_points[i];
+  }
+}
+
+Draft without_what_meets(const Changes& changes, std::vector<bool>& taken_back) {
+  constexpr unsigned most_rounds = 8;
+  for (unsigned round = 0;; ++round) {
+    std::vector<Index> place;
+    Draft draft = changes.without(taken_back, place);
+    if (std::find(taken_back.begin(), taken_back.end(), true) == taken_back.end() && round > 0) return draft;
+    const std::vector<bool> before_round = taken_back;
+    for (const Index p : places_that_meet(draft, place)) taken_back[p] = true;
+    if (taken_back == before_round) return draft;
+    if (round == most_rounds) taken_back.assign(taken_back.size(), true);
   }
 }
 

@@ -261,9 +261,11 @@ class Repairer {
   }
 
   // Snaps in rounds, because cutting undoes some of the snapping. Keeps the round that leaves the fewest
-  // places to snap. If snapping spoils a clean draft, tries a smaller distance.
+  // places to snap. Stops when further rounds hardly help. If snapping spoils a clean draft, tries a smaller
+  // distance.
   void snap_in_rounds() {
     constexpr std::size_t most_worse = 2;
+    constexpr double hardly_better = 0.95;
     double reach = tolerance_;
     State best = state();
     std::size_t fewest = none, worse = 0;
@@ -273,9 +275,11 @@ class Repairer {
       const SnapReport snapped = collapse(reach);
       if (!snapped.changed()) return restore(std::move(clean));
       if (changed && snapped.changes() < fewest) {
+        const auto now = static_cast<double>(snapped.changes());
+        worse = now > hardly_better * static_cast<double>(fewest) ? worse + 1 : 0;
         fewest = snapped.changes();
-        worse = 0;
         best = clean;
+        if (worse == most_worse) break;
       } else if (changed && ++worse == most_worse) {
         break;
       }
@@ -324,6 +328,9 @@ class Repairer {
     const Draft before = draft_;
     const RepairReport report_before = report_;
     if (cut_and_keep()) return true;
+    draft_ = before;
+    report_ = report_before;
+    if (cut_and_keep(KeptMerges::where_nothing_meets)) return true;
     for (const double share : {grain, 10 * grain, 100 * grain, 1.0}) {
       draft_ = before;
       report_ = report_before;
@@ -339,9 +346,9 @@ class Repairer {
     return snapped;
   }
 
-  bool cut_and_keep() {
+  bool cut_and_keep(KeptMerges merges = KeptMerges::all) {
     const bool two_sided = is_two_sided(draft_);
-    const ArrangementReport arranged = arrange(draft_, grain * tolerance_, &work_, !two_sided);
+    const ArrangementReport arranged = arrange(draft_, grain * tolerance_, &work_, !two_sided, merges);
     if (report_.cut.count == 0) add_places(report_.cut, arranged.intersecting_pairs, 0, arranged.places);
     if (!arranged.clean) return false;
     if (of_ == Of::sheets) {  // of triangles that cover each other, one stays
