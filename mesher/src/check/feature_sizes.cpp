@@ -71,6 +71,28 @@ ShapeMeasures feature_sizes(const Subject& subject) {
   return sizes;
 }
 
+double length_of(const Plc& plc, const Plc::Curve& curve) {
+  double length = 0;
+  const std::size_t count = curve.points.size();
+  for (std::size_t i = curve.closed ? 0 : 1; i < count; ++i)
+    length += distance(plc.points[curve.points[(i + count - 1) % count]], plc.points[curve.points[i]]);
+  return length;
+}
+
+AllowedArea planar_area(const Subject& subject, Index patch) {
+  const Plc& plc = subject.plc;
+  const Plc::Patch& on = plc.patches[patch];
+  long double sum = 0;
+  for (Index t = on.first_triangle; t < on.first_triangle + on.triangle_count; ++t) {
+    const auto& [a, b, c] = plc.triangles[t].points;
+    sum += 0.5 * dot(cross(plc.points[b] - plc.points[a], plc.points[c] - plc.points[a]), on.normal);
+  }
+  const double area = std::fabs(static_cast<double>(sum));
+  double allowed = 1e-9 * area;
+  for (const Index c : on.curves) allowed += subject.curve_allowance[c] * length_of(plc, plc.curves[c]);
+  return {area, allowed};
+}
+
 ShapeMeasures input_sizes(const Subject& subject) {
   ShapeMeasures sizes = measures_of(subject.plc);
   const ShapeMeasures& exact = subject.options.exact;
