@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "collarmesh/brep/cad_model.h"
+#include "common/round_curves.h"
 
 namespace collarmesh::files {
 
@@ -93,7 +94,7 @@ class Measures {
       const Index file = files[c];
       if (file == none) continue;
       if (const auto cad = cad_.measures(file))
-        origins.add(cad->first_soup, sources_.curves[c], cad->measures.lengths, c, length_of(curve));
+        origins.add(cad->first_soup, sources_.curves[c], cad->measures.lengths, c, length_of(plc_, curve));
     }
     return origins.corrected_sizes();
   }
@@ -118,14 +119,6 @@ class Measures {
   }
 
  private:
-  double length_of(const Plc::Curve& curve) const {
-    double length = 0;
-    const std::size_t count = curve.points.size();
-    for (std::size_t i = 0; i + (curve.closed ? 0 : 1) < count; ++i)
-      length += distance(plc_.points[curve.points[i]], plc_.points[curve.points[(i + 1) % count]]);
-    return length;
-  }
-
   double area_of(Index patch) const {
     double area = 0;
     const Plc::Patch& of = plc_.patches[patch];

@@ -5,6 +5,7 @@
 
 #include "common/edge_key.h"
 #include "common/median.h"
+#include "common/round_curves.h"
 
 namespace collarmesh::checks {
 
@@ -69,14 +70,6 @@ ShapeMeasures feature_sizes(const Subject& subject) {
     if (const Index curve = subject.match.edge_curve[edge]; curve != none)
       sizes.lengths[curve] += length_of_edge(mesh, edge);
   return sizes;
-}
-
-double length_of(const Plc& plc, const Plc::Curve& curve) {
-  double length = 0;
-  const std::size_t count = curve.points.size();
-  for (std::size_t i = curve.closed ? 0 : 1; i < count; ++i)
-    length += distance(plc.points[curve.points[(i + count - 1) % count]], plc.points[curve.points[i]]);
-  return length;
 }
 
 AllowedArea planar_area(const Subject& subject, Index patch) {

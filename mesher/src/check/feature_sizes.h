@@ -17,9 +17,6 @@ double area_of_face(const TetMesh& mesh, Index face);
 /// in.
 ShapeMeasures feature_sizes(const Subject& subject);
 
-/// Returns the length of a curve of the complex.
-double length_of(const Plc& plc, const Plc::Curve& curve);
-
 /// An area, and by how much that of the mesh may differ from it.
 struct AllowedArea {
   double area, allowed;

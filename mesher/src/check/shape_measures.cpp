@@ -6,8 +6,8 @@
 #include <set>
 #include <utility>
 
-#include "check/feature_sizes.h"
 #include "common/disjoint_sets.h"
+#include "common/round_curves.h"
 
 namespace collarmesh {
 
@@ -143,7 +143,7 @@ ShapeMeasures measures_of(const Plc& plc) {
     for (Index i = 0; i < patch.triangle_count; ++i)
       area += triangle_area(plc, plc.triangles[patch.first_triangle + i]);
   }
-  for (const Plc::Curve& curve : plc.curves) measures.lengths.push_back(checks::length_of(plc, curve));
+  for (const Plc::Curve& curve : plc.curves) measures.lengths.push_back(length_of(plc, curve));
   return measures;
 }
 

@@ -11,6 +11,7 @@
 
 #include "collarmesh/error.h"
 #include "common/place_in_text.h"
+#include "common/segments.h"
 #include "location/triangle_hierarchy.h"
 
 namespace collarmesh {
@@ -153,9 +154,8 @@ Distance distance_of(const Json& source, const std::string& place, const Plc& pl
   if (source.contains("curves"))
     return distance_from_features(source.at("curves"), place + ".curves", "curves", plc, plc.curves,
                                   [](const Plc::Curve& curve, auto& triangles) {
-                                    const auto& v = curve.points;
-                                    for (std::size_t i = 1; i < v.size() + (curve.closed ? 1 : 0); ++i)
-                                      triangles.push_back({v[i - 1], v[i % v.size()], v[i % v.size()]});
+                                    const auto segments = flat_triangles_of(curve);
+                                    triangles.insert(triangles.end(), segments.begin(), segments.end());
                                   });
   if (source.contains("patches"))
     return distance_from_features(source.at("patches"), place + ".patches", "patches", plc, plc.patches,
