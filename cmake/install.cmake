@@ -1,4 +1,4 @@
-# `find_package(collarmesh)` gives collarmesh::mesher and, when built, collarmesh::files and collarmesh::openmesh_io.
+# `find_package(collarmesh)` gives collarmesh::mesher, its parts collarmesh::core and collarmesh::io, and, when built, collarmesh::files and collarmesh::openmesh_io.
 include(CMakePackageConfigHelpers)
 
 set(COLLARMESH_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/collarmesh)
