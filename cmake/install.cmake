@@ -1,9 +1,9 @@
-# `find_package(collarmesh)` gives collarmesh::mesher and, when built, collarmesh::files and collarmesh::openmesh_io.
+# `find_package(collarmesh)` gives collarmesh::mesher, its parts collarmesh::core and collarmesh::io, and, when built, collarmesh::files and collarmesh::openmesh_io.
 include(CMakePackageConfigHelpers)
 
 set(COLLARMESH_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/collarmesh)
 set(COLLARMESH_HAS_OPENMESH OFF)
-install(TARGETS collarmesh_mesher EXPORT collarmesh_targets)
+install(TARGETS collarmesh_mesher collarmesh_io collarmesh_both EXPORT collarmesh_targets)
 install(DIRECTORY mesher/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
 if(TARGET collarmesh_openmesh_io)
   set(COLLARMESH_HAS_OPENMESH ON)

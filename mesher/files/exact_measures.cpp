@@ -75,8 +75,7 @@ class Origins {
 class Measures {
  public:
   Measures(const Plc& plc, const FeatureSources& sources, const CadFiles& cad)
-      : plc_(plc), sources_(sources), cad_(cad) {
-    for (Index p = 0; p < plc.patches.size(); ++p) areas_.push_back(area_of(p));
+      : plc_(plc), sources_(sources), cad_(cad), of_complex_(measures_of(plc)) {
     for (Index s = 0; s < sources.soups.size(); ++s) {
       std::set<Tag> faces;
       for (Index f = 0; f < sources.soups[s].facet_count(); ++f) faces.insert(sources.soups[s].facet_tag(f));
@@ -89,11 +88,10 @@ class Measures {
     Origins origins(plc_.curves.size());
     const std::vector<Index> files = files_of_curves(plc_, sources_.soups, sources_.curves);
     for (Index c = 0; c < plc_.curves.size(); ++c) {
-      const Plc::Curve& curve = plc_.curves[c];
       const Index file = files[c];
       if (file == none) continue;
       if (const auto cad = cad_.measures(file))
-        origins.add(cad->first_soup, sources_.curves[c], cad->measures.lengths, c, length_of(curve));
+        origins.add(cad->first_soup, sources_.curves[c], cad->measures.lengths, c, of_complex_.lengths[c]);
     }
     return origins.corrected_sizes();
   }
@@ -102,7 +100,7 @@ class Measures {
     Origins origins(plc_.patches.size());
     for (Index p = 0; p < plc_.patches.size(); ++p)
       if (const auto cad = cad_.measures(plc_.patches[p].file))
-        origins.add(cad->first_soup, sources_.patches[p], cad->measures.areas, p, areas_[p]);
+        origins.add(cad->first_soup, sources_.patches[p], cad->measures.areas, p, of_complex_.areas[p]);
     return origins.corrected_sizes();
   }
 
@@ -118,24 +116,6 @@ class Measures {
   }
 
  private:
-  double length_of(const Plc::Curve& curve) const {
-    double length = 0;
-    const std::size_t count = curve.points.size();
-    for (std::size_t i = 0; i + (curve.closed ? 0 : 1) < count; ++i)
-      length += distance(plc_.points[curve.points[i]], plc_.points[curve.points[(i + 1) % count]]);
-    return length;
-  }
-
-  double area_of(Index patch) const {
-    double area = 0;
-    const Plc::Patch& of = plc_.patches[patch];
-    for (Index t = of.first_triangle; t < of.first_triangle + of.triangle_count; ++t) {
-      const auto& [a, b, c] = plc_.triangles[t].points;
-      area += norm(cross(plc_.points[b] - plc_.points[a], plc_.points[c] - plc_.points[a])) / 2;
-    }
-    return area;
-  }
-
   /// Returns the patches around each region.
   std::vector<std::vector<Index>> boundaries_of_regions() const {
     std::vector<std::vector<Index>> boundaries(plc_.regions.size());
@@ -160,7 +140,7 @@ class Measures {
   std::vector<double> areas_of_soups() const {
     std::vector<double> areas(sources_.soups.size(), 0);
     for (Index p = 0; p < plc_.patches.size(); ++p)
-      for (const Index soup : soups_with(p)) areas[soup] += areas_[p];
+      for (const Index soup : soups_with(p)) areas[soup] += of_complex_.areas[p];
     return areas;
   }
 
@@ -169,7 +149,7 @@ class Measures {
                                         const std::vector<double>& soup_areas) const {
     std::map<Index, double> common;
     for (const Index p : patches)
-      for (const Index soup : soups_with(p)) common[soup] += areas_[p];
+      for (const Index soup : soups_with(p)) common[soup] += of_complex_.areas[p];
     if (common.empty()) return std::nullopt;
     const auto lacks = [&](const auto& shared) { return soup_areas[shared.first] - 2 * shared.second; };
     return std::min_element(common.begin(), common.end(),
@@ -203,7 +183,7 @@ class Measures {
   const Plc& plc_;
   const FeatureSources& sources_;
   const CadFiles& cad_;
-  std::vector<double> areas_;                        // areas of patches
+  const ShapeMeasures of_complex_;
   std::map<Source, std::vector<Index>> soups_with_;  // by face
 };
 

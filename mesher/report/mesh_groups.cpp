@@ -90,7 +90,7 @@ std::vector<MeshGroup> curves_of(const TetMesh& mesh) {
 
 std::string name_of(const TagNames& given, GroupNames names, std::size_t dimension, Tag tag) {
   if (const std::string* name = given.find(dimension, tag)) return *name;
-  return names == GroupNames::cad ? io::group_name(names, dimension, tag) : std::string();
+  return names == GroupNames::cad ? group_name(names, dimension, tag) : std::string();
 }
 
 std::map<Index, std::string> names_of_regions(const TetMesh& mesh) {

@@ -23,14 +23,19 @@ def allowed(root):
 
 
 def folder_of(path):
-    """Returns the folder of a source, as the table names it; None for folders that the table leaves out."""
+    """Returns the folder of a source, as the table names it; None for folders that the table leaves out. The public
+    headers of io belong to it."""
     if path.parts[:2] == ("mesher", "src"):
         return path.parts[2]
+    if path.parts[:4] == ("mesher", "include", "collarmesh", "io"):
+        return "io"
     return next((part for part in PARTS if path.as_posix().startswith(part + "/")), None)
 
 
 def target_of(root, source, name):
     """Returns the folder of an included header; None for headers of other projects."""
+    if name.startswith("collarmesh/io/"):
+        return "io"
     if name.startswith("collarmesh/"):
         return "mesher/include"
     for folder in (root / source.parent, root / "mesher" / "src", root / "mesher", root / "mesher" / "cli",

@@ -105,11 +105,7 @@ void together(const std::function<void()>& work) {
   if (first == ranks.count) return;
   int code = stopped ? static_cast<int>(stopped->code) : 0;
   MPI_Bcast(&code, 1, MPI_INT, first, MPI_COMM_WORLD);
-  std::string message = stopped ? stopped->what() : "";
-  int length = static_cast<int>(message.size());
-  MPI_Bcast(&length, 1, MPI_INT, first, MPI_COMM_WORLD);
-  message.resize(static_cast<std::size_t>(length));
-  MPI_Bcast(message.data(), length, MPI_CHAR, first, MPI_COMM_WORLD);
+  const std::string message = broadcast(MPI_COMM_WORLD, stopped ? stopped->what() : "", first);
   throw process::Stopped(static_cast<process::ExitCode>(code), message);
 }
 
@@ -317,12 +313,6 @@ struct Report {
   }
 };
 
-std::vector<double> gather(double value) {
-  std::vector<double> values(static_cast<std::size_t>(Ranks(MPI_COMM_WORLD).count));
-  MPI_Gather(&value, 1, MPI_DOUBLE, values.data(), 1, MPI_DOUBLE, 0, MPI_COMM_WORLD);
-  return values;
-}
-
 double peak_bytes() {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);)
@@ -383,7 +373,7 @@ void write_files(const DistributedArguments& arguments, const ParallelMesh& mesh
         with_name(error.what(), std::filesystem::path(place).parent_path(), target.parent_path()));
   }
   report.write_seconds = timer.seconds();
-  report.peak_bytes = gather(peak_bytes());
+  report.peak_bytes = gathered(MPI_COMM_WORLD, std::vector{peak_bytes()});
   together([&] {
     if (!first) return;
     if (!arguments.mesh.reports.empty()) {

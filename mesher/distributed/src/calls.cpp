@@ -112,20 +112,16 @@ void agree(MPI_Comm communicator, const std::function<void()>& work) {
   if (least == ranks.count) return;
   int kind = static_cast<int>(own.kind);
   MPI_Bcast(&kind, 1, MPI_INT, least, communicator);
-  std::string message = own.message;
-  int length = static_cast<int>(message.size());
-  MPI_Bcast(&length, 1, MPI_INT, least, communicator);
-  message.resize(static_cast<std::size_t>(length));
-  MPI_Bcast(message.data(), length, MPI_CHAR, least, communicator);
+  const std::string message = broadcast(communicator, own.message, least);
   if (least == ranks.rank) std::rethrow_exception(own.original);
   rethrow(static_cast<Kind>(kind), message);
 }
 
-std::string broadcast(MPI_Comm communicator, std::string text) {
+std::string broadcast(MPI_Comm communicator, std::string text, int from) {
   int length = static_cast<int>(text.size());
-  MPI_Bcast(&length, 1, MPI_INT, 0, communicator);
+  MPI_Bcast(&length, 1, MPI_INT, from, communicator);
   text.resize(static_cast<std::size_t>(length));
-  MPI_Bcast(text.data(), length, MPI_CHAR, 0, communicator);
+  MPI_Bcast(text.data(), length, MPI_CHAR, from, communicator);
   return text;
 }
 

@@ -4,8 +4,11 @@
 
 #include <cstdint>
 #include <functional>
+#include <numeric>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
+#include <vector>
 
 #include "collarmesh/error.h"
 
@@ -49,8 +52,22 @@ struct Ranks {
   int rank = 0, count = 1;
 };
 
-/// Returns the text or values of rank 0 on all ranks.
-std::string broadcast(MPI_Comm communicator, std::string text);
+/// Returns the text of one rank on all ranks.
+std::string broadcast(MPI_Comm communicator, std::string text, int from = 0);
+
+/// Returns the values of all ranks, rank by rank, on all ranks. Values: a text, or a vector of plain values.
+template <class Values>
+Values gathered(MPI_Comm communicator, const Values& own) {
+  constexpr std::size_t bytes = sizeof(typename Values::value_type);
+  static_assert(std::is_trivially_copyable_v<typename Values::value_type>);
+  const int size = static_cast<int>(bytes * own.size());
+  std::vector<int> sizes(static_cast<std::size_t>(Ranks(communicator).count)), begins(sizes.size());
+  MPI_Allgather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, communicator);
+  std::exclusive_scan(sizes.begin(), sizes.end(), begins.begin(), 0);
+  Values all(static_cast<std::size_t>(begins.back() + sizes.back()) / bytes, typename Values::value_type{});
+  MPI_Allgatherv(own.data(), size, MPI_BYTE, all.data(), sizes.data(), begins.data(), MPI_BYTE, communicator);
+  return all;
+}
 
 double all_reduce(MPI_Comm communicator, double value, MPI_Op operation);
 std::int64_t all_reduce(MPI_Comm communicator, std::int64_t value, MPI_Op operation);

@@ -5,21 +5,20 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <numeric>
+#include <limits>
+#include <map>
 #include <optional>
 #include <string_view>
 
-#include "angles.h"
 #include "calls.h"
+#include "check/feature_sizes.h"
 #include "check/predicates.h"
 #include "check/subject.h"
-#include "collarmesh/curved_tet.h"
 #include "collarmesh/distributed.h"
 #include "common/sorted.h"
 #include "common/split_mix.h"
 #include "local_mesh.h"
-#include "mid_nodes.h"
-#include "on_shape.h"
+#include "second_order/nearest_on_features.h"
 #include "shared_points.h"
 
 namespace collarmesh::distributed {
@@ -64,10 +63,12 @@ checks::Subject subject_of(const Shape& shape, const TetMesh& nothing) {
 struct Expected {
   explicit Expected(const Shape& shape) : subject(subject_of(shape, nothing)), sizes(measures_of(shape.plc)) {
     const Plc& plc = shape.plc;
-    for (Index p = 0; p < plc.patches.size(); ++p)
-      if (plc.patches[p].planar) sizes.areas[p] = area_in_plane(plc, plc.patches[p]);
     for (Index c = 0; c < plc.curves.size(); ++c) measure_turn(plc, c);
-    for (const Plc::Patch& patch : plc.patches) area_room.push_back(room_of(plc, patch));
+    for (Index p = 0; p < plc.patches.size(); ++p) {
+      const auto [area, room] = plc.patches[p].planar ? checks::planar_area(subject, p) : smooth_area(plc, p);
+      sizes.areas[p] = area;
+      area_room.push_back(room);
+    }
     const checks::RegionVolumes of_regions = checks::expected_volumes(subject);
     for (Index r = 1; r < plc.regions.size(); ++r) {
       volumes[plc.regions[r].tag] += of_regions.enclosed[r];
@@ -85,17 +86,6 @@ struct Expected {
   std::map<Tag, double> volumes, volume_room;
 
  private:
-  // Returns the area of the triangles' projections onto the plane. It depends on the border alone, so it does
-  // not matter if triangles of a patch that is planar up to a tolerance are tilted.
-  static double area_in_plane(const Plc& plc, const Plc::Patch& patch) {
-    double sum = 0;
-    for (Index t = patch.first_triangle; t < patch.first_triangle + patch.triangle_count; ++t) {
-      const auto& [a, b, c] = plc.triangles[t].points;
-      sum += 0.5 * dot(cross(plc.points[b] - plc.points[a], plc.points[c] - plc.points[a]), patch.normal);
-    }
-    return std::fabs(sum);
-  }
-
   // Measures by how much a curve turns. If points of a feature move by d, its length or area changes by at
   // most d times the angle by which it turns, to first order (Steiner's formula), and by the moves of its
   // ends. An inscribed polygon turns by as much as the curve that it approximates.
@@ -113,13 +103,12 @@ struct Expected {
                           subject.curve_allowance[c] * ((curve.straight ? 0 : 2 * turn) + 2));
   }
 
-  double room_of(const Plc& plc, const Plc::Patch& patch) const {
-    const std::size_t p = area_room.size();
+  checks::AllowedArea smooth_area(const Plc& plc, Index p) const {
+    const Plc::Patch& patch = plc.patches[p];
     double turn = 0;
     std::map<std::array<Index, 2>, std::pair<double, Vector>> sides;  // length, and normal of the first
                                                                       // triangle
-    for (Index t = patch.first_triangle; !patch.planar && t < patch.first_triangle + patch.triangle_count;
-         ++t) {
+    for (Index t = patch.first_triangle; t < patch.first_triangle + patch.triangle_count; ++t) {
       const auto& q = plc.triangles[t].points;
       const Point &a = plc.points[q[0]], &b = plc.points[q[1]], &c = plc.points[q[2]];
       const Vector normal = cross(b - a, c - a);
@@ -131,7 +120,7 @@ struct Expected {
     }
     double room = 1e-9 * sizes.areas[p] + 2 * subject.patch_allowance[p] * turn;
     for (const Index c : patch.curves) room += subject.curve_allowance[c] * sizes.lengths[c];
-    return room;
+    return {sizes.areas[p], room};
   }
 
   static double angle(const Vector& u, const Vector& v) { return std::atan2(norm(cross(u, v)), dot(u, v)); }
@@ -142,18 +131,17 @@ class Certification {
   Certification(DM dm, int order, const Shape& shape, const AngleBounds& allowed)
       : dm_(dm),
         communicator_(PetscObjectComm(reinterpret_cast<PetscObject>(dm))),
-        ranks_(communicator_),
         order_(order),
         shape_(shape),
         plc_(shape.plc),
         allowed_(allowed),
         vertices_(dm, 0),
-        shared_edges_(dm, 1),
-        shared_faces_(dm, 2) {}
+        edges_(dm, 1),
+        faces_(dm, 2) {}
 
   Certificate run() {
     agree(communicator_, [&] {
-      read();
+      mesh_.emplace(dm_, order_);
       expected_.emplace(shape_);
     });
     check_shared_places();
@@ -162,7 +150,7 @@ class Certification {
     agree(communicator_, [&] {
       check_faces();
       check_edges();
-      check_vertices();
+      check_points();
     });
     check_chains();
     sum_up();
@@ -178,100 +166,80 @@ class Certification {
     findings_.add(guarantee, where, {}, message, std::forward<Arguments>(arguments)...);
   }
 
-  void read() {
-    mesh_.emplace(dm_);
-    edges_.emplace(dm_);
-    if (order_ == 2) nodes_ = edges_->nodes();
-    PetscInt end = 0;
-    call(DMPlexGetHeightStratum(dm_, 0, &first_tet_, &end));
-    regions_ = label_values(dm_, "region", first_tet_, mesh_->tets.size());
-    collars_ = label_values(dm_, "collar", first_tet_, mesh_->tets.size());
-    vertex_codes_ = label_values(dm_, feature_label, vertices_.first(), mesh_->points.size());
-    edge_codes_ = label_values(dm_, feature_label, shared_edges_.first(), edges_->size());
-    face_codes_ = label_values(dm_, feature_label, shared_faces_.first(), shared_faces_.size());
-    areas_.assign(plc_.patches.size(), 0);
-    lengths_.assign(plc_.curves.size(), 0);
+  /// Returns whether this rank judges a point: a vertex or, after these, the node of an edge.
+  bool owns(std::size_t point) const {
+    return point < mesh_->vertices ? vertices_.owned(point) : edges_.owned(point - mesh_->vertices);
   }
+  static bool is_corner(const TetMesh::VertexFeature& feature) { return feature.dimension == 0; }
 
   /// Checks that points which ranks share have the same coordinates on each rank, bit by bit.
   void check_shared_places() {
-    const auto check = [&](const SharedPoints& points, const std::vector<Point>& places, const char* what) {
-      const std::vector<std::size_t>& shared = points.shared();
-      std::vector<PetscReal> values;
-      for (const std::size_t i : shared)
-        for (std::size_t axis = 0; axis < 3; ++axis) values.push_back(places[i][axis]);
-      std::vector<PetscReal> owners = values;
-      points.combine_shared(owners, MPI_REPLACE, 3);
-      for (std::size_t k = 0; k < shared.size(); ++k)
-        if (!std::equal(&values[3 * k], &values[3 * k] + 3, &owners[3 * k]))
-          find("shared_places", places[shared[k]], "A {} at {} has another place on the rank that owns it.",
-               what, At{places[shared[k]]});
-    };
-    check(vertices_, mesh_->points, "vertex");
-    if (order_ == 2) check(shared_edges_, nodes_, "mid-side node");
+    const std::vector<Point>& points = mesh_->points;
+    std::vector<Point> owners = points;
+    vertices_.take_owners(std::span(owners).first(mesh_->vertices));
+    if (order_ == 2) edges_.take_owners(std::span(owners).subspan(mesh_->vertices));
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (points[i] != owners[i])
+        find("shared_places", points[i], "A {} at {} has another place on the rank that owns it.",
+             i < mesh_->vertices ? "vertex" : "mid-side node", At{points[i]});
   }
 
   void check_tets() {
     certificate_.tets = static_cast<std::int64_t>(mesh_->tets.size());
-    for (std::size_t t = 0; t < mesh_->tets.size(); ++t) {
+    for (Index t = 0; t < mesh_->tets.size(); ++t) {
       const Corners p = mesh_->corners(t);
       const Point centre = 0.25 * (p[0] + p[1] + p[2] + p[3]);
-      const auto tag = static_cast<Tag>(regions_[t]);
-      if (regions_[t] < 0 || !expected_->volumes.contains(tag)) {
+      const Tag tag = mesh_->tet_tag[t];
+      if (!expected_->volumes.contains(tag)) {
         find(guarantee::region_tag, centre,
              "A tet at {} has the label {} for its region, which the complex does not have.", At{centre},
-             regions_[t]);
+             tag);
         continue;
       }
-      double volume = six_volume(p[0], p[1], p[2], p[3]) / 6;
-      if (!checks::check_orientation({"Tet"}, p, volume, findings_)) continue;
-      if (order_ == 2) {
-        const CurvedTet nodes =
-            curved(p, edges_->of_tet(first_tet_ + static_cast<PetscInt>(t), mesh_->tets[t]), nodes_);
-        volume = collarmesh::volume(nodes);
-        checks::check_jacobian({"Tet"}, nodes, tag, findings_);
-      }
-      certificate_.region_volumes[tag] += volume;
-      check_angles(t, p, centre);
+      const TetQuality quality = measure_tet(*mesh_, t);
+      if (!checks::check_orientation({"Tet"}, p, quality.volume, findings_)) continue;
+      if (order_ == 2) checks::check_jacobian({"Tet"}, curved_tet(*mesh_, t), tag, findings_);
+      certificate_.region_volumes[tag] += quality.volume;
+      check_angles(quality, mesh_->tet_collar[t] != 0, centre);
       std::array<std::uint64_t, 4> corners;
       for (std::size_t k = 0; k < 4; ++k) corners[k] = Fingerprint::of(p[k]);
-      fingerprint_.add(corners,
-                       mixed(static_cast<std::uint64_t>(tag)) + static_cast<std::uint64_t>(collars_[t] + 1));
+      const unsigned collar = mesh_->tet_collar[t];
+      fingerprint_.add(corners, mixed(static_cast<std::uint64_t>(tag)) + (collar == 0 ? 0 : collar + 1));
     }
   }
 
-  void check_angles(std::size_t t, const Corners& p, const Point& centre) {
-    const ExtremeAngles angles = extreme_angles(p);
-    const std::size_t kind = collars_[t] > 0 ? 1 : 0;
-    AngleBounds& all = certificate_.angles;
-    all.least[kind] = std::min(all.least[kind], angles.least);
-    all.most[kind] = std::max(all.most[kind], angles.most);
-    if (angles.least < allowed_.least[kind] || angles.most > allowed_.most[kind])
+  void check_angles(const TetQuality& quality, bool in_collar, const Point& centre) {
+    certificate_.angles.add(quality, in_collar);
+    const double least = allowed_.least[in_collar], most = allowed_.most[in_collar];
+    if (quality.min_dihedral < least || quality.max_dihedral > most)
       find("dihedral_angles", centre,
            "A tet at {}{} has dihedral angles from {:.4g} to {:.4g} degrees, allowed are {:.4g} to {:.4g}.",
-           At{centre}, kind == 1 ? " in a collar" : "", angles.least, angles.most, allowed_.least[kind],
-           allowed_.most[kind]);
+           At{centre}, in_collar ? " in a collar" : "", quality.min_dihedral, quality.max_dihedral, least,
+           most);
   }
 
   /// Finds the number of tets at each face, and the least and greatest tag of their regions.
   void find_sides() {
-    const std::size_t n = shared_faces_.size();
+    const std::size_t n = faces_.size();
     tets_of_.assign(n, 0);
     least_region_.assign(n, std::numeric_limits<PetscInt>::max());
     most_region_.assign(n, -1);
+    PetscInt first_tet = 0;
+    call(DMPlexGetHeightStratum(dm_, 0, &first_tet, nullptr));
     for (std::size_t t = 0; t < mesh_->tets.size(); ++t) {
       const PetscInt* faces = nullptr;
-      call(DMPlexGetCone(dm_, first_tet_ + static_cast<PetscInt>(t), &faces));
+      call(DMPlexGetCone(dm_, first_tet + static_cast<PetscInt>(t), &faces));
+      const auto region = static_cast<PetscInt>(mesh_->tet_tag[t]);
       for (std::size_t k = 0; k < 4; ++k) {
-        const auto f = static_cast<std::size_t>(faces[k] - shared_faces_.first());
+        const auto f = static_cast<std::size_t>(faces[k] - faces_.first());
         ++tets_of_[f];
-        least_region_[f] = std::min(least_region_[f], regions_[t]);
-        most_region_[f] = std::max(most_region_[f], regions_[t]);
+        least_region_[f] = std::min(least_region_[f], region);
+        most_region_[f] = std::max(most_region_[f], region);
       }
     }
-    shared_faces_.combine(tets_of_, MPI_SUM);
-    shared_faces_.combine(least_region_, MPI_MIN);
-    shared_faces_.combine(most_region_, MPI_MAX);
+    faces_.combine(tets_of_, MPI_SUM);
+    faces_.combine(least_region_, MPI_MIN);
+    faces_.combine(most_region_, MPI_MAX);
   }
 
   PetscInt tag_of(Index region) const {
@@ -279,17 +247,16 @@ class Certification {
   }
 
   void check_faces() {
-    for (std::size_t f = 0; f < shared_faces_.size(); ++f) {
-      if (!shared_faces_.owned(f)) continue;
-      const auto [dimension, patch] = decoded(face_codes_[f]);
-      const bool on_patch = dimension == 2 && patch != none;
+    areas_.assign(plc_.patches.size(), 0);
+    Index listed = 0;  // the next face on a patch
+    for (std::size_t f = 0; f < faces_.size(); ++f) {
+      const bool on_patch = listed < mesh_->faces.size() && mesh_->face_number[listed] == f;
+      const Index face = on_patch ? listed++ : none;
       const bool inside = tets_of_[f] == 2 && least_region_[f] == most_region_[f];
-      if (!on_patch && inside) continue;
-      const PetscInt face = shared_faces_.first() + static_cast<PetscInt>(f);
-      const std::array<Index, 3> corners = corners_of_face(dm_, face, vertices_.first());
-      const std::array<Point, 3> p{mesh_->points[corners[0]], mesh_->points[corners[1]],
-                                   mesh_->points[corners[2]]};
-      const Point centre = (p[0] + p[1] + p[2]) / 3;
+      if (!faces_.owned(f) || (!on_patch && inside)) continue;
+      const auto& [a, b, c] =
+          on_patch ? mesh_->faces[face] : corners_of_face(dm_, faces_.first() + static_cast<PetscInt>(f));
+      const Point centre = (mesh_->points[a] + mesh_->points[b] + mesh_->points[c]) / 3;
       if (tets_of_[f] != 1 && tets_of_[f] != 2)
         find(guarantee::conforming, centre, "A face at {} has {} tets; it may have one or two.", At{centre},
              tets_of_[f]);
@@ -299,9 +266,11 @@ class Certification {
         continue;
       }
       ++certificate_.faces;
+      const Index patch = mesh_->face_patch[face];
       check_regions(f, patch, centre);
-      measure_face(face, corners, p, patch);
-      fingerprint_.add(std::array{Fingerprint::of(p[0]), Fingerprint::of(p[1]), Fingerprint::of(p[2])},
+      areas_[patch] += area_on(plc_.patches[patch], face);
+      fingerprint_.add(std::array{Fingerprint::of(mesh_->points[a]), Fingerprint::of(mesh_->points[b]),
+                                  Fingerprint::of(mesh_->points[c])},
                        patch);
     }
   }
@@ -318,82 +287,79 @@ class Certification {
   }
 
   // Measures a face. Triangles on planar patches are measured by their projections, as the patches are.
-  void measure_face(PetscInt face, const std::array<Index, 3>& corners, const std::array<Point, 3>& p,
-                    Index patch) {
-    const Plc::Patch& on = plc_.patches[patch];
-    const auto place = [&on](const Point& q) {
-      return on.planar ? q - dot(q - on.origin, on.normal) * on.normal : q;
+  double area_on(const Plc::Patch& patch, Index face) const {
+    if (!patch.planar) return checks::area_of_face(*mesh_, face);
+    const auto place = [&](Index i) {
+      const Point& p = mesh_->points[i];
+      return p - dot(p - patch.origin, patch.normal) * patch.normal;
     };
-    if (order_ == 1) {
-      areas_[patch] += checks::area(place(p[0]), place(p[1]), place(p[2]));
-      return;
-    }
-    const std::array<Index, 3> edges = edges_->of_face(face, corners);
-    areas_[patch] +=
-        collarmesh::area(CurvedTriangle{place(p[0]), place(p[1]), place(p[2]), place(nodes_[edges[0]]),
-                                        place(nodes_[edges[1]]), place(nodes_[edges[2]])});
+    const auto& [a, b, c] = mesh_->faces[face];
+    if (order_ == 1) return checks::area(place(a), place(b), place(c));
+    const auto& [ab, bc, ca] = mesh_->face_mid_nodes[face];
+    return area(CurvedTriangle{place(a), place(b), place(c), place(ab), place(bc), place(ca)});
   }
 
   void check_edges() {
-    for (std::size_t e = 0; e < edges_->size(); ++e) {
-      if (!shared_edges_.owned(e)) continue;
-      const auto& [a, b] = edges_->ends(e);
-      const std::array ends{Fingerprint::of(mesh_->points[a]), Fingerprint::of(mesh_->points[b])};
-      if (order_ == 2) fingerprint_.add(ends, Fingerprint::of(nodes_[e]));
-      const auto [dimension, curve] = decoded(edge_codes_[e]);
-      if (dimension != 1 || curve == none) continue;
+    lengths_.assign(plc_.curves.size(), 0);
+    const auto ends_of = [&](const std::array<Index, 2>& ends) {
+      return std::array{Fingerprint::of(mesh_->points[ends[0]]), Fingerprint::of(mesh_->points[ends[1]])};
+    };
+    for (std::size_t e = 0; order_ == 2 && e < edges_.size(); ++e)
+      if (edges_.owned(e))
+        fingerprint_.add(ends_of(mesh_->ends[e]), Fingerprint::of(mesh_->points[mesh_->vertices + e]));
+    for (Index e = 0; e < mesh_->edges.size(); ++e) {
+      if (!edges_.owned(mesh_->edge_number[e])) continue;
       ++certificate_.edges;
-      fingerprint_.add(ends, curve);
-      lengths_[curve] += order_ == 1 ? distance(mesh_->points[a], mesh_->points[b])
-                                     : length(CurvedEdge{mesh_->points[a], mesh_->points[b], nodes_[e]});
+      fingerprint_.add(ends_of(mesh_->edges[e]), mesh_->edge_curve[e]);
+      lengths_[mesh_->edge_curve[e]] += checks::length_of_edge(*mesh_, e);
     }
   }
 
-  void check_vertices() {
-    OnShape on_shape(shape_);
-    const checks::Subject& subject = expected_->subject;
-    const auto check = [&](PetscInt code, const Point& p, const char* what) {
-      const TetMesh::VertexFeature feature = decoded(code);
-      const Index i = feature.feature;
-      if (feature.dimension != 1 && feature.dimension != 2) return;
-      const bool on_curve = feature.dimension == 1;
-      const bool planar = !on_curve && plc_.patches[i].planar;
-      const double off = planar ? std::fabs(dot(p - plc_.patches[i].origin, plc_.patches[i].normal))
-                                : on_shape.distance_to_complex(feature, p);
-      if (on_shape.is_smooth(feature))
-        certificate_.largest_distance = std::max(certificate_.largest_distance, off);
-      if (on_curve)
-        checks::check_off_feature(guarantee::curve_distance, {what}, p, off, subject.curve_allowance[i],
-                                  {"curve", i, plc_.curves[i].tag}, findings_);
-      else
-        checks::check_off_feature(guarantee::patch_distance, {what}, p, off, subject.patch_allowance[i],
-                                  {"patch", i, plc_.patches[i].tag}, findings_);
-    };
-    for (std::size_t v = 0; v < mesh_->points.size(); ++v) {
-      if (!vertices_.owned(v)) continue;
-      ++certificate_.vertices;
-      check(vertex_codes_[v], mesh_->points[v], "The vertex");
-      if (vertex_codes_[v] == 0) corners_.push_back(mesh_->points[v]);
+  void check_points() {
+    second_order::NearestOnFeatures nearest(plc_);
+    for (std::size_t i = 0; i < mesh_->points.size(); ++i) {
+      if (!owns(i)) continue;
+      const Point& p = mesh_->points[i];
+      const TetMesh::VertexFeature& feature = mesh_->features[i];
+      if (i < mesh_->vertices) ++certificate_.vertices;
+      if (is_corner(feature)) corners_.push_back(p);
+      if (feature.dimension == 1 || feature.dimension == 2)
+        check_distance(i < mesh_->vertices ? "The vertex" : "The mid-side node", p, feature, nearest);
     }
-    if (order_ == 2)
-      for (std::size_t e = 0; e < edges_->size(); ++e)
-        if (shared_edges_.owned(e)) check(edge_codes_[e], nodes_[e], "The mid-side node");
+  }
+
+  void check_distance(std::string_view what, const Point& p, const TetMesh::VertexFeature& feature,
+                      second_order::NearestOnFeatures& nearest) {
+    const checks::Subject& subject = expected_->subject;
+    const Index i = feature.feature;
+    const bool on_curve = feature.dimension == 1;
+    const bool flat = on_curve ? plc_.curves[i].straight : plc_.patches[i].planar;
+    const double off = flat && !on_curve ? std::fabs(dot(p - plc_.patches[i].origin, plc_.patches[i].normal))
+                                         : distance(nearest.nearest(feature, p), p);
+    if (!flat) certificate_.largest_distance = std::max(certificate_.largest_distance, off);
+    if (on_curve)
+      checks::check_off_feature(guarantee::curve_distance, {what}, p, off, subject.curve_allowance[i],
+                                {"curve", i, plc_.curves[i].tag}, findings_);
+    else
+      checks::check_off_feature(guarantee::patch_distance, {what}, p, off, subject.patch_allowance[i],
+                                {"patch", i, plc_.patches[i].tag}, findings_);
   }
 
   /// Checks that every vertex inside a curve has two edges on it.
   void check_chains() {
-    std::vector<PetscInt> edges_of(mesh_->points.size(), 0);
-    for (std::size_t e = 0; e < edges_->size(); ++e) {
-      if (!shared_edges_.owned(e) || decoded(edge_codes_[e]).dimension != 1) continue;
-      for (const Index v : edges_->ends(e))
-        if (vertex_codes_[v] == edge_codes_[e]) ++edges_of[v];
+    std::vector<PetscInt> edges_of(mesh_->vertices, 0);
+    for (std::size_t e = 0; e < mesh_->edges.size(); ++e) {
+      if (!edges_.owned(mesh_->edge_number[e])) continue;
+      for (const Index v : mesh_->edges[e])
+        if (mesh_->features[v].dimension == 1 && mesh_->features[v].feature == mesh_->edge_curve[e])
+          ++edges_of[v];
     }
     vertices_.combine(edges_of, MPI_SUM);
     for (std::size_t v = 0; v < edges_of.size(); ++v)
-      if (vertices_.owned(v) && decoded(vertex_codes_[v]).dimension == 1 && edges_of[v] != 2)
+      if (vertices_.owned(v) && mesh_->features[v].dimension == 1 && edges_of[v] != 2)
         find(guarantee::curve_cover, mesh_->points[v],
              "A vertex at {} on curve {} has {} edges on it, not 2.", At{mesh_->points[v]},
-             decoded(vertex_codes_[v]).feature, edges_of[v]);
+             mesh_->features[v].feature, edges_of[v]);
   }
 
   void sum(std::vector<double>& values) const {
@@ -403,8 +369,7 @@ class Certification {
 
   void sum_up() {
     Certificate& c = certificate_;
-    c.tets_of_ranks.resize(static_cast<std::size_t>(ranks_.count));
-    MPI_Allgather(&c.tets, 1, MPI_INT64_T, c.tets_of_ranks.data(), 1, MPI_INT64_T, communicator_);
+    c.tets_of_ranks = gathered(communicator_, std::vector{c.tets});
     for (std::int64_t* value : {&c.tets, &c.vertices, &c.faces, &c.edges})
       *value = all_reduce(communicator_, *value, MPI_SUM);
     for (std::size_t kind = 0; kind < 2; ++kind) {
@@ -425,81 +390,40 @@ class Certification {
       c.fingerprint[s] = all_reduce(communicator_, fingerprint_.sums()[s], MPI_SUM);
   }
 
-  bool in_regions(Index patch) const {
-    const auto& [back, front] = plc_.patches[patch].regions;
-    return back != 0 || front != 0;
-  }
-
   /// Compares the sums with the complex; only rank 0 does so. Leaves out features outside all regions, which
   /// the mesh does not have.
   void compare_with_complex() {
-    gather_corners();
-    if (ranks_.rank != 0) return;
-    const auto compare = [&](std::string_view guarantee, std::string_view what, Tag tag, double found,
+    TetMesh found;
+    found.points = gathered(communicator_, corners_);
+    if (Ranks(communicator_).rank != 0) return;
+    checks::Subject& subject = expected_->subject;
+    subject.match.vertex_point = checks::match_vertices(found, plc_, subject.rounding);
+    checks::check_vertices_present(subject, findings_);
+    const auto compare = [&](std::string_view guarantee, std::string_view what, Tag tag, double measured,
                              double wanted, double room) {
-      if (!(std::fabs(found - wanted) <= room))
+      if (!(std::fabs(measured - wanted) <= room))
         find(guarantee, plc_.bounds.centre(),
              "The {} tagged {} measures {:.15g}, that of the complex {:.15g}; allowed is {:.6g}.", what, tag,
-             found, wanted, room);
+             measured, wanted, room);
     };
     for (const auto& [tag, wanted] : expected_->volumes)
       compare(guarantee::region_volume, "region", tag, certificate_.region_volumes[tag], wanted,
               expected_->volume_room[tag]);
     for (Index p = 0; p < areas_.size(); ++p)
-      if (in_regions(p))
+      if (!checks::patch_is_outside(subject, p))
         compare(guarantee::patch_area, "patch", plc_.patches[p].tag, areas_[p], expected_->sizes.areas[p],
                 expected_->area_room[p]);
-    for (Index k = 0; k < lengths_.size(); ++k) {
-      const auto& patches = plc_.curves[k].patches;
-      if (std::any_of(patches.begin(), patches.end(), [&](Index p) { return in_regions(p); }))
+    for (Index k = 0; k < lengths_.size(); ++k)
+      if (!checks::curve_is_outside(subject, k))
         compare("curve_length", "curve", plc_.curves[k].tag, lengths_[k], expected_->sizes.lengths[k],
                 expected_->length_room[k]);
-    }
-    check_vertices_of_complex();
-  }
-
-  void gather_corners() {
-    std::vector<double> own, all;
-    for (const Point& p : corners_) own.insert(own.end(), {p.x, p.y, p.z});
-    const int size = static_cast<int>(own.size());
-    std::vector<int> sizes(static_cast<std::size_t>(ranks_.count)), begins(sizes.size());
-    MPI_Gather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, 0, communicator_);
-    std::exclusive_scan(sizes.begin(), sizes.end(), begins.begin(), 0);
-    all.resize(static_cast<std::size_t>(begins.back()) + static_cast<std::size_t>(sizes.back()));
-    MPI_Gatherv(own.data(), size, MPI_DOUBLE, all.data(), sizes.data(), begins.data(), MPI_DOUBLE, 0,
-                communicator_);
-    if (ranks_.rank != 0) return;
-    corners_.clear();
-    for (std::size_t i = 0; i + 2 < all.size(); i += 3) corners_.push_back({all[i], all[i + 1], all[i + 2]});
-  }
-
-  void check_vertices_of_complex() {
-    const auto less = [](const Point& a, const Point& b) {
-      return std::array{a.x, a.y, a.z} < std::array{b.x, b.y, b.z};
-    };
-    std::sort(corners_.begin(), corners_.end(), less);
-    std::vector<Index>& found = expected_->subject.match.vertex_point;
-    found.clear();
-    for (const Plc::Vertex& vertex : plc_.vertices) {
-      const auto at = std::lower_bound(corners_.begin(), corners_.end(), plc_.points[vertex.point], less);
-      const bool there = at != corners_.end() && *at == plc_.points[vertex.point];
-      found.push_back(there ? static_cast<Index>(at - corners_.begin()) : none);
-    }
-    checks::check_vertices_present(expected_->subject, findings_);
   }
 
   /// Collects the findings of all ranks on all ranks.
   void gather() {
     std::string own;
     for (const auto& finding : found_.findings) own += finding.guarantee + '\t' + finding.message + '\n';
-    const int size = static_cast<int>(own.size());
-    std::vector<int> sizes(static_cast<std::size_t>(ranks_.count)), begins(sizes.size());
-    MPI_Allgather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, communicator_);
-    std::exclusive_scan(sizes.begin(), sizes.end(), begins.begin(), 0);
-    std::string all(static_cast<std::size_t>(begins.back()) + static_cast<std::size_t>(sizes.back()), ' ');
-    MPI_Allgatherv(own.data(), size, MPI_CHAR, all.data(), sizes.data(), begins.data(), MPI_CHAR,
-                   communicator_);
-    certificate_.findings.clear();
+    const std::string all = gathered(communicator_, own);
     for (std::size_t at = 0; at < all.size();) {
       const std::size_t tab = all.find('\t', at), end = all.find('\n', at);
       certificate_.findings.push_back({all.substr(at, tab - at), all.substr(tab + 1, end - tab - 1)});
@@ -513,24 +437,18 @@ class Certification {
 
   DM dm_;
   MPI_Comm communicator_;
-  Ranks ranks_;
   int order_;
   const Shape& shape_;
   const Plc& plc_;
   const AngleBounds& allowed_;
-  SharedPoints vertices_, shared_edges_, shared_faces_;
+  SharedPoints vertices_, edges_, faces_;
   std::optional<LocalMesh> mesh_;
-  std::optional<Edges> edges_;
   std::optional<Expected> expected_;
-  std::vector<Point> nodes_;  // mid-edge nodes
-  PetscInt first_tet_ = 0;
-  std::vector<PetscInt> regions_, collars_, vertex_codes_, edge_codes_, face_codes_;
   std::vector<PetscInt> tets_of_, least_region_, most_region_;  // by face: number of tets, least and greatest
                                                                 // tag
-  std::vector<double> areas_, lengths_;                         // measured areas by patch and lengths by
-                                                                // curve
-  std::vector<Point> corners_;                                  // mesh vertices at vertices of the complex
-  CheckReport found_;                                           // findings of this rank
+  std::vector<double> areas_, lengths_;  // measured areas by patch and lengths by curve
+  std::vector<Point> corners_;           // mesh vertices at vertices of the complex
+  CheckReport found_;                    // findings of this rank
   checks::Findings findings_{found_, Certificate::listed};
   Fingerprint fingerprint_;
   Certificate certificate_;

@@ -28,29 +28,38 @@ inline TetMesh::VertexFeature decoded(PetscInt code) {
 /// Returns the values of a label at the points from `first` on; -1 where there is none.
 std::vector<PetscInt> label_values(DM dm, const char* name, PetscInt first, std::size_t count);
 
-/// The tets of a rank and their vertices, numbered from 0 as in the DMPlex.
-struct LocalMesh {
-  /// Reads corners and coordinates of a mesh of first order.
-  explicit LocalMesh(DM dm);
+/// The mesh of a rank, as the functions of the library take it. Points are the vertices, in the order of the
+/// DMPlex; in a mesh of second order, the nodes of all edges follow, likewise in order. Tets are positively
+/// oriented if the DMPlex has them so. Faces are those on patches, edges those on curves; other ranks may
+/// have them, too. Leaves out what the DMPlex does not have: regions, creases and marks of thin tets.
+struct LocalMesh : TetMesh {
+  /// Reads a mesh of an order. If the DMPlex has no coordinates of mid-edge nodes, puts these at the middles
+  /// of their edges.
+  LocalMesh(DM dm, int order);
 
   Corners corners(std::size_t tet) const {
     const auto& t = tets[tet];
     return {points[t[0]], points[t[1]], points[t[2]], points[t[3]]};
   }
+  Point middle(std::size_t edge) const { return 0.5 * (points[ends[edge][0]] + points[ends[edge][1]]); }
 
-  std::vector<Point> points;
-  /// Positively oriented tets, as in TetMesh, if the DMPlex has them so.
-  std::vector<std::array<Index, 4>> tets;
+  std::size_t vertices = 0;                ///< number of points that are vertices
+  std::vector<std::array<Index, 2>> ends;  ///< vertices of all edges of the rank
+  /// By face and by edge: its number among all faces, or edges, of the rank.
+  std::vector<std::size_t> face_number, edge_number;
+
+ private:
+  void read_edges(int order);
+  void read_faces(int order);
+  void read_tets(int order);
+
+  DM dm_;
 };
 
-/// Sets the coordinates of the DMPlex's vertices.
+/// Sets the coordinates of the DMPlex's vertices and, if there are more points, of its mid-edge nodes.
 void set_points(DM dm, const std::vector<Point>& points);
 
-/// Returns the corners of a tet in the order of PETSc, whose tets are mirror images of ours. Vertices are
-/// numbered from `first_vertex`.
-std::array<Index, 4> corners_of(DM dm, PetscInt tet, PetscInt first_vertex);
-/// Return the corners of a face and of an edge.
-std::array<Index, 3> corners_of_face(DM dm, PetscInt face, PetscInt first_vertex);
-std::array<Index, 2> ends_of_edge(DM dm, PetscInt edge, PetscInt first_vertex);
+/// Returns the corners of a face, given its number in the DMPlex.
+std::array<Index, 3> corners_of_face(DM dm, PetscInt face);
 
 }  // namespace collarmesh::distributed

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <limits>
 
-#include "angles.h"
 #include "calls.h"
 #include "collarmesh/distributed.h"
+#include "collarmesh/mesh_measures.h"
 #include "labels.h"
 #include "local_mesh.h"
 
@@ -39,14 +39,7 @@ void require_labels(const TetMesh& mesh, const Plc& plc) {
 
 AngleBounds angles_of(const TetMesh& mesh) {
   AngleBounds bounds;
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
-    const auto& [a, b, c, d] = mesh.tets[t];
-    const auto [least, most] =
-        extreme_angles({mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]});
-    const std::size_t kind = mesh.tet_collar[t] != 0 ? 1 : 0;
-    bounds.least[kind] = std::min(bounds.least[kind], least);
-    bounds.most[kind] = std::max(bounds.most[kind], most);
-  }
+  for (Index t = 0; t < mesh.tets.size(); ++t) bounds.add(measure_tet(mesh, t), mesh.tet_collar[t] != 0);
   return bounds;
 }
 

@@ -13,7 +13,7 @@
 #include "common/cells_at_vertices.h"
 #include "delaunay/predicates.h"
 #include "local_mesh.h"
-#include "on_shape.h"
+#include "second_order/places_on_features.h"
 #include "shared_points.h"
 
 namespace collarmesh::distributed {
@@ -75,13 +75,13 @@ class Placement {
         communicator_(PetscObjectComm(reinterpret_cast<PetscObject>(dm))),
         shape_(shape),
         wanted_(wanted),
-        on_shape_(shape),
+        on_features_(shape.plc, shape.exact),
         vertices_(dm, 0) {}
 
   LevelReport run() {
     agree(communicator_, [&] {
-      mesh_.emplace(dm_);
-      read_labels();
+      mesh_.emplace(dm_, 1);
+      begin();
       find_places();
     });
     share_places();
@@ -113,22 +113,10 @@ class Placement {
     list.erase(std::unique(list.begin(), list.end()), list.end());
   }
 
-  void read_labels() {
-    PetscInt first = 0, end = 0;
-    for (const PetscInt code : label_values(dm_, feature_label, vertices_.first(), mesh_->points.size()))
-      features_.push_back(decoded(code));
-    call(DMPlexGetHeightStratum(dm_, 0, &first, &end));
-    for (const PetscInt kind : label_values(dm_, "collar", first, mesh_->tets.size()))
-      in_collar_.push_back(kind > 0);
-    call(DMPlexGetDepthStratum(dm_, 1, &first, &end));
-    const std::vector<PetscInt> edges =
-        label_values(dm_, feature_label, first, static_cast<std::size_t>(end - first));
-    for (std::size_t e = 0; e < edges.size(); ++e)
-      if (decoded(edges[e]).dimension == 1)
-        curve_edges_.push_back(ends_of_edge(dm_, first + static_cast<PetscInt>(e), vertices_.first()));
-    tets_at_ = {mesh_->tets, mesh_->points.size()};
-    origins_ = mesh_->points;
+  void begin() {
     const std::size_t n = mesh_->points.size();
+    tets_at_ = {mesh_->tets, n};
+    origins_ = mesh_->points;
     back_.assign(n, 0);
     frozen_.assign(n, false);
     fresh_.assign(n, tries);
@@ -138,19 +126,13 @@ class Placement {
   // Finds the places of vertices; the owners do so for all ranks.
   void find_places() {
     targets_ = origins_;
-    for (std::size_t v = 0; v < features_.size(); ++v)
-      if (vertices_.owned(v) && on_shape_.has_places(features_[v]))
-        targets_[v] = on_shape_.place(features_[v], origins_[v]);
+    for (std::size_t v = 0; v < mesh_->features.size(); ++v)
+      if (vertices_.owned(v) && on_features_.has_places(mesh_->features[v]))
+        targets_[v] = on_features_.place(mesh_->features[v], origins_[v]);
   }
 
   void share_places() {
-    const std::vector<std::size_t>& shared = vertices_.shared();
-    std::vector<PetscReal> values;
-    for (const std::size_t v : shared)
-      values.insert(values.end(), {targets_[v].x, targets_[v].y, targets_[v].z});
-    vertices_.combine_shared(values, MPI_REPLACE, 3);
-    for (std::size_t k = 0; k < shared.size(); ++k)
-      targets_[shared[k]] = {values[3 * k], values[3 * k + 1], values[3 * k + 2]};
+    vertices_.take_owners(targets_);
     std::vector<PetscReal> shortest(origins_.size(), INFINITY);
     for (const auto& tet : mesh_->tets)
       for (unsigned i = 0; i < 4; ++i)
@@ -181,7 +163,7 @@ class Placement {
   }
 
   bool is_flat(std::size_t v) const {
-    const auto& [dimension, feature] = features_[v];
+    const auto& [dimension, feature] = mesh_->features[v];
     if (feature == none) return false;
     if (dimension == 1) return shape_.plc.curves[feature].straight;
     return dimension == 2 && shape_.plc.patches[feature].planar;
@@ -189,9 +171,9 @@ class Placement {
   /// Returns the place of a vertex after a displacement along its feature.
   Point displaced(Index v, const Vector& displacement) {
     const Point& p = mesh_->points[v];
-    const auto& [dimension, feature] = features_[v];
+    const auto& [dimension, feature] = mesh_->features[v];
     if (dimension == 3) return p + displacement;
-    if (!is_flat(v)) return on_shape_.place(features_[v], p + displacement);
+    if (!is_flat(v)) return on_features_.place(mesh_->features[v], p + displacement);
     if (dimension == 2) {
       const Vector& normal = shape_.plc.patches[feature].normal;
       return p + displacement - dot(displacement, normal) * normal;
@@ -203,13 +185,13 @@ class Placement {
   /// Returns whether a vertex may move. Vertices on features slide along these, but only once they are there.
   bool is_free(std::size_t v) const {
     if (frozen_[v]) return false;
-    const auto& [dimension, feature] = features_[v];
+    const auto& [dimension, feature] = mesh_->features[v];
     if (dimension == 3) return true;
     return feature != none && dimension > 0 && (is_flat(v) ? !has_way_[v] : back_[v] == 0);
   }
 
-  double least(Index tet) const { return wanted_.least[in_collar_[tet] ? 1 : 0]; }
-  double most(Index tet) const { return wanted_.most[in_collar_[tet] ? 1 : 0]; }
+  double least(Index tet) const { return wanted_.least[mesh_->tet_collar[tet] != 0 ? 1 : 0]; }
+  double most(Index tet) const { return wanted_.most[mesh_->tet_collar[tet] != 0 ? 1 : 0]; }
 
   /// Returns 1 for a tet within the bounds on angles, 0 at the last resort.
   double score(Index tet, const Corners& p) const {
@@ -418,7 +400,7 @@ class Placement {
       for (const Index v : mesh_->tets[t])
         if (!has_way_[v] && mesh_->points[v] != origins_[v]) marks[v] = 1;
     }
-    for (const auto& edge : curve_edges_)
+    for (const auto& edge : mesh_->edges)
       if (!on_course(edge)) mark_longest(edge);
     vertices_.combine(marks, MPI_MAX);
     std::vector<Index> around;
@@ -450,7 +432,7 @@ class Placement {
     std::vector<PetscInt> wishes(mesh_->points.size(), 0);
     for (std::size_t v = 0; v < wishes.size(); ++v) wishes[v] = has_way_[v] && back_[v] > 0 ? 1 : 0;
     const std::vector<Index> vertices = independent(wishes, sweep);
-    const CellsAtVertices curve_edges_at(curve_edges_, mesh_->points.size());
+    const CellsAtVertices curve_edges_at(mesh_->edges, mesh_->points.size());
     constexpr std::size_t width = shares.size() - 1;
     std::vector<PetscReal> fits(width * vertices.size(), 0);
     for (std::size_t i = 0; i < vertices.size(); ++i) {
@@ -463,7 +445,7 @@ class Placement {
         fits[width * i + back_[v]] =
             std::all_of(tets.begin(), tets.end(), [&](Index t) { return acceptable(t); }) &&
                     std::all_of(edges.begin(), edges.end(),
-                                [&](Index e) { return on_course(curve_edges_[e]); })
+                                [&](Index e) { return on_course(mesh_->edges[e]); })
                 ? 1
                 : 0;
       }
@@ -486,7 +468,7 @@ class Placement {
     r.tets = static_cast<std::int64_t>(mesh_->tets.size());
     r.spoilt = spoilt;
     r.made_room = moves_;
-    for (std::size_t v = 0; v < features_.size(); ++v) {
+    for (std::size_t v = 0; v < mesh_->features.size(); ++v) {
       if (!vertices_.owned(v) || !has_way_[v]) continue;
       ++r.on_features;
       if (back_[v] == 0) continue;
@@ -503,12 +485,9 @@ class Placement {
   MPI_Comm communicator_;
   const Shape& shape_;
   const AngleBounds& wanted_;
-  OnShape on_shape_;
+  second_order::PlacesOnFeatures on_features_;
   SharedPoints vertices_;
   std::optional<LocalMesh> mesh_;
-  std::vector<TetMesh::VertexFeature> features_;  // of vertices
-  std::vector<bool> in_collar_;
-  std::vector<std::array<Index, 2>> curve_edges_;
   CellsAtVertices tets_at_;
   std::vector<Point> origins_, targets_;
   std::vector<std::uint8_t> back_;  // by vertex: its index in shares

@@ -7,8 +7,7 @@
 #include "collarmesh/curved_tet.h"
 #include "collarmesh/distributed.h"
 #include "local_mesh.h"
-#include "mid_nodes.h"
-#include "on_shape.h"
+#include "second_order/places_on_features.h"
 #include "shared_points.h"
 
 namespace collarmesh::distributed {
@@ -26,15 +25,13 @@ constexpr std::array<double, 4> shares{1, 0.5, 0.25, 0};
 class Curving {
  public:
   Curving(DM dm, const Shape& shape)
-      : dm_(dm),
-        communicator_(PetscObjectComm(reinterpret_cast<PetscObject>(dm))),
+      : communicator_(PetscObjectComm(reinterpret_cast<PetscObject>(dm))),
         shape_(shape),
-        mesh_(dm),
-        edges_(dm),
+        mesh_(dm, 2),
         shared_(dm, 1) {}
 
-  /// Returns the nodes by edge.
-  std::vector<Point> run() {
+  /// Returns the vertices and the nodes of the edges.
+  const std::vector<Point>& run() {
     agree(communicator_, [&] { find_ways(); });
     share_ways();
     agree(communicator_, [&] { find_curved_tets(); });
@@ -45,18 +42,17 @@ class Curving {
       for (std::size_t e = 0; e < marks.size(); ++e)
         if (marks[e] > 0) {
           ++back_[e];
+          place(e);
           any = 1;
         }
       if (all_reduce(communicator_, any, MPI_MAX) == 0) break;
     }
-    std::vector<Point> nodes;
-    for (std::size_t e = 0; e < edges_.size(); ++e) nodes.push_back(node(e));
-    return nodes;
+    return mesh_.points;
   }
 
   OrderReport report() const {
     OrderReport r;
-    for (std::size_t e = 0; e < edges_.size(); ++e) {
+    for (std::size_t e = 0; e < ways_.size(); ++e) {
       if (!shared_.owned(e)) continue;
       ++r.nodes;
       if (squared_norm(ways_[e]) == 0) continue;
@@ -72,81 +68,63 @@ class Curving {
   }
 
  private:
-  Point middle(std::size_t edge) const {
-    const auto& [a, b] = edges_.ends(edge);
-    return 0.5 * (mesh_.points[a] + mesh_.points[b]);
+  void place(std::size_t edge) {
+    mesh_.points[mesh_.vertices + edge] = mesh_.middle(edge) + shares[back_[edge]] * ways_[edge];
   }
-  Point node(std::size_t edge) const { return middle(edge) + shares[back_[edge]] * ways_[edge]; }
+  std::size_t edge_of(Index node) const { return node - mesh_.vertices; }
 
   // Finds the displacements of the nodes; the owners do so for all ranks.
   void find_ways() {
-    ways_.assign(edges_.size(), {});
-    back_.assign(edges_.size(), 0);
-    OnShape on_shape(shape_);
-    const std::vector<PetscInt> codes = label_values(dm_, feature_label, shared_.first(), edges_.size());
-    for (std::size_t e = 0; e < edges_.size(); ++e)
-      if (const TetMesh::VertexFeature feature = decoded(codes[e]);
-          shared_.owned(e) && on_shape.has_places(feature))
-        ways_[e] = on_shape.place(feature, middle(e)) - middle(e);
+    ways_.assign(mesh_.ends.size(), {});
+    back_.assign(mesh_.ends.size(), 0);
+    second_order::PlacesOnFeatures on_features(shape_.plc, shape_.exact);
+    for (std::size_t e = 0; e < ways_.size(); ++e)
+      if (const TetMesh::VertexFeature& feature = mesh_.features[mesh_.vertices + e];
+          shared_.owned(e) && on_features.has_places(feature))
+        ways_[e] = on_features.place(feature, mesh_.middle(e)) - mesh_.middle(e);
   }
 
   void share_ways() {
-    std::vector<PetscReal> values;
-    for (const std::size_t e : shared_.shared())
-      values.insert(values.end(), {ways_[e].x, ways_[e].y, ways_[e].z});
-    shared_.combine_shared(values, MPI_REPLACE, 3);
-    for (std::size_t k = 0; k < shared_.shared().size(); ++k)
-      ways_[shared_.shared()[k]] = {values[3 * k], values[3 * k + 1], values[3 * k + 2]};
+    shared_.take_owners(ways_);
     for (std::size_t e = 0; e < ways_.size(); ++e) {
-      const auto& [a, b] = edges_.ends(e);
+      const auto& [a, b] = mesh_.ends[e];
       if (!std::isfinite(squared_norm(ways_[e]))) ways_[e] = {};
       if (norm(ways_[e]) > farthest * distance(mesh_.points[a], mesh_.points[b]))
         back_[e] = shares.size() - 1;
+      place(e);
     }
   }
 
   void find_curved_tets() {
-    PetscInt first = 0;
-    call(DMPlexGetHeightStratum(dm_, 0, &first, nullptr));
-    for (std::size_t t = 0; t < mesh_.tets.size(); ++t) {
-      const std::array<Index, 6> edges = edges_.of_tet(first + static_cast<PetscInt>(t), mesh_.tets[t]);
-      if (std::any_of(edges.begin(), edges.end(), [&](Index e) { return squared_norm(ways_[e]) > 0; }))
-        curved_.push_back({static_cast<Index>(t), edges});
+    for (Index t = 0; t < mesh_.tets.size(); ++t) {
+      const auto& nodes = mesh_.tet_mid_nodes[t];
+      if (std::any_of(nodes.begin(), nodes.end(),
+                      [&](Index node) { return squared_norm(ways_[edge_of(node)]) > 0; }))
+        curved_.push_back(t);
     }
   }
 
   /// Returns the edges of each invalid tet whose nodes have the longest displacement.
-  std::vector<PetscInt> faulty() {
-    std::vector<PetscInt> marks(edges_.size(), 0);
-    const auto way_of = [&](Index e) { return shares[back_[e]] * norm(ways_[e]); };
-    for (const auto& [tet, edges] : curved_) {
-      CurvedTet nodes;
-      const Corners corners = mesh_.corners(tet);
-      std::copy(corners.begin(), corners.end(), nodes.begin());
-      for (std::size_t k = 0; k < 6; ++k) nodes[4 + k] = node(edges[k]);
-      if (jacobian_exceeds(nodes, least_jacobian)) continue;
+  std::vector<PetscInt> faulty() const {
+    std::vector<PetscInt> marks(ways_.size(), 0);
+    const auto way_of = [&](std::size_t e) { return shares[back_[e]] * norm(ways_[e]); };
+    for (const Index tet : curved_) {
+      if (jacobian_exceeds(curved_tet(mesh_, tet), least_jacobian)) continue;
       double longest = 0;
-      for (const Index e : edges) longest = std::max(longest, way_of(e));
-      for (const Index e : edges)
-        if (longest > 0 && way_of(e) == longest) marks[e] = 1;
+      for (const Index node : mesh_.tet_mid_nodes[tet]) longest = std::max(longest, way_of(edge_of(node)));
+      for (const Index node : mesh_.tet_mid_nodes[tet])
+        if (longest > 0 && way_of(edge_of(node)) == longest) marks[edge_of(node)] = 1;
     }
     return marks;
   }
 
-  struct CurvedCell {
-    Index tet;
-    std::array<Index, 6> edges;
-  };
-
-  DM dm_;
   MPI_Comm communicator_;
   const Shape& shape_;
   LocalMesh mesh_;
-  Edges edges_;
   SharedPoints shared_;
   std::vector<Vector> ways_;        // by edge: displacement of its node from its middle
   std::vector<std::uint8_t> back_;  // by edge: its index in shares
-  std::vector<CurvedCell> curved_;
+  std::vector<Index> curved_;       // tets with displaced nodes
 };
 
 }  // namespace
@@ -157,9 +135,9 @@ OrderReport ParallelMesh::raise_order(const Shape& shape) {
     if (order_ != 1) throw OptionError("the mesh is of second order already");
   });
   Curving curving(dm_, shape);
-  const std::vector<Point> nodes = curving.run();
+  const std::vector<Point>& points = curving.run();
   call(DMPlexCreateCoordinateSpace(dm_, 2, nullptr));
-  agree(communicator_, [&] { Edges(dm_).set_nodes(nodes); });
+  agree(communicator_, [&] { set_points(dm_, points); });
   order_ = 2;
   return curving.report();
 }

@@ -46,7 +46,7 @@ void choose_diagonals(DM dm) {
   call(DMPlexGetHeightStratum(dm, 0, &first, &end));
   std::vector<PetscInt> turned;
   {
-    const LocalMesh mesh(dm);
+    const LocalMesh mesh(dm, 1);
     for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
       const auto [a, c, b, d] = mesh.corners(t);
       const Corners p{a, b, c, d};  // in PETSc's order

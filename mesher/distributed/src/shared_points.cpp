@@ -128,17 +128,12 @@ void SharedPoints::combine(std::vector<T>& values, MPI_Op operation, std::size_t
 template void SharedPoints::combine(std::vector<PetscInt>&, MPI_Op, std::size_t) const;
 template void SharedPoints::combine(std::vector<PetscReal>&, MPI_Op, std::size_t) const;
 
-std::vector<PetscInt> SharedPoints::global_numbers(PetscInt begin) const {
-  auto own = static_cast<PetscInt>(owned_count());
-  PetscInt before = 0;
-  MPI_Exscan(&own, &before, 1, MPIU_INT, MPI_SUM, communicator_);
-  if (Ranks(communicator_).rank == 0) before = 0;
-  std::vector<PetscInt> numbers(owned_.size(), 0);
-  PetscInt next = begin + before;
-  for (std::size_t i = 0; i < owned_.size(); ++i)
-    if (owned_[i]) numbers[i] = next++;
-  combine(numbers, MPI_REPLACE);
-  return numbers;
+void SharedPoints::take_owners(std::span<Point> places) const {
+  std::vector<PetscReal> values;
+  for (const std::size_t i : shared_) values.insert(values.end(), {places[i].x, places[i].y, places[i].z});
+  combine_shared(values, MPI_REPLACE, 3);
+  for (std::size_t k = 0; k < shared_.size(); ++k)
+    places[shared_[k]] = {values[3 * k], values[3 * k + 1], values[3 * k + 2]};
 }
 
 }  // namespace collarmesh::distributed

@@ -3,9 +3,11 @@
 #include <petscdmplex.h>
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "calls.h"
+#include "collarmesh/geometry.h"
 
 namespace collarmesh::distributed {
 
@@ -37,9 +39,8 @@ class SharedPoints {
   template <class T>
   void combine_shared(std::vector<T>& values, MPI_Op operation, std::size_t width = 1) const;
 
-  /// Returns numbers from `begin` on that are consecutive over all ranks: those of each rank's own points, in
-  /// their order.
-  std::vector<PetscInt> global_numbers(PetscInt begin = 0) const;
+  /// Gives each shared point the place that its owner has for it.
+  void take_owners(std::span<Point> places) const;
 
  private:
   MPI_Comm communicator_;

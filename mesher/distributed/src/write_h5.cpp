@@ -12,7 +12,6 @@
 #include "calls.h"
 #include "collarmesh/distributed.h"
 #include "local_mesh.h"
-#include "mid_nodes.h"
 #include "shared_points.h"
 
 namespace collarmesh::distributed {
@@ -38,108 +37,84 @@ struct Grid {
 class GridMaker {
  public:
   GridMaker(DM dm, int order)
-      : dm_(dm),
-        order_(order),
-        mesh_(dm),
-        edges_(dm),
+      : communicator_(PetscObjectComm(reinterpret_cast<PetscObject>(dm))),
+        second_(order == 2),
+        mesh_(dm, order),
         vertices_(dm, 0),
-        shared_edges_(dm, 1),
+        edges_(dm, 1),
         faces_(dm, 2) {}
 
   /// Makes the grid. Collective.
   Grid make() {
     number_nodes();
     Grid grid;
-    for (std::size_t v = 0; v < mesh_.points.size(); ++v)
-      if (vertices_.owned(v)) add_point(mesh_.points[v], grid.points);
+    for (std::size_t i = 0; i < mesh_.points.size(); ++i)
+      if (i < mesh_.vertices ? vertices_.owned(i) : edges_.owned(i - mesh_.vertices))
+        grid.points.insert(grid.points.end(), {mesh_.points[i].x, mesh_.points[i].y, mesh_.points[i].z});
     add_tets(grid.cells[0]);
     add_faces(grid.cells[1]);
     add_edges(grid.cells[2]);
-    if (order_ == 1) return grid;
-    const std::vector<Point> nodes = edges_.nodes();
-    for (std::size_t e = 0; e < nodes.size(); ++e)
-      if (shared_edges_.owned(e)) add_point(nodes[e], grid.points);
     return grid;
   }
 
  private:
-  static void add_point(const Point& p, std::vector<PetscReal>& points) {
-    points.insert(points.end(), {p.x, p.y, p.z});
-  }
-
   /// Numbers each rank's vertices, then its mid-edge nodes, then the next rank's.
   void number_nodes() {
-    const MPI_Comm communicator = PetscObjectComm(reinterpret_cast<PetscObject>(dm_));
-    const auto own =
-        static_cast<PetscInt>(vertices_.owned_count() + (order_ == 2 ? shared_edges_.owned_count() : 0));
+    const auto own = static_cast<PetscInt>(vertices_.owned_count() + (second_ ? edges_.owned_count() : 0));
     PetscInt next = 0;
-    MPI_Exscan(&own, &next, 1, MPIU_INT, MPI_SUM, communicator);
-    if (Ranks(communicator).rank == 0) next = 0;
-    number(vertices_, next, numbers_);
-    if (order_ == 2) number(shared_edges_, next, edge_numbers_);
+    MPI_Exscan(&own, &next, 1, MPIU_INT, MPI_SUM, communicator_);
+    if (Ranks(communicator_).rank == 0) next = 0;
+    number(vertices_, next);
+    if (second_) number(edges_, next);
   }
-  static void number(const SharedPoints& points, PetscInt& next, std::vector<PetscInt>& numbers) {
-    numbers.assign(points.size(), 0);
+  void number(const SharedPoints& points, PetscInt& next) {
+    std::vector<PetscInt> numbers(points.size(), 0);
     for (std::size_t i = 0; i < numbers.size(); ++i)
       if (points.owned(i)) numbers[i] = next++;
     points.combine(numbers, MPI_REPLACE);
+    numbers_.insert(numbers_.end(), numbers.begin(), numbers.end());
   }
 
-  template <std::size_t n, std::size_t m>
-  void add_nodes(const std::array<Index, n>& corners, const std::array<Index, m>& edges, Cells& cells) const {
-    for (const Index v : corners) cells.nodes.push_back(numbers_[v]);
-    if (order_ == 2)
-      for (const Index e : edges) cells.nodes.push_back(edge_numbers_[e]);
+  template <std::size_t n>
+  void add_nodes(const std::array<Index, n>& nodes, Cells& cells) const {
+    for (const Index node : nodes) cells.nodes.push_back(numbers_[node]);
   }
 
   void add_tets(Cells& cells) const {
-    cells = {"mesh", order_ == 2 ? "Tetrahedron_10" : "Tetrahedron", order_ == 2 ? 10U : 4U, {}, {}};
-    PetscInt first = 0;
-    call(DMPlexGetHeightStratum(dm_, 0, &first, nullptr));
-    for (std::size_t t = 0; t < mesh_.tets.size(); ++t)
-      add_nodes(mesh_.tets[t],
-                order_ == 2 ? edges_.of_tet(first + static_cast<PetscInt>(t), mesh_.tets[t])
-                            : std::array<Index, 6>{},
-                cells);
-    std::vector<PetscInt> collars = label_values(dm_, "collar", first, mesh_.tets.size());
-    for (PetscInt& kind : collars) kind = std::max(kind, 0);
-    cells.arrays = {{"tag", label_values(dm_, "region", first, mesh_.tets.size())},
-                    {"collar", std::move(collars)}};
+    cells = {"mesh", second_ ? "Tetrahedron_10" : "Tetrahedron", second_ ? 10U : 4U, {}, {}};
+    for (std::size_t t = 0; t < mesh_.tets.size(); ++t) {
+      add_nodes(mesh_.tets[t], cells);
+      if (second_) add_nodes(mesh_.tet_mid_nodes[t], cells);
+    }
+    cells.arrays = {{"tag", {mesh_.tet_tag.begin(), mesh_.tet_tag.end()}},
+                    {"collar", {mesh_.tet_collar.begin(), mesh_.tet_collar.end()}}};
   }
 
   void add_faces(Cells& cells) const {
-    cells = {"faces", order_ == 2 ? "Triangle_6" : "Triangle", order_ == 2 ? 6U : 3U, {}, {}};
-    const std::vector<PetscInt> tags = label_values(dm_, "patch", faces_.first(), faces_.size());
-    std::vector<PetscInt> own;
-    for (std::size_t f = 0; f < tags.size(); ++f) {
-      if (tags[f] < 0 || !faces_.owned(f)) continue;
-      const PetscInt face = faces_.first() + static_cast<PetscInt>(f);
-      const std::array<Index, 3> corners = corners_of_face(dm_, face, vertices_.first());
-      add_nodes(corners, order_ == 2 ? edges_.of_face(face, corners) : std::array<Index, 3>{}, cells);
-      own.push_back(tags[f]);
+    cells = {"faces", second_ ? "Triangle_6" : "Triangle", second_ ? 6U : 3U, {}, {{"tag", {}}}};
+    for (std::size_t f = 0; f < mesh_.faces.size(); ++f) {
+      if (!faces_.owned(mesh_.face_number[f])) continue;
+      add_nodes(mesh_.faces[f], cells);
+      if (second_) add_nodes(mesh_.face_mid_nodes[f], cells);
+      cells.arrays[0].second.push_back(static_cast<PetscInt>(mesh_.face_tag[f]));
     }
-    cells.arrays = {{"tag", std::move(own)}};
   }
 
   void add_edges(Cells& cells) const {
-    cells = {"edges", order_ == 2 ? "Edge_3" : "Polyline", order_ == 2 ? 3U : 2U, {}, {}};
-    const std::vector<PetscInt> tags =
-        label_values(dm_, "curve", shared_edges_.first(), shared_edges_.size());
-    std::vector<PetscInt> own;
-    for (std::size_t e = 0; e < tags.size(); ++e) {
-      if (tags[e] < 0 || !shared_edges_.owned(e)) continue;
-      add_nodes(edges_.ends(e), std::array{static_cast<Index>(e)}, cells);
-      own.push_back(tags[e]);
+    cells = {"edges", second_ ? "Edge_3" : "Polyline", second_ ? 3U : 2U, {}, {{"tag", {}}}};
+    for (std::size_t e = 0; e < mesh_.edges.size(); ++e) {
+      if (!edges_.owned(mesh_.edge_number[e])) continue;
+      add_nodes(mesh_.edges[e], cells);
+      if (second_) add_nodes(std::array{mesh_.edge_mid_nodes[e]}, cells);
+      cells.arrays[0].second.push_back(static_cast<PetscInt>(mesh_.edge_tag[e]));
     }
-    cells.arrays = {{"tag", std::move(own)}};
   }
 
-  DM dm_;
-  int order_;
+  MPI_Comm communicator_;
+  bool second_;
   LocalMesh mesh_;
-  Edges edges_;
-  SharedPoints vertices_, shared_edges_, faces_;
-  std::vector<PetscInt> numbers_, edge_numbers_;
+  SharedPoints vertices_, edges_, faces_;
+  std::vector<PetscInt> numbers_;  // by point
 };
 
 /// An HDF5 file that all ranks write.

@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "common/distance_tree.h"
+#include "common/segments.h"
 
 namespace collarmesh::checks {
 
@@ -33,13 +34,10 @@ std::vector<Side> sides_of(const TetMesh& mesh) {
 class CurvesOfTags {
  public:
   void add(const Plc& plc, Index curve) {
-    const auto& points = plc.curves[curve].points;
-    const std::size_t count = points.size() - (plc.curves[curve].closed ? 0 : 1);
-    for (std::size_t i = 0; i < count; ++i) {
-      const Point &a = plc.points[points[i]], &b = plc.points[points[(i + 1) % points.size()]];
-      segments_.push_back({a, b, b});
+    visit_segments(plc.curves[curve], [&](Index a, Index b) {
+      segments_.push_back({plc.points[a], plc.points[b], plc.points[b]});
       curves_.push_back(curve);
-    }
+    });
   }
 
   Index nearest(const Point& p) {

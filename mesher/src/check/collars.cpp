@@ -5,6 +5,7 @@
 #include "check/subject.h"
 #include "common/box_tree.h"
 #include "common/distances.h"
+#include "common/segments.h"
 
 namespace collarmesh::checks {
 
@@ -76,9 +77,7 @@ class CollarCheck {
     }
     for (Index c = 0; c < plc_.curves.size(); ++c) {
       if (curve_is_outside(subject_, c)) continue;
-      const auto& p = plc_.curves[c].points;
-      for (std::size_t i = 0; i + 1 < p.size() + (plc_.curves[c].closed ? 1 : 0); ++i)
-        elements_.push_back({1, c, {p[i], p[(i + 1) % p.size()], p[i]}});
+      visit_segments(plc_.curves[c], [&](Index a, Index b) { elements_.push_back({1, c, {a, b, a}}); });
     }
     for (const Plc::Triangle& t : plc_.triangles)
       if (!patch_is_outside(subject_, t.patch)) elements_.push_back({2, t.patch, t.points});

@@ -5,6 +5,7 @@
 
 #include "common/edge_key.h"
 #include "common/median.h"
+#include "common/round_curves.h"
 
 namespace collarmesh::checks {
 
@@ -69,6 +70,20 @@ ShapeMeasures feature_sizes(const Subject& subject) {
     if (const Index curve = subject.match.edge_curve[edge]; curve != none)
       sizes.lengths[curve] += length_of_edge(mesh, edge);
   return sizes;
+}
+
+AllowedArea planar_area(const Subject& subject, Index patch) {
+  const Plc& plc = subject.plc;
+  const Plc::Patch& on = plc.patches[patch];
+  long double sum = 0;
+  for (Index t = on.first_triangle; t < on.first_triangle + on.triangle_count; ++t) {
+    const auto& [a, b, c] = plc.triangles[t].points;
+    sum += 0.5 * dot(cross(plc.points[b] - plc.points[a], plc.points[c] - plc.points[a]), on.normal);
+  }
+  const double area = std::fabs(static_cast<double>(sum));
+  double allowed = 1e-9 * area;
+  for (const Index c : on.curves) allowed += subject.curve_allowance[c] * length_of(plc, plc.curves[c]);
+  return {area, allowed};
 }
 
 ShapeMeasures input_sizes(const Subject& subject) {

@@ -10,6 +10,7 @@
 #include "check/subject.h"
 #include "common/disjoint_sets.h"
 #include "common/distance_tree.h"
+#include "common/segments.h"
 
 namespace collarmesh::checks {
 
@@ -159,13 +160,10 @@ std::vector<Index> match_edges(const TetMesh& mesh, const Plc& plc, const std::v
   std::vector<Index> curves = mesh.edge_curve;
   if (std::find(curves.begin(), curves.end(), none) == curves.end()) return curves;
   NearestFeature nearest;
-  for (Index c = 0; c < plc.curves.size(); ++c) {
-    const auto& points = plc.curves[c].points;
-    for (std::size_t i = plc.curves[c].closed ? 0 : 1; i < points.size(); ++i) {
-      const Point &a = plc.points[points[i == 0 ? points.size() - 1 : i - 1]], &b = plc.points[points[i]];
-      nearest.add(plc.curves[c].tag, c, {a, b, b});
-    }
-  }
+  for (Index c = 0; c < plc.curves.size(); ++c)
+    visit_segments(plc.curves[c], [&](Index a, Index b) {
+      nearest.add(plc.curves[c].tag, c, {plc.points[a], plc.points[b], plc.points[b]});
+    });
   DisjointSets pieces = edge_pieces(mesh, vertex_point);
   Ballot ballot;
   for (Index e = 0; e < mesh.edges.size(); ++e) {

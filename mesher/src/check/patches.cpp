@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "check/feature_sizes.h"
 #include "check/patch_topology.h"
 #include "check/polyline.h"
 #include "check/subject.h"
@@ -113,22 +114,9 @@ class PatchCheck {
   }
 
   // Compares areas projected along the plane's normal, with signs. (A turned face has a finding of its own,
-  // so its area counts as positive here.) A projected area depends on the border alone: it is half the sum of
-  // dot(normal, cross(a, b)) over all edges ab, and the two sides of each inner edge cancel. So it does not
-  // matter that triangles of a patch that is planar only up to a tolerance are tilted, or folded if they are
-  // narrower than the tolerance. (The sum of unprojected areas would not do: tilting by an angle t increases
-  // it by about t^2 / 2, and that of needles by any factor.) Both areas may therefore differ by the length of
-  // the border times the distance that it may move, and by rounding.
+  // so its area counts as positive here.)
   void compare_area(double found) {
-    long double sum = 0;
-    for (Index i = 0; i < patch_.triangle_count; ++i) {
-      const Plc::Triangle& t = triangle(i);
-      sum += area_in_plane(subject_.plc_corner(t, 0), subject_.plc_corner(t, 1), subject_.plc_corner(t, 2));
-    }
-    const double expected = std::fabs(static_cast<double>(sum));
-    double allowed = 1e-9 * expected;
-    for (const Index c : patch_.curves)
-      allowed += subject_.curve_allowance[c] * length(subject_.plc.curves[c]);
+    const auto [expected, allowed] = planar_area(subject_, id_);
     const double difference = found - expected;
     if (std::fabs(difference) <= allowed) return;
     const Point& where = subject_.plc_corner(triangle(0), 0);
@@ -137,15 +125,6 @@ class PatchCheck {
         "The faces of patch {} (tag {}) at {} have an area of {:.15g}, the patch has {:.15g}; the difference "
         "{:.6g} is above the allowed {:.6g}. Faces are missing or doubled.",
         id_, patch_.tag, At{where}, found, expected, difference, allowed);
-  }
-
-  double length(const Plc::Curve& curve) const {
-    double sum = 0;
-    for (std::size_t i = 1; i < curve.points.size(); ++i)
-      sum += distance(subject_.plc.points[curve.points[i - 1]], subject_.plc.points[curve.points[i]]);
-    if (curve.closed)
-      sum += distance(subject_.plc.points[curve.points.back()], subject_.plc.points[curve.points.front()]);
-    return sum;
   }
 
   void check_distances(std::span<const Index> patch_points) {

@@ -10,6 +10,7 @@
 #include "check/subject.h"
 #include "common/disjoint_sets.h"
 #include "common/distance_tree.h"
+#include "common/segments.h"
 #include "common/tet_sides.h"
 
 namespace collarmesh::checks {
@@ -112,16 +113,14 @@ class InnerPatches {
 // The segments of all curves as flat triangles, with their positions on the curves.
 struct CurveSegments {
   explicit CurveSegments(const Plc& plc) : lengths(plc.curves.size(), 0) {
-    for (Index c = 0; c < plc.curves.size(); ++c) {
-      const auto& points = plc.curves[c].points;
-      for (std::size_t i = 0; i + 1 < points.size() + (plc.curves[c].closed ? 1 : 0); ++i) {
-        const Point &a = plc.points[points[i]], &b = plc.points[points[(i + 1) % points.size()]];
+    for (Index c = 0; c < plc.curves.size(); ++c)
+      visit_segments(plc.curves[c], [&](Index from, Index to) {
+        const Point &a = plc.points[from], &b = plc.points[to];
         segments.push_back({a, b, b});
         curve.push_back(c);
         arc.push_back(lengths[c]);
         lengths[c] += distance(a, b);
-      }
-    }
+      });
   }
 
   std::vector<DistanceTree::Triangle> segments;

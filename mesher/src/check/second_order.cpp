@@ -6,6 +6,7 @@
 #include "collarmesh/curved_tet.h"
 #include "common/cell_shapes.h"
 #include "common/distance_tree.h"
+#include "common/segments.h"
 
 namespace collarmesh::checks {
 
@@ -114,11 +115,9 @@ void check_on_curves(const Subject& subject, CheckReport& report, Findings& find
     if (by_curve.size(c) == 0) continue;
     const Plc::Curve& curve = plc.curves[c];
     std::vector<DistanceTree::Triangle> segments;
-    const auto add = [&](Index a, Index b) {
+    visit_segments(curve, [&](Index a, Index b) {
       segments.push_back({plc.points[a], plc.points[b], plc.points[b]});
-    };
-    for (std::size_t i = 1; i < curve.points.size(); ++i) add(curve.points[i - 1], curve.points[i]);
-    if (curve.closed) add(curve.points.back(), curve.points.front());
+    });
     const DistanceTree tree(std::move(segments));
     for (const Index* e = by_curve.begin(c); e != by_curve.end(c); ++e) {
       const Index node = subject.mesh.edge_mid_nodes[*e];

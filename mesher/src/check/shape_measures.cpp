@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/disjoint_sets.h"
+#include "common/round_curves.h"
 
 namespace collarmesh {
 
@@ -96,14 +97,6 @@ std::vector<double> enclosed_by_shells(const Plc& plc) {
   return volumes;
 }
 
-double polyline_length(const Plc& plc, const Plc::Curve& curve) {
-  double length = 0;
-  const std::size_t count = curve.points.size();
-  for (std::size_t i = curve.closed ? 0 : 1; i < count; ++i)
-    length += distance(plc.points[curve.points[(i + count - 1) % count]], plc.points[curve.points[i]]);
-  return length;
-}
-
 /// Joins sides of patches that bound the same region and meet in a curve. The number of a patch's side is
 /// twice the patch's index, plus one for the side in front.
 DisjointSets connected_sides(const Plc& plc) {
@@ -150,7 +143,7 @@ ShapeMeasures measures_of(const Plc& plc) {
     for (Index i = 0; i < patch.triangle_count; ++i)
       area += triangle_area(plc, plc.triangles[patch.first_triangle + i]);
   }
-  for (const Plc::Curve& curve : plc.curves) measures.lengths.push_back(polyline_length(plc, curve));
+  for (const Plc::Curve& curve : plc.curves) measures.lengths.push_back(length_of(plc, curve));
   return measures;
 }
 

@@ -5,6 +5,7 @@
 #include <queue>
 
 #include "coarsen/gap_widths.h"
+#include "common/segments.h"
 #include "location/triangle_hierarchy.h"
 #include "refine/sizing.h"
 
@@ -68,17 +69,8 @@ class TargetSizes {
     if (options_.elements_per_circle == 0 || plc_.curves[curve].straight)
       return sizing_.feature_size(1, curve, p);
     auto& segments = on_curve_[curve];
-    if (!segments) {
-      const auto& points = plc_.curves[curve].points;
-      std::vector<std::array<Index, 3>> all;
-      const std::size_t count = points.size() - (plc_.curves[curve].closed ? 0 : 1);
-      all.reserve(count);
-      for (std::size_t i = 0; i < count; ++i) {
-        const Index next = points[(i + 1) % points.size()];
-        all.push_back({points[i], next, next});
-      }
-      segments = std::make_unique<TriangleHierarchy>(plc_.points, std::move(all));
-    }
+    if (!segments)
+      segments = std::make_unique<TriangleHierarchy>(plc_.points, flat_triangles_of(plc_.curves[curve]));
     Index at = 0;
     segments->squared_distance_to(p, INFINITY, &at);
     return sizing_.curve_size(curve, at, at, p);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/segments.h"
 #include "common/sorted.h"
 
 namespace collarmesh {
@@ -12,9 +13,7 @@ CreaseSheets::CreaseSheets(const Plc& plc, std::span<const Point> points, std::s
   std::vector<std::array<Index, 2>> segments;
   for (Index c = 0; c < plc.curves.size(); ++c) {
     if (!is_crease_curve[c]) continue;
-    const auto& p = plc.curves[c].points;
-    for (std::size_t i = 0; i + 1 < p.size(); ++i) segments.push_back(sorted(p[i], p[i + 1]));
-    if (plc.curves[c].closed) segments.push_back(sorted(p.back(), p[0]));
+    visit_segments(plc.curves[c], [&](Index a, Index b) { segments.push_back(sorted(a, b)); });
   }
   std::sort(segments.begin(), segments.end());
   std::vector<bool> is_vertex(points.size(), false);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "common/segments.h"
+
 namespace collarmesh {
 
 FeatureHierarchy::FeatureHierarchy(const Plc& plc, std::span<const Point> points) : points_(points) {
@@ -18,9 +20,7 @@ FeatureHierarchy::FeatureHierarchy(const Plc& plc, std::span<const Point> points
   first_feature_[1] = static_cast<Index>(features_.size());
   for (Index c = 0; c < plc.curves.size(); ++c) {
     start(1, c);
-    const auto& p = plc.curves[c].points;
-    for (std::size_t i = 0; i + 1 < p.size(); ++i) elements_.push_back({p[i], p[i + 1], p[i + 1]});
-    if (plc.curves[c].closed) elements_.push_back({p.back(), p[0], p[0]});
+    visit_segments(plc.curves[c], [&](Index a, Index b) { elements_.push_back({a, b, b}); });
   }
   first_feature_[2] = static_cast<Index>(features_.size());
   for (Index f = 0; f < plc.patches.size(); ++f) {

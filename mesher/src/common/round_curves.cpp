@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/segments.h"
+
 namespace collarmesh {
 
 namespace {
@@ -15,9 +17,8 @@ constexpr double least_turn = 0.85 * std::numbers::pi;
 
 double length_of(const Plc& plc, const Plc::Curve& curve) {
   double length = 0;
-  const auto& p = curve.points;
-  for (std::size_t i = 1; i < p.size(); ++i) length += distance(plc.points[p[i - 1]], plc.points[p[i]]);
-  return curve.closed ? length + distance(plc.points[p.back()], plc.points[p.front()]) : length;
+  visit_segments(curve, [&](Index a, Index b) { length += distance(plc.points[a], plc.points[b]); });
+  return length;
 }
 
 std::size_t least_edges(const Plc& plc, const Plc::Curve& curve, double edges_per_circle) {

@@ -9,20 +9,10 @@
 
 #include "collarmesh/geometry.h"
 #include "collarmesh/tet_mesh.h"
+#include "common/group_names.h"
 
-/// Names of groups of cells, for formats whose groups have names: a prefix by dimension, followed by the tag.
+/// Names of groups of cells as formats write and read them.
 namespace collarmesh::io {
-
-constexpr std::array<std::string_view, 4> group_name_prefix{"vertex_", "curve_", "patch_", "region_"};
-constexpr std::array<std::string_view, 4> cad_name_prefix{"Vertex", "Edge", "Face", "Solid"};
-
-/// Returns "patch_7" or "Face7"; "patch_minus_7" where a hyphen is not allowed in names.
-std::string group_name(GroupNames names, std::size_t dimension, Tag tag, std::string_view minus = "minus_");
-
-/// Returns the name that the tag was given, with `_` for quotes and control characters; otherwise the name by
-/// kind and tag.
-std::string group_name(const TetMesh& mesh, std::size_t dimension, Tag tag,
-                       std::string_view minus = "minus_");
 
 /// Replace all characters but ASCII letters, digits and `-` by `_`; the second one also makes capitals.
 std::string word(std::string text);

@@ -7,9 +7,9 @@
 #include <unordered_map>
 #include <utility>
 
+#include "common/face_finder.h"
 #include "common/sorted.h"
 #include "io/cell_nodes.h"
-#include "io/face_finder.h"
 
 namespace collarmesh::io {
 

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "collarmesh/error.h"
+#include "common/face_finder.h"
 #include "io/cell_nodes.h"
-#include "io/face_finder.h"
 #include "io/label_names.h"
 #include "io/node_groups.h"
 #include "io/tet_mesh_formats.h"

@@ -233,6 +233,10 @@ void write_any(const std::string& path, const TetMesh& mesh, bool with_ghosts) {
 
 }  // namespace
 
+void write_list_of_pieces(const std::string& path, const TetMesh& like,
+                          const std::vector<std::string>& pieces) {
+  write_list(path, make_vtk_grid(like), pieces, false);
+}
 void write_pvtu(const std::string& path, const TetMesh& mesh) { write_any(path, mesh, false); }
 void write_pvtu_with_ghost_cells(const std::string& path, const TetMesh& mesh) {
   write_any(path, mesh, true);

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "collarmesh/tet_mesh.h"
+#include "common/face_finder.h"
 #include "io/cell_nodes.h"
-#include "io/face_finder.h"
 
 namespace collarmesh::io {
 

@@ -13,6 +13,10 @@ void write_vtu(const std::string& path, const TetMesh& mesh);
 void write_pvtu(const std::string& path, const TetMesh& mesh);
 void write_vtk(const std::string& path, const TetMesh& mesh);
 void write_msh(const std::string& path, const TetMesh& mesh);
+/// Writes a .pvtu file alone, for these .vtu files. `like` is the mesh of any of them; all have the same
+/// arrays.
+void write_list_of_pieces(const std::string& path, const TetMesh& like,
+                          const std::vector<std::string>& pieces);
 // Writers that add the ghost tets around each partition:
 void write_pvtu_with_ghost_cells(const std::string& path, const TetMesh& mesh);
 void write_msh_with_ghost_cells(const std::string& path, const TetMesh& mesh);

@@ -2,14 +2,16 @@
 
 #include <algorithm>
 
+#include "common/segments.h"
+
 namespace collarmesh {
 
 CurvePaths::CurvePaths(const Plc& plc, std::span<const Point> points) : plc_(plc), points_(points) {
   for (const Plc::Curve& curve : plc.curves) {
     std::vector<double> lengths{0};
-    const auto& p = curve.points;
-    for (std::size_t i = 1; i < p.size() + (curve.closed ? 1 : 0); ++i)
-      lengths.push_back(lengths.back() + distance(points_[p[i - 1]], points_[p[i % p.size()]]));
+    visit_segments(curve, [&](Index a, Index b) {
+      lengths.push_back(lengths.back() + distance(points_[a], points_[b]));
+    });
     lengths_.push_back(std::move(lengths));
   }
 }

@@ -356,9 +356,7 @@ std::vector<Option> partition_options() {
        .details = "see [Formats](formats.md#partitions)"},
       {.name = "ghost-cells",
        .place = at<&RunOptions::ghost_cells>,
-       .help =
-           fmt::format("Write with each partition the tetrahedra of others that share a vertex with it; {}",
-                       fmt::join(io::formats_with_ghost_cells(), " ")),
+       .help = "Write with each partition the tetrahedra of others that share a vertex with it; .pvtu .msh",
        .commands = writing},
       {.name = "cell-decomposition FILE",
        .place = at<&RunOptions::cell_decomposition>,

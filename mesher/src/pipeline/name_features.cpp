@@ -13,6 +13,7 @@
 #include "collarmesh/error.h"
 #include "common/distance_tree.h"
 #include "common/place_in_text.h"
+#include "common/segments.h"
 
 namespace collarmesh {
 
@@ -69,11 +70,8 @@ Index patch_at(const Plc& plc, const Point& p, const std::string& place) {
 
 Index curve_at(const Plc& plc, const Point& p, const std::string& place) {
   Nearest nearest;
-  for (Index c = 0; c < plc.curves.size(); ++c) {
-    const std::vector<Index>& v = plc.curves[c].points;
-    for (std::size_t i = 1; i < v.size() + (plc.curves[c].closed ? 1 : 0); ++i)
-      nearest.add(plc, v[i - 1], v[i % v.size()], v[i % v.size()], c);
-  }
+  for (Index c = 0; c < plc.curves.size(); ++c)
+    visit_segments(plc.curves[c], [&](Index a, Index b) { nearest.add(plc, a, b, b, c); });
   return nearest.find(plc, p, place, "curve");
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/cells_at_vertices.h"
 #include "common/disjoint_sets.h"
 #include "common/distances.h"
 
@@ -52,14 +53,9 @@ class CurveFinder {
   };
 
   void index_ends() {
-    first_.assign(draft_.points.size() + 1, 0);
-    for (const FeatureSegment& s : segments_)
-      for (const Index p : {s.a, s.b}) ++first_[p + 1];
-    for (std::size_t p = 0; p + 1 < first_.size(); ++p) first_[p + 1] += first_[p];
-    at_.resize(2 * segments_.size());
-    std::vector<Index> next(first_.begin(), first_.end() - 1);
-    for (Index i = 0; i < segments_.size(); ++i)
-      for (const Index p : {segments_[i].a, segments_[i].b}) at_[next[p]++] = i;
+    std::vector<std::array<Index, 2>> ends;
+    for (const FeatureSegment& s : segments_) ends.push_back({s.a, s.b});
+    segments_at_ = {ends, draft_.points.size()};
   }
 
   void collect_patches(const std::vector<Index>& patch_of) {
@@ -74,9 +70,6 @@ class CurveFinder {
     }
   }
 
-  std::span<const Index> segments_at(Index point) const {
-    return {at_.data() + first_[point], at_.data() + first_[point + 1]};
-  }
   std::span<const Index> patches_of(Index segment) const {
     return {patches_.data() + first_patch_[segment], patches_.data() + first_patch_[segment + 1]};
   }
@@ -87,7 +80,7 @@ class CurveFinder {
   void mark_vertices() {
     mark_pinched_points();
     for (Index p = 0; p < draft_.points.size(); ++p)
-      if (!segments_at(p).empty() && !passes(p)) is_vertex_[p] = true;
+      if (!segments_at_[p].empty() && !passes(p)) is_vertex_[p] = true;
   }
 
   // Finds points where several fans of triangles meet, or a fan meets a segment that is no edge of a
@@ -116,7 +109,7 @@ class CurveFinder {
 
   // Returns whether exactly one curve passes this point.
   bool passes(Index point) const {
-    const auto at = segments_at(point);
+    const auto at = segments_at_[point];
     if (at.size() != 2) return false;
     const auto p = patches_of(at[0]), q = patches_of(at[1]);
     if (!std::equal(p.begin(), p.end(), q.begin(), q.end())) return false;
@@ -145,7 +138,7 @@ class CurveFinder {
       point = other_end(s, point);
       chain.points.push_back(point);
       if (is_vertex_[point] || point == from) break;
-      const auto at = segments_at(point);
+      const auto at = segments_at_[point];
       s = at[0] == s ? at[1] : at[0];
     }
     chains_.push_back(std::move(chain));
@@ -241,7 +234,7 @@ class CurveFinder {
   Plc& plc_;
   bool exact_;
   double largest_turn_;
-  std::vector<Index> first_, at_;             // segments at each point
+  CellsAtVertices segments_at_;
   std::vector<Index> first_patch_, patches_;  // patches of each segment
   std::vector<bool> is_vertex_, is_fold_;     // folds are vertices that the input does not give
   std::vector<bool> used_;

@@ -42,25 +42,21 @@ PatchFans::PatchFans(std::span<const Point> points, const std::vector<Plc::Trian
   for (const Plc::Triangle& t : triangles) patch_of_.push_back(t.patch);
   for (const auto& [a, b] : segments)
     if (const Index e = edges_.find(a, b); e != none) is_segment_[e] = true;
-  first_corner_.assign(points_.size() + 1, 0);
-  for (const Corners& t : triangles_)
-    for (const Index p : t) ++first_corner_[p + 1];
-  for (std::size_t p = 0; p + 1 < first_corner_.size(); ++p) first_corner_[p + 1] += first_corner_[p];
-  corners_.resize(3 * triangles_.size());
-  std::vector<Index> next(first_corner_.begin(), first_corner_.end() - 1);
-  for (Index corner = 0; corner < corners_.size(); ++corner)
-    corners_[next[triangles_[corner / 3][corner % 3]]++] = corner;
-  visited_.assign(corners_.size(), false);
+  triangles_at_ = {triangles_, points_.size()};
+  visited_.assign(3 * triangles_.size(), false);
 }
 
 std::vector<Fan> PatchFans::at(Index point, bool smooth_only) {
   std::vector<Fan> fans;
-  for (Index i = first_corner_[point]; i < first_corner_[point + 1]; ++i) {
-    const Index start = corners_[i];
+  const auto corner_of = [&](Index t) {
+    return 3 * t + (triangles_[t][0] == point ? 0 : triangles_[t][1] == point ? 1 : 2);
+  };
+  for (const Index t : triangles_at_[point]) {
+    const Index start = corner_of(t);
     if (visited_[start] || (smooth_only && patches_[patch_of(start)].planar)) continue;
     fans.push_back(make_fan(start));
   }
-  for (Index i = first_corner_[point]; i < first_corner_[point + 1]; ++i) visited_[corners_[i]] = false;
+  for (const Index t : triangles_at_[point]) visited_[corner_of(t)] = false;
   return fans;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "collarmesh/plc.h"
+#include "common/cells_at_vertices.h"
 #include "facets/edges.h"
 #include "plc/angles.h"
 
@@ -51,9 +52,9 @@ class PatchFans {
   std::vector<facets::Corners> triangles_;
   std::vector<Index> patch_of_;  // by triangle
   facets::EdgeTable edges_;
-  std::vector<bool> is_segment_;               // by edge
-  std::vector<Index> first_corner_, corners_;  // corners (3 t + i) at each point
-  std::vector<bool> visited_;                  // corners that already are in a fan
+  std::vector<bool> is_segment_;  // by edge
+  CellsAtVertices triangles_at_;
+  std::vector<bool> visited_;  // corners that already are in a fan
 };
 
 }  // namespace collarmesh::plc

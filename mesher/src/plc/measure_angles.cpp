@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "common/segments.h"
 #include "plc/fans.h"
 
 namespace collarmesh::plc {
@@ -45,14 +46,8 @@ class AngleFinder {
   static std::vector<std::array<Index, 2>> segments_of(const Plc& plc) {
     std::vector<std::array<Index, 2>> segments;
     for (const Plc::Curve& curve : plc.curves)
-      for_each_segment(curve, [&](Index a, Index b) { segments.push_back({a, b}); });
+      visit_segments(curve, [&](Index a, Index b) { segments.push_back({a, b}); });
     return segments;
-  }
-
-  template <class Visit>
-  static void for_each_segment(const Plc::Curve& curve, const Visit& visit) {
-    for (std::size_t i = 0; i + 1 < curve.points.size(); ++i) visit(curve.points[i], curve.points[i + 1]);
-    if (curve.closed) visit(curve.points.back(), curve.points.front());
   }
 
   const Point& at(Index p) const { return plc_.points[p]; }
@@ -81,7 +76,7 @@ class AngleFinder {
 
   void measure_curve(Index c) {
     Crease best{Kind::facets, 180, c, none, {none, none}, {}};
-    for_each_segment(plc_.curves[c], [&](Index a, Index b) {
+    visit_segments(plc_.curves[c], [&](Index a, Index b) {
       const Index edge = fans_.edges().find(a, b);
       if (edge == none) return;
       const auto sides = fans_.edges().sides(edge);

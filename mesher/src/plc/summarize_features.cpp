@@ -1,6 +1,7 @@
 #include <map>
 
 #include "collarmesh/plc_builder.h"
+#include "common/segments.h"
 
 namespace collarmesh {
 
@@ -37,15 +38,14 @@ std::vector<CurveSummary> summarize_curves(const Plc& plc) {
     summary.tag = curve.tag;
     summary.straight = summary.straight && curve.straight;
     double longest = -1;
-    for (std::size_t i = 1; i < curve.points.size() + (curve.closed ? 1 : 0); ++i) {
-      const Point &a = plc.points[curve.points[i - 1]],
-                  &b = plc.points[curve.points[i % curve.points.size()]];
+    visit_segments(curve, [&](Index from, Index to) {
+      const Point &a = plc.points[from], &b = plc.points[to];
       const double length = distance(a, b);
       summary.length += length;
-      if (summary.count > 0 || length <= longest) continue;
+      if (summary.count > 0 || length <= longest) return;
       longest = length;
       summary.where = 0.5 * (a + b);
-    }
+    });
     ++summary.count;
   }
   std::vector<CurveSummary> summaries;

@@ -4,15 +4,9 @@
 #include <vector>
 
 #include "collarmesh/plc.h"
+#include "common/segments.h"
 
 namespace collarmesh {
-
-/// Visits the two points of each segment of a curve's polyline.
-template <class Visit>
-void visit_segments(const Plc::Curve& curve, const Visit& visit) {
-  for (std::size_t i = 0; i + 1 < curve.points.size(); ++i) visit(curve.points[i], curve.points[i + 1]);
-  if (curve.closed) visit(curve.points.back(), curve.points[0]);
-}
 
 /// Returns the corners of the elements of a complex: first its triangles, then, as degenerate triangles,
 /// features on no patch: the segments of curves and single vertices.

@@ -1,5 +1,7 @@
 #include "second_order/nearest_on_features.h"
 
+#include "common/segments.h"
+
 namespace collarmesh::second_order {
 
 Point NearestOnFeatures::nearest(const TetMesh::VertexFeature& feature, const Point& p) {
@@ -13,12 +15,7 @@ Point NearestOnFeatures::nearest(const TetMesh::VertexFeature& feature, const Po
 // Builds the hierarchy of a curve. Segments are triangles without area.
 const TriangleHierarchy& NearestOnFeatures::curve(Index id) {
   if (curves_[id]) return *curves_[id];
-  const Plc::Curve& curve = plc_.curves[id];
-  std::vector<std::array<Index, 3>> segments;
-  for (std::size_t i = 1; i < curve.points.size(); ++i)
-    segments.push_back({curve.points[i - 1], curve.points[i], curve.points[i]});
-  if (curve.closed) segments.push_back({curve.points.back(), curve.points.front(), curve.points.front()});
-  curves_[id] = std::make_unique<TriangleHierarchy>(plc_.points, std::move(segments));
+  curves_[id] = std::make_unique<TriangleHierarchy>(plc_.points, flat_triangles_of(plc_.curves[id]));
   return *curves_[id];
 }
 

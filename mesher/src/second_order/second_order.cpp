@@ -11,12 +11,11 @@
 #include "collarmesh/curved_tet.h"
 #include "collarmesh/error.h"
 #include "collarmesh/mesher.h"
-#include "common/flat_features.h"
 #include "common/thread_limit.h"
 #include "improve/replace_tets.h"
 #include "improve/thin_shape.h"
 #include "second_order/mid_nodes.h"
-#include "second_order/nearest_on_features.h"
+#include "second_order/places_on_features.h"
 #include "second_order/untangling.h"
 
 namespace collarmesh {
@@ -50,9 +49,7 @@ class Curving {
         options_(options),
         execution_(execution),
         edges_(mesh),
-        nearest_(plc),
-        flat_(plc),
-        exact_(options.exact ? flat_.limit(options.exact) : ExactGeometry{}),
+        on_features_(plc, options.exact),
         untangling_(mesh, edges_, plc, options.least_jacobian) {}
 
   /// Finds the places of the nodes on features, the first step. Returns false if cancelled.
@@ -128,24 +125,15 @@ class Curving {
     Vector way;
   };
 
-  static bool on_feature(const TetMesh::VertexFeature& feature) {
-    return feature.feature != none && (feature.dimension == 1 || feature.dimension == 2);
-  }
-  bool is_smooth(const TetMesh::VertexFeature& feature) const {
-    if (!on_feature(feature)) return false;
-    return feature.dimension == 1 ? !plc_.curves[feature.feature].straight
-                                  : !plc_.patches[feature.feature].planar;
-  }
-
   void find_moves() {
     for (Index e = 0; e < edges_.size() && !execution_.cancelled(); ++e) {
       const TetMesh::VertexFeature& feature = edges_.feature(e);
-      if (!is_smooth(feature) && !(exact_ && on_feature(feature))) continue;
+      if (!on_features_.has_places(feature)) continue;
       const auto [a, b] = edges_.ends(e);
       const Point middle = 0.5 * (mesh_.points[a] + mesh_.points[b]);
-      const Vector way = place_on(feature, middle) - middle;
+      const Vector way = on_features_.place(feature, middle) - middle;
       const double length = norm(way), edge_length = length_of(e);
-      if (length <= (is_smooth(feature) ? 0 : rounding * edge_length)) continue;
+      if (length <= (on_features_.is_smooth(feature) ? 0 : rounding * edge_length)) continue;
       if (untangling_.is_free(e)) {
         if (length <= slight * edge_length) {
           slight_moves_.push_back({e, way});
@@ -165,12 +153,6 @@ class Curving {
     const auto at = std::lower_bound(slight_moves_.begin(), slight_moves_.end(), edge,
                                      [](const SlightMove& move, Index e) { return move.edge < e; });
     return at != slight_moves_.end() && at->edge == edge ? middle + at->way : middle;
-  }
-
-  Point place_on(const TetMesh::VertexFeature& feature, const Point& middle) {
-    if (exact_)
-      if (const auto place = exact_(feature.dimension, feature.feature, middle)) return *place;
-    return is_smooth(feature) ? nearest_.nearest(feature, middle) : middle;
   }
 
   const Move* move_of(Index edge) const {
@@ -375,9 +357,7 @@ class Curving {
   const SecondOrderOptions& options_;
   const Execution& execution_;
   MeshEdges edges_;
-  NearestOnFeatures nearest_;
-  FlatFeatures flat_;
-  ExactGeometry exact_;                   // restricted to flat features; empty if there is none
+  PlacesOnFeatures on_features_;
   std::vector<Move> moves_;               // sorted by edge
   std::vector<SlightMove> slight_moves_;  // sorted by edge
   std::vector<Index> curved_;             // tets with moves

@@ -1,4 +1,4 @@
-// Reads a size field from a file or from a description.
+// Reads a size field from a description.
 #include "collarmesh/size_field.h"
 
 #include <fmt/format.h>
@@ -10,9 +10,8 @@
 #include <nlohmann/json.hpp>
 
 #include "collarmesh/error.h"
-#include "collarmesh/io/point_field_io.h"
 #include "common/place_in_text.h"
-#include "io/file_bytes.h"
+#include "common/segments.h"
 #include "location/triangle_hierarchy.h"
 
 namespace collarmesh {
@@ -155,9 +154,8 @@ Distance distance_of(const Json& source, const std::string& place, const Plc& pl
   if (source.contains("curves"))
     return distance_from_features(source.at("curves"), place + ".curves", "curves", plc, plc.curves,
                                   [](const Plc::Curve& curve, auto& triangles) {
-                                    const auto& v = curve.points;
-                                    for (std::size_t i = 1; i < v.size() + (curve.closed ? 1 : 0); ++i)
-                                      triangles.push_back({v[i - 1], v[i % v.size()], v[i % v.size()]});
+                                    const auto segments = flat_triangles_of(curve);
+                                    triangles.insert(triangles.end(), segments.begin(), segments.end());
                                   });
   if (source.contains("patches"))
     return distance_from_features(source.at("patches"), place + ".patches", "patches", plc, plc.patches,
@@ -243,25 +241,6 @@ SizeField size_field_from_json(const std::string& text, const Plc& plc,
     }
     return size;
   };
-}
-
-SizeField read_size_field(const std::string& path, const Plc& plc, const std::shared_ptr<SizeFieldUse>& use) {
-  try {
-    if (path.ends_with(".json")) return size_field_from_json(io::read_bytes(path), plc, use);
-    const io::PointField read = io::read_point_field(path);
-    SizeField field = size_field_on_mesh(read.mesh, read.values);
-    if (!use) return field;
-    return [field = std::move(field), use, number = use->add("the field")](const Point& p) {
-      const double asked = field(p);
-      use->note(number, asked);
-      return asked;
-    };
-  } catch (const OptionError& error) {
-    throw OptionError(fmt::format("{}: {}", path, error.what()));
-  } catch (const ReadError& error) {
-    if (std::string_view(error.what()).starts_with(path)) throw;
-    throw ReadError(fmt::format("{}: {}", path, error.what()));
-  }
 }
 
 }  // namespace collarmesh

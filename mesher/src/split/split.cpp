@@ -8,10 +8,10 @@
 #include <set>
 #include <utility>
 
+#include "common/face_finder.h"
+#include "common/group_names.h"
 #include "common/layer_tets.h"
 #include "common/tet_sides.h"
-#include "io/face_finder.h"
-#include "io/label_names.h"
 #include "split/cohesive.h"
 #include "split/patch_choice.h"
 #include "split/sectors.h"
@@ -79,7 +79,7 @@ class Splitter {
         const auto outward = side_corners(mesh_.tets[t], corner);
         const Index face = finder_.find(outward);
         if (face == none) continue;
-        const bool is_behind = io::FaceFinder::alike(mesh_.faces[face], outward);
+        const bool is_behind = FaceFinder::alike(mesh_.faces[face], outward);
         (is_behind ? beside_[face].behind : beside_[face].front) = t;
       }
     }
@@ -182,7 +182,7 @@ class Splitter {
     Tag next = taken.empty() ? 1 : std::max<Tag>(*taken.rbegin() + 1, 1);
     for (auto& [tag, patch] : patches_) {
       patch.tag = tag;
-      patch.name = io::group_name(mesh_, 2, tag);
+      patch.name = group_name(mesh_, 2, tag);
       if (patch.faces > 0) {
         patch.sides = {kept.contains(tag) ? next++ : tag, 0};
         patch.sides.plus = next++;
@@ -288,7 +288,7 @@ class Splitter {
 
   TetMesh& mesh_;
   const SplitOptions& options_;
-  io::FaceFinder finder_;                      // finds faces by corners, from before the split
+  FaceFinder finder_;                          // finds faces by corners, from before the split
   std::vector<std::array<Index, 4>> tets_;     // after the split
   std::vector<std::array<Index, 6>> mids_;     // after the split
   std::vector<bool> chosen_;                   // by face

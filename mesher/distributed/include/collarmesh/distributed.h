@@ -3,6 +3,7 @@
 #include <mpi.h>
 #include <petscdmplex.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -31,6 +32,12 @@ struct Shape {
 /// Bounds on dihedral angles, degrees: [0] outside collars, [1] in collars.
 struct AngleBounds {
   std::array<double, 2> least{180, 180}, most{0, 0};
+
+  /// Widens the bounds to those of a tet.
+  void add(const TetQuality& tet, bool in_collar) {
+    least[in_collar] = std::min(least[in_collar], tet.min_dihedral);
+    most[in_collar] = std::max(most[in_collar], tet.max_dihedral);
+  }
 };
 
 /// The result of one level of refinement, summed over all ranks.

@@ -8,7 +8,7 @@
 #include "collarmesh/geometry.h"
 #include "common/flat_table.h"
 
-namespace collarmesh::io {
+namespace collarmesh {
 
 /// Finds triangles or quadrangles of a mesh by their corners in any order. Cost: constant per face, expected.
 template <std::size_t n>
@@ -51,4 +51,4 @@ class PolygonFinder {
 
 using FaceFinder = PolygonFinder<3>;
 
-}  // namespace collarmesh::io
+}  // namespace collarmesh

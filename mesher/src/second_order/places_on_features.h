@@ -1,0 +1,47 @@
+#pragma once
+
+#include <optional>
+
+#include "collarmesh/exact_geometry.h"
+#include "common/flat_features.h"
+#include "second_order/nearest_on_features.h"
+
+namespace collarmesh::second_order {
+
+/// Finds the places of nodes on curves and patches: on the exact geometry or, where there is none, on the
+/// complex.
+class PlacesOnFeatures {
+ public:
+  /// Keeps references to both.
+  PlacesOnFeatures(const Plc& plc, const ExactGeometry& exact)
+      : plc_(plc), nearest_(plc), flat_(plc), exact_(exact ? flat_.limit(exact) : ExactGeometry{}) {}
+  PlacesOnFeatures(const PlacesOnFeatures&) = delete;
+  PlacesOnFeatures& operator=(const PlacesOnFeatures&) = delete;
+
+  static bool is_known(const TetMesh::VertexFeature& feature) {
+    return feature.feature != none && (feature.dimension == 1 || feature.dimension == 2);
+  }
+  bool is_smooth(const TetMesh::VertexFeature& feature) const {
+    if (!is_known(feature)) return false;
+    return feature.dimension == 1 ? !plc_.curves[feature.feature].straight
+                                  : !plc_.patches[feature.feature].planar;
+  }
+  /// Returns whether nodes on this feature may have a place off their chords.
+  bool has_places(const TetMesh::VertexFeature& feature) const {
+    return is_known(feature) && (exact_ || is_smooth(feature));
+  }
+  /// Returns the place of a node. Precondition: has_places(feature).
+  Point place(const TetMesh::VertexFeature& feature, const Point& p) {
+    if (exact_)
+      if (const auto place = exact_(feature.dimension, feature.feature, p)) return *place;
+    return is_smooth(feature) ? nearest_.nearest(feature, p) : p;
+  }
+
+ private:
+  const Plc& plc_;
+  NearestOnFeatures nearest_;
+  FlatFeatures flat_;
+  ExactGeometry exact_;  // restricted to flat features; empty if there is none
+};
+
+}  // namespace collarmesh::second_order
