@@ -14,6 +14,7 @@
 #include "io/cell_nodes.h"
 #include "io/node_groups.h"
 #include "report/layer_counts.h"
+#include "report/listed.h"
 
 namespace collarmesh::report {
 
@@ -198,7 +199,6 @@ namespace {
 
 // Describes patches that were merged where parts touch: "; there patch 7 is patch 2, 9 is 3".
 std::string replaced_text(const std::vector<std::pair<Tag, Tag>>& replaced) {
-  constexpr std::size_t listed = 20;
   std::string text;
   for (std::size_t k = 0; k < std::min(replaced.size(), listed); ++k)
     text += text.empty() ? fmt::format("; there patch {} is patch {}", replaced[k].first, replaced[k].second)

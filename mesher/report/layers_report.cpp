@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "report/listed.h"
+
 namespace collarmesh::report {
 
 using Json = nlohmann::ordered_json;
@@ -15,7 +17,6 @@ double percent(double part, double whole) { return whole > 0 ? 100 * part / whol
 }  // namespace
 
 std::string layers_text(const LayersReport& report) {
-  constexpr std::size_t listed = 20;
   std::string text;
   for (std::size_t k = 0; k < std::min(listed, report.patches.size()); ++k) {
     const LayersReport::Patch& p = report.patches[k];

@@ -8,12 +8,11 @@
 
 #include "io/label_names.h"
 #include "io/node_groups.h"
+#include "report/listed.h"
 
 namespace collarmesh::report {
 
 namespace {
-
-constexpr std::size_t listed = 20;
 
 class Groups {
  public:
@@ -108,9 +107,9 @@ std::string groups_text(const TetMesh& mesh) {
   return text;
 }
 
-nlohmann::ordered_json groups_json(const std::vector<MeshGroup>& groups, const char* cells,
-                                   const char* measure) {
-  using Json = nlohmann::ordered_json;
+using Json = nlohmann::ordered_json;
+
+Json groups_json(const std::vector<MeshGroup>& groups, const char* cells, const char* measure) {
   Json list = Json::array();
   for (const MeshGroup& g : groups) {
     list.push_back({{"tag", g.tag},

@@ -13,7 +13,7 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-const char* name_of(Option::Kind kind) {
+const char* name_of_kind(Option::Kind kind) {
   switch (kind) {
     case Option::Kind::flag: return "flag";
     case Option::Kind::choice: return "choice";
@@ -26,7 +26,7 @@ const char* name_of(Option::Kind kind) {
   return "unknown";
 }
 
-const char* name_of(Option::Unit unit) {
+const char* name_of_unit(Option::Unit unit) {
   switch (unit) {
     case Option::Unit::length: return "length";
     case Option::Unit::degrees: return "degrees";
@@ -82,10 +82,10 @@ Json option_table_json() {
     table.push_back({{"name", option.name},
                      {"key", option.key()},
                      {"letter", option.letter == 0 ? Json(nullptr) : Json(std::string(1, option.letter))},
-                     {"kind", name_of(option.kind())},
+                     {"kind", name_of_kind(option.kind())},
                      {"value_name", option.value_name},
                      {"words", option.words},
-                     {"unit", name_of(option.unit)},
+                     {"unit", name_of_unit(option.unit)},
                      {"low", option.low},
                      {"high", std::isfinite(option.high) ? Json(option.high) : Json(nullptr)},
                      {"zero", option.zero},

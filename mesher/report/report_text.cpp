@@ -8,6 +8,7 @@
 #include "report/conversion_report.h"
 #include "report/layer_counts.h"
 #include "report/layers_report.h"
+#include "report/listed.h"
 #include "report/mesh_groups.h"
 #include "report/periodic_report.h"
 #include "report/report.h"
@@ -18,9 +19,6 @@ namespace collarmesh::report {
 namespace {
 
 using Out = std::back_insert_iterator<std::string>;
-
-/// Number of lines after which lists are cut off; --json has all.
-constexpr std::size_t listed = 20;
 
 std::string in_brackets(const std::string& name) { return name.empty() ? name : fmt::format(" ({})", name); }
 

@@ -4,12 +4,13 @@
 
 #include <algorithm>
 
+#include "report/listed.h"
+
 namespace collarmesh::report {
 
 using Json = nlohmann::ordered_json;
 
 std::string split_text(const SplitReport& report) {
-  constexpr std::size_t listed = 20;
   std::string text;
   for (std::size_t k = 0; k < std::min(listed, report.patches.size()); ++k) {
     const SplitReport::Patch& p = report.patches[k];

@@ -20,8 +20,6 @@ namespace collarmesh::distributed {
 
 namespace {
 
-// The shares of their displacement that vertices keep when they move back, step by step.
-constexpr std::array<double, 4> shares{1, 0.5, 0.25, 0};
 // A move longer than this many times the shortest edge at the vertex would pass through other tets.
 constexpr double longest_way = 2;
 // Least cosine between an edge of a curve and its initial direction.

@@ -7,6 +7,7 @@
 #include "collarmesh/curved_tet.h"
 #include "collarmesh/distributed.h"
 #include "local_mesh.h"
+#include "placement.h"
 #include "second_order/places_on_features.h"
 #include "shared_points.h"
 
@@ -19,9 +20,6 @@ namespace {
 constexpr double farthest = 0.5;
 // The default of SecondOrderOptions::least_jacobian.
 constexpr double least_jacobian = 0.1;
-// The shares of their displacement that nodes keep when they move back, step by step.
-constexpr std::array<double, 4> shares{1, 0.5, 0.25, 0};
-
 class Curving {
  public:
   Curving(DM dm, const Shape& shape)
