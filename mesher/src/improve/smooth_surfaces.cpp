@@ -41,10 +41,7 @@ Point centre(const SmoothSurfaces::Triangle& t) { return (t[0] + t[1] + t[2]) / 
 
 }  // namespace
 
-bool SmoothSurfaces::smooth(Index face) const {
-  const Index patch = mesh_.face_patch[face];
-  return patch != none && !plc_.patches[patch].planar;
-}
+bool SmoothSurfaces::smooth(Index face) const { return is_smooth(mesh_.face_patch[face]); }
 
 SmoothSurfaces::Triangle SmoothSurfaces::corners(Index face) const {
   const auto& v = mesh_.faces[face];
@@ -182,20 +179,20 @@ bool SmoothSurfaces::samples_are_near(std::span<const Index> old, std::span<cons
   return true;
 }
 
-// Returns whether the created faces are no farther from the patches than the old ones or, where these are
-// beyond the tolerance, within the accepted ratio.
-bool SmoothSurfaces::are_excused(std::span<const Index> old, std::span<const Face> created) const {
+// Returns whether the created faces are no farther from the patches than the old ones and agree with them or,
+// where the old ones are beyond the tolerance, are within the accepted ratio.
+bool SmoothSurfaces::are_excused(std::span<const Index> old, std::span<const Face> created,
+                                 bool agree) const {
   double farthest = 0;
   for (const Index face : old)
     if (smooth(face)) farthest = std::max(farthest, squared_distance(mesh_.face_patch[face], corners(face)));
   const bool beyond = farthest > tolerance_.largest() * tolerance_.largest();
+  if (!beyond && !agree) return false;
   const double accepted = beyond ? accepted_ratio_ * accepted_ratio_ * farthest : farthest;
-  return std::ranges::all_of(created,
-                             [&](const Face& face) {
-                               return face.patch == none || plc_.patches[face.patch].planar ||
-                                      squared_distance(face.patch, face.corners) <= accepted;
-                             }) &&
-         (beyond || samples_are_near(old, created, accepted));
+  const bool near = std::ranges::all_of(created, [&](const Face& face) {
+    return !is_smooth(face.patch) || squared_distance(face.patch, face.corners) <= accepted;
+  });
+  return near && (beyond || samples_are_near(old, created, accepted));
 }
 
 // Returns the cosine of the angle between a face and a triangle of the patch, regardless of orientation.
@@ -221,19 +218,22 @@ double SmoothSurfaces::worst_agreement(std::span<const Index> faces) const {
 
 bool SmoothSurfaces::fit(std::span<const Index> old, std::span<const Face> created,
                          double& agreement_of_old) const {
-  return fit_within(old, created, agreement_of_old) || (accepted_ratio_ > 0 && are_excused(old, created));
+  std::vector<Index> near;
+  const bool agree = centres_agree(old, created, agreement_of_old, near);
+  if (agree && fit_within(old, created, near)) return true;
+  return accepted_ratio_ > 0 && are_excused(old, created, agree);
 }
 
-bool SmoothSurfaces::fit_within(std::span<const Index> old, std::span<const Face> created,
-                                double& agreement_of_old) const {
+// Returns whether the centres of the created faces are within the tolerance, and the faces agree with the
+// orientation of the patch at least as well as the old ones. `near`: by created face a triangle of the patch
+// near its centre.
+bool SmoothSurfaces::centres_agree(std::span<const Index> old, std::span<const Face> created,
+                                   double& agreement_of_old, std::vector<Index>& near) const {
   double least = 1;
-  std::vector<Index> near(created.size(), none);  // by created face: a triangle near its centre
-  const auto is_planar = [&](const Face& face) {
-    return face.patch == none || plc_.patches[face.patch].planar;
-  };
+  near.assign(created.size(), none);
   for (std::size_t i = 0; i < created.size(); ++i) {
     const auto& [corners, patch] = created[i];
-    if (is_planar(created[i])) continue;
+    if (!is_smooth(patch)) continue;
     const bool same = i > 0 && created[i - 1].patch == patch;
     near[i] = triangle_near(patch, centre(corners), same ? near[i - 1] : none);
     if (near[i] == none) return false;
@@ -242,9 +242,14 @@ bool SmoothSurfaces::fit_within(std::span<const Index> old, std::span<const Face
     if (std::isnan(agreement_of_old)) agreement_of_old = worst_agreement(old);
     if (least < agreement_of_old) return false;
   }
+  return true;
+}
+
+bool SmoothSurfaces::fit_within(std::span<const Index> old, std::span<const Face> created,
+                                const std::vector<Index>& near) const {
   if (!samples_are_near(old, created, 0)) return false;
   for (std::size_t i = 0; i < created.size(); ++i)
-    if (!is_planar(created[i]) && !edges_near(old, created, i, near[i])) return false;
+    if (is_smooth(created[i].patch) && !edges_near(old, created, i, near[i])) return false;
   return true;
 }
 

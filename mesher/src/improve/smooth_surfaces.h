@@ -99,10 +99,14 @@ class SmoothSurfaces {
   bool edge_near(Index patch, const Point& a, const Point& b, Index hint) const;
   bool edges_near(std::span<const Index> old, std::span<const Face> created, std::size_t i, Index hint) const;
   double squared_distance(Index patch, const Triangle& t) const;
-  bool fit_within(std::span<const Index> old, std::span<const Face> created, double& agreement_of_old) const;
+  bool is_smooth(Index patch) const { return patch != none && !plc_.patches[patch].planar; }
+  bool centres_agree(std::span<const Index> old, std::span<const Face> created, double& agreement_of_old,
+                     std::vector<Index>& near) const;
+  bool fit_within(std::span<const Index> old, std::span<const Face> created,
+                  const std::vector<Index>& near) const;
   bool samples_are_near(std::span<const Index> old, std::span<const Face> created,
                         double least_squared_bound) const;
-  bool are_excused(std::span<const Index> old, std::span<const Face> created) const;
+  bool are_excused(std::span<const Index> old, std::span<const Face> created, bool agree) const;
   double agreement(Index patch, const Triangle& t, Index triangle) const;
   double worst_agreement(std::span<const Index> faces) const;
   Triangle corners(Index face) const;
