@@ -31,7 +31,7 @@
 
 #include "support/repair_shapes.h"
 
-namespace collarmesh::testing {
+namespace collarmesh::testing::cad_meshing_test {
 namespace {
 
 gp_Ax2 at(double x, double y, double z) { return {gp_Pnt(x, y, z), gp::DZ()}; }
@@ -333,4 +333,4 @@ TEST(CadCorpus, VerticesLieOnTheirFaces) {
 }
 
 }  // namespace
-}  // namespace collarmesh::testing
+}  // namespace collarmesh::testing::cad_meshing_test

@@ -42,7 +42,7 @@
 #include "support/leaks_allowed.h"
 #include "support/temporary_file.h"
 
-namespace collarmesh::testing {
+namespace collarmesh::testing::cad_model_test {
 namespace {
 
 using brep::CadModel;
@@ -519,4 +519,4 @@ TEST(CadNearest, LiesOnTheShape) {
 }
 
 }  // namespace
-}  // namespace collarmesh::testing
+}  // namespace collarmesh::testing::cad_model_test

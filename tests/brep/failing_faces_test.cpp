@@ -22,7 +22,7 @@
 #include "shapes.h"
 #include "soup_measures.h"
 
-namespace collarmesh::testing {
+namespace collarmesh::testing::failing_faces_test {
 namespace {
 
 using brep::CadModel;
@@ -165,4 +165,4 @@ TEST(CadFailingFaces, WithoutAnOutlineAreLeftOutAndTold) {
 }
 
 }  // namespace
-}  // namespace collarmesh::testing
+}  // namespace collarmesh::testing::failing_faces_test

@@ -7,7 +7,7 @@
 #include <random>
 #include <set>
 
-namespace collarmesh::brep {
+namespace collarmesh::brep::folded_triangles_test {
 namespace {
 
 using Triangles = std::vector<std::array<Index, 3>>;
@@ -97,4 +97,4 @@ TEST(FoldedTriangles, AtTheBorderAreFlipped) {
 }
 
 }  // namespace
-}  // namespace collarmesh::brep
+}  // namespace collarmesh::brep::folded_triangles_test

@@ -35,7 +35,7 @@
 #include "shapes.h"
 #include "support/temporary_file.h"
 
-namespace collarmesh::testing {
+namespace collarmesh::testing::measures_test {
 namespace {
 
 constexpr double pi = M_PI;
@@ -289,4 +289,4 @@ TEST(CadMeasures, ReachTheCertificate) {
 }
 
 }  // namespace
-}  // namespace collarmesh::testing
+}  // namespace collarmesh::testing::measures_test

@@ -20,7 +20,7 @@
 #include "soup_measures.h"
 #include "support/temporary_file.h"
 
-namespace collarmesh::testing {
+namespace collarmesh::testing::open_shapes_test {
 namespace {
 
 using brep::CadModel;
@@ -142,4 +142,4 @@ TEST(CadFaces, AloneMayEncloseASolid) {
 }
 
 }  // namespace
-}  // namespace collarmesh::testing
+}  // namespace collarmesh::testing::open_shapes_test

@@ -23,7 +23,7 @@
 #include "soup_measures.h"
 #include "support/temporary_file.h"
 
-namespace collarmesh::testing {
+namespace collarmesh::testing::overlapping_solids_test {
 namespace {
 
 using brep::CadModel;
@@ -226,4 +226,4 @@ TEST(CadSolids, AreTheSameWithAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace collarmesh::testing
+}  // namespace collarmesh::testing::overlapping_solids_test

@@ -21,7 +21,7 @@
 #include "progress_display.h"
 #include "report/report.h"
 
-namespace collarmesh::cli {
+namespace collarmesh::cli::parts_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -241,4 +241,4 @@ TEST(TimeLimitDeathTest, IsWatched) {
 }
 
 }  // namespace
-}  // namespace collarmesh::cli
+}  // namespace collarmesh::cli::parts_test

@@ -10,7 +10,7 @@
 
 #include "shells/triangle_shape.h"
 
-namespace collarmesh::shells {
+namespace collarmesh::shells::best_triangles_test {
 namespace {
 
 using Polygon = std::vector<Point>;
@@ -75,4 +75,4 @@ TEST(BestTriangles, TwoCornersNeedNone) {
 }
 
 }  // namespace
-}  // namespace collarmesh::shells
+}  // namespace collarmesh::shells::best_triangles_test

@@ -11,7 +11,7 @@
 #include "common/box_tree.h"
 #include "support/shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::box_frame_test {
 namespace {
 
 using Triangles = std::vector<std::array<Index, 3>>;
@@ -77,4 +77,4 @@ TEST(BoxFrame, KeepsTheAxesOfOtherTriangles) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::box_frame_test

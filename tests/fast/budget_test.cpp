@@ -8,7 +8,7 @@
 
 #include "refine/outcome.h"
 
-namespace collarmesh {
+namespace collarmesh::budget_test {
 namespace {
 
 TEST(RefineOutcome, KeepsTheFirstMessageUnlessItIsStopped) {
@@ -58,4 +58,4 @@ TEST(RefineBudget, ProgressNeverGoesBackAndMayCancel) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::budget_test

@@ -8,7 +8,7 @@
 #include "check/layer_cells.h"
 #include "support/layer_mesh.h"
 
-namespace collarmesh {
+namespace collarmesh::check_layer_cells_test {
 namespace {
 
 using testing::LayerMesh;
@@ -80,4 +80,4 @@ TEST(CheckLayerCells, FindsVolumesThatChanged) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::check_layer_cells_test

@@ -20,7 +20,7 @@
 #include "support/layer_mesh.h"
 #include "support/second_order.h"
 
-namespace collarmesh {
+namespace collarmesh::check_layers_test {
 namespace {
 
 using testing::layer_mesh;
@@ -191,4 +191,4 @@ TEST(CheckLayers, SizesAreFoundInPrisms) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::check_layers_test

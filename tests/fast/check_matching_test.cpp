@@ -4,7 +4,7 @@
 #include "check/subject.h"
 #include "support/meshes.h"
 
-namespace collarmesh {
+namespace collarmesh::check_matching_test {
 namespace {
 
 using namespace collarmesh::testing;
@@ -58,4 +58,4 @@ TEST(CheckMatching, UnknownTagsMatchNothing) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::check_matching_test

@@ -14,7 +14,7 @@
 #include "common/distance_tree.h"
 #include "support/shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::check_parts_test {
 namespace {
 
 using namespace collarmesh::checks;
@@ -169,4 +169,4 @@ TEST(RegionLocator, InsideCavityAndOutside) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::check_parts_test

@@ -13,7 +13,7 @@
 #include "support/meshes.h"
 #include "support/periodic.h"
 
-namespace collarmesh {
+namespace collarmesh::check_periodic_test {
 namespace {
 
 using namespace collarmesh::testing;
@@ -218,4 +218,4 @@ TEST(CheckPeriodic, UnknownTagsHaveNoTriangles) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::check_periodic_test

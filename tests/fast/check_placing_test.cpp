@@ -10,7 +10,7 @@
 #include "collarmesh/check.h"
 #include "support/meshes.h"
 
-namespace collarmesh {
+namespace collarmesh::check_placing_test {
 namespace {
 
 using namespace collarmesh::testing;
@@ -223,4 +223,4 @@ TEST(RegionLocator, PlacesInThePlanesOfTheFacets) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::check_placing_test

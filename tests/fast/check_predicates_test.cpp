@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-namespace collarmesh::checks {
+namespace collarmesh::checks::check_predicates_test {
 namespace {
 
 using Corners = std::array<Point, 4>;
@@ -76,4 +76,4 @@ TEST_F(CheckPredicates, ANodeLiesOnItsFeature) {
 }
 
 }  // namespace
-}  // namespace collarmesh::checks
+}  // namespace collarmesh::checks::check_predicates_test

@@ -7,7 +7,7 @@
 #include "collarmesh/plc_builder.h"
 #include "support/shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::check_shapes_test {
 namespace {
 
 using namespace collarmesh::testing;
@@ -88,4 +88,4 @@ TEST(Shapes, MovedAndPermutedOnesAreTheSame) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::check_shapes_test

@@ -11,7 +11,7 @@
 #include "collarmesh/check.h"
 #include "support/meshes.h"
 
-namespace collarmesh {
+namespace collarmesh::check_wrong_meshes_test {
 namespace {
 
 using namespace collarmesh::testing;
@@ -584,4 +584,4 @@ TEST(CheckWrongMeshes, AnyNumberOfThreadsFindsTheSame) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::check_wrong_meshes_test

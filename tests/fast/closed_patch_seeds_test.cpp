@@ -7,7 +7,7 @@
 #include "support/refinement_parts.h"
 #include "support/shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::closed_patch_seeds_test {
 namespace {
 
 struct Seeded : testing::KnownCurves {
@@ -35,4 +35,4 @@ TEST(ClosedPatchSeeds, TakeAVertexThatIsThereButForRounding) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::closed_patch_seeds_test

@@ -15,7 +15,7 @@
 #include "support/polylines.h"
 #include "support/refinement_parts.h"
 
-namespace collarmesh {
+namespace collarmesh::collar_parts_test {
 namespace {
 
 struct Parts : testing::KnownCurves {
@@ -385,7 +385,7 @@ TEST(CollarParts, RepairsAtASmoothCreaseEnd) {
 }
 
 TEST(CollarParts, WithoutCreasesThereIsNothingToReview) {
-  const Plc plc = build(testing::box({0, 0, 0}, {1, 1, 1}));
+  const Plc plc = build(testing::polygonal_box({0, 0, 0}, {1, 1, 1}));
   Parts parts(plc);
   parts.resolve_all();
   EXPECT_TRUE(parts.collars.empty());
@@ -449,7 +449,7 @@ TEST(SurfaceParts, SpreadPointsAreFarFromEachOther) {
 }
 
 TEST(SurfaceParts, RoundsAreBounded) {
-  const Plc plc = build(testing::box({0, 0, 0}, {1, 1, 1}));
+  const Plc plc = build(testing::polygonal_box({0, 0, 0}, {1, 1, 1}));
   Parts parts(plc);
   std::size_t rounds = 0;
   while (parts.check.another_round()) ASSERT_LT(++rounds, 1000U);
@@ -459,4 +459,4 @@ TEST(SurfaceParts, RoundsAreBounded) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::collar_parts_test

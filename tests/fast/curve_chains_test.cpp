@@ -12,7 +12,7 @@
 #include "support/plc_shapes.h"
 #include "support/refinement_parts.h"
 
-namespace collarmesh {
+namespace collarmesh::curve_chains_test {
 namespace {
 
 /// Curves with the parts that they need; the test replaces the loop.
@@ -107,13 +107,13 @@ struct Curves : testing::KnownCurves {
   }
 };
 
-Plc box() {
-  const PolygonSoup soup = testing::box({0, 0, 0}, {1, 1, 1});
+Plc unit_box() {
+  const PolygonSoup soup = testing::polygonal_box({0, 0, 0}, {1, 1, 1});
   return build_plc({&soup, 1});
 }
 
 TEST(CurveChains, ASubsegmentIsResolvedWhenItsEndsAreInTheMesh) {
-  const Plc plc = box();
+  const Plc plc = unit_box();
   Curves curves(plc, 10);
   EXPECT_EQ(curves.points.size(), 8U);
   EXPECT_EQ(curves.count(false), 12U);
@@ -133,7 +133,7 @@ TEST(CurveChains, ASubsegmentIsResolvedWhenItsEndsAreInTheMesh) {
 
 // Otherwise the whole skeleton would be inserted at once, one end after the other.
 TEST(CurveChains, TheirOwnEndsEncroachNoSubsegments) {
-  const Plc plc = box();
+  const Plc plc = unit_box();
   Curves curves(plc, 10);
   for (Index point = 0; point < 8; ++point) {
     curves.resolve(point);
@@ -142,7 +142,7 @@ TEST(CurveChains, TheirOwnEndsEncroachNoSubsegments) {
 }
 
 TEST(CurveChains, ACandidateThatEncroachesAnUnresolvedOneMakesWayForAMedialEnd) {
-  const Plc plc = box();
+  const Plc plc = unit_box();
   Curves curves(plc, 10);
   const Point near = curves.points[plc.curves[0].ends[0]].point,
               far = curves.points[plc.curves[0].ends[1]].point;
@@ -169,7 +169,7 @@ TEST(CurveChains, ACandidateThatEncroachesAnUnresolvedOneMakesWayForAMedialEnd) 
 
 // No vertex is inserted for it, because the mesh may have skinny cells.
 TEST(CurveChains, WhatAVertexEncroachesIsSplitAheadOfTheMesh) {
-  const Plc plc = box();
+  const Plc plc = unit_box();
   Curves curves(plc, 10);
   curves.insert_and_tell({0.3, 0.02, 0.01});
   const Index vertices = curves.mesh.vertex_count();
@@ -190,7 +190,7 @@ TEST(CurveChains, WhatAVertexEncroachesIsSplitAheadOfTheMesh) {
 }
 
 TEST(CurveChains, AVertexInABallQueuesItsSubsegmentAndNoOther) {
-  const Plc plc = box();
+  const Plc plc = unit_box();
   Curves curves(plc, 10);
   curves.resolve_all();
   EXPECT_EQ(curves.work_off(), 0U);
@@ -213,7 +213,7 @@ TEST(CurveChains, AVertexInABallQueuesItsSubsegmentAndNoOther) {
 }
 
 TEST(CurveChains, SplittingEndsWithEmptyBallsAndFineSubsegments) {
-  const Plc plc = box();
+  const Plc plc = unit_box();
   const double size = 0.2;
   Curves curves(plc, size);
   curves.resolve_all();
@@ -231,7 +231,7 @@ TEST(CurveChains, SplittingEndsWithEmptyBallsAndFineSubsegments) {
 }
 
 TEST(CurveChains, CoarseOnesComeAfterQuality) {
-  const Plc plc = box();
+  const Plc plc = unit_box();
   Curves curves(plc, 0.2);
   curves.resolve_all();
   std::set<unsigned> priorities;
@@ -242,7 +242,7 @@ TEST(CurveChains, CoarseOnesComeAfterQuality) {
 }
 
 TEST(CurveChains, ABallAtTheFloorIsGivenUp) {
-  const Plc plc = box();
+  const Plc plc = unit_box();
   Curves curves(plc, 10);
   curves.resolve_all();
   Index some = none;
@@ -262,4 +262,4 @@ TEST(CurveChains, ABallAtTheFloorIsGivenUp) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::curve_chains_test

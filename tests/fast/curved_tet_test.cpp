@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-namespace collarmesh {
+namespace collarmesh::curved_tet_test {
 namespace {
 
 constexpr std::array<std::array<std::size_t, 2>, 6> ends{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
@@ -122,4 +122,4 @@ TEST(CurvedTet, ScaleAndPlaceDoNotMatter) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::curved_tet_test

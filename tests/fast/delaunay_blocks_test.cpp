@@ -8,7 +8,7 @@
 #include "delaunay/predicates.h"
 #include "delaunay/triangulation.h"
 
-namespace collarmesh {
+namespace collarmesh::delaunay_blocks_test {
 namespace {
 
 constexpr std::uint16_t block_count = 8;
@@ -224,4 +224,4 @@ TEST_F(DelaunayBlocks, RefuseZonesWithVerticesOfOthers) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::delaunay_blocks_test

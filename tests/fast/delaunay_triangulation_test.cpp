@@ -12,7 +12,7 @@
 
 #include "delaunay/predicates.h"
 
-namespace collarmesh {
+namespace collarmesh::delaunay_triangulation_test {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
@@ -248,4 +248,4 @@ TEST(DelaunayTriangulationZone, OfAVertexWithManyNeighboursIsLinked) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::delaunay_triangulation_test

@@ -13,7 +13,7 @@
 #include "improve/thin_shape.h"
 #include "support/shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::forced_edges_test {
 namespace {
 
 using Corners = std::array<Point, 4>;
@@ -180,4 +180,4 @@ TEST(ForcedEdges, ThinTetsMayBeAsSharpAsTheyLeaveThem) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::forced_edges_test

@@ -5,7 +5,7 @@
 
 #include <utility>
 
-namespace collarmesh {
+namespace collarmesh::found_in_ranges_test {
 namespace {
 
 TEST(FoundInRanges, IsInTheOrderOfWhatWasLookedAt) {
@@ -26,4 +26,4 @@ TEST(FoundInRanges, IsInTheOrderOfWhatWasLookedAt) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::found_in_ranges_test

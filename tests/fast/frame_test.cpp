@@ -5,7 +5,7 @@
 
 #include <random>
 
-namespace collarmesh {
+namespace collarmesh::frame_test {
 namespace {
 
 TEST(Frame, MovesFarInputWithoutRounding) {
@@ -32,4 +32,4 @@ TEST(Frame, LeavesInputAroundTheOriginAlone) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::frame_test

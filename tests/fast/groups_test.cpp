@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-namespace collarmesh {
+namespace collarmesh::groups_test {
 namespace {
 
 struct Item {
@@ -54,4 +54,4 @@ TEST(Groups, MayBeEmpty) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::groups_test

@@ -10,7 +10,7 @@
 
 #include "coarsen/coarsening_rule.h"
 
-namespace collarmesh {
+namespace collarmesh::hull_shapes_test {
 namespace {
 
 using improvement::Corners;
@@ -112,4 +112,4 @@ TEST(HullShapes, QualitiesOfCoarseningAreThoseOfTheAngles) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::hull_shapes_test

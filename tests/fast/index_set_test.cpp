@@ -5,7 +5,7 @@
 #include <random>
 #include <set>
 
-namespace collarmesh {
+namespace collarmesh::index_set_test {
 namespace {
 
 TEST(IndexSet, TakesEachNumberOnceAndHasIt) {
@@ -23,4 +23,4 @@ TEST(IndexSet, TakesEachNumberOnceAndHasIt) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::index_set_test

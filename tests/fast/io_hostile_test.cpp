@@ -18,7 +18,7 @@
 #include "support/temporary_file.h"
 #include "support/tet_mesh_comparison.h"
 
-namespace collarmesh {
+namespace collarmesh::io_hostile_test {
 namespace {
 
 using testing::expect_error;
@@ -378,4 +378,4 @@ TEST(IoHostile, GarbageIsRefusedByEveryReader) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::io_hostile_test

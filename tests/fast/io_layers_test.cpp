@@ -18,7 +18,7 @@
 #include "support/temporary_file.h"
 #include "support/tet_mesh_comparison.h"
 
-namespace collarmesh {
+namespace collarmesh::io_layers_test {
 namespace {
 
 using testing::expect_same;
@@ -265,4 +265,4 @@ TEST(IoLayers, QuadranglesOfSurfacesAreFacets) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::io_layers_test

@@ -6,7 +6,7 @@
 
 #include "io/lz4_block.h"
 
-namespace collarmesh {
+namespace collarmesh::io_lz4_block_test {
 namespace {
 
 std::string text_of(std::initializer_list<int> bytes) {
@@ -56,4 +56,4 @@ TEST(IoLz4Block, SurvivesNoise) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::io_lz4_block_test

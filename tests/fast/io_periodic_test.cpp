@@ -18,7 +18,7 @@
 #include "support/periodic.h"
 #include "support/temporary_file.h"
 
-namespace collarmesh {
+namespace collarmesh::io_periodic_test {
 namespace {
 
 using namespace collarmesh::testing;
@@ -197,4 +197,4 @@ TEST(PeriodicFiles, OtherFormatsHaveNoPlaceForTheMap) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::io_periodic_test

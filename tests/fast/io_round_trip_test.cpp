@@ -13,7 +13,7 @@
 #include "support/temporary_file.h"
 #include "support/tet_mesh_comparison.h"
 
-namespace collarmesh {
+namespace collarmesh::io_round_trip_test {
 namespace {
 
 using testing::expect_same;
@@ -242,4 +242,4 @@ TEST(IoRoundTrip, FormatOverridesTheExtension) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::io_round_trip_test

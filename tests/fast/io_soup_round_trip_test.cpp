@@ -14,7 +14,7 @@
 #include "collarmesh/plc_builder.h"
 #include "support/temporary_file.h"
 
-namespace collarmesh {
+namespace collarmesh::io_soup_round_trip_test {
 namespace {
 
 using testing::expect_error;
@@ -213,4 +213,4 @@ TEST(RegionPoints, DecideLikeTheOrientation) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::io_soup_round_trip_test

@@ -25,7 +25,7 @@
 #include "support/sample_mesh.h"
 #include "support/temporary_file.h"
 
-namespace collarmesh {
+namespace collarmesh::io_soup_test {
 namespace {
 
 using testing::CommaLocale;
@@ -479,4 +479,4 @@ TEST(IoMeshSurface, KeepsTagsOfRegions) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::io_soup_test

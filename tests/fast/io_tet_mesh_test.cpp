@@ -18,7 +18,7 @@
 #include "support/temporary_file.h"
 #include "support/tet_mesh_comparison.h"
 
-namespace collarmesh {
+namespace collarmesh::io_tet_mesh_test {
 namespace {
 
 using testing::CommaLocale;
@@ -283,4 +283,4 @@ TEST(IoTetMesh, AnyNumberOfThreadsWritesTheSame) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::io_tet_mesh_test

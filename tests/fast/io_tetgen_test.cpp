@@ -11,7 +11,7 @@
 #include "support/replaced.h"
 #include "support/temporary_file.h"
 
-namespace collarmesh {
+namespace collarmesh::io_tetgen_test {
 namespace {
 
 using testing::expect_error;
@@ -179,4 +179,4 @@ TEST(IoTetgen, SurvivesDamage) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::io_tetgen_test

@@ -18,7 +18,7 @@
 #include "support/temporary_file.h"
 #include "support/tet_mesh_comparison.h"
 
-namespace collarmesh {
+namespace collarmesh::io_vtu_test {
 namespace {
 
 using testing::CommaLocale;
@@ -284,4 +284,4 @@ TEST(IoVtu, SurvivesDamage) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::io_vtu_test

@@ -8,7 +8,7 @@
 
 #include "common/layer_jacobians.h"
 
-namespace collarmesh {
+namespace collarmesh::layer_jacobians_test {
 namespace {
 
 /// Random corners around those of the unit prism or pyramid.
@@ -138,4 +138,4 @@ TEST(LayerJacobians, BulgeAboveTheHeightFoldsAPrism) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::layer_jacobians_test

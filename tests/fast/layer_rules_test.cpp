@@ -12,7 +12,7 @@
 #include "layers/front.h"
 #include "support/plc_shapes.h"
 
-namespace collarmesh::layering {
+namespace collarmesh::layering::layer_rules_test {
 namespace {
 
 TEST(LayerDirection, IsTheNormalOfOneWall) {
@@ -149,7 +149,7 @@ TetMesh flat_tet(double height) {
 }
 
 TEST(CoreAngles, AreThoseOfThinTets) {
-  const std::vector<PolygonSoup> soups{testing::box({0, 0, 0}, {1, 1, 1})};
+  const std::vector<PolygonSoup> soups{testing::polygonal_box({0, 0, 0}, {1, 1, 1})};
   const Plc plc = build_plc(soups);
   Bounds bounds;
   bounds.radius_edge = 2;
@@ -167,4 +167,4 @@ TEST(CoreAngles, AreThoseOfThinTets) {
 }
 
 }  // namespace
-}  // namespace collarmesh::layering
+}  // namespace collarmesh::layering::layer_rules_test

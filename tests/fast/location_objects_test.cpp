@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace collarmesh {
+namespace collarmesh::location_objects_test {
 namespace {
 
 TEST(LocationObjects, ListsFollowAdditionsMovesAndRemovals) {
@@ -42,4 +42,4 @@ TEST(LocationObjects, ListsFollowAdditionsMovesAndRemovals) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::location_objects_test

@@ -7,7 +7,7 @@
 
 #include "support/shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::lost_parts_test {
 namespace {
 
 using testing::box;
@@ -67,4 +67,4 @@ TEST(LostParts, TagsAndNamesStay) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::lost_parts_test

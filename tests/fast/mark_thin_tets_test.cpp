@@ -7,7 +7,7 @@
 #include "collarmesh/tet_mesh.h"
 #include "improve/thin_shape.h"
 
-namespace collarmesh {
+namespace collarmesh::mark_thin_tets_test {
 namespace {
 
 TEST(MarkThinTets, MarksWhatIsAboveTheBound) {
@@ -44,4 +44,4 @@ TEST(MarkThinTets, MarksWhatIsAboveTheBound) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::mark_thin_tets_test

@@ -16,7 +16,7 @@
 #include "support/shapes.h"
 #include "support/temporary_file.h"
 
-namespace collarmesh {
+namespace collarmesh::names_test {
 namespace {
 
 using testing::box;
@@ -221,4 +221,4 @@ TEST(Names, OfMsh2HaveNumbersOfTheirOwn) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::names_test

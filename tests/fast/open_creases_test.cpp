@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-namespace collarmesh {
+namespace collarmesh::open_creases_test {
 namespace {
 
 TEST(OpenCreases, AreTouchedOnceUntilTheyAreTaken) {
@@ -64,4 +64,4 @@ TEST(OpenCreases, TellWhenASplitChainIsComplete) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::open_creases_test

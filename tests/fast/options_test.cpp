@@ -11,7 +11,7 @@
 
 #include "collarmesh/error.h"
 
-namespace collarmesh {
+namespace collarmesh::options_test {
 namespace {
 
 using Kind = Option::Kind;
@@ -207,4 +207,4 @@ TEST(Memory, Read) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::options_test

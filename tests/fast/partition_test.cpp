@@ -19,7 +19,7 @@
 #include "support/sample_mesh.h"
 #include "support/second_order.h"
 
-namespace collarmesh {
+namespace collarmesh::partition_test {
 namespace {
 
 using namespace testing;
@@ -238,4 +238,4 @@ TEST(CellPartitions, GhostsShareAVertex) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::partition_test

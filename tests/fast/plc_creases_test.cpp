@@ -8,7 +8,7 @@
 #include "plc/angles.h"
 #include "support/plc_shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::plc_creases_test {
 namespace {
 
 using std::numbers::pi;
@@ -26,7 +26,7 @@ std::vector<Crease> of_kind(std::vector<Crease> creases, Kind kind) {
 }
 
 TEST(PlcCreases, BoxHasNone) {
-  const Plc plc = build(testing::moved(testing::box({0, 0, 0}, {1, 2, 3}), 1, 1, 10));
+  const Plc plc = build(testing::moved(testing::polygonal_box({0, 0, 0}, {1, 2, 3}), 1, 1, 10));
   EXPECT_TRUE(find_creases(plc).empty());
   EXPECT_NEAR(summarize(plc).smallest_angle, 90, 1e-9);
 }
@@ -90,7 +90,7 @@ TEST(PlcCreases, RegularTetrahedron) {
 
 TEST(PlcCreases, PyramidSidesMeetInTheApex) {
   // Opposite sides of a square pyramid meet only in its apex.
-  const auto creases = find_creases(build(testing::cone(4, 60, 1)), 89);
+  const auto creases = find_creases(build(testing::polygonal_cone(4, 60, 1)), 89);
   const auto meeting = of_kind(creases, Kind::facets_in_vertex);
   ASSERT_EQ(meeting.size(), 1U);
   // Their nearest rays are sides of the triangle between them.
@@ -102,7 +102,7 @@ TEST(PlcCreases, PyramidSidesMeetInTheApex) {
 
 TEST(PlcCreases, ConeApexFolds) {
   for (const double aperture : {5.0, 20.0, 45.0, 65.0, 75.0, 88.0}) {
-    const Plc plc = build(testing::moved(testing::cone(100, aperture, 1), 9, 1, 2));
+    const Plc plc = build(testing::moved(testing::polygonal_cone(100, aperture, 1), 9, 1, 2));
     ASSERT_EQ(plc.patches.size(), 2U) << aperture;
     const auto folds = of_kind(find_creases(plc, 89), Kind::patch_fold);
     ASSERT_EQ(folds.size(), 1U) << aperture;
@@ -117,7 +117,7 @@ TEST(PlcCreases, ConeApexFolds) {
 
 TEST(PlcCreases, SmoothPatchesDoNotFold) {
   for (const PolygonSoup& soup : {testing::sphere(4, 1, {0, 0, 0}), testing::sphere(30, 1, {5, 5, 5}),
-                                  testing::cylinder(24, 1, 3), testing::cone(40, 120, 1)})
+                                  testing::polygonal_cylinder(24, 1, 3), testing::polygonal_cone(40, 120, 1)})
     EXPECT_TRUE(of_kind(find_creases(build(soup), 89), Kind::patch_fold).empty());
 }
 
@@ -135,7 +135,7 @@ TEST(PlcCreases, SegmentThatMeetsAFacetFromInside) {
 
 TEST(PlcCreases, AllPairsOfSheetsAtASegment) {
   // A fan of sheets on one segment inside a box: the smallest angle is between neighbours.
-  PolygonSoup soup = testing::box({-2, -2, -1}, {2, 2, 2});
+  PolygonSoup soup = testing::polygonal_box({-2, -2, -1}, {2, 2, 2});
   soup.points.push_back({0, 0, 0});
   soup.points.push_back({0, 0, 1});
   for (const double degrees : {0.0, 100.0, 125.0, 250.0}) {
@@ -199,4 +199,4 @@ TEST(SectorAngles, AgreeWithSampling) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::plc_creases_test

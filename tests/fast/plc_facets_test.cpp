@@ -8,7 +8,7 @@
 #include "facets/edges.h"
 #include "support/plc_shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::plc_facets_test {
 namespace {
 
 double area(const Plc& plc, Index patch) {
@@ -101,7 +101,7 @@ TEST(PlcFacets, TornSurfaceIsWelded) {
 }
 
 TEST(PlcFacets, WeldDistanceIsRelativeAndReported) {
-  PolygonSoup soup = testing::torn_apart(testing::box({0, 0, 0}, {100, 100, 100}));
+  PolygonSoup soup = testing::torn_apart(testing::polygonal_box({0, 0, 0}, {100, 100, 100}));
   soup.points[0].x += 1e-3;
   PlcOptions options;
   EXPECT_THROW(build_plc({&soup, 1}, options), PlcError);
@@ -126,7 +126,7 @@ TEST(PlcFacets, CollapsedAndRepeatedTrianglesAreDropped) {
 TEST(PlcFacets, CollinearTrianglesAreReplacedByCuts) {
   // A cube whose edges and diagonals have extra points, closed by triangles without area.
   PolygonSoup soup;
-  soup.points = testing::box({0, 0, 0}, {1, 1, 1}).points;
+  soup.points = testing::polygonal_box({0, 0, 0}, {1, 1, 1}).points;
   soup.points.insert(soup.points.end(),
                      {{0.5, 0, 1}, {0.25, 0, 1}, {0.75, 0, 1}});  // points 8, 9, 10 on the edge 4 5
   const auto facet = [&](std::array<Index, 3> corners) { soup.add_facet(corners); };
@@ -175,4 +175,4 @@ TEST(EdgeTable, ListsTheSidesOfEachEdge) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::plc_facets_test

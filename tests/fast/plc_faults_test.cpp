@@ -8,7 +8,7 @@
 #include "collarmesh/plc_builder.h"
 #include "support/plc_shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::plc_faults_test {
 namespace {
 
 using Kind = PlcFault::Kind;
@@ -30,7 +30,7 @@ void expect_fault(const std::vector<PolygonSoup>& soups, Kind kind, const std::s
 }
 
 TEST(PlcFaults, PointThatIsNotFinite) {
-  PolygonSoup soup = testing::box({0, 0, 0}, {1, 1, 1});
+  PolygonSoup soup = testing::polygonal_box({0, 0, 0}, {1, 1, 1});
   soup.name = "cube.off";
   soup.points[3].y = NAN;
   expect_fault({soup}, Kind::bad_point, "cube.off: point 3");
@@ -38,16 +38,16 @@ TEST(PlcFaults, PointThatIsNotFinite) {
 
 TEST(PlcFaults, CoordinatesOutOfRange) {
   for (const double scale : {1e31, 1e80, 1e150, 1e200, 1e-31, 1e-80, 1e-150})
-    expect_fault({testing::box({0, 0, 0}, {scale, scale, scale})}, Kind::bad_point, "scale it");
+    expect_fault({testing::polygonal_box({0, 0, 0}, {scale, scale, scale})}, Kind::bad_point, "scale it");
   for (const double scale : {1e29, 1e-29})
-    EXPECT_FALSE(error_of({testing::box({0, 0, 0}, {scale, scale, scale})}));
+    EXPECT_FALSE(error_of({testing::polygonal_box({0, 0, 0}, {scale, scale, scale})}));
 }
 
 TEST(PlcFaults, IndexOutOfRange) {
-  PolygonSoup soup = testing::box({0, 0, 0}, {1, 1, 1});
+  PolygonSoup soup = testing::polygonal_box({0, 0, 0}, {1, 1, 1});
   soup.add_facet(std::array<Index, 3>{0, 1, 8});
   expect_fault({soup}, Kind::bad_point, "facet 6 uses point 8");
-  soup = testing::box({0, 0, 0}, {1, 1, 1});
+  soup = testing::polygonal_box({0, 0, 0}, {1, 1, 1});
   soup.segments.push_back({0, 99, 0});
   expect_fault({soup}, Kind::bad_point, "segment 0 uses point 99");
 }
@@ -58,7 +58,7 @@ TEST(PlcFaults, NothingToMesh) {
 }
 
 TEST(PlcFaults, WarpedPolygon) {
-  PolygonSoup soup = testing::box({0, 0, 0}, {1, 1, 1});
+  PolygonSoup soup = testing::polygonal_box({0, 0, 0}, {1, 1, 1});
   soup.points[7].z = 1.01;
   const auto error = error_of({soup});
   ASSERT_TRUE(error);
@@ -68,7 +68,7 @@ TEST(PlcFaults, WarpedPolygon) {
 }
 
 TEST(PlcFaults, FacetWithoutArea) {
-  PolygonSoup soup = testing::box({0, 0, 0}, {1, 1, 1});
+  PolygonSoup soup = testing::polygonal_box({0, 0, 0}, {1, 1, 1});
   soup.points.insert(soup.points.end(), {{2, 0, 0}, {3, 0, 0}, {4, 0, 0}, {5, 0, 0}});
   soup.add_facet(std::array<Index, 4>{8, 9, 10, 11});
   expect_fault({soup}, Kind::degenerate_facet, "Facet 6");
@@ -84,21 +84,21 @@ TEST(PlcFaults, PolygonWithCrossingEdges) {
 TEST(PlcFaults, MoebiusStrip) { expect_fault({testing::moebius_strip(20)}, Kind::not_orientable, "Moebius"); }
 
 TEST(PlcFaults, OpenBox) {
-  const auto error = error_of({testing::without_facet(testing::box({0, 0, 0}, {1, 1, 1}), 1)});
+  const auto error = error_of({testing::without_facet(testing::polygonal_box({0, 0, 0}, {1, 1, 1}), 1)});
   ASSERT_TRUE(error);
   EXPECT_EQ(error->faults[0].kind, Kind::open_boundary);
   EXPECT_NE(error->faults[0].message.find("4 border edges"), std::string::npos) << error->what();
   EXPECT_DOUBLE_EQ(error->faults[0].where.z, 1);
   PlcOptions options;
   options.require_solid = false;
-  const PolygonSoup open = testing::without_facet(testing::box({0, 0, 0}, {1, 1, 1}), 1);
+  const PolygonSoup open = testing::without_facet(testing::polygonal_box({0, 0, 0}, {1, 1, 1}), 1);
   const Plc plc = build_plc({&open, 1}, options);
   EXPECT_EQ(plc.regions.size(), 1U);
   EXPECT_EQ(plc.patches.size(), 5U);
 }
 
 TEST(PlcFaults, CrossingFacets) {
-  const auto error = error_of({testing::box({0, 0, 0}, {1, 1, 1}), testing::box({0.5, 0.4, 0.3}, {2, 2, 2})});
+  const auto error = error_of({testing::polygonal_box({0, 0, 0}, {1, 1, 1}), testing::polygonal_box({0.5, 0.4, 0.3}, {2, 2, 2})});
   ASSERT_TRUE(error);
   EXPECT_EQ(error->faults[0].kind, Kind::intersection);
   for (const PlcFault& fault : error->faults) {
@@ -108,12 +108,12 @@ TEST(PlcFaults, CrossingFacets) {
 }
 
 TEST(PlcFaults, OverlappingFacets) {
-  expect_fault({testing::box({0, 0, 0}, {1, 1, 1}), testing::box({1, 0.25, 0.25}, {2, 0.75, 0.75})},
+  expect_fault({testing::polygonal_box({0, 0, 0}, {1, 1, 1}), testing::polygonal_box({1, 0.25, 0.25}, {2, 0.75, 0.75})},
                Kind::intersection);
 }
 
 TEST(PlcFaults, FoldedFacets) {
-  PolygonSoup soup = testing::box({0, 0, 0}, {1, 1, 1});
+  PolygonSoup soup = testing::polygonal_box({0, 0, 0}, {1, 1, 1});
   soup.points.insert(soup.points.end(), {{3, 0, 0}, {4, 0, 0}, {3.2, 1, 0}, {3.7, 1, 0}});
   soup.add_facet(std::array<Index, 3>{8, 9, 10});
   soup.add_facet(std::array<Index, 3>{9, 8, 11});
@@ -122,7 +122,7 @@ TEST(PlcFaults, FoldedFacets) {
 
 TEST(PlcFaults, CornerOnAnotherEdge) {
   // The upper side is cut into two facets, its neighbours are not.
-  PolygonSoup soup = testing::without_facet(testing::box({0, 0, 0}, {1, 1, 1}), 1);
+  PolygonSoup soup = testing::without_facet(testing::polygonal_box({0, 0, 0}, {1, 1, 1}), 1);
   soup.points.push_back({0.5, 0, 1});
   soup.add_facet(std::array<Index, 3>{4, 8, 6});
   soup.add_facet(std::array<Index, 4>{8, 5, 7, 6});
@@ -130,28 +130,28 @@ TEST(PlcFaults, CornerOnAnotherEdge) {
 }
 
 TEST(PlcFaults, LooseSegmentThroughAFacet) {
-  PolygonSoup soup = testing::box({0, 0, 0}, {1, 1, 1});
+  PolygonSoup soup = testing::polygonal_box({0, 0, 0}, {1, 1, 1});
   soup.points.insert(soup.points.end(), {{0.3, 0.4, -1}, {0.3, 0.4, 0.5}});
   soup.segments.push_back({8, 9, 0});
   expect_fault({soup}, Kind::intersection, "(0.3, 0.4, 0)");
 }
 
 TEST(PlcFaults, LooseSegmentsThatCross) {
-  PolygonSoup soup = testing::box({0, 0, 0}, {1, 1, 1});
+  PolygonSoup soup = testing::polygonal_box({0, 0, 0}, {1, 1, 1});
   soup.points.insert(soup.points.end(), {{0.2, 0.2, 0.5}, {0.8, 0.8, 0.5}, {0.2, 0.8, 0.5}, {0.8, 0.2, 0.5}});
   soup.segments = {{8, 9, 0}, {10, 11, 0}};
   expect_fault({soup}, Kind::intersection, "segment");
 }
 
 TEST(PlcFaults, LooseSegmentAlongAnEdge) {
-  PolygonSoup soup = testing::box({0, 0, 0}, {1, 1, 1});
+  PolygonSoup soup = testing::polygonal_box({0, 0, 0}, {1, 1, 1});
   soup.points.push_back({0.5, 0, 0});
   soup.segments.push_back({0, 8, 0});
   expect_fault({soup}, Kind::intersection);
 }
 
 TEST(PlcFaults, LoosePointOnAFacet) {
-  PolygonSoup soup = testing::box({0, 0, 0}, {1, 1, 1});
+  PolygonSoup soup = testing::polygonal_box({0, 0, 0}, {1, 1, 1});
   soup.points.push_back({0.25, 0.5, 1});
   soup.add_facet(std::array<Index, 1>{8});
   expect_fault({soup}, Kind::intersection, "(0.25, 0.5, 1)");
@@ -160,8 +160,8 @@ TEST(PlcFaults, LoosePointOnAFacet) {
 // Two boxes, one standing on a corner or an edge, with a gap below the weld distance (1e-9 of the diagonal).
 TEST(PlcFaults, FeaturesThatNearlyTouch) {
   constexpr double gap = 1e-10;
-  const PolygonSoup below = testing::box({0, 0, 0}, {1, 1, 1});
-  const PolygonSoup beside = testing::box({1 + gap, 0.3, 0.3}, {2, 0.7, 0.7});
+  const PolygonSoup below = testing::polygonal_box({0, 0, 0}, {1, 1, 1});
+  const PolygonSoup beside = testing::polygonal_box({1 + gap, 0.3, 0.3}, {2, 0.7, 0.7});
   expect_fault({below, beside}, Kind::intersection, "come within 1e-10");
   PolygonSoup on_a_corner;
   on_a_corner.points = {{0.5, 0.5, 1 + gap}, {0.7, 0.5, 1.5}, {0.4, 0.7, 1.5}, {0.4, 0.3, 1.5}};
@@ -177,12 +177,12 @@ TEST(PlcFaults, FeaturesThatNearlyTouch) {
 }
 
 TEST(PlcFaults, FeaturesThatAreNearButFartherThanTheWeldDistance) {
-  const PolygonSoup below = testing::box({0, 0, 0}, {1, 1, 1});
-  const std::vector<PolygonSoup> beside{below, testing::box({1 + 1e-7, 0.3, 0.3}, {2, 0.7, 0.7})};
+  const PolygonSoup below = testing::polygonal_box({0, 0, 0}, {1, 1, 1});
+  const std::vector<PolygonSoup> beside{below, testing::polygonal_box({1 + 1e-7, 0.3, 0.3}, {2, 0.7, 0.7})};
   EXPECT_FALSE(error_of(beside));
   PlcOptions options;
   options.weld = 1e-11;
-  EXPECT_FALSE(error_of({below, testing::box({1 + 1e-10, 0.3, 0.3}, {2, 0.7, 0.7})}, options));
+  EXPECT_FALSE(error_of({below, testing::polygonal_box({1 + 1e-10, 0.3, 0.3}, {2, 0.7, 0.7})}, options));
 }
 
 TEST(PlcFaults, ManyFaultsAreCountedAndTheFirstListed) {
@@ -200,7 +200,7 @@ TEST(PlcFaults, ManyFaultsAreCountedAndTheFirstListed) {
 }
 
 TEST(PlcFaults, OptionsOutOfRange) {
-  const PolygonSoup soup = testing::box({0, 0, 0}, {1, 1, 1});
+  const PolygonSoup soup = testing::polygonal_box({0, 0, 0}, {1, 1, 1});
   PlcOptions options;
   options.feature_angle = -1;
   EXPECT_THROW(build_plc({&soup, 1}, options), OptionError);
@@ -213,4 +213,4 @@ TEST(PlcFaults, OptionsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::plc_faults_test

@@ -9,7 +9,7 @@
 #include "collarmesh/plc_builder.h"
 #include "support/plc_shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::plc_features_test {
 namespace {
 
 using testing::findings;
@@ -21,7 +21,7 @@ Plc build(const PolygonSoup& soup, const PlcOptions& options = {}) {
 }
 
 TEST(PlcFeatures, BoxOfQuadrangles) {
-  const Plc plc = build(testing::box({0, 0, 0}, {1, 2, 3}));
+  const Plc plc = build(testing::polygonal_box({0, 0, 0}, {1, 2, 3}));
   EXPECT_EQ(plc.vertices.size(), 8U);
   EXPECT_EQ(plc.curves.size(), 12U);
   EXPECT_EQ(plc.patches.size(), 6U);
@@ -98,7 +98,7 @@ TEST(PlcFeatures, NeedlesAlongAnEdgeMakeNoSegments) {
 }
 
 TEST(PlcFeatures, CylinderOfSmoothSides) {
-  const Plc plc = build(testing::cylinder(40, 1, 2));
+  const Plc plc = build(testing::polygonal_cylinder(40, 1, 2));
   EXPECT_EQ(plc.patches.size(), 3U);
   EXPECT_EQ(plc.vertices.size(), 0U);
   ASSERT_EQ(plc.curves.size(), 2U);
@@ -111,7 +111,7 @@ TEST(PlcFeatures, CylinderOfSmoothSides) {
 }
 
 TEST(PlcFeatures, CylinderWithFeatureAngleZeroIsAPrism) {
-  const Plc plc = build(testing::cylinder(40, 1, 2), {.feature_angle = 0});
+  const Plc plc = build(testing::polygonal_cylinder(40, 1, 2), {.feature_angle = 0});
   EXPECT_EQ(plc.patches.size(), 42U);
   EXPECT_EQ(plc.curves.size(), 120U);
   EXPECT_EQ(plc.vertices.size(), 80U);
@@ -121,7 +121,7 @@ TEST(PlcFeatures, FeatureAngleZeroCutsAFineCircleWhereItLeavesItsChord) {
   PlcOptions options;
   options.feature_angle = 0;
   options.planar_tolerance = 1e-3;
-  const Plc plc = build(testing::cylinder(400, 1, 2), options);
+  const Plc plc = build(testing::polygonal_cylinder(400, 1, 2), options);
   EXPECT_GT(plc.vertices.size(), 20U);
   EXPECT_LT(plc.vertices.size(), 400U);
   for (const auto& curve : plc.curves) {
@@ -170,7 +170,7 @@ TEST(PlcFeatures, NamedSegmentsArePartsOfCurves) {
 }
 
 TEST(PlcFeatures, LooseSegmentsAndPointsInsideARegion) {
-  PolygonSoup soup = testing::box({0, 0, 0}, {1, 1, 1});
+  PolygonSoup soup = testing::polygonal_box({0, 0, 0}, {1, 1, 1});
   soup.points.insert(soup.points.end(), {{0.5, 0.5, 0.2}, {0.5, 0.5, 0.8}, {0.2, 0.2, 0.2}});
   soup.point_tags.assign(soup.points.size(), 0);
   soup.point_tags[10] = 4;
@@ -196,7 +196,7 @@ TEST(PlcFeatures, TouchingPointIsAVertex) {
 }
 
 TEST(PlcFeatures, UnusedPointsOfASurfaceAreDropped) {
-  PolygonSoup soup = testing::box({0, 0, 0}, {1, 1, 1});
+  PolygonSoup soup = testing::polygonal_box({0, 0, 0}, {1, 1, 1});
   soup.points.push_back({100, 0, 0});
   EXPECT_EQ(build(soup).vertices.size(), 8U);
   EXPECT_LT(build(soup).bounds.diagonal(), 2);
@@ -252,4 +252,4 @@ TEST(PlcFeatures, FoldsAreCurvesWhereFeaturesAreGiven) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::plc_features_test

@@ -15,7 +15,7 @@
 #include "facets/orientation.h"
 #include "support/shapes.h"
 
-namespace collarmesh::plc {
+namespace collarmesh::plc::plc_parts_test {
 
 using namespace facets;
 
@@ -195,4 +195,4 @@ TEST(PatchPoints, HasTheCornersOfEachPatchOnce) {
 }
 
 }  // namespace
-}  // namespace collarmesh::plc
+}  // namespace collarmesh::plc::plc_parts_test

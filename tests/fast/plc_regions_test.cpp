@@ -9,10 +9,10 @@
 #include "collarmesh/plc_builder.h"
 #include "support/plc_shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::plc_regions_test {
 namespace {
 
-using testing::box;
+using testing::polygonal_box;
 using testing::findings;
 using testing::joined;
 using testing::reversed;
@@ -36,7 +36,7 @@ void expect_volumes(const Plc& plc, const std::vector<double>& expected) {
 }
 
 TEST(PlcRegions, TwoBoxesInTwoSoupsShareTheirFace) {
-  const Plc plc = build({box({0, 0, 0}, {1, 1, 1}), box({1, 0, 0}, {3, 1, 1})});
+  const Plc plc = build({polygonal_box({0, 0, 0}, {1, 1, 1}), polygonal_box({1, 0, 0}, {3, 1, 1})});
   expect_volumes(plc, {1, 2});
   EXPECT_EQ(plc.patches.size(), 11U);
   EXPECT_EQ(std::count_if(plc.patches.begin(), plc.patches.end(),
@@ -47,16 +47,16 @@ TEST(PlcRegions, TwoBoxesInTwoSoupsShareTheirFace) {
 }
 
 TEST(PlcRegions, InterfaceWithDifferentTriangles) {
-  const Plc plc = build({testing::subdivided_box({0, 0, 0}, {1, 1, 1}, 1), box({1, 0, 0}, {3, 1, 1}),
+  const Plc plc = build({testing::subdivided_box({0, 0, 0}, {1, 1, 1}, 1), polygonal_box({1, 0, 0}, {3, 1, 1}),
                          testing::shuffled(testing::subdivided_box({0, 0, 1}, {1, 1, 4}, 1), 5, false)});
   expect_volumes(plc, {1, 2, 3});
   EXPECT_EQ(plc.patches.size(), 16U);
 }
 
 TEST(PlcRegions, InterfaceOfOtherDiagonal) {
-  PolygonSoup first = box({0, 0, 0}, {1, 1, 1});
+  PolygonSoup first = polygonal_box({0, 0, 0}, {1, 1, 1});
   PolygonSoup second;
-  second.points = box({1, 0, 0}, {2, 1, 1}).points;
+  second.points = polygonal_box({1, 0, 0}, {2, 1, 1}).points;
   for (const auto& t : {std::array<Index, 3>{0, 2, 3},
                         {0, 3, 1},
                         {4, 5, 7},
@@ -93,23 +93,23 @@ TEST(PlcRegions, InterfaceOfOtherDiagonal) {
 }
 
 TEST(PlcRegions, NestedInwardShellIsACavity) {
-  expect_volumes(build({joined({box({0, 0, 0}, {3, 3, 3}), reversed(box({1, 1, 1}, {2, 2, 2}))})}), {26});
+  expect_volumes(build({joined({polygonal_box({0, 0, 0}, {3, 3, 3}), reversed(polygonal_box({1, 1, 1}, {2, 2, 2}))})}), {26});
 }
 
 TEST(PlcRegions, NestedOutwardShellIsARegion) {
-  expect_volumes(build({joined({box({0, 0, 0}, {3, 3, 3}), box({1, 1, 1}, {2, 2, 2})})}), {26, 1});
-  expect_volumes(build({box({1, 1, 1}, {2, 2, 2}), box({0, 0, 0}, {3, 3, 3})}), {1, 26});
+  expect_volumes(build({joined({polygonal_box({0, 0, 0}, {3, 3, 3}), polygonal_box({1, 1, 1}, {2, 2, 2})})}), {26, 1});
+  expect_volumes(build({polygonal_box({1, 1, 1}, {2, 2, 2}), polygonal_box({0, 0, 0}, {3, 3, 3})}), {1, 26});
 }
 
 TEST(PlcRegions, SolidInACavity) {
   const Plc plc = build(
-      {joined({box({0, 0, 0}, {5, 5, 5}), reversed(box({1, 1, 1}, {4, 4, 4})), box({2, 2, 2}, {3, 3, 3})})});
+      {joined({polygonal_box({0, 0, 0}, {5, 5, 5}), reversed(polygonal_box({1, 1, 1}, {4, 4, 4})), polygonal_box({2, 2, 2}, {3, 3, 3})})});
   expect_volumes(plc, {125 - 27, 1});
 }
 
 TEST(PlcRegions, InsertFillsACavityExactly) {
-  const PolygonSoup block = joined({box({0, 0, 0}, {3, 3, 3}), reversed(box({1, 1, 1}, {2, 2, 2}))});
-  expect_volumes(build({block, box({1, 1, 1}, {2, 2, 2})}), {26, 1});
+  const PolygonSoup block = joined({polygonal_box({0, 0, 0}, {3, 3, 3}), reversed(polygonal_box({1, 1, 1}, {2, 2, 2}))});
+  expect_volumes(build({block, polygonal_box({1, 1, 1}, {2, 2, 2})}), {26, 1});
 }
 
 TEST(PlcRegions, CavityThatTouchesTheWallInAnEdge) {
@@ -140,24 +140,24 @@ TEST(PlcRegions, CavityThatTouchesTheWallInAnEdge) {
 }
 
 TEST(PlcRegions, InwardShellAloneIsASolid) {
-  const Plc plc = build({reversed(box({0, 0, 0}, {1, 1, 1}))});
+  const Plc plc = build({reversed(polygonal_box({0, 0, 0}, {1, 1, 1}))});
   expect_volumes(plc, {1});
   for (const auto& patch : plc.patches) EXPECT_EQ(patch.regions, (std::array<Index, 2>{1, 0}));
 }
 
 TEST(PlcRegions, MixedUpOrientationGoesByNesting) {
-  const PolygonSoup soup = joined({testing::shuffled(box({0, 0, 0}, {5, 5, 5}), 1, true),
-                                   testing::shuffled(box({1, 1, 1}, {4, 4, 4}), 2, true),
-                                   testing::shuffled(box({2, 2, 2}, {3, 3, 3}), 4, true)});
+  const PolygonSoup soup = joined({testing::shuffled(polygonal_box({0, 0, 0}, {5, 5, 5}), 1, true),
+                                   testing::shuffled(polygonal_box({1, 1, 1}, {4, 4, 4}), 2, true),
+                                   testing::shuffled(polygonal_box({2, 2, 2}, {3, 3, 3}), 4, true)});
   expect_volumes(build({soup}), {125 - 27, 1});
 }
 
 TEST(PlcRegions, BoxesThatTouchInAnEdge) {
-  expect_volumes(build({joined({box({0, 0, 0}, {1, 1, 1}), box({1, 1, 0}, {2, 2, 1})})}), {1, 1});
+  expect_volumes(build({joined({polygonal_box({0, 0, 0}, {1, 1, 1}), polygonal_box({1, 1, 0}, {2, 2, 1})})}), {1, 1});
 }
 
 TEST(PlcRegions, InternalFacetSeparatesTwoRegions) {
-  PolygonSoup soup = box({0, 0, 0}, {1, 1, 1});
+  PolygonSoup soup = polygonal_box({0, 0, 0}, {1, 1, 1});
   soup.add_facet(std::array<Index, 4>{0, 1, 7, 6}, 5);
   const Plc plc = build({soup});
   expect_volumes(plc, {0.5, 0.5});
@@ -182,14 +182,14 @@ TEST(PlcRegions, OpenSheetBesideASolid) {
   PolygonSoup sheet;
   sheet.points = {{3, 0, 0}, {4, 0, 0}, {4, 1, 0}};
   sheet.add_facet(std::array<Index, 3>{0, 1, 2});
-  const Plc plc = build({box({0, 0, 0}, {1, 1, 1}), sheet});
+  const Plc plc = build({polygonal_box({0, 0, 0}, {1, 1, 1}), sheet});
   expect_volumes(plc, {1});
   EXPECT_EQ(plc.patches.back().regions, (std::array<Index, 2>{0, 0}));
 }
 
 TEST(PlcRegions, HoleAndRegionPointsDecideForAComplex) {
   PolygonSoup soup =
-      joined({box({0, 0, 0}, {5, 5, 5}), box({1, 1, 1}, {2, 2, 2}), box({3, 3, 3}, {4, 4, 4})});
+      joined({polygonal_box({0, 0, 0}, {5, 5, 5}), polygonal_box({1, 1, 1}, {2, 2, 2}), polygonal_box({3, 3, 3}, {4, 4, 4})});
   soup.name = "parts.poly";
   expect_volumes(build({soup}), {123, 1, 1});
   soup.hole_points = {{1.5, 1.5, 1.5}};
@@ -202,7 +202,7 @@ TEST(PlcRegions, HoleAndRegionPointsDecideForAComplex) {
 }
 
 TEST(PlcRegions, PointOnAFacetIsAFault) {
-  PolygonSoup soup = box({0, 0, 0}, {1, 1, 1});
+  PolygonSoup soup = polygonal_box({0, 0, 0}, {1, 1, 1});
   soup.hole_points = {{0.5, 0.5, 0}};
   EXPECT_THROW(build_plc({&soup, 1}), PlcError);
 }
@@ -224,7 +224,7 @@ TEST(PlcRegions, ManyNestedShells) {
 }
 
 TEST(PlcRegions, NamesComeFromTheirSoups) {
-  PolygonSoup first = box({0, 0, 0}, {1, 1, 1}), second = box({2, 0, 0}, {3, 1, 1});
+  PolygonSoup first = polygonal_box({0, 0, 0}, {1, 1, 1}), second = polygonal_box({2, 0, 0}, {3, 1, 1});
   first.name = "first.off";
   second.name = "second.off";
   const Plc plc = build({first, second});
@@ -235,7 +235,7 @@ TEST(PlcRegions, NamesComeFromTheirSoups) {
 
 // A box as a complex, whose facets do not tell the inside.
 PolygonSoup named_box(const Point& low, const Point& high, const std::string& name) {
-  PolygonSoup soup = box(low, high);
+  PolygonSoup soup = polygonal_box(low, high);
   soup.name = name;
   soup.region_points.push_back({0.5 * (low + high), static_cast<Tag>(name.size()), 0});
   return soup;
@@ -333,4 +333,4 @@ TEST(PlcRegions, PointsThatContradictEachOtherAreTold) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::plc_regions_test

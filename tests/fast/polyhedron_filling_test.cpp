@@ -7,7 +7,7 @@
 
 #include "collarmesh/geometry.h"
 
-namespace collarmesh::improvement {
+namespace collarmesh::improvement::polyhedron_filling_test {
 namespace {
 
 using Triangle = std::array<Index, 3>;
@@ -110,4 +110,4 @@ TEST(PolyhedronFilling, EndsAfterItsSteps) {
 }
 
 }  // namespace
-}  // namespace collarmesh::improvement
+}  // namespace collarmesh::improvement::polyhedron_filling_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace collarmesh {
+namespace collarmesh::random_offsets_test {
 namespace {
 
 TEST(RefineRandomOffsets, AreShortOrthogonalAndTheSameForASeed) {
@@ -24,4 +24,4 @@ TEST(RefineRandomOffsets, AreShortOrthogonalAndTheSameForASeed) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::random_offsets_test

@@ -5,7 +5,7 @@
 
 #include <random>
 
-namespace collarmesh {
+namespace collarmesh::refined_mesh_test {
 namespace {
 
 Box unit_box() {
@@ -97,4 +97,4 @@ TEST(RefinedMesh, FeaturesBecomeLowerOnly) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::refined_mesh_test

@@ -11,13 +11,13 @@
 #include "support/plc_shapes.h"
 #include "support/refinement_parts.h"
 
-namespace collarmesh {
+namespace collarmesh::refinement_judges_test {
 namespace {
 
 using testing::KnownMesh;
 
-Plc box() {
-  const PolygonSoup soup = testing::box({0, 0, 0}, {1, 1, 1});
+Plc unit_box() {
+  const PolygonSoup soup = testing::polygonal_box({0, 0, 0}, {1, 1, 1});
   return build_plc({&soup, 1});
 }
 
@@ -70,7 +70,7 @@ double radius_edge(const RefinedMesh& mesh, Index cell) {
 }
 
 TEST(RefineCellQuality, QueuesSkinnyCellsAndLargeOnesInside) {
-  const Plc plc = box();
+  const Plc plc = unit_box();
   Judges judges(plc, with_size(0.3));
   judges.insert_random(150);
   const auto due = judges.due();
@@ -98,7 +98,7 @@ TEST(RefineCellQuality, QueuesSkinnyCellsAndLargeOnesInside) {
 }
 
 TEST(RefineCellQuality, WithAVertexRatioOlderCellsAreQueuedWhenAnEdgeBecomesShort) {
-  const Plc plc = box();
+  const Plc plc = unit_box();
   MeshOptions options = with_size(10);
   options.vertex_ratio = 3;
   options.bounds.radius_edge = options.exterior_radius_edge = 100;
@@ -119,7 +119,7 @@ TEST(RefineCellQuality, WithAVertexRatioOlderCellsAreQueuedWhenAnEdgeBecomesShor
 }
 
 TEST(RefineCellQuality, ACandidateDestroysItsCell) {
-  const Plc plc = box();
+  const Plc plc = unit_box();
   Judges judges(plc, with_size(0.3));
   judges.insert_random(60);
   const auto due = judges.due();
@@ -133,7 +133,7 @@ TEST(RefineCellQuality, ACandidateDestroysItsCell) {
 }
 
 TEST(RefineTriangleQuality, UnresolvedTrianglesAreQueuedUntilTheyAreGivenUp) {
-  const Plc plc = box();
+  const Plc plc = unit_box();
   Judges judges(plc, with_size(0.3));
   judges.insert_random(60);  // none of these points is known to lie on a patch
   const auto due = judges.due();
@@ -153,7 +153,7 @@ TEST(RefineTriangleQuality, UnresolvedTrianglesAreQueuedUntilTheyAreGivenUp) {
 }
 
 TEST(RefineTriangleQuality, OnlyCellsYieldToTriangles) {
-  const Plc plc = box();
+  const Plc plc = unit_box();
   Judges judges(plc, with_size(0.3));
   judges.insert_random(60);
   const FaceId face = judges.surface.marked_faces()[5];
@@ -169,7 +169,7 @@ TEST(RefineTriangleQuality, OnlyCellsYieldToTriangles) {
 }
 
 TEST(RefineTriangleQuality, InBlocksIsAskedWhereNothingIsFacedAndACellIsBeside) {
-  const Plc plc = box();
+  const Plc plc = unit_box();
   Judges judges(plc, with_size(0.3));
   judges.insert_random(40);
   std::mt19937_64 random(5);
@@ -201,7 +201,7 @@ TEST(RefineTriangleQuality, InBlocksIsAskedWhereNothingIsFacedAndACellIsBeside) 
 }
 
 TEST(RefineTriangleQuality, InBlocksQueuesWhatTheLoopWould) {
-  const Plc plc = box();
+  const Plc plc = unit_box();
   const auto insert = [](Judges& judges) {  // does not judge the new cells yet
     judges.insert_random(60);
     const FaceId face = judges.surface.marked_faces()[5];
@@ -229,7 +229,7 @@ TEST(RefineTriangleQuality, InBlocksQueuesWhatTheLoopWould) {
 }
 
 TEST(RefineFacingSheets, CellsBetweenPairsAreSparedByTheRestOfTheirEdges) {
-  const Plc plc = box();
+  const Plc plc = unit_box();
   Judges judges(plc, with_size(10));
   const Index a = judges.mesh.vertex_count();
   judges.insert_and_tell({0.5, 0.5, 0.5});
@@ -248,7 +248,7 @@ TEST(RefineFacingSheets, CellsBetweenPairsAreSparedByTheRestOfTheirEdges) {
 }
 
 TEST(RefineGradedSizes, SpreadUntilNoneGrowsFasterThanTheGradation) {
-  const Plc plc = box();
+  const Plc plc = unit_box();
   MeshOptions options = with_size(1);
   options.gradation = 0.3;
   Judges judges(plc, options);
@@ -267,7 +267,7 @@ TEST(RefineGradedSizes, SpreadUntilNoneGrowsFasterThanTheGradation) {
 }
 
 TEST(RefineGradedSizes, WithoutGradationNothingIsImposed) {
-  const Plc plc = box();
+  const Plc plc = unit_box();
   Judges judges(plc, with_size(1));
   judges.insert_random(10);
   judges.sizes.impose(std::vector<Index>{8}, 0.01, 0);
@@ -313,7 +313,7 @@ TEST(RefineCollarCells, CellsAreInsideWhenABallHoldsTheirCircumcentre) {
 }
 
 TEST(RefineCollarCells, ACellIsTakenInAsLongAsItLives) {
-  const Plc plc = box();
+  const Plc plc = unit_box();
   KnownMesh known(plc);
   known.insert({0.5, 0.5, 0.5});
   known.find_zone({0.4, 0.45, 0.5});
@@ -327,4 +327,4 @@ TEST(RefineCollarCells, ACellIsTakenInAsLongAsItLives) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::refinement_judges_test

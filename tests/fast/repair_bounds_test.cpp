@@ -12,7 +12,7 @@
 #include "support/repair_shapes.h"
 #include "support/shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::repair_bounds_test {
 namespace {
 
 using namespace testing::faulty;
@@ -163,4 +163,4 @@ TEST(RepairBounds, WrapsAtOnce) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::repair_bounds_test

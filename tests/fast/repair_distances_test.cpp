@@ -11,7 +11,7 @@
 #include "support/repair_shapes.h"
 #include "support/shapes.h"
 
-namespace collarmesh::repairing {
+namespace collarmesh::repairing::repair_distances_test {
 namespace {
 
 using namespace testing::faulty;
@@ -201,4 +201,4 @@ TEST(LostRegions, BoxesThatAreOneNowAreTold) {
 }
 
 }  // namespace
-}  // namespace collarmesh::repairing
+}  // namespace collarmesh::repairing::repair_distances_test

@@ -25,7 +25,7 @@
 #include "support/repair_shapes.h"
 #include "support/shapes.h"
 
-namespace collarmesh::repairing {
+namespace collarmesh::repairing::repair_parts_test {
 namespace {
 
 using namespace facets;
@@ -845,4 +845,4 @@ TEST(KeepBoundaries, WallInsideStaysAndOutsideGoes) {
 }
 
 }  // namespace
-}  // namespace collarmesh::repairing
+}  // namespace collarmesh::repairing::repair_parts_test

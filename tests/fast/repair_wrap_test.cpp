@@ -9,7 +9,7 @@
 #include "repair/wrap.h"
 #include "support/shapes.h"
 
-namespace collarmesh::testing {
+namespace collarmesh::testing::repair_wrap_test {
 namespace {
 
 using repairing::build_wrapped_plc;
@@ -91,4 +91,4 @@ TEST(Wrap, OnRequestAndWhereRepairFails) {
 }
 
 }  // namespace
-}  // namespace collarmesh::testing
+}  // namespace collarmesh::testing::repair_wrap_test

@@ -14,7 +14,7 @@
 #include "support/plc_shapes.h"
 #include "support/refinement_parts.h"
 
-namespace collarmesh {
+namespace collarmesh::restricted_surface_test {
 namespace {
 
 using testing::KnownMesh;
@@ -25,8 +25,8 @@ bool holds(const Point& min, const Point& max, const Point& p) {
 
 /// Two boxes of different sizes that share a part of a facet: regions 1 and 2.
 Plc two_boxes() {
-  const std::vector<PolygonSoup> soups{testing::box({0, 0, 0}, {1, 1, 1}),
-                                       testing::box({1, 0, 0}, {2, 1, 1})};
+  const std::vector<PolygonSoup> soups{testing::polygonal_box({0, 0, 0}, {1, 1, 1}),
+                                       testing::polygonal_box({1, 0, 0}, {2, 1, 1})};
   return build_plc(soups);
 }
 
@@ -285,4 +285,4 @@ TEST(RestrictedSurface, GivingACellOutsideTurnsTheMarksOfItsFaces) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::restricted_surface_test

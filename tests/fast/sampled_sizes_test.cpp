@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-namespace collarmesh {
+namespace collarmesh::sampled_sizes_test {
 namespace {
 
 constexpr Box box{.min = {-1, 0, 2}, .max = {3, 2, 2.5}};
@@ -100,4 +100,4 @@ TEST(SampledSizes, InfiniteSizesAndExceptions) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::sampled_sizes_test

@@ -13,7 +13,7 @@
 #include "collarmesh/tet_mesh.h"
 #include "support/shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::shape_measures_test {
 namespace {
 
 constexpr std::array<std::array<std::size_t, 2>, 6> ends{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
@@ -125,4 +125,4 @@ TEST(ShapeMeasures, ACurvedEdgeIsAsLongAsItsParabola) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::shape_measures_test

@@ -10,7 +10,7 @@
 
 #include "coarsen/coarsening_rule.h"
 
-namespace collarmesh {
+namespace collarmesh::shape_rules_test {
 namespace {
 
 using improvement::Corners;
@@ -82,4 +82,4 @@ TEST(ShapeRules, WhatSurelyExceedsAQualityExceedsIt) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::shape_rules_test

@@ -11,7 +11,7 @@
 
 #include "support/meshes.h"
 
-namespace collarmesh {
+namespace collarmesh::simplices_at_vertex_test {
 namespace {
 
 /// A use of a triangle of points: by a tet, opposite one of its corners, or by a listed face (corner 4).
@@ -209,4 +209,4 @@ TEST(MedianEdge, OfAMeshThatNobodyHasChecked) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::simplices_at_vertex_test

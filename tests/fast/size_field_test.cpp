@@ -16,7 +16,7 @@
 #include "support/shapes.h"
 #include "support/temporary_file.h"
 
-namespace collarmesh {
+namespace collarmesh::size_field_test {
 namespace {
 
 Plc cylinder() {
@@ -201,4 +201,4 @@ TEST(PointField, OfGmsh) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::size_field_test

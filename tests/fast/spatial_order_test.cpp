@@ -19,7 +19,7 @@
 #include "common/parallel_spatial_order.h"
 #include "location/triangle_hierarchy.h"
 
-namespace collarmesh {
+namespace collarmesh::spatial_order_test {
 namespace {
 
 using Pairs = std::set<std::pair<Index, Index>>;
@@ -262,4 +262,4 @@ TEST(OrderByGroup, IsStable) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::spatial_order_test

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <random>
 
-namespace collarmesh {
+namespace collarmesh::triangle_hierarchy_test {
 namespace {
 
 using Triangles = std::vector<std::array<Index, 3>>;
@@ -392,4 +392,4 @@ TEST(TriangleHierarchy, FindsATriangleWithinADistanceWithAndWithoutAHint) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::triangle_hierarchy_test

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-namespace collarmesh {
+namespace collarmesh::unresolved_points_test {
 namespace {
 
 class UnresolvedPointsTest : public ::testing::Test {
@@ -149,4 +149,4 @@ TEST_F(UnresolvedPointsTest, OfSeveralVerticesOfTheComplexInACellNoneIsTheOnlyOn
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::unresolved_points_test

@@ -12,7 +12,7 @@
 #include "support/meshing.h"
 #include "support/shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::untangling_test {
 namespace {
 
 using namespace collarmesh::testing;
@@ -164,4 +164,4 @@ TEST(Untangling, NodesFollowAnEdgeThatBulges) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::untangling_test

@@ -5,7 +5,7 @@
 
 #include "support/shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::vertex_bound_test {
 namespace {
 
 using testing::box;
@@ -73,4 +73,4 @@ TEST(VertexBound, TheSmallestSizeIsThatOfAnyFeature) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::vertex_bound_test

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-namespace collarmesh {
+namespace collarmesh::work_queue_test {
 namespace {
 
 TEST(WorkQueue, TakesTheFirstPriorityAndThenTheLargestBall) {
@@ -55,4 +55,4 @@ TEST(WorkQueue, OrderFollowsTheSizeWithinAFactorOfTwo) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::work_queue_test

@@ -47,7 +47,7 @@ def plate_with_hole():
     analysis.pull((20, 7, 1.5), force, (1, 0, 0))
     analysis.press((radius * math.sqrt(0.5), radius * math.sqrt(0.5), 1.5), pressure)
     in_hole = pressure * radius * thickness
-    return Case(analysis, (-force - in_hole, -in_hole, 0), 0.8, 0.15, (3, 4, 1.5))
+    return Case(analysis, (-force - in_hole, -in_hole, 0), 1.1, 0.2, (3, 4, 1.5))
 
 
 def filleted_bracket():
@@ -63,7 +63,7 @@ def filleted_bracket():
     centre, off = 8 + radius, radius * math.sqrt(0.5)
     analysis.press((centre - off, centre - off, thickness / 2), pressure)
     on_fillet = pressure * radius * thickness
-    return Case(analysis, (-force + on_fillet, on_fillet, 0), 0.8, 0.2, (centre - off, centre - off, thickness / 2))
+    return Case(analysis, (-force + on_fillet, on_fillet, 0), 1.1, 0.27, (centre - off, centre - off, thickness / 2))
 
 
 def acute_wedge():
@@ -79,7 +79,7 @@ def acute_wedge():
     analysis.hold("z", (18, 2, 0))
     analysis.pull((18, 2, width), force, (0, 0, 1))
     analysis.press((hole.x + radius, hole.y, 3), pressure)
-    return Case(analysis, (0, 0, -force), 0.8, 0.2, (hole.x + radius, hole.y, 3))
+    return Case(analysis, (0, 0, -force), 1.1, 0.27, (hole.x + radius, hole.y, 3))
 
 
 def two_solids():
@@ -93,7 +93,7 @@ def two_solids():
     analysis.hold("y", (12, 0, 1), (3, 0, 1))
     analysis.hold("z", (12, 8, 0), (2, 2, 0), (12, 8, thickness), (2, 2, thickness))
     analysis.pull((20, 7, 1), force, (1, 0, 0))
-    return Case(analysis, (-force, 0, None), 0.8, 0.24, (3, 4, 1))
+    return Case(analysis, (-force, 0, None), 1.1, 0.3, (3, 4, 1))
 
 
 class Pipeline(unittest.TestCase):

@@ -15,7 +15,7 @@
 #include "collarmesh/openmesh_io/read_om.h"
 #include "support/temporary_file.h"
 
-namespace collarmesh {
+namespace collarmesh::read_om_test {
 namespace {
 
 using openmesh_io::read_om;
@@ -183,4 +183,4 @@ TEST(ReadOm, SurvivesDamage) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::read_om_test

@@ -15,7 +15,7 @@
 #include "collarmesh/mesher.h"
 #include "collarmesh/openmesh_io.h"
 
-namespace collarmesh {
+namespace collarmesh::surfaces_test {
 namespace {
 
 namespace om = openmesh_io;
@@ -350,4 +350,4 @@ TEST(BoundarySurface, CutsWhereOpenMeshCannotFollow) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::surfaces_test

@@ -5,7 +5,7 @@
 #include "support/meshing.h"
 #include "support/shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::block_refinement_test {
 namespace {
 
 using testing::faults;
@@ -98,4 +98,4 @@ TEST(BlockRefinementSize, OfSmallMeshesIsTheLoopsBusiness) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::block_refinement_test

@@ -9,7 +9,7 @@
 #include "support/meshing.h"
 #include "support/shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::box_domain_test {
 namespace {
 
 const PlcOptions in_box{.domain = DomainShape::box};
@@ -117,4 +117,4 @@ TEST(BoxDomain, IsThereOnRequestOnly) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::box_domain_test

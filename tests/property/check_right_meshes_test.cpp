@@ -11,7 +11,7 @@
 #include "support/meshes.h"
 #include "support/meshing.h"
 
-namespace collarmesh {
+namespace collarmesh::check_right_meshes_test {
 namespace {
 
 using namespace collarmesh::testing;
@@ -201,4 +201,4 @@ TEST(CheckRightMeshes, MeasuresOfTheBall) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::check_right_meshes_test

@@ -17,7 +17,7 @@
 #include "support/shapes.h"
 #include "support/tet_mesh_comparison.h"
 
-namespace collarmesh {
+namespace collarmesh::coarsen_test {
 namespace {
 
 using namespace collarmesh::testing;
@@ -239,4 +239,4 @@ TEST(Coarsen, RefusesAnglesOutOfRange) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::coarsen_test

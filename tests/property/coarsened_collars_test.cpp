@@ -15,7 +15,7 @@
 #include "support/acute_shapes.h"
 #include "support/shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::coarsened_collars_test {
 namespace {
 
 using namespace collarmesh::testing;
@@ -175,4 +175,4 @@ TEST(CoarsenedCollars, ThinTetsInOtherPlacesAreFound) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::coarsened_collars_test

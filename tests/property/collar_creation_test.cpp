@@ -12,7 +12,7 @@
 #include "support/brute_force_gap.h"
 #include "support/meshing.h"
 
-namespace collarmesh {
+namespace collarmesh::collar_creation_test {
 namespace {
 
 namespace acute = testing::acute;
@@ -136,4 +136,4 @@ TEST(CollarCreation, ComesNeitherTooEarlyNorTooLate) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::collar_creation_test

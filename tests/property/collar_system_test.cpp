@@ -15,7 +15,7 @@
 #include "support/acute_shapes.h"
 #include "support/brute_force_gap.h"
 
-namespace collarmesh {
+namespace collarmesh::collar_system_test {
 namespace {
 
 namespace acute = testing::acute;
@@ -376,4 +376,4 @@ TEST(CollarSystem, CentresBallsOnVerticesOfTheirCurve) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::collar_system_test

@@ -12,7 +12,7 @@
 #include "support/acute_shapes.h"
 #include "support/meshing.h"
 
-namespace collarmesh {
+namespace collarmesh::collar_test {
 namespace {
 
 namespace acute = testing::acute;
@@ -421,4 +421,4 @@ TEST(Collar, MovedAndScaled) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::collar_test

@@ -19,7 +19,7 @@
 #include "support/acute_shapes.h"
 #include "support/shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::constrained_test {
 namespace {
 
 using namespace testing;
@@ -232,4 +232,4 @@ TEST(ConstrainedStart, DoesNotDependOnThreads) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::constrained_test

@@ -16,7 +16,7 @@
 #include "support/shapes.h"
 #include "support/tet_mesh_comparison.h"
 
-namespace collarmesh {
+namespace collarmesh::detours_test {
 namespace {
 
 using improvement::Detours;
@@ -238,4 +238,4 @@ TEST(Detours, ThreadsChangeNothing) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::detours_test

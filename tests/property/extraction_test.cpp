@@ -11,7 +11,7 @@
 #include "support/meshing.h"
 #include "support/shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::extraction_test {
 namespace {
 
 struct Shape {
@@ -131,4 +131,4 @@ TEST(Extraction, LaysInMemoryWhatIsNearTogether) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::extraction_test

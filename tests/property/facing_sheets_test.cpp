@@ -8,7 +8,7 @@
 #include "support/meshing.h"
 #include "support/shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::facing_sheets_test {
 namespace {
 
 using namespace collarmesh::testing;
@@ -63,4 +63,4 @@ TEST(FacingSheets, CurvedOnesDoNotMakeEachOtherFiner) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::facing_sheets_test

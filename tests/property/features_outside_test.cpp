@@ -9,7 +9,7 @@
 #include "support/plc_shapes.h"
 #include "support/shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::features_outside_test {
 namespace {
 
 using namespace collarmesh::testing;
@@ -186,4 +186,4 @@ TEST(FeaturesOutside, NumbersOfFeaturesAreThoseOfTheComplex) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::features_outside_test

@@ -12,7 +12,7 @@
 #include "support/second_order.h"
 #include "support/shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::finite_elements_test {
 namespace {
 
 using testing::PoissonErrors;
@@ -139,4 +139,4 @@ TEST(FiniteElements, CurvedElementsKeepTheOrderOnTheBall) {
 INSTANTIATE_TEST_SUITE_P(Order, Convergence, ::testing::Values(1, 2));
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::finite_elements_test

@@ -12,7 +12,7 @@
 #include "support/brute_force_gap.h"
 #include "support/meshing.h"
 
-namespace collarmesh {
+namespace collarmesh::gap_explorer_test {
 namespace {
 
 namespace acute = testing::acute;
@@ -106,4 +106,4 @@ TEST(GapExplorer, EqualsBruteForceOnRandomMembers) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::gap_explorer_test

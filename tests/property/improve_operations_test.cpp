@@ -14,7 +14,7 @@
 #include "support/meshing.h"
 #include "support/shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::improve_operations_test {
 namespace {
 
 using improvement::Change;
@@ -389,4 +389,4 @@ TEST_F(ImproveOperations, ManyKeepTheCertificate) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::improve_operations_test

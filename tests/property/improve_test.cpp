@@ -14,7 +14,7 @@
 #include "support/shapes.h"
 #include "support/tet_mesh_comparison.h"
 
-namespace collarmesh {
+namespace collarmesh::improve_test {
 namespace {
 
 using testing::mesh_of;
@@ -251,4 +251,4 @@ TEST(ImproveShape, SmallestSine) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::improve_test

@@ -11,7 +11,7 @@
 #include "support/acute_shapes.h"
 #include "support/shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::interior_nodes_test {
 namespace {
 
 using namespace testing;
@@ -116,4 +116,4 @@ TEST(InteriorNodes, NeedACoarsenedMesh) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::interior_nodes_test

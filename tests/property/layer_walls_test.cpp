@@ -11,7 +11,7 @@
 #include "layers/wall_choice.h"
 #include "support/plc_shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::layer_walls_test {
 namespace {
 
 using namespace testing;
@@ -67,7 +67,7 @@ class LayerWalls : public ::testing::Test {
   LayersReport report_;
 };
 
-std::vector<PolygonSoup> cube() { return {box({0, 0, 0}, {1, 1, 1})}; }
+std::vector<PolygonSoup> cube() { return {polygonal_box({0, 0, 0}, {1, 1, 1})}; }
 
 /// A wedge, at whose sharp edge layers end in pyramids and tets.
 std::vector<PolygonSoup> wedge() {
@@ -94,7 +94,7 @@ TEST_F(LayerWalls, HoldForWhatIsMade) {
     make(wedge(), "all", tets);
     EXPECT_LT(report_.coverage(), 1);
     expect_right();
-    make({box({0, 0, 0}, {1, 1, 1}), box({1, 0, 0}, {2, 1, 1})}, "all:first=0.02", tets);
+    make({polygonal_box({0, 0, 0}, {1, 1, 1}), polygonal_box({1, 0, 0}, {2, 1, 1})}, "all:first=0.02", tets);
     expect_right();
     make({sphere(6, 1, {0, 0, 0})}, "all", tets, 2);
     expect_right();
@@ -102,7 +102,7 @@ TEST_F(LayerWalls, HoldForWhatIsMade) {
 }
 
 TEST_F(LayerWalls, HoldOnBothSidesOfAFacetInside) {
-  PolygonSoup soup = box({0, 0, 0}, {1, 1, 1});
+  PolygonSoup soup = polygonal_box({0, 0, 0}, {1, 1, 1});
   const auto first = static_cast<Index>(soup.points.size());
   for (const auto& [x, y] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}})
     soup.points.push_back({x, y, 0.5});
@@ -185,4 +185,4 @@ TEST_F(LayerWalls, AWrongReportIsFound) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::layer_walls_test

@@ -17,7 +17,7 @@
 #include "common/layer_tets.h"
 #include "support/plc_shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::layers_test {
 namespace {
 
 using namespace testing;
@@ -118,7 +118,7 @@ PolygonSoup wedge(double degrees) {
 }
 
 TEST(Layers, CoverACubeWithPrismsAsHighAsAsked) {
-  const std::vector<PolygonSoup> soups{box({0, 0, 0}, {1, 1, 1})};
+  const std::vector<PolygonSoup> soups{polygonal_box({0, 0, 0}, {1, 1, 1})};
   const PipelineResult run = made(soups, with_layers({"all:first=0.02,growth=1.5,count=3"}));
   const TetMesh& mesh = run.result.mesh;
   EXPECT_GT(run.layers->prisms, 0U);
@@ -144,7 +144,7 @@ TEST(Layers, CoverACubeWithPrismsAsHighAsAsked) {
 
 TEST(Layers, KeepTheTrianglesOfWalls) {
   const SoupPipelineResult without =
-      run_pipeline(std::vector<PolygonSoup>{box({0, 0, 0}, {1, 1, 1})}, with_layers({}));
+      run_pipeline(std::vector<PolygonSoup>{polygonal_box({0, 0, 0}, {1, 1, 1})}, with_layers({}));
   TetMesh mesh = without.result.mesh;
   const LayersReport report = make_layers(mesh, without.plc, {.walls = {"all"}}, improve_options(2));
   EXPECT_GT(report.prisms, 0U);
@@ -168,7 +168,7 @@ TEST(Layers, AreTheSameForAnyNumberOfThreads) {
 }
 
 TEST(Layers, OnOneFaceEndAtTheOthersInQuadrangles) {
-  const std::vector<PolygonSoup> soups{box({0, 0, 0}, {1, 1, 1})};
+  const std::vector<PolygonSoup> soups{polygonal_box({0, 0, 0}, {1, 1, 1})};
   const PipelineResult run = made(soups, with_layers({"1:first=0.02,count=2"}));
   const TetMesh& mesh = run.result.mesh;
   EXPECT_GT(mesh.layers.quads.size(), 0U);
@@ -190,7 +190,7 @@ TEST(Layers, OnOneFaceEndAtTheOthersInQuadrangles) {
 }
 
 TEST(Layers, DividedIntoTetsFitEachOther) {
-  const std::vector<PolygonSoup> soups{box({0, 0, 0}, {1, 1, 1})};
+  const std::vector<PolygonSoup> soups{polygonal_box({0, 0, 0}, {1, 1, 1})};
   for (const char* wall : {"all:first=0.02,count=2", "1:first=0.02,count=2"}) {
     PipelineOptions options = with_layers({wall});
     options.layers.tets = true;
@@ -207,7 +207,7 @@ TEST(Layers, LeadToTheWallsBelowThem) {
   for (const bool tets : {false, true})
     for (const auto& [soup, walls] : {std::pair{wedge(20), "all"},
                                       {wedge(20), "5:first=0.02,count=2"},
-                                      {box({0, 0, 0}, {1, 1, 1}), "all:first=0.02,count=1"}}) {
+                                      {polygonal_box({0, 0, 0}, {1, 1, 1}), "all:first=0.02,count=1"}}) {
       PipelineOptions options = with_layers({walls});
       options.layers.tets = tets;
       const PipelineResult run = made({soup}, options);
@@ -225,7 +225,7 @@ TEST(Layers, LeadToTheWallsBelowThem) {
 /// asked for.
 TEST(Layers, AreAsHighAboveCurvedWallsAsAsked) {
   constexpr double first = 0.02;
-  for (const auto& soup : {cylinder(40, 1, 2), sphere(6, 1, {0, 0, 0})}) {
+  for (const auto& soup : {polygonal_cylinder(40, 1, 2), sphere(6, 1, {0, 0, 0})}) {
     PipelineOptions options = with_layers({"all:first=0.02,count=1"});
     options.mesh.size = 0.3;
     const PipelineResult run = made({soup}, options);
@@ -271,7 +271,7 @@ TEST(Layers, StepDownIntoAWedge) {
 }
 
 TEST(Layers, OnBothSidesOfAnInterface) {
-  const std::vector<PolygonSoup> soups{box({0, 0, 0}, {1, 1, 1}), box({1, 0, 0}, {2, 1, 1})};
+  const std::vector<PolygonSoup> soups{polygonal_box({0, 0, 0}, {1, 1, 1}), polygonal_box({1, 0, 0}, {2, 1, 1})};
   PipelineOptions options = with_layers({});
   const PipelineResult without = run_pipeline(soups, options);
   Tag interface = 0;
@@ -288,7 +288,7 @@ TEST(Layers, OnBothSidesOfAnInterface) {
 }
 
 TEST(Layers, OnOneSideOfAnInterface) {
-  const std::vector<PolygonSoup> soups{box({0, 0, 0}, {1, 1, 1}), box({1, 0, 0}, {2, 1, 1})};
+  const std::vector<PolygonSoup> soups{polygonal_box({0, 0, 0}, {1, 1, 1}), polygonal_box({1, 0, 0}, {2, 1, 1})};
   PipelineOptions options = with_layers({});
   const SoupPipelineResult without = run_pipeline(soups, options);
   Tag interface = 0;
@@ -314,7 +314,7 @@ TEST(Layers, OnOneSideOfAnInterface) {
 }
 
 TEST(Layers, AroundTwoRegionsMeetAtTheirInterface) {
-  const std::vector<PolygonSoup> soups{box({0, 0, 0}, {1, 1, 1}), box({1, 0, 0}, {2, 1, 1})};
+  const std::vector<PolygonSoup> soups{polygonal_box({0, 0, 0}, {1, 1, 1}), polygonal_box({1, 0, 0}, {2, 1, 1})};
   const PipelineResult run = made(soups, with_layers({"all:first=0.02,count=2"}));
   EXPECT_NEAR(run.layers->coverage(), 1, 1e-9);
   EXPECT_NEAR(volume_of(run.result.mesh), 2, 1e-9);
@@ -324,7 +324,7 @@ TEST(Layers, AroundTwoRegionsMeetAtTheirInterface) {
 }
 
 TEST(Layers, SlideAlongInterfacesThatArePlanarWithinTolerance) {
-  std::vector<PolygonSoup> soups{box({0, 0, 0}, {1, 1, 1}), box({1, 0, 0}, {2, 1, 1})};
+  std::vector<PolygonSoup> soups{polygonal_box({0, 0, 0}, {1, 1, 1}), polygonal_box({1, 0, 0}, {2, 1, 1})};
   constexpr double off = 1e-6;
   for (PolygonSoup& soup : soups)
     for (Point& p : soup.points)
@@ -431,7 +431,7 @@ TEST(Layers, OfSecondOrderKeepTheNodesOfCoarseCurvedWalls) {
 }
 
 TEST(Layers, OfSecondOrderKnowTheFacesOfTheirNodes) {
-  const std::vector<PolygonSoup> soups{box({0, 0, 0}, {1, 1, 1}), box({1, 0, 0}, {2, 1, 1})};
+  const std::vector<PolygonSoup> soups{polygonal_box({0, 0, 0}, {1, 1, 1}), polygonal_box({1, 0, 0}, {2, 1, 1})};
   for (const char* walls : {"all:count=1", "1:count=1", "1:count=3"}) {
     PipelineOptions options = with_layers({walls});
     options.order = 2;
@@ -443,7 +443,7 @@ TEST(Layers, OfSecondOrderKnowTheFacesOfTheirNodes) {
 }
 
 std::string error_of(const std::vector<std::string>& walls,
-                     const std::vector<PolygonSoup>& soups = {box({0, 0, 0}, {1, 1, 1})}) {
+                     const std::vector<PolygonSoup>& soups = {polygonal_box({0, 0, 0}, {1, 1, 1})}) {
   try {
     run_pipeline(soups, with_layers(walls));
   } catch (const OptionError& error) {
@@ -459,7 +459,7 @@ TEST(Layers, RefuseWallsThatAreNone) {
   EXPECT_NE(error_of({"all:count=0"}).find("count"), std::string::npos);
   EXPECT_NE(error_of({"all:height=1"}).find("thickness"), std::string::npos);
   EXPECT_NE(error_of({"1:region=9"}).find("no region is called '9'"), std::string::npos);
-  const std::vector<PolygonSoup> two{box({0, 0, 0}, {1, 1, 1}), box({2, 0, 0}, {3, 1, 1})};
+  const std::vector<PolygonSoup> two{polygonal_box({0, 0, 0}, {1, 1, 1}), polygonal_box({2, 0, 0}, {3, 1, 1})};
   EXPECT_NE(error_of({"1:region=2"}, two).find("is not beside region '2'"), std::string::npos);
   EXPECT_NE(error_of({"all:first=0.1,thickness=1"}).find("leave one out"), std::string::npos);
   EXPECT_NE(error_of({"all:count=3", "all:count=5"}).find("gets layers twice"), std::string::npos);
@@ -476,11 +476,11 @@ TEST(Layers, RefuseFirstLayersThinnerThanCoordinatesTell) {
     for (const char* setting : {"first height", "growth", "count"})
       EXPECT_NE(error.find(setting), std::string::npos) << error;
   }
-  made({box({0, 0, 0}, {1, 1, 1})}, with_layers({"all:first=1e-8"}));
+  made({polygonal_box({0, 0, 0}, {1, 1, 1})}, with_layers({"all:first=1e-8"}));
 }
 
 TEST(Layers, ThickerThanThePartAreLower) {
-  const std::vector<PolygonSoup> soups{box({0, 0, 0}, {1, 1, 0.2})};
+  const std::vector<PolygonSoup> soups{polygonal_box({0, 0, 0}, {1, 1, 0.2})};
   const PipelineResult run = made(soups, with_layers({"all:thickness=0.5,count=3"}));
   EXPECT_GT(least_jacobian_of(run.result.mesh), 0);
   EXPECT_NEAR(volume_of(run.result.mesh), 0.2, 1e-9);
@@ -490,10 +490,10 @@ TEST(Layers, ThickerThanThePartAreLower) {
 
 TEST(Layers, ThatCoverLittleAreWarnedOf) {
   PipelineOptions options = with_layers({"all"});
-  const PipelineResult good = made({box({0, 0, 0}, {1, 1, 1})}, options);
+  const PipelineResult good = made({polygonal_box({0, 0, 0}, {1, 1, 1})}, options);
   EXPECT_TRUE(good.check.warnings.empty());
   options.mesh.size = 1;
-  const PipelineResult poor = made({box({0, 0, 0}, {5, 5, 0.1})}, options);
+  const PipelineResult poor = made({polygonal_box({0, 0, 0}, {5, 5, 0.1})}, options);
   ASSERT_LT(poor.layers->coverage(), 0.8);
   ASSERT_FALSE(poor.check.warnings.empty());
   const std::string& warning = poor.check.warnings.back();
@@ -503,7 +503,7 @@ TEST(Layers, ThatCoverLittleAreWarnedOf) {
 
 TEST(Layers, AreInTheMeshThatIsJudged) {
   const PipelineResult run =
-      made({box({0, 0, 0}, {1, 1, 1}), box({1, 0, 0}, {2, 1, 1})}, with_layers({"1:first=0.02,count=2"}));
+      made({polygonal_box({0, 0, 0}, {1, 1, 1}), polygonal_box({1, 0, 0}, {2, 1, 1})}, with_layers({"1:first=0.02,count=2"}));
   const CheckReport& report = run.check;
   EXPECT_EQ(report.tets, run.result.mesh.tets.size());
   EXPECT_EQ(report.faces, run.result.mesh.faces.size());
@@ -515,7 +515,7 @@ TEST(Layers, AreInTheMeshThatIsJudged) {
 }
 
 TEST(Layers, MuchThickerThanThePartAreLowerToo) {
-  const PipelineResult run = made({box({0, 0, 0}, {1, 1, 1})}, with_layers({"all:thickness=100"}));
+  const PipelineResult run = made({polygonal_box({0, 0, 0}, {1, 1, 1})}, with_layers({"all:thickness=100"}));
   EXPECT_NEAR(volume_of(run.result.mesh), 1, 1e-9);
   EXPECT_GT(run.layers->coverage(), 0.8);
 }
@@ -546,4 +546,4 @@ TEST(Layers, OfNeighboursDifferInHeightByAFactorOfTwo) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::layers_test

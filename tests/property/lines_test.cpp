@@ -13,7 +13,7 @@
 #include "support/any_complex.h"
 #include "support/shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::lines_test {
 namespace {
 
 using namespace testing;
@@ -203,4 +203,4 @@ TEST(Sheets, AreCutWhereTheyIntersect) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::lines_test

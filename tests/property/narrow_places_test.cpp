@@ -9,7 +9,7 @@
 #include "support/meshing.h"
 #include "support/shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::narrow_places_test {
 namespace {
 
 using namespace collarmesh::testing;
@@ -147,4 +147,4 @@ TEST(NarrowPlaces, KeepTheRatioWithoutCoarsening) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::narrow_places_test

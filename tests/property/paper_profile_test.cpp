@@ -16,7 +16,7 @@
 #include "support/polylines.h"
 #include "support/shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::paper_profile_test {
 namespace {
 
 namespace acute = testing::acute;
@@ -187,4 +187,4 @@ TEST(PaperProfile, IsThePipelines) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::paper_profile_test

@@ -15,7 +15,7 @@
 #include "support/periodic.h"
 #include "support/plc_shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::periodic_test {
 namespace {
 
 using namespace testing;
@@ -71,7 +71,7 @@ void expect_alike(const TetMesh& mesh, std::size_t axis) {
 
 TEST(PeriodicFaces, OfABoxAreImagesInAllDirections) {
   for (const double size : {0.3, 0.12}) {
-    const PipelineResult made = mesh_of_soups({box({0, 0, 0}, {1, 1, 1})}, {"x", "y", "z"}, size);
+    const PipelineResult made = mesh_of_soups({polygonal_box({0, 0, 0}, {1, 1, 1})}, {"x", "y", "z"}, size);
     ASSERT_TRUE(made.guarantees_hold()) << made.missed();
     for (std::size_t axis = 0; axis < 3; ++axis) expect_alike(made.result.mesh, axis);
     ASSERT_EQ(made.result.mesh.periodic.size(), 3U);
@@ -82,7 +82,7 @@ TEST(PeriodicFaces, OfABoxAreImagesInAllDirections) {
 }
 
 TEST(PeriodicFaces, HaveMidEdgeNodesThatAreImages) {
-  const PipelineResult made = mesh_of_soups({box({0, 0, 0}, {1, 1, 1})}, {"x", "z"}, 0.3, 2);
+  const PipelineResult made = mesh_of_soups({polygonal_box({0, 0, 0}, {1, 1, 1})}, {"x", "z"}, 0.3, 2);
   ASSERT_TRUE(made.guarantees_hold()) << made.missed();
   expect_alike(made.result.mesh, 0);
   expect_alike(made.result.mesh, 2);
@@ -174,7 +174,7 @@ TEST(PeriodicFaces, DoNotDependOnThreads) {
   std::vector<TetMesh> made;
   for (const unsigned threads : {1U, 2U}) {
     options.mesh.threads = threads;
-    made.push_back(run_pipeline(std::vector{box({0, 0, 0}, {1, 1, 1})}, options).result.mesh);
+    made.push_back(run_pipeline(std::vector{polygonal_box({0, 0, 0}, {1, 1, 1})}, options).result.mesh);
   }
   EXPECT_EQ(made[0].points, made[1].points);
   EXPECT_EQ(made[0].tets, made[1].tets);
@@ -183,8 +183,8 @@ TEST(PeriodicFaces, DoNotDependOnThreads) {
 TEST(PeriodicFaces, CostFewElements) {
   std::size_t with = 0, without = 0;
   for (const double size : {0.2, 0.1, 0.07}) {
-    without += mesh_of_soups({box({0, 0, 0}, {1, 1, 1})}, {}, size).result.mesh.tets.size();
-    with += mesh_of_soups({box({0, 0, 0}, {1, 1, 1})}, {"x", "y", "z"}, size).result.mesh.tets.size();
+    without += mesh_of_soups({polygonal_box({0, 0, 0}, {1, 1, 1})}, {}, size).result.mesh.tets.size();
+    with += mesh_of_soups({polygonal_box({0, 0, 0}, {1, 1, 1})}, {"x", "y", "z"}, size).result.mesh.tets.size();
   }
   EXPECT_LT(static_cast<double>(with), 1.1 * static_cast<double>(without));
 }
@@ -198,7 +198,7 @@ TEST(PeriodicFaces, ThatAreNoImagesAreRefused) {
     }
     return std::string();
   };
-  const std::vector<PolygonSoup> cube{box({0, 0, 0}, {1, 1, 1})};
+  const std::vector<PolygonSoup> cube{polygonal_box({0, 0, 0}, {1, 1, 1})};
   std::vector<std::string> many(33, "x");
   EXPECT_THROW(mesh_of_soups(cube, many, 0.3), OptionError);
   EXPECT_NE(refusal("nowhere=1", cube).find("'nowhere'"), std::string::npos);
@@ -213,4 +213,4 @@ TEST(PeriodicFaces, ThatAreNoImagesAreRefused) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::periodic_test

@@ -17,7 +17,7 @@
 #include "support/acute_shapes.h"
 #include "support/shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::pipeline_test {
 namespace {
 
 using testing::box;
@@ -380,4 +380,4 @@ TEST(Pipeline, RefusesSizesOfTagsThatAreNotThere) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::pipeline_test

@@ -9,7 +9,7 @@
 #include "collarmesh/plc_builder.h"
 #include "support/plc_shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::plc_invariance_test {
 namespace {
 
 using testing::findings;
@@ -33,14 +33,14 @@ std::vector<double> sorted_volumes(const Plc& plc) {
 
 std::vector<PolygonSoup> shapes() {
   using namespace testing;
-  return {box({0, 0, 0}, {1, 2, 3}),
+  return {polygonal_box({0, 0, 0}, {1, 2, 3}),
           subdivided_box({-1, 0, 0}, {1, 1, 1}, 5),
-          cylinder(50, 1, 2),
-          cone(64, 50, 1),
+          polygonal_cylinder(50, 1, 2),
+          polygonal_cone(64, 50, 1),
           wedge(35, 1),
           sphere(6, 1, {0, 0, 0}),
-          joined({box({0, 0, 0}, {3, 3, 3}), reversed(box({1, 1, 1}, {2, 2, 2})), box({4, 0, 0}, {5, 1, 1})}),
-          joined({box({0, 0, 0}, {1, 1, 1}), box({1, 1, 0}, {2, 2, 1}), sphere(5, 0.4, {5, 5, 5})})};
+          joined({polygonal_box({0, 0, 0}, {3, 3, 3}), reversed(polygonal_box({1, 1, 1}, {2, 2, 2})), polygonal_box({4, 0, 0}, {5, 1, 1})}),
+          joined({polygonal_box({0, 0, 0}, {1, 1, 1}), polygonal_box({1, 1, 0}, {2, 2, 1}), sphere(5, 0.4, {5, 5, 5})})};
 }
 
 TEST(PlcInvariance, MovingScalingAndShufflingChangeNothing) {
@@ -64,7 +64,7 @@ TEST(PlcInvariance, MovingScalingAndShufflingChangeNothing) {
 }
 
 TEST(PlcInvariance, SameInputSameComplex) {
-  const PolygonSoup soup = testing::torn_apart(testing::cylinder(30, 1, 2));
+  const PolygonSoup soup = testing::torn_apart(testing::polygonal_cylinder(30, 1, 2));
   const Plc first = build_plc({&soup, 1}), second = build_plc({&soup, 1});
   ASSERT_EQ(first.points.size(), second.points.size());
   EXPECT_EQ(std::memcmp(first.points.data(), second.points.data(), first.points.size() * sizeof(Point)), 0);
@@ -160,4 +160,4 @@ TEST(PlcInvariance, DisjointSpheresNeverIntersectAndCrossingOnesAlwaysDo) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::plc_invariance_test

@@ -16,7 +16,7 @@
 #include "refine/sizing.h"
 #include "support/shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::predict_test {
 namespace {
 
 using prediction::GradedSize;
@@ -200,4 +200,4 @@ TEST(SolidAngles, BetweenRegions) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::predict_test

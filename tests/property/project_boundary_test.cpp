@@ -14,7 +14,7 @@
 #include "support/plc_shapes.h"
 #include "support/shapes.h"
 
-namespace collarmesh::testing {
+namespace collarmesh::testing::project_boundary_test {
 namespace {
 
 std::optional<Point> on_unit_sphere(unsigned, Index, const Point& p) { return p / norm(p); }
@@ -172,7 +172,7 @@ TEST(ProjectBoundary, KeepsFlatFeaturesFlat) {
 TEST(ProjectBoundary, KeepsCapsFlatAtCurvedRims) {
   MeshOptions options = with_size(0.3);
   options.bounds.distance = 0.01;
-  Meshed meshed = mesh_of(cylinder(Index{64}, 1.0, 1.0), options);
+  Meshed meshed = mesh_of(polygonal_cylinder(Index{64}, 1.0, 1.0), options);
   ASSERT_EQ(faults(meshed), "");
   const ExactGeometry exact = [](unsigned, Index, const Point& p) -> std::optional<Point> {
     const double radius = std::hypot(p.x, p.y);
@@ -236,4 +236,4 @@ TEST(ProjectBoundary, LeavesTheBallsOfCollarsAsTheyAre) {
 }
 
 }  // namespace
-}  // namespace collarmesh::testing
+}  // namespace collarmesh::testing::project_boundary_test

@@ -19,7 +19,7 @@
 #include "periodic/pair_choice.h"
 #include "support/periodic.h"
 
-namespace collarmesh::periodicity {
+namespace collarmesh::periodicity::recut_test {
 namespace {
 
 using namespace testing;
@@ -156,4 +156,4 @@ TEST(Recut, LeavesEachVertexOfThePairsFreeOnce) {
 }
 
 }  // namespace
-}  // namespace collarmesh::periodicity
+}  // namespace collarmesh::periodicity::recut_test

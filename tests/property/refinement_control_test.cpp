@@ -10,7 +10,7 @@
 #include "support/meshing.h"
 #include "support/shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::refinement_control_test {
 namespace {
 
 using testing::with_size;
@@ -172,4 +172,4 @@ TEST(RefinementOptions, WithoutThinTetsAMeshIsRefinedButNotCoarsened) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::refinement_control_test

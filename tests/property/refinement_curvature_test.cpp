@@ -9,7 +9,7 @@
 #include "support/shapes.h"
 #include "tolerance/curvature.h"
 
-namespace collarmesh {
+namespace collarmesh::refinement_curvature_test {
 namespace {
 
 using testing::faults;
@@ -133,4 +133,4 @@ TEST(Gaps, InAWedgeDoNotClose) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::refinement_curvature_test

@@ -7,7 +7,7 @@
 #include "support/shapes.h"
 #include "support/tet_mesh_comparison.h"
 
-namespace collarmesh {
+namespace collarmesh::refinement_invariance_test {
 namespace {
 
 using testing::faults;
@@ -103,4 +103,4 @@ TEST(RefinementInvariance, Permuted) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::refinement_invariance_test

@@ -14,7 +14,7 @@
 #include "support/meshing.h"
 #include "support/shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::refinement_sizing_test {
 namespace {
 
 using testing::faults;
@@ -303,4 +303,4 @@ TEST(RefinementQuality, TighterDistance) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::refinement_sizing_test

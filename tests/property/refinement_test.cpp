@@ -10,7 +10,7 @@
 #include "support/meshing.h"
 #include "support/shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::refinement_test {
 namespace {
 
 using testing::faults;
@@ -223,4 +223,4 @@ TEST(RefinementSkewLines, VerticesGrowLinearly) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::refinement_test

@@ -18,7 +18,7 @@
 #include "support/shapes.h"
 #include "support/tet_mesh_comparison.h"
 
-namespace collarmesh {
+namespace collarmesh::remesh_test {
 namespace {
 
 using namespace testing;
@@ -460,4 +460,4 @@ TEST(DividedEdges, KeepCurvesWhole) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::remesh_test

@@ -12,7 +12,7 @@
 #include "support/repair_shapes.h"
 #include "support/shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::repair_boxes_test {
 namespace {
 
 using namespace testing::faulty;
@@ -241,4 +241,4 @@ TEST(RepairBoxes, SpecialMeetings) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::repair_boxes_test

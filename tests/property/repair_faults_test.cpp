@@ -12,7 +12,7 @@
 #include "support/repair_shapes.h"
 #include "support/shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::repair_faults_test {
 namespace {
 
 using namespace testing::faulty;
@@ -287,4 +287,4 @@ TEST(RepairFaults, CoordinatesOf32BitsFarAway) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::repair_faults_test

@@ -14,7 +14,7 @@
 #include "support/repair_shapes.h"
 #include "support/shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::repair_hard_test {
 namespace {
 
 using namespace testing::faulty;
@@ -184,4 +184,4 @@ TEST(RepairHard, MeshOfAFoldedTerrainIsCertified) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::repair_hard_test

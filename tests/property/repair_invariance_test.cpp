@@ -11,7 +11,7 @@
 #include "support/repair_shapes.h"
 #include "support/shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::repair_invariance_test {
 namespace {
 
 using namespace testing::faulty;
@@ -244,4 +244,4 @@ TEST(RepairInvariance, RepairedSoupsAreValid) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::repair_invariance_test

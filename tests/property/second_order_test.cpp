@@ -21,7 +21,7 @@
 #include "support/second_order.h"
 #include "support/shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::second_order_test {
 namespace {
 
 using namespace collarmesh::testing;
@@ -394,4 +394,4 @@ TEST_F(WrongSecondOrder, NodesOutOfRange) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::second_order_test

@@ -13,7 +13,7 @@
 #include "support/meshing.h"
 #include "support/shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::shape_kept_test {
 namespace {
 
 using testing::with_size;
@@ -340,4 +340,4 @@ TEST(ShapeKept, AWedgeAtTheEndOfASurfaceIsNoWall) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::shape_kept_test

@@ -15,7 +15,7 @@
 #include "support/any_complex.h"
 #include "support/shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::shells_test {
 namespace {
 
 using namespace testing;
@@ -420,4 +420,4 @@ TEST(Shells, TheTriangleInACuspCrossesNoCurveBesideIt) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::shells_test

@@ -15,7 +15,7 @@
 #include "collarmesh/split.h"
 #include "support/plc_shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::split_test {
 namespace {
 
 using namespace testing;
@@ -38,7 +38,7 @@ PolygonSoup quad(const std::array<Point, 4>& corners, Tag tag) {
 
 /// The unit cube with sheets; sheet k has the tag 100 + k.
 std::vector<PolygonSoup> cube_with(const std::vector<std::array<Point, 4>>& sheets) {
-  std::vector<PolygonSoup> soups{box({0, 0, 0}, {1, 1, 1})};
+  std::vector<PolygonSoup> soups{polygonal_box({0, 0, 0}, {1, 1, 1})};
   for (std::size_t k = 0; k < sheets.size(); ++k) soups.push_back(quad(sheets[k], static_cast<Tag>(100 + k)));
   return soups;
 }
@@ -176,8 +176,8 @@ TEST(Split, SheetsThatCrossHaveANodeForEachSector) {
 }
 
 TEST(Split, BlocksAreKeptApart) {
-  const std::vector<PolygonSoup> soups{box({0, 0, 0}, {1, 1, 1}), box({1, 0, 0}, {2, 1, 1}),
-                                       box({0, 0, 1}, {1, 1, 2})};
+  const std::vector<PolygonSoup> soups{polygonal_box({0, 0, 0}, {1, 1, 1}), polygonal_box({1, 0, 0}, {2, 1, 1}),
+                                       polygonal_box({0, 0, 1}, {1, 1, 2})};
   for (const unsigned order : {1U, 2U}) {
     const PipelineResult made = mesh_of_soups(soups, 0.4, order, {.keep_apart = true, .cohesive = true});
     ASSERT_TRUE(made.guarantees_hold()) << made.missed();
@@ -202,7 +202,7 @@ TEST(Split, BlocksAreKeptApart) {
 
 /// The minus side's triangles and prisms point towards the plus side.
 TEST(Split, SidesAndPrismsAreOriented) {
-  const std::vector<PolygonSoup> soups{box({0, 0, 0}, {1, 1, 1}), box({1, 0, 0}, {2, 1, 1})};
+  const std::vector<PolygonSoup> soups{polygonal_box({0, 0, 0}, {1, 1, 1}), polygonal_box({1, 0, 0}, {2, 1, 1})};
   const PipelineResult made = mesh_of_soups(soups, 0.5, 1, {.keep_apart = true, .cohesive = true});
   ASSERT_TRUE(made.guarantees_hold()) << made.missed();
   const TetMesh& mesh = made.result.mesh;
@@ -277,7 +277,7 @@ TEST(Split, NamesThatAreNotThereAreErrors) {
 }
 
 TEST(SplitCertificate, FindsWrongSplits) {
-  const std::vector<PolygonSoup> soups{box({0, 0, 0}, {1, 1, 1}), box({1, 0, 0}, {2, 1, 1})};
+  const std::vector<PolygonSoup> soups{polygonal_box({0, 0, 0}, {1, 1, 1}), polygonal_box({1, 0, 0}, {2, 1, 1})};
   const TetMesh before = mesh_of_soups(soups, 0.4, 1).result.mesh;
   const checks::SplitMeasures measures = checks::measure_before_split(before);
   TetMesh mesh = before;
@@ -304,4 +304,4 @@ TEST(SplitCertificate, FindsWrongSplits) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::split_test

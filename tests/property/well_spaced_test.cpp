@@ -12,7 +12,7 @@
 #include "support/meshing.h"
 #include "support/shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::well_spaced_test {
 namespace {
 
 double radius_edge(const Triangulation& mesh, Index cell) {
@@ -83,4 +83,4 @@ TEST(WellSpaced, AfterEachQualityPhaseBesideCollars) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::well_spaced_test

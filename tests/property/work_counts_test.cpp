@@ -10,7 +10,7 @@
 #include "support/polylines.h"
 #include "support/shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::work_counts_test {
 namespace {
 
 namespace polylines = testing::polylines;
@@ -247,4 +247,4 @@ TEST(WorkCounts, AreMadeOnRequestOnly) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::work_counts_test

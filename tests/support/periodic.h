@@ -18,7 +18,7 @@ inline PolygonSoup cell_of_boxes(const std::array<double, 4>& cuts) {
   for (unsigned i = 0; i < 3; ++i)
     for (unsigned j = 0; j < 3; ++j)
       for (unsigned k = 0; k < 3; ++k)
-        boxes.push_back(box({cuts[i], cuts[j], cuts[k]}, {cuts[i + 1], cuts[j + 1], cuts[k + 1]}));
+        boxes.push_back(polygonal_box({cuts[i], cuts[j], cuts[k]}, {cuts[i + 1], cuts[j + 1], cuts[k + 1]}));
   return joined(boxes);
 }
 

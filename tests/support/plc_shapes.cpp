@@ -49,7 +49,7 @@ Point circle_point(Index i, Index n, double radius, double z) {
 
 }  // namespace
 
-PolygonSoup box(const Point& min, const Point& max) {
+PolygonSoup polygonal_box(const Point& min, const Point& max) {
   PolygonSoup soup;
   for (unsigned i = 0; i < 8; ++i)
     soup.points.push_back({i & 1 ? max.x : min.x, i & 2 ? max.y : min.y, i & 4 ? max.z : min.z});
@@ -99,7 +99,7 @@ PolygonSoup subdivided_box(const Point& min, const Point& max, Index n) {
   return soup;
 }
 
-PolygonSoup cylinder(Index n, double radius, double height) {
+PolygonSoup polygonal_cylinder(Index n, double radius, double height) {
   PolygonSoup soup;
   std::vector<Index> bottom, top;
   for (Index i = 0; i < n; ++i) {
@@ -117,7 +117,7 @@ PolygonSoup cylinder(Index n, double radius, double height) {
   return soup;
 }
 
-PolygonSoup cone(Index n, double aperture_degrees, double height) {
+PolygonSoup polygonal_cone(Index n, double aperture_degrees, double height) {
   PolygonSoup soup;
   const double radius = height * std::tan(aperture_degrees * pi / 360);
   std::vector<Index> bottom;

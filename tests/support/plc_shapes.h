@@ -11,14 +11,14 @@
 namespace collarmesh::testing {
 
 /// A box of six quadrangles.
-PolygonSoup box(const Point& min, const Point& max);
+PolygonSoup polygonal_box(const Point& min, const Point& max);
 /// A box whose sides are n x n squares of two triangles each.
 PolygonSoup subdivided_box(const Point& min, const Point& max, Index n);
 /// A cylinder around the z axis: one layer of quadrangles between two polygons of n corners.
-PolygonSoup cylinder(Index n, double radius, double height);
+PolygonSoup polygonal_cylinder(Index n, double radius, double height);
 /// A cone: triangles from a regular n-gon in the plane z = 0 to an apex above its centre, closed by the
 /// n-gon.
-PolygonSoup cone(Index n, double aperture_degrees, double height);
+PolygonSoup polygonal_cone(Index n, double aperture_degrees, double height);
 /// A prism along the z axis over the triangle of two unit sides that form this angle at the origin.
 PolygonSoup wedge(double angle_degrees, double length);
 /// A sphere: an octahedron with sides cut in n, its points moved onto the unit sphere around `centre`.

@@ -2,6 +2,9 @@
 
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/MP_Float.h>
+#include <CGAL/Mpzf.h>
+#include <CGAL/Simple_cartesian.h>
 
 namespace collarmesh::predicates {
 
@@ -12,6 +15,16 @@ using Exact = CGAL::Exact_predicates_exact_constructions_kernel::Exact_kernel;
 
 Filtered::Point_3 filtered(const Point& p) { return {p.x, p.y, p.z}; }
 Exact::Point_3 exact(const Point& p) { return {p.x, p.y, p.z}; }
+
+// Exact sums and products of doubles, far faster than rational numbers.
+#ifdef CGAL_HAS_MPZF
+using Ring = CGAL::Mpzf;
+#else
+using Ring = CGAL::MP_Float;
+#endif
+using RingVector = CGAL::Simple_cartesian<Ring>::Vector_3;
+
+RingVector ring_vector(const Point& p) { return {Ring(p.x), Ring(p.y), Ring(p.z)}; }
 
 }  // namespace
 
@@ -25,8 +38,14 @@ bool in_sphere_exact(const Point& a, const Point& b, const Point& c, const Point
 }
 
 Point circumcentre_exact(const Point& a, const Point& b, const Point& c, const Point& d) {
-  const Exact::Point_3 centre = CGAL::circumcenter(exact(a), exact(b), exact(c), exact(d));
-  return {CGAL::to_double(centre.x()), CGAL::to_double(centre.y()), CGAL::to_double(centre.z())};
+  const RingVector origin = ring_vector(a);
+  const RingVector u = ring_vector(b) - origin, v = ring_vector(c) - origin, w = ring_vector(d) - origin;
+  const RingVector vw = CGAL::cross_product(v, w);
+  const Ring divisor = Ring(2) * (u * vw);
+  const RingVector dividend = (w * w) * CGAL::cross_product(u, v) + (v * v) * CGAL::cross_product(w, u) +
+                              (u * u) * vw + divisor * origin;
+  const auto quotient = [&](const Ring& x) { return CGAL::to_double(x) / CGAL::to_double(divisor); };
+  return {quotient(dividend.x()), quotient(dividend.y()), quotient(dividend.z())};
 }
 
 int cross_product_sign_exact(const Point& p, const Point& q, const Point& a, const Point& b) {

@@ -15,7 +15,8 @@ int orientation_exact(const Point& a, const Point& b, const Point& c, const Poin
 /// Returns whether p is strictly inside the circumsphere of the positively oriented tetrahedron abcd. Exact.
 bool in_sphere_exact(const Point& a, const Point& b, const Point& c, const Point& d, const Point& p);
 
-/// Returns the circumcentre of a tetrahedron that is not flat, computed exactly, then rounded.
+/// Returns the circumcentre of a tetrahedron that is not flat, computed exactly, then rounded: each
+/// coordinate is off by at most 6 times 2^-53 of itself.
 Point circumcentre_exact(const Point& a, const Point& b, const Point& c, const Point& d);
 
 /// Returns the sign of the first non-zero coordinate of (q - p) x (b - a), 0 if all vanish. Exact.

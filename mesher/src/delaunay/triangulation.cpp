@@ -82,10 +82,10 @@ bool Triangulation::in_conflict_exact(Index cell, const Point& p) const {
 }
 
 // Computes the sphere and its margin. Let e = 2^-53, L the longest edge from the first corner, and k = 16 e
-// L^3 / |det|. The centre and the radius are off by at most d = k (r + L) + 2 e |c| + 4 e r. The comparison
-// of |p c|^2 with r^2 is right if they differ by more than 2 d (r + |pc| + d) + 8 e (r^2 + |pc|^2). This is
-// at most margin * (r^2 + |pc|^2) with the margin below, because r + |pc| is at most sqrt(2) (r^2 + |pc|^2) /
-// r.
+// L^3 / |det|. The centre and the radius are off by at most d = k (r + L) + 2 e |c| + 4 e r; where they come
+// from exact arithmetic k is 0, and 6 in place of 2. The comparison of |p c|^2 with r^2 is right if they
+// differ by more than 2 d (r + |pc| + d) + 8 e (r^2 + |pc|^2). This is at most margin * (r^2 + |pc|^2) with
+// the margin below, because r + |pc| is at most sqrt(2) (r^2 + |pc|^2) / r.
 Triangulation::Sphere Triangulation::circumsphere(const std::array<Index, 4>& corners) const {
   constexpr double e = 0x1p-53;
   const Point& a = point(corners[0]);
@@ -94,12 +94,14 @@ Triangulation::Sphere Triangulation::circumsphere(const std::array<Index, 4>& co
   const double longest = std::max({uu, vv, ww});
   const Vector vw = cross(v, w);
   const double det = dot(u, vw);
-  double k = 0;
+  double k = 0, of_coordinates = 2 * e;
   Point centre;
   double squared_radius;
   if (det * det < 1e-18 * longest * longest * longest) {
     centre = predicates::circumcentre_exact(a, point(corners[1]), point(corners[2]), point(corners[3]));
     squared_radius = squared_distance(centre, a);
+    of_coordinates =
+        6 * e;  // two numbers converted to double, at most a unit in the last place each, and divided
   } else {
     const Vector offset = (ww * cross(u, v) + vv * cross(w, u) + uu * vw) / (2 * det);
     centre = a + offset;
@@ -108,7 +110,7 @@ Triangulation::Sphere Triangulation::circumsphere(const std::array<Index, 4>& co
   }
   const double r = std::sqrt(squared_radius);
   const double largest = std::max({std::fabs(centre.x), std::fabs(centre.y), std::fabs(centre.z)});
-  const double d = k * (r + std::sqrt(longest)) + 2 * e * largest + 4 * e * r;
+  const double d = k * (r + std::sqrt(longest)) + of_coordinates * largest + 4 * e * r;
   const double relative = d / r;
   return {centre, squared_radius, 2.83 * relative + 2 * relative * relative + 8 * e};
 }
