@@ -98,7 +98,8 @@ TEST(PlcFaults, OpenBox) {
 }
 
 TEST(PlcFaults, CrossingFacets) {
-  const auto error = error_of({testing::polygonal_box({0, 0, 0}, {1, 1, 1}), testing::polygonal_box({0.5, 0.4, 0.3}, {2, 2, 2})});
+  const auto error = error_of(
+      {testing::polygonal_box({0, 0, 0}, {1, 1, 1}), testing::polygonal_box({0.5, 0.4, 0.3}, {2, 2, 2})});
   ASSERT_TRUE(error);
   EXPECT_EQ(error->faults[0].kind, Kind::intersection);
   for (const PlcFault& fault : error->faults) {
@@ -108,7 +109,8 @@ TEST(PlcFaults, CrossingFacets) {
 }
 
 TEST(PlcFaults, OverlappingFacets) {
-  expect_fault({testing::polygonal_box({0, 0, 0}, {1, 1, 1}), testing::polygonal_box({1, 0.25, 0.25}, {2, 0.75, 0.75})},
+  expect_fault({testing::polygonal_box({0, 0, 0}, {1, 1, 1}),
+                testing::polygonal_box({1, 0.25, 0.25}, {2, 0.75, 0.75})},
                Kind::intersection);
 }
 

@@ -12,9 +12,9 @@
 namespace collarmesh::plc_regions_test {
 namespace {
 
-using testing::polygonal_box;
 using testing::findings;
 using testing::joined;
+using testing::polygonal_box;
 using testing::reversed;
 
 Plc build(const std::vector<PolygonSoup>& soups, const PlcOptions& options = {}) {
@@ -47,8 +47,9 @@ TEST(PlcRegions, TwoBoxesInTwoSoupsShareTheirFace) {
 }
 
 TEST(PlcRegions, InterfaceWithDifferentTriangles) {
-  const Plc plc = build({testing::subdivided_box({0, 0, 0}, {1, 1, 1}, 1), polygonal_box({1, 0, 0}, {3, 1, 1}),
-                         testing::shuffled(testing::subdivided_box({0, 0, 1}, {1, 1, 4}, 1), 5, false)});
+  const Plc plc =
+      build({testing::subdivided_box({0, 0, 0}, {1, 1, 1}, 1), polygonal_box({1, 0, 0}, {3, 1, 1}),
+             testing::shuffled(testing::subdivided_box({0, 0, 1}, {1, 1, 4}, 1), 5, false)});
   expect_volumes(plc, {1, 2, 3});
   EXPECT_EQ(plc.patches.size(), 16U);
 }
@@ -93,22 +94,27 @@ TEST(PlcRegions, InterfaceOfOtherDiagonal) {
 }
 
 TEST(PlcRegions, NestedInwardShellIsACavity) {
-  expect_volumes(build({joined({polygonal_box({0, 0, 0}, {3, 3, 3}), reversed(polygonal_box({1, 1, 1}, {2, 2, 2}))})}), {26});
+  expect_volumes(
+      build({joined({polygonal_box({0, 0, 0}, {3, 3, 3}), reversed(polygonal_box({1, 1, 1}, {2, 2, 2}))})}),
+      {26});
 }
 
 TEST(PlcRegions, NestedOutwardShellIsARegion) {
-  expect_volumes(build({joined({polygonal_box({0, 0, 0}, {3, 3, 3}), polygonal_box({1, 1, 1}, {2, 2, 2})})}), {26, 1});
+  expect_volumes(build({joined({polygonal_box({0, 0, 0}, {3, 3, 3}), polygonal_box({1, 1, 1}, {2, 2, 2})})}),
+                 {26, 1});
   expect_volumes(build({polygonal_box({1, 1, 1}, {2, 2, 2}), polygonal_box({0, 0, 0}, {3, 3, 3})}), {1, 26});
 }
 
 TEST(PlcRegions, SolidInACavity) {
-  const Plc plc = build(
-      {joined({polygonal_box({0, 0, 0}, {5, 5, 5}), reversed(polygonal_box({1, 1, 1}, {4, 4, 4})), polygonal_box({2, 2, 2}, {3, 3, 3})})});
+  const Plc plc =
+      build({joined({polygonal_box({0, 0, 0}, {5, 5, 5}), reversed(polygonal_box({1, 1, 1}, {4, 4, 4})),
+                     polygonal_box({2, 2, 2}, {3, 3, 3})})});
   expect_volumes(plc, {125 - 27, 1});
 }
 
 TEST(PlcRegions, InsertFillsACavityExactly) {
-  const PolygonSoup block = joined({polygonal_box({0, 0, 0}, {3, 3, 3}), reversed(polygonal_box({1, 1, 1}, {2, 2, 2}))});
+  const PolygonSoup block =
+      joined({polygonal_box({0, 0, 0}, {3, 3, 3}), reversed(polygonal_box({1, 1, 1}, {2, 2, 2}))});
   expect_volumes(build({block, polygonal_box({1, 1, 1}, {2, 2, 2})}), {26, 1});
 }
 
@@ -153,7 +159,8 @@ TEST(PlcRegions, MixedUpOrientationGoesByNesting) {
 }
 
 TEST(PlcRegions, BoxesThatTouchInAnEdge) {
-  expect_volumes(build({joined({polygonal_box({0, 0, 0}, {1, 1, 1}), polygonal_box({1, 1, 0}, {2, 2, 1})})}), {1, 1});
+  expect_volumes(build({joined({polygonal_box({0, 0, 0}, {1, 1, 1}), polygonal_box({1, 1, 0}, {2, 2, 1})})}),
+                 {1, 1});
 }
 
 TEST(PlcRegions, InternalFacetSeparatesTwoRegions) {
@@ -188,8 +195,8 @@ TEST(PlcRegions, OpenSheetBesideASolid) {
 }
 
 TEST(PlcRegions, HoleAndRegionPointsDecideForAComplex) {
-  PolygonSoup soup =
-      joined({polygonal_box({0, 0, 0}, {5, 5, 5}), polygonal_box({1, 1, 1}, {2, 2, 2}), polygonal_box({3, 3, 3}, {4, 4, 4})});
+  PolygonSoup soup = joined({polygonal_box({0, 0, 0}, {5, 5, 5}), polygonal_box({1, 1, 1}, {2, 2, 2}),
+                             polygonal_box({3, 3, 3}, {4, 4, 4})});
   soup.name = "parts.poly";
   expect_volumes(build({soup}), {123, 1, 1});
   soup.hole_points = {{1.5, 1.5, 1.5}};

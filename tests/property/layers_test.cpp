@@ -271,7 +271,8 @@ TEST(Layers, StepDownIntoAWedge) {
 }
 
 TEST(Layers, OnBothSidesOfAnInterface) {
-  const std::vector<PolygonSoup> soups{polygonal_box({0, 0, 0}, {1, 1, 1}), polygonal_box({1, 0, 0}, {2, 1, 1})};
+  const std::vector<PolygonSoup> soups{polygonal_box({0, 0, 0}, {1, 1, 1}),
+                                       polygonal_box({1, 0, 0}, {2, 1, 1})};
   PipelineOptions options = with_layers({});
   const PipelineResult without = run_pipeline(soups, options);
   Tag interface = 0;
@@ -288,7 +289,8 @@ TEST(Layers, OnBothSidesOfAnInterface) {
 }
 
 TEST(Layers, OnOneSideOfAnInterface) {
-  const std::vector<PolygonSoup> soups{polygonal_box({0, 0, 0}, {1, 1, 1}), polygonal_box({1, 0, 0}, {2, 1, 1})};
+  const std::vector<PolygonSoup> soups{polygonal_box({0, 0, 0}, {1, 1, 1}),
+                                       polygonal_box({1, 0, 0}, {2, 1, 1})};
   PipelineOptions options = with_layers({});
   const SoupPipelineResult without = run_pipeline(soups, options);
   Tag interface = 0;
@@ -314,7 +316,8 @@ TEST(Layers, OnOneSideOfAnInterface) {
 }
 
 TEST(Layers, AroundTwoRegionsMeetAtTheirInterface) {
-  const std::vector<PolygonSoup> soups{polygonal_box({0, 0, 0}, {1, 1, 1}), polygonal_box({1, 0, 0}, {2, 1, 1})};
+  const std::vector<PolygonSoup> soups{polygonal_box({0, 0, 0}, {1, 1, 1}),
+                                       polygonal_box({1, 0, 0}, {2, 1, 1})};
   const PipelineResult run = made(soups, with_layers({"all:first=0.02,count=2"}));
   EXPECT_NEAR(run.layers->coverage(), 1, 1e-9);
   EXPECT_NEAR(volume_of(run.result.mesh), 2, 1e-9);
@@ -431,7 +434,8 @@ TEST(Layers, OfSecondOrderKeepTheNodesOfCoarseCurvedWalls) {
 }
 
 TEST(Layers, OfSecondOrderKnowTheFacesOfTheirNodes) {
-  const std::vector<PolygonSoup> soups{polygonal_box({0, 0, 0}, {1, 1, 1}), polygonal_box({1, 0, 0}, {2, 1, 1})};
+  const std::vector<PolygonSoup> soups{polygonal_box({0, 0, 0}, {1, 1, 1}),
+                                       polygonal_box({1, 0, 0}, {2, 1, 1})};
   for (const char* walls : {"all:count=1", "1:count=1", "1:count=3"}) {
     PipelineOptions options = with_layers({walls});
     options.order = 2;
@@ -459,7 +463,8 @@ TEST(Layers, RefuseWallsThatAreNone) {
   EXPECT_NE(error_of({"all:count=0"}).find("count"), std::string::npos);
   EXPECT_NE(error_of({"all:height=1"}).find("thickness"), std::string::npos);
   EXPECT_NE(error_of({"1:region=9"}).find("no region is called '9'"), std::string::npos);
-  const std::vector<PolygonSoup> two{polygonal_box({0, 0, 0}, {1, 1, 1}), polygonal_box({2, 0, 0}, {3, 1, 1})};
+  const std::vector<PolygonSoup> two{polygonal_box({0, 0, 0}, {1, 1, 1}),
+                                     polygonal_box({2, 0, 0}, {3, 1, 1})};
   EXPECT_NE(error_of({"1:region=2"}, two).find("is not beside region '2'"), std::string::npos);
   EXPECT_NE(error_of({"all:first=0.1,thickness=1"}).find("leave one out"), std::string::npos);
   EXPECT_NE(error_of({"all:count=3", "all:count=5"}).find("gets layers twice"), std::string::npos);
@@ -502,8 +507,8 @@ TEST(Layers, ThatCoverLittleAreWarnedOf) {
 }
 
 TEST(Layers, AreInTheMeshThatIsJudged) {
-  const PipelineResult run =
-      made({polygonal_box({0, 0, 0}, {1, 1, 1}), polygonal_box({1, 0, 0}, {2, 1, 1})}, with_layers({"1:first=0.02,count=2"}));
+  const PipelineResult run = made({polygonal_box({0, 0, 0}, {1, 1, 1}), polygonal_box({1, 0, 0}, {2, 1, 1})},
+                                  with_layers({"1:first=0.02,count=2"}));
   const CheckReport& report = run.check;
   EXPECT_EQ(report.tets, run.result.mesh.tets.size());
   EXPECT_EQ(report.faces, run.result.mesh.faces.size());

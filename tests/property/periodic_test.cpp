@@ -184,7 +184,8 @@ TEST(PeriodicFaces, CostFewElements) {
   std::size_t with = 0, without = 0;
   for (const double size : {0.2, 0.1, 0.07}) {
     without += mesh_of_soups({polygonal_box({0, 0, 0}, {1, 1, 1})}, {}, size).result.mesh.tets.size();
-    with += mesh_of_soups({polygonal_box({0, 0, 0}, {1, 1, 1})}, {"x", "y", "z"}, size).result.mesh.tets.size();
+    with +=
+        mesh_of_soups({polygonal_box({0, 0, 0}, {1, 1, 1})}, {"x", "y", "z"}, size).result.mesh.tets.size();
   }
   EXPECT_LT(static_cast<double>(with), 1.1 * static_cast<double>(without));
 }

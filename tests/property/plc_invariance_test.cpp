@@ -39,8 +39,10 @@ std::vector<PolygonSoup> shapes() {
           polygonal_cone(64, 50, 1),
           wedge(35, 1),
           sphere(6, 1, {0, 0, 0}),
-          joined({polygonal_box({0, 0, 0}, {3, 3, 3}), reversed(polygonal_box({1, 1, 1}, {2, 2, 2})), polygonal_box({4, 0, 0}, {5, 1, 1})}),
-          joined({polygonal_box({0, 0, 0}, {1, 1, 1}), polygonal_box({1, 1, 0}, {2, 2, 1}), sphere(5, 0.4, {5, 5, 5})})};
+          joined({polygonal_box({0, 0, 0}, {3, 3, 3}), reversed(polygonal_box({1, 1, 1}, {2, 2, 2})),
+                  polygonal_box({4, 0, 0}, {5, 1, 1})}),
+          joined({polygonal_box({0, 0, 0}, {1, 1, 1}), polygonal_box({1, 1, 0}, {2, 2, 1}),
+                  sphere(5, 0.4, {5, 5, 5})})};
 }
 
 TEST(PlcInvariance, MovingScalingAndShufflingChangeNothing) {

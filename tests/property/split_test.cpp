@@ -176,7 +176,8 @@ TEST(Split, SheetsThatCrossHaveANodeForEachSector) {
 }
 
 TEST(Split, BlocksAreKeptApart) {
-  const std::vector<PolygonSoup> soups{polygonal_box({0, 0, 0}, {1, 1, 1}), polygonal_box({1, 0, 0}, {2, 1, 1}),
+  const std::vector<PolygonSoup> soups{polygonal_box({0, 0, 0}, {1, 1, 1}),
+                                       polygonal_box({1, 0, 0}, {2, 1, 1}),
                                        polygonal_box({0, 0, 1}, {1, 1, 2})};
   for (const unsigned order : {1U, 2U}) {
     const PipelineResult made = mesh_of_soups(soups, 0.4, order, {.keep_apart = true, .cohesive = true});
@@ -202,7 +203,8 @@ TEST(Split, BlocksAreKeptApart) {
 
 /// The minus side's triangles and prisms point towards the plus side.
 TEST(Split, SidesAndPrismsAreOriented) {
-  const std::vector<PolygonSoup> soups{polygonal_box({0, 0, 0}, {1, 1, 1}), polygonal_box({1, 0, 0}, {2, 1, 1})};
+  const std::vector<PolygonSoup> soups{polygonal_box({0, 0, 0}, {1, 1, 1}),
+                                       polygonal_box({1, 0, 0}, {2, 1, 1})};
   const PipelineResult made = mesh_of_soups(soups, 0.5, 1, {.keep_apart = true, .cohesive = true});
   ASSERT_TRUE(made.guarantees_hold()) << made.missed();
   const TetMesh& mesh = made.result.mesh;
@@ -277,7 +279,8 @@ TEST(Split, NamesThatAreNotThereAreErrors) {
 }
 
 TEST(SplitCertificate, FindsWrongSplits) {
-  const std::vector<PolygonSoup> soups{polygonal_box({0, 0, 0}, {1, 1, 1}), polygonal_box({1, 0, 0}, {2, 1, 1})};
+  const std::vector<PolygonSoup> soups{polygonal_box({0, 0, 0}, {1, 1, 1}),
+                                       polygonal_box({1, 0, 0}, {2, 1, 1})};
   const TetMesh before = mesh_of_soups(soups, 0.4, 1).result.mesh;
   const checks::SplitMeasures measures = checks::measure_before_split(before);
   TetMesh mesh = before;
