@@ -79,7 +79,7 @@ def acute_wedge():
     analysis.hold("z", (18, 2, 0))
     analysis.pull((18, 2, width), force, (0, 0, 1))
     analysis.press((hole.x + radius, hole.y, 3), pressure)
-    return Case(analysis, (0, 0, -force), 1.1, 0.27, (hole.x + radius, hole.y, 3))
+    return Case(analysis, (0, 0, -force), 0.8, 0.2, (hole.x + radius, hole.y, 3))
 
 
 def two_solids():
