@@ -262,7 +262,7 @@ void check_partitions(const MeshArguments& a, bool from_mesh) {
     throw CLI::ValidationError("--cell-decomposition", "is of a mesh, but the output is a surface");
   if (!a.cell_decomposition.empty() && a.partitions == 0 && !from_mesh)
     throw CLI::ValidationError("--cell-decomposition", "is of partitions; say how many with --partitions");
-  if (a.ghost_cells == io::GhostCells::none) return;
+  if (a.ghost_cells == GhostCells::off) return;
   if (!is_among(a.output, a.output_format, io::formats_with_ghost_cells()))
     throw CLI::ValidationError("--ghost-cells", fmt::format("{} has no place for ghost cells; use {}",
                                                             report::format_of(a.output, a.output_format),

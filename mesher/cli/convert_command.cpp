@@ -58,9 +58,9 @@ void write_soup(const MeshArguments& a, const std::vector<PolygonSoup>& soups) {
 /// Divides the mesh as the option says or, without it, as the input was divided.
 void divide(const MeshArguments& a, TetMesh& mesh) {
   if (a.partitions > 0) partition(mesh, a.partitions);
-  const char* const option = a.ghost_cells != io::GhostCells::none ? "--ghost-cells"
-                             : !a.cell_decomposition.empty()       ? "--cell-decomposition"
-                                                                   : nullptr;
+  const char* const option = a.ghost_cells != GhostCells::off ? "--ghost-cells"
+                             : !a.cell_decomposition.empty()  ? "--cell-decomposition"
+                                                              : nullptr;
   if (option != nullptr && mesh.tet_partition.empty())
     throw OptionError(
         fmt::format("{}: {} is not partitioned; say how with --partitions", option, a.inputs.front()));

@@ -13,6 +13,7 @@
 #include <variant>
 #include <vector>
 
+#include "common/xml_text.h"
 #include "io/file_writer.h"
 #include "process/failure.h"
 #include "process/interrupt.h"
@@ -72,16 +73,6 @@ Json failure_json(ExitCode code, std::string_view message, const PlcError* error
   return json;
 }
 
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char c : text) switch (c) {
-      case '&': result += "&amp;"; break;
-      case '<': result += "&lt;"; break;
-      default: result += c;
-    }
-  return result;
-}
-
 /// Returns a page without a mesh.
 std::string failure_page(const Json& json) {
   return fmt::format(
@@ -89,9 +80,9 @@ std::string failure_page(const Json& json) {
       "<h1>{}</h1>\n<p><strong>No mesh was written</strong> ({}, exit code {}, in the stage "
       "{}).</p>\n<p>{}</p>\n"
       "<pre>{}</pre>\n</body></html>\n",
-      escaped(report::json_text(json["inputs"])), json["status"].get<std::string>(),
-      json["exit_code"].get<int>(), escaped(json["stage"].get<std::string>()),
-      escaped(json["message"].get<std::string>()), escaped(report::json_text(json, 1)));
+      xml_text(report::json_text(json["inputs"])), json["status"].get<std::string>(),
+      json["exit_code"].get<int>(), xml_text(json["stage"].get<std::string>()),
+      xml_text(json["message"].get<std::string>()), xml_text(report::json_text(json, 1)));
 }
 
 /// Writes a report. If the path is a link, replaces the file that it names. Replaces regular files only:

@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "collarmesh/error.h"
+#include "collarmesh/io/size_field_io.h"
 #include "collarmesh/predict.h"
 #include "files/complex_input.h"
 #include "files/input_files.h"
@@ -55,7 +56,7 @@ std::vector<Prediction> predictions(const InfoArguments& arguments, const Plc& p
   if (arguments.predicted_sizes.empty()) return {};
   PipelineOptions options = arguments;
   if (!arguments.size_field_file.empty())
-    options.mesh.size_field = read_size_field(arguments.size_field_file, plc);
+    options.mesh.size_field = io::read_size_field(arguments.size_field_file, plc);
   process::stop_if_interrupted();
   const auto told = [&](Prediction prediction) {
     prediction.seconds += read;

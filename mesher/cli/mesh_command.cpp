@@ -10,6 +10,7 @@
 
 #include "collarmesh/error.h"
 #include "collarmesh/io/interfaces_io.h"
+#include "collarmesh/io/size_field_io.h"
 #include "collarmesh/partition.h"
 #include "common/thread_limit.h"
 #include "files/cell_decomposition.h"
@@ -95,7 +96,7 @@ class InputSource : public ComplexSource {
   void adapt(const Plc& plc, PipelineOptions& options) override {
     if (!arguments_.size_field_file.empty()) {
       size_field_use_ = std::make_shared<SizeFieldUse>(default_size(plc, arguments_.mesh));
-      options.mesh.size_field = read_size_field(arguments_.size_field_file, plc, size_field_use_);
+      options.mesh.size_field = io::read_size_field(arguments_.size_field_file, plc, size_field_use_);
     }
     if (input_.has_cad()) {
       options.exact = input_.exact_geometry(plc);

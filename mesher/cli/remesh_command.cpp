@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "collarmesh/error.h"
+#include "collarmesh/io/size_field_io.h"
 #include "collarmesh/remesh.h"
 #include "files/complex_input.h"
 #include "files/input_files.h"
@@ -19,7 +20,7 @@ namespace {
 void adapt(const RemeshArguments& arguments, const files::ComplexInput* input, const Plc& plc,
            PipelineOptions& options) {
   if (!arguments.size_field_file.empty())
-    options.mesh.size_field = read_size_field(arguments.size_field_file, plc);
+    options.mesh.size_field = io::read_size_field(arguments.size_field_file, plc);
   if (input == nullptr || !input->has_cad()) return;
   options.exact = input->exact_geometry(plc);
   options.exact_measures = input->exact_measures(plc);

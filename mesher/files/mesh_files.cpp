@@ -1,6 +1,6 @@
 #include "collarmesh/mesh_files.h"
 
-#include "collarmesh/size_field.h"
+#include "collarmesh/io/size_field_io.h"
 #include "collarmesh/surface_tolerance.h"
 #include "files/complex_input.h"
 
@@ -36,7 +36,7 @@ class FilesSource : public ComplexSource {
 
   void adapt(const Plc& plc, PipelineOptions& options) override {
     if (!options_.size_field_file.empty())
-      options.mesh.size_field = read_size_field(options_.size_field_file, plc);
+      options.mesh.size_field = io::read_size_field(options_.size_field_file, plc);
     if (!input_.has_cad()) return;
     options.exact = input_.exact_geometry(plc);
     options.exact_measures = input_.exact_measures(plc);

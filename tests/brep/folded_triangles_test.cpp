@@ -52,6 +52,21 @@ std::set<std::array<Index, 2>> border(const Triangles& triangles) {
   return sides;
 }
 
+/// Returns the number of edges at which triangles turn by more than 90 degrees.
+std::size_t count_folds(const std::vector<Point>& points, const Triangles& triangles) {
+  std::map<std::array<Index, 2>, Vector> normal_at;  // by directed side
+  std::size_t folds = 0;
+  for (const auto& [a, b, c] : triangles) {
+    const Vector normal = cross(points[b] - points[a], points[c] - points[a]);
+    for (const std::array<Index, 2>& side : {std::array{a, b}, std::array{b, c}, std::array{c, a}}) {
+      const auto across = normal_at.find({side[1], side[0]});
+      if (across != normal_at.end() && dot(across->second, normal) < 0) ++folds;
+      normal_at[side] = normal;
+    }
+  }
+  return folds;
+}
+
 TEST(FoldedTriangles, StayWhereThereAreNone) {
   const Grid grid(6);
   Triangles triangles = grid.triangles;

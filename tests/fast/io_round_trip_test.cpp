@@ -212,7 +212,7 @@ TEST(IoRoundTrip, PartitionsWithGhostCells) {
     for (const TetMesh& mesh : {partitioned(sample_mesh(2)), partitioned(second_order(sample_mesh(2)))}) {
       SCOPED_TRACE(format);
       const TemporaryFolder folder;
-      io::write_tet_mesh(folder.file("a" + format), mesh, {}, io::GhostCells::one_layer);
+      io::write_tet_mesh(folder.file("a" + format), mesh, {}, GhostCells::one_layer);
       expect_same(canonical(io::read_tet_mesh(folder.file("a" + format))), canonical(mesh));
     }
 }

@@ -1,6 +1,8 @@
 #include "folded_triangles.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <unordered_map>
 
@@ -10,25 +12,107 @@ namespace {
 
 using Triangle = std::array<Index, 3>;
 
-std::uint64_t key(Index from, Index to) { return std::uint64_t{from} << 32U | to; }
+/// Triangles that change, with the triangle at each directed side.
+class SidedTriangles {
+ protected:
+  /// Two triangles with a common side, and those that take their places if it is flipped.
+  struct Flip {
+    std::array<Index, 2> numbers;
+    std::array<Triangle, 2> triangles;
+  };
 
-/// The triangles of a face with their neighbours.
-class Unfolder {
- public:
-  Unfolder(const std::vector<Point>& points, std::vector<Triangle>& triangles)
-      : points_(points), triangles_(triangles), gone_(triangles.size(), false) {
+  /// Keeps references to both.
+  SidedTriangles(const std::vector<Point>& points, std::vector<Triangle>& triangles)
+      : points_(points), triangles_(triangles) {
     for (Index t = 0; t < triangles_.size(); ++t) add_sides(t);
   }
 
-  std::size_t count() const {
-    std::size_t folds = 0;
-    for (Index t = 0; t < triangles_.size(); ++t)
-      for (Index i = 0; i < 3; ++i) {
-        const Index other = across(t, i);
-        if (other != none && other < t && folded(triangles_[t], triangles_[other])) ++folds;
-      }
-    return folds;
+  Index corner(Index t, Index i) const { return triangles_[t][i % 3]; }
+  Index triangle_at(Index from, Index to) const {
+    const auto found = triangle_at_.find(key(from, to));
+    return found == triangle_at_.end() ? none : found->second;
   }
+  /// Returns the triangle on the other side of a side; none if there is none.
+  Index across(Index t, Index i) const { return triangle_at(corner(t, i + 1), corner(t, i)); }
+
+  /// Returns the flip of a side; nothing if the new side exists already or there is no triangle behind it.
+  std::optional<Flip> flip_of(Index t, Index side) const {
+    const Index a = corner(t, side), b = corner(t, side + 1), c = corner(t, side + 2),
+                other = across(t, side);
+    if (other == none) return std::nullopt;
+    Index d = none;
+    for (const Index p : triangles_[other])
+      if (p != a && p != b) d = p;
+    if (d == none || d == c || triangle_at(c, d) != none || triangle_at(d, c) != none) return std::nullopt;
+    return Flip{{t, other}, {Triangle{a, d, c}, Triangle{d, b, c}}};
+  }
+
+  void add_sides(Index t) {
+    for (Index i = 0; i < 3; ++i) triangle_at_[key(corner(t, i), corner(t, i + 1))] = t;
+  }
+  void remove_sides(Index t) {
+    for (Index i = 0; i < 3; ++i) triangle_at_.erase(key(corner(t, i), corner(t, i + 1)));
+  }
+
+  const std::vector<Point>& points_;
+  std::vector<Triangle>& triangles_;
+
+ private:
+  static std::uint64_t key(Index from, Index to) { return std::uint64_t{from} << 32U | to; }
+
+  std::unordered_map<std::uint64_t, Index> triangle_at_;  // by directed side
+};
+
+class Flipper : SidedTriangles {
+ public:
+  Flipper(const std::vector<Point>& points, double height, std::vector<Triangle>& triangles)
+      : SidedTriangles(points, triangles), height_(height) {}
+
+  void run() {
+    std::vector<Index> flat;
+    for (Index t = 0; t < triangles_.size(); ++t)
+      if (side_with_corner_on_it(t) != none) flat.push_back(t);
+    for (std::size_t left = 8 * flat.size(); left > 0 && !flat.empty(); --left) {
+      const Index t = flat.back();
+      flat.pop_back();
+      const Index side = side_with_corner_on_it(t);
+      const Index other = side == none ? none : flip(t, side);
+      if (other == none) continue;
+      for (const Index changed : {t, other})
+        if (side_with_corner_on_it(changed) != none) flat.push_back(changed);
+    }
+  }
+
+ private:
+  /// Returns the side i that passes through the opposite corner; none if there is none.
+  Index side_with_corner_on_it(Index t) const {
+    Index longest = 0;
+    for (Index i = 1; i < 3; ++i)
+      if (length(t, i) > length(t, longest)) longest = i;
+    const Point &a = points_[corner(t, longest)], &b = points_[corner(t, longest + 1)],
+                &c = points_[corner(t, longest + 2)];
+    return norm(cross(b - a, c - a)) <= height_ * length(t, longest) ? longest : none;
+  }
+  double length(Index t, Index i) const { return distance(points_[corner(t, i)], points_[corner(t, i + 1)]); }
+
+  /// Flips a side. Returns the triangle on its other side; none if the side stays.
+  Index flip(Index t, Index side) {
+    const std::optional<Flip> found = flip_of(t, side);
+    if (!found) return none;
+    for (const Index changed : found->numbers) remove_sides(changed);
+    for (std::size_t k = 0; k < 2; ++k) triangles_[found->numbers[k]] = found->triangles[k];
+    for (const Index changed : found->numbers) add_sides(changed);
+    return found->numbers[1];
+  }
+
+  double height_;
+};
+
+/// The triangles of a face with their neighbours.
+class Unfolder : SidedTriangles {
+ public:
+  Unfolder(const std::vector<Point>& points, std::vector<Triangle>& triangles)
+      : SidedTriangles(points, triangles), gone_(triangles.size(), false) {}
 
   void run(Index first_inner, double distance) {
     std::vector<Index> folded = folded_triangles();
@@ -46,19 +130,6 @@ class Unfolder {
   }
 
  private:
-  Index corner(Index t, Index i) const { return triangles_[t][i % 3]; }
-  void add_sides(Index t) {
-    for (Index i = 0; i < 3; ++i) triangle_at_[key(corner(t, i), corner(t, i + 1))] = t;
-  }
-  void remove_sides(Index t) {
-    for (Index i = 0; i < 3; ++i) triangle_at_.erase(key(corner(t, i), corner(t, i + 1)));
-  }
-  Index triangle_at(Index from, Index to) const {
-    const auto found = triangle_at_.find(key(from, to));
-    return found == triangle_at_.end() ? none : found->second;
-  }
-  Index across(Index t, Index i) const { return triangle_at(corner(t, i + 1), corner(t, i)); }
-
   Vector normal(const Triangle& t) const {
     return cross(points_[t[1]] - points_[t[0]], points_[t[2]] - points_[t[0]]);
   }
@@ -114,17 +185,9 @@ class Unfolder {
   /// Flips a side of a triangle if that leaves fewer folds.
   bool flip_one(Index t) {
     for (Index i = 0; i < 3; ++i) {
-      const Index other = across(t, i);
-      if (other == none) continue;
-      const Index a = corner(t, i), b = corner(t, i + 1), c = corner(t, i + 2);
-      Index d = none;
-      for (const Index p : triangles_[other])
-        if (p != a && p != b) d = p;
-      if (d == none || d == c || triangle_at(c, d) != none || triangle_at(d, c) != none) continue;
-      const std::array<Index, 2> two{t, other};
-      const std::array<Triangle, 2> flipped{Triangle{a, d, c}, Triangle{d, b, c}};
-      if (folds_around(two, flipped) >= folds_around(two, {})) continue;
-      replace(two, flipped);
+      const std::optional<Flip> flip = flip_of(t, i);
+      if (!flip || folds_around(flip->numbers, flip->triangles) >= folds_around(flip->numbers, {})) continue;
+      replace(flip->numbers, flip->triangles);
       return true;
     }
     return false;
@@ -208,18 +271,15 @@ class Unfolder {
 
   static constexpr std::size_t most_in_star = 64;
 
-  const std::vector<Point>& points_;
-  std::vector<Triangle>& triangles_;
   std::vector<bool> gone_;
-  std::unordered_map<std::uint64_t, Index> triangle_at_;  // by directed side
   std::vector<Index> changed_;
 };
 
 }  // namespace
 
-std::size_t count_folds(const std::vector<Point>& points, const std::vector<Triangle>& triangles) {
-  std::vector<Triangle> copy = triangles;
-  return Unfolder(points, copy).count();
+void flip_flat_triangles(const std::vector<Point>& points, double height,
+                         std::vector<std::array<Index, 3>>& triangles) {
+  Flipper(points, height, triangles).run();
 }
 
 void unfold(const std::vector<Point>& points, Index first_inner, double distance,

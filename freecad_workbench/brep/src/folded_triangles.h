@@ -7,13 +7,17 @@
 
 namespace collarmesh::brep {
 
-/// Returns the number of edges at which triangles of a face turn by more than 90 degrees, which no surface
-/// does.
-std::size_t count_folds(const std::vector<Point>& points, const std::vector<std::array<Index, 3>>& triangles);
+/// Flips triangles without height out of a face's triangulation: triangles in the parameter plane may lie on
+/// one line in space, such as those along a ruling that ends in a cone's apex. If a corner lies on the
+/// opposite side, within `height` (absolute) of it, the side is replaced by an edge to the corner. Sides at
+/// the border of the face stay. Cost: near linear.
+void flip_flat_triangles(const std::vector<Point>& points, double height,
+                         std::vector<std::array<Index, 3>>& triangles);
 
-/// Repairs triangles of a face that are folded onto each other. Flips edges, and merges points that lie
-/// inside the face (those from `first_inner` on) with a neighbour if the surface stays within `distance`
-/// (absolute) of them. Some folds may remain. Cost: near linear.
+/// Repairs triangles of a face that are folded onto each other: at their edges they turn by more than 90
+/// degrees, which no surface does. Flips edges, and merges points that lie inside the face (those from
+/// `first_inner` on) with a neighbour if the surface stays within `distance` (absolute) of them. Some folds
+/// may remain. Cost: near linear.
 void unfold(const std::vector<Point>& points, Index first_inner, double distance,
             std::vector<std::array<Index, 3>>& triangles);
 

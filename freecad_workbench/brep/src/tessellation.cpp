@@ -2,7 +2,6 @@
 #include "tessellation.h"
 
 #include "face_mending.h"
-#include "flat_triangles.h"
 #include "folded_triangles.h"
 #include "free_chords.h"
 #include "points.h"

@@ -238,7 +238,3 @@ def as_number(button):
     """Returns standard buttons of panels in the type that FreeCAD requires; in PySide6 (FreeCAD 1.x) they are
     an enumeration."""
     return button.value if hasattr(button, "value") else int(button)
-
-
-def has_gui():
-    return bool(FreeCAD.GuiUp)

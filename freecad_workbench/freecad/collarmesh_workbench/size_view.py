@@ -4,7 +4,8 @@ import os
 
 import FreeCADGui
 
-from . import compatibility, other_panel, size_objects, views
+from . import size_objects, views
+from .object_view import ObjectView
 from .size_panel import SizePanel
 
 COLOUR = (0.91, 0.35, 0.05)
@@ -15,7 +16,7 @@ def icon_of(kind):
     return os.path.join(views.ICONS, f"size_{kind.lower()}.svg")
 
 
-class SizeViewProvider(compatibility.Stateless):
+class SizeViewProvider(ObjectView):
     def __init__(self, view):
         view.Proxy = self
         view.ShapeColor = view.LineColor = COLOUR
@@ -25,37 +26,17 @@ class SizeViewProvider(compatibility.Stateless):
             view.LineWidth = 4
         view.Selectable = False  # so that the mouse can reach objects inside
 
-    def attach(self, view):
-        self.ViewObject = view
-        self.Object = view.Object
-
     def getIcon(self):
         return icon_of(size_objects.kind_of(self.Object))
 
     def new_panel(self):
         return SizePanel(self.Object)
 
-    def setEdit(self, view, mode=0):
-        if mode != 0:
-            return None  # FreeCAD's own dragger, opened by "Transform" in the context menu
-        if other_panel.is_in_the_way():
-            return False
-        view.show()
-        self.panel = self.new_panel()
-        FreeCADGui.Control.showDialog(self.panel)
-        return True
-
     def unsetEdit(self, _view, mode=0):
         if mode != 0:
             return None
         self.panel.close()
         FreeCADGui.Control.closeDialog()
-        return True
-
-    def doubleClicked(self, view):
-        document = FreeCADGui.getDocument(view.Object.Document)
-        if not document.getInEdit():
-            document.setEdit(view.Object.Name)
         return True
 
 

@@ -75,12 +75,7 @@ def take_gmsh(old, new):
             setattr(new, name, getattr(old, name))
     new.KeepApart = not getattr(old, "CoherenceMesh", True)
     lost = [name for name, unused in ONLY_GMSH if getattr(old, name, unused) != unused]
-    notes = [
-        translate("collarmesh", "Settings of Gmsh that collarmesh does not have: {names}").format(
-            names=", ".join(lost)
-        )
-    ]
-    return notes if lost else []
+    return note_on(lost, translate("collarmesh", "Settings of Gmsh that collarmesh does not have: {names}"))
 
 
 def take_sizes_by_place(refinements, new):
@@ -100,12 +95,8 @@ def take_sizes_by_place(refinements, new):
         if compatibility.is_suppressed(each):
             made.addProperty("App::PropertyBool", "Suppressed", "Size")
             made.Suppressed = True
-        made.recompute()
-        label = each.Label
-        new.Document.removeObject(each.Name)
-        made.Label = label
-    text = translate("collarmesh", "Refinements of Gmsh that collarmesh does not have: {names}")
-    return [text.format(names=", ".join(lost))] if lost else []
+        take_place(made, each)
+    return note_on(lost, translate("collarmesh", "Refinements of Gmsh that collarmesh does not have: {names}"))
 
 
 def take_layers(layers, new):
@@ -121,12 +112,21 @@ def take_layers(layers, new):
         made.References = each.References
         made.FirstHeight = each.MinimumThickness
         made.Growth, made.Count = max(1, each.GrowthRate), max(1, each.NumberOfLayers)
-        made.recompute()
-        label = each.Label
-        new.Document.removeObject(each.Name)
-        made.Label = label
-    text = translate("collarmesh", "Boundary layers of Gmsh on edges, which collarmesh does not have: {names}")
-    return [text.format(names=", ".join(lost))] if lost else []
+        take_place(made, each)
+    return note_on(lost, translate("collarmesh", "Boundary layers of Gmsh on edges, which collarmesh does not have: {names}"))
+
+
+def take_place(made, old):
+    """Removes `old` and gives its label to `made`."""
+    made.recompute()
+    label = old.Label
+    old.Document.removeObject(old.Name)
+    made.Label = label
+
+
+def note_on(names, text):
+    """Returns the note with these names in it, as a list, which is empty if there are no names."""
+    return [text.format(names=", ".join(names))] if names else []
 
 
 def take_netgen(old, new):
@@ -180,9 +180,8 @@ def keep_for_later(old, new):
         if objects:
             new.addProperty("App::PropertyLinkList", name, "Base", doc("Sizes and layers of collarmesh"), 4)
             setattr(new, name, objects)
-            kept += objects
-    text = translate("collarmesh", "Gmsh does not heed these sizes and layers: {names}")
-    return [text.format(names=", ".join(each.Label for each in kept))] if kept else []
+            kept += [each.Label for each in objects]
+    return note_on(kept, translate("collarmesh", "Gmsh does not heed these sizes and layers: {names}"))
 
 
 def replace(old, new):

@@ -8,8 +8,8 @@ import math
 import numpy
 
 from . import compatibility, inputs, mesh_properties
-from .program import MesherError, Settings
-from .translations import doc, translate
+from .program import Settings
+from .translations import doc
 
 SHAPE, SETTINGS = "MeshedShape", "MeshedSettings"
 MARKS = 8  # number of values that identify a shape
@@ -114,11 +114,7 @@ def rounded(value):
 
 def state_of(obj):
     """Returns the State that a new mesh of the object would have. Raises MesherError."""
-    part = compatibility.meshed_object(obj)
-    if part is None:
-        raise MesherError(
-            translate("collarmesh", "{label}: no object is chosen to be meshed.").format(label=obj.Label)
-        )
+    part = mesh_properties.part_to_mesh(obj)
     groups = [
         [group.Name, [[linked.Name, list(names)] for linked, names in group.References]]
         for group in obj.MeshGroupList if not compatibility.is_suppressed(group)

@@ -2,12 +2,13 @@
 
 import FreeCADGui
 
-from . import compatibility, elements, layer_objects, mesh_menu, mesh_properties, other_panel, size_objects, up_to_date, views
+from . import compatibility, elements, layer_objects, mesh_menu, mesh_properties, size_objects, up_to_date, views
+from .object_view import ObjectView
 from .task_panel import MeshTaskPanel
 from .views import ICON, OUT_OF_DATE_ICON
 
 
-class MeshViewProvider(compatibility.Stateless):
+class MeshViewProvider(ObjectView):
     out_of_date = False
     panel = None  # set while the panel is open
     is_new = False  # the button has made the object, and it has no mesh yet
@@ -15,10 +16,6 @@ class MeshViewProvider(compatibility.Stateless):
 
     def __init__(self, view):
         view.Proxy = self
-
-    def attach(self, view):
-        self.ViewObject = view
-        self.Object = view.Object
 
     def getIcon(self):
         return OUT_OF_DATE_ICON if self.out_of_date else ICON
@@ -66,25 +63,12 @@ class MeshViewProvider(compatibility.Stateless):
     def setupContextMenu(self, _view, menu):
         mesh_menu.fill(menu, self.Object)
 
-    def setEdit(self, view, mode=0):
-        if mode != 0:
-            return None
-        if other_panel.is_in_the_way():
-            return False
-        view.show()
-        self.panel = MeshTaskPanel(view.Object)
-        FreeCADGui.Control.showDialog(self.panel)
-        return True
+    def new_panel(self):
+        return MeshTaskPanel(self.Object)
 
     def unsetEdit(self, _view, _mode=0):
         self.panel = None
         FreeCADGui.Control.closeDialog()
-        return True
-
-    def doubleClicked(self, view):
-        document = FreeCADGui.getDocument(view.Object.Document)
-        if not document.getInEdit():
-            document.setEdit(view.Object.Name)
         return True
 
 

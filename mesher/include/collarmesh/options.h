@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include "collarmesh/io/tet_mesh_io.h"
+#include "collarmesh/partition.h"
 #include "collarmesh/pipeline.h"
 
 /// The table of options, from which the command line, its help, manual page and completions, the Python
@@ -31,7 +31,7 @@ struct RunOptions : PipelineOptions {
   std::string names = {};                     ///< names of features, by number or place: a file or its text
   std::vector<std::string> given_names = {};  ///< names of features, "fixed=11"
   std::string size_field_file = {};           ///< the file from which `mesh.size_field` is read
-  io::GhostCells ghost_cells = io::GhostCells::none;
+  GhostCells ghost_cells = GhostCells::off;
   std::string cell_decomposition = {};  ///< file for OpenFOAM's list of partitions
   double scale = 1;                     ///< factor of the coordinates that are written
   TriangleElements triangle_elements = TriangleElements::shell;

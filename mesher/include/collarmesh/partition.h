@@ -6,6 +6,9 @@
 
 namespace collarmesh {
 
+/// Whether the file of each partition also has the tets of other partitions that share a vertex with it.
+enum class GhostCells { off, one_layer };
+
 /// The balance of a partition and the size of the interfaces between its parts.
 struct PartitionMeasures {
   std::size_t partitions = 0;             ///< number of partitions that have tets; 0: the mesh is not

@@ -38,12 +38,6 @@ class SizeFieldUse {
   std::deque<std::atomic<bool>> used_;
 };
 
-/// Reads a size field: .json (a description, see `size_field_from_json`), or .vtu or .msh (a mesh with a
-/// scalar field of target edge lengths on its points). The field records in `use`, which it keeps, the sizes
-/// that each source asks for. Throws ReadError or OptionError.
-SizeField read_size_field(const std::string& path, const Plc& plc,
-                          const std::shared_ptr<SizeFieldUse>& use = nullptr);
-
 /// Makes a size field from a JSON text: the smallest of the sizes of its sources. A source asks for `size`
 /// inside it and up to the distance `within` from it (default 0); beyond, the size grows by `growth` (default
 /// 0.3) per unit length.

@@ -7,6 +7,8 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "collarmesh/error.h"
@@ -73,10 +75,6 @@ py::array owned(std::vector<T> values, py::ssize_t columns) {
   return array;
 }
 
-template <class T>
-py::array signed_array(const std::vector<T>& items) {
-  return owned(std::vector<std::int64_t>(items.begin(), items.end()), 1);
-}
 /// Returns indices; `none` becomes -1.
 py::array index_array(const std::vector<Index>& items) {
   std::vector<std::int64_t> wide;
@@ -144,8 +142,8 @@ py::list periodic_of(const std::vector<TetMesh::PeriodicFaces>& periodic) {
     std::vector<double> rows;
     for (const Vector& row : faces.motion.rows) rows.insert(rows.end(), {row.x, row.y, row.z});
     const Vector& shift = faces.motion.shift;
-    each["first"] = owned(std::vector<std::int64_t>(faces.first.begin(), faces.first.end()), 1);
-    each["second"] = owned(std::vector<std::int64_t>(faces.second.begin(), faces.second.end()), 1);
+    each["first"] = owned(faces.first, 1);
+    each["second"] = owned(faces.second, 1);
     each["rotation"] = owned(std::move(rows), 3);
     each["shift"] = owned(std::vector<double>{shift.x, shift.y, shift.z}, 1);
     each["nodes"] = index_array(faces.nodes);
@@ -228,82 +226,92 @@ py::dict arrays_of(const PolygonSoup& soup) {
 
 namespace {
 
-std::vector<std::array<Index, 2>> region_pairs(const py::dict& arrays, const char* key) {
-  const auto regions = numbers<Index>(arrays, key);
-  std::vector<std::array<Index, 2>> pairs;
-  for (std::size_t i = 0; i + 1 < regions.size(); i += 2) pairs.push_back({regions[i], regions[i + 1]});
-  return pairs;
+/// Calls visit(key, array) for the arrays of whole numbers of a mesh, and visit(key, array, points) for those
+/// that hold numbers of points.
+template <class Mesh, class Visit>
+void for_each_array(Mesh& mesh, const Visit& visit) {
+  const std::size_t points = mesh.points.size();
+  visit("tets", mesh.tets, points);
+  visit("tet_region", mesh.tet_region);
+  visit("tet_tag", mesh.tet_tag);
+  visit("tet_collar", mesh.tet_collar);
+  visit("tet_thin", mesh.tet_thin);
+  visit("tet_crease", mesh.tet_crease);
+  visit("tet_partition", mesh.tet_partition);
+  visit("tet_mid_nodes", mesh.tet_mid_nodes, points);
+  visit("faces", mesh.faces, points);
+  visit("face_regions", mesh.face_regions);
+  visit("face_patch", mesh.face_patch);
+  visit("face_tag", mesh.face_tag);
+  visit("face_mid_nodes", mesh.face_mid_nodes, points);
+  visit("edges", mesh.edges, points);
+  visit("edge_curve", mesh.edge_curve);
+  visit("edge_tag", mesh.edge_tag);
+  visit("edge_mid_nodes", mesh.edge_mid_nodes, points);
+  auto& layers = mesh.layers;
+  visit("prisms", layers.prisms, points);
+  visit("prism_region", layers.prism_region);
+  visit("prism_tag", layers.prism_tag);
+  visit("prism_layer", layers.prism_layer);
+  visit("prism_mid_nodes", layers.prism_mid_nodes, points);
+  visit("pyramids", layers.pyramids, points);
+  visit("pyramid_region", layers.pyramid_region);
+  visit("pyramid_tag", layers.pyramid_tag);
+  visit("pyramid_layer", layers.pyramid_layer);
+  visit("pyramid_mid_nodes", layers.pyramid_mid_nodes, points);
+  visit("quads", layers.quads, points);
+  visit("quad_regions", layers.quad_regions);
+  visit("quad_patch", layers.quad_patch);
+  visit("quad_tag", layers.quad_tag);
+  visit("quad_mid_nodes", layers.quad_mid_nodes, points);
+  visit("tet_layer", layers.tet_layer);
 }
 
-LayerCells layers_of(const py::dict& arrays, std::size_t points) {
-  LayerCells layers;
-  layers.prisms = rows<6>(arrays, "prisms", points);
-  layers.prism_region = numbers<Index>(arrays, "prism_region");
-  layers.prism_tag = numbers<Tag>(arrays, "prism_tag");
-  layers.prism_layer = numbers<std::uint16_t>(arrays, "prism_layer");
-  layers.prism_mid_nodes = rows<9>(arrays, "prism_mid_nodes", points);
-  layers.pyramids = rows<5>(arrays, "pyramids", points);
-  layers.pyramid_region = numbers<Index>(arrays, "pyramid_region");
-  layers.pyramid_tag = numbers<Tag>(arrays, "pyramid_tag");
-  layers.pyramid_layer = numbers<std::uint16_t>(arrays, "pyramid_layer");
-  layers.pyramid_mid_nodes = rows<8>(arrays, "pyramid_mid_nodes", points);
-  layers.quads = rows<4>(arrays, "quads", points);
-  layers.quad_regions = region_pairs(arrays, "quad_regions");
-  layers.quad_patch = numbers<Index>(arrays, "quad_patch");
-  layers.quad_tag = numbers<Tag>(arrays, "quad_tag");
-  layers.quad_mid_nodes = rows<4>(arrays, "quad_mid_nodes", points);
-  layers.tet_layer = numbers<std::uint16_t>(arrays, "tet_layer");
-  return layers;
-}
+struct Reader {
+  template <class T>
+  void operator()(const char* key, std::vector<T>& items) const {
+    items = numbers<T>(arrays, key);
+  }
+  void operator()(const char* key, std::vector<std::array<Index, 2>>& regions) const {
+    const auto flat = numbers<Index>(arrays, key);
+    for (std::size_t i = 0; i + 1 < flat.size(); i += 2) regions.push_back({flat[i], flat[i + 1]});
+  }
+  template <std::size_t columns>
+  void operator()(const char* key, std::vector<std::array<Index, columns>>& nodes, std::size_t points) const {
+    nodes = rows<columns>(arrays, key, points);
+  }
+  void operator()(const char* key, std::vector<Index>& nodes, std::size_t points) const {
+    for (const auto& row : rows<1>(arrays, key, points)) nodes.push_back(row[0]);
+  }
 
-void add_layers(LayerCells layers, py::dict& arrays) {
-  arrays["prisms"] = index_array(layers.prisms);
-  arrays["prism_region"] = index_array(layers.prism_region);
-  arrays["prism_tag"] = owned(std::move(layers.prism_tag), 1);
-  arrays["prism_layer"] = signed_array(layers.prism_layer);
-  arrays["prism_mid_nodes"] = index_array(layers.prism_mid_nodes);
-  arrays["pyramids"] = index_array(layers.pyramids);
-  arrays["pyramid_region"] = index_array(layers.pyramid_region);
-  arrays["pyramid_tag"] = owned(std::move(layers.pyramid_tag), 1);
-  arrays["pyramid_layer"] = signed_array(layers.pyramid_layer);
-  arrays["pyramid_mid_nodes"] = index_array(layers.pyramid_mid_nodes);
-  arrays["quads"] = index_array(layers.quads);
-  arrays["quad_regions"] = index_array(layers.quad_regions);
-  arrays["quad_patch"] = index_array(layers.quad_patch);
-  arrays["quad_tag"] = owned(std::move(layers.quad_tag), 1);
-  arrays["quad_mid_nodes"] = index_array(layers.quad_mid_nodes);
-  arrays["tet_layer"] = signed_array(layers.tet_layer);
-}
+  const py::dict& arrays;
+};
+
+struct Writer {
+  template <class T>
+  void operator()(const char* key, std::vector<T>& items, std::size_t = 0) const {
+    if constexpr (std::is_same_v<T, Tag> || std::is_same_v<T, std::uint8_t>)
+      arrays[key] = owned(std::move(items), 1);
+    else if constexpr (std::is_same_v<T, std::uint16_t>)
+      arrays[key] = owned(std::vector<std::int64_t>(items.begin(), items.end()), 1);
+    else
+      arrays[key] = index_array(items);
+  }
+
+  py::dict& arrays;
+};
 
 }  // namespace
 
 TetMesh tet_mesh_of(const py::dict& arrays) {
   TetMesh mesh;
   mesh.points = points(arrays, "points");
-  const std::size_t n = mesh.points.size();
-  mesh.tets = rows<4>(arrays, "tets", n);
-  mesh.tet_region = numbers<Index>(arrays, "tet_region");
-  mesh.tet_tag = numbers<Tag>(arrays, "tet_tag");
-  mesh.tet_collar = numbers<std::uint8_t>(arrays, "tet_collar");
-  mesh.tet_thin = numbers<std::uint8_t>(arrays, "tet_thin");
-  mesh.tet_crease = numbers<Tag>(arrays, "tet_crease");
-  mesh.tet_partition = numbers<Index>(arrays, "tet_partition");
-  mesh.faces = rows<3>(arrays, "faces", n);
-  mesh.face_regions = region_pairs(arrays, "face_regions");
-  mesh.face_patch = numbers<Index>(arrays, "face_patch");
-  mesh.face_tag = numbers<Tag>(arrays, "face_tag");
-  mesh.edges = rows<2>(arrays, "edges", n);
-  mesh.edge_curve = numbers<Index>(arrays, "edge_curve");
-  mesh.edge_tag = numbers<Tag>(arrays, "edge_tag");
-  mesh.tet_mid_nodes = rows<6>(arrays, "tet_mid_nodes", n);
-  mesh.face_mid_nodes = rows<3>(arrays, "face_mid_nodes", n);
-  for (const auto& row : rows<1>(arrays, "edge_mid_nodes", n)) mesh.edge_mid_nodes.push_back(row[0]);
+  for_each_array(mesh, Reader{arrays});
   const auto dimension = numbers<std::uint8_t>(arrays, "feature_dimension");
   const auto feature = numbers<Index>(arrays, "feature");
   for (std::size_t i = 0; i < dimension.size(); ++i) mesh.features.push_back({dimension[i], feature[i]});
-  mesh.layers = layers_of(arrays, n);
   mesh.names = names_of(arrays);
-  mesh.periodic = periodic_of(arrays, n);
+  mesh.periodic = periodic_of(arrays, mesh.points.size());
   if (arrays["cad_names"].cast<bool>()) mesh.group_names = GroupNames::cad;
   return mesh;
 }
@@ -324,23 +332,7 @@ py::array partition_array(const TetMesh& mesh) { return index_array(mesh.tet_par
 py::dict arrays_of(TetMesh mesh) {
   py::dict arrays;
   arrays["points"] = point_array(mesh.points);
-  arrays["tets"] = index_array(mesh.tets);
-  arrays["tet_region"] = index_array(mesh.tet_region);
-  arrays["tet_tag"] = owned(std::move(mesh.tet_tag), 1);
-  arrays["tet_collar"] = owned(std::move(mesh.tet_collar), 1);
-  arrays["tet_thin"] = owned(std::move(mesh.tet_thin), 1);
-  arrays["tet_crease"] = owned(std::move(mesh.tet_crease), 1);
-  arrays["tet_partition"] = index_array(mesh.tet_partition);
-  arrays["tet_mid_nodes"] = index_array(mesh.tet_mid_nodes);
-  arrays["faces"] = index_array(mesh.faces);
-  arrays["face_regions"] = index_array(mesh.face_regions);
-  arrays["face_tag"] = owned(std::move(mesh.face_tag), 1);
-  arrays["face_patch"] = index_array(mesh.face_patch);
-  arrays["face_mid_nodes"] = index_array(mesh.face_mid_nodes);
-  arrays["edges"] = index_array(mesh.edges);
-  arrays["edge_tag"] = owned(std::move(mesh.edge_tag), 1);
-  arrays["edge_curve"] = index_array(mesh.edge_curve);
-  arrays["edge_mid_nodes"] = index_array(mesh.edge_mid_nodes);
+  for_each_array(mesh, Writer{arrays});
   std::vector<std::uint8_t> dimension;
   std::vector<Index> feature;
   for (const TetMesh::VertexFeature& f : mesh.features) {
@@ -349,7 +341,6 @@ py::dict arrays_of(TetMesh mesh) {
   }
   arrays["feature_dimension"] = owned(std::move(dimension), 1);
   arrays["feature"] = index_array(feature);
-  add_layers(std::move(mesh.layers), arrays);
   arrays["names"] = names_of(mesh.names);
   arrays["periodic"] = periodic_of(mesh.periodic);
   arrays["cad_names"] = mesh.group_names == GroupNames::cad;

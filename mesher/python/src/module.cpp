@@ -3,6 +3,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -53,12 +54,6 @@ Inputs inputs_of(const py::list& given) {
   return inputs;
 }
 
-/// A complex and the input that it came from, which must stay alive because other data refer to it.
-struct Complex {
-  std::optional<files::ComplexInput> input;
-  Plc plc;
-};
-
 files::ComplexInput read(const Inputs& inputs, const Options& options, Watch& watch) {
   watch.begin_stage("read");
   files::InputReading reading;
@@ -77,22 +72,56 @@ files::ComplexInput read(const Inputs& inputs, const Options& options, Watch& wa
   return input;
 }
 
-void build(const Inputs& inputs, const Options& options, Watch& watch, Complex& complex) {
-  complex.input.emplace(read(inputs, options, watch));
+/// The data that a call owns while its work runs. Classes derived from it add its results.
+struct Call {
+  Inputs inputs;
+  Options options;
+  std::optional<files::ComplexInput> input = {};
+  Plc plc = {};  // refers to the input
+};
+
+template <class Kind>
+std::shared_ptr<Kind> new_call(const py::list& inputs, const py::dict& options) {
+  const auto call = std::make_shared<Kind>();
+  call->inputs = inputs_of(inputs);
+  call->options = options_of(options);
+  return call;
+}
+
+template <class Kind>
+void run(const std::shared_ptr<Kind>& call, const std::function<void(Kind&, Watch&)>& work,
+         const py::object& progress = py::none()) {
+  run_watched([call, work](Watch& watch) { work(*call, watch); }, progress, call->options.mesh.time_limit);
+}
+
+void read(Call& call, Watch& watch) { call.input.emplace(read(call.inputs, call.options, watch)); }
+
+void build(Call& call, Watch& watch) {
+  read(call, watch);
   watch.begin_stage("complex");
-  complex.plc = complex.input->build(options.complex, options.repair);
+  call.plc = call.input->build(call.options.complex, call.options.repair);
   watch.stop_if_asked();
+}
+
+/// Sets options that depend on the complex.
+void adapt(const Plc& plc, const Options& given, const files::ComplexInput* input, PipelineOptions& options) {
+  if (SizeField field = size_field_for(plc, given)) options.mesh.size_field = std::move(field);
+  if (input == nullptr || !input->has_cad()) return;
+  options.exact = input->exact_geometry(plc);
+  options.exact_measures = input->exact_measures(plc);
+}
+
+/// Throws if a run ended early.
+void require_complete(const MeshResult& result) {
+  if (result.status == MeshStatus::budget_hit) throw BudgetSpent(result.message);
+  if (result.status == MeshStatus::cancelled) throw Cancelled(result.message);
 }
 
 py::object parsed(const nlohmann::ordered_json& json) {
   return py::module_::import("json").attr("loads")(json.dump());
 }
 
-/// The data that a call owns while its work runs, and its results.
-struct MeshCall {
-  Inputs inputs;
-  Options options;
-  std::optional<files::ComplexInput> input;
+struct MeshCall : Call {
   SoupPipelineResult run;
 };
 
@@ -107,11 +136,7 @@ class InputSource : public ComplexSource {
   }
 
   void adapt(const Plc& plc, PipelineOptions& options) override {
-    if (SizeField field = size_field_for(plc, options_)) options.mesh.size_field = std::move(field);
-    if (input_.has_cad()) {
-      options.exact = input_.exact_geometry(plc);
-      options.exact_measures = input_.exact_measures(plc);
-    }
+    python::adapt(plc, options_, &input_, options);
   }
 
  private:
@@ -120,15 +145,13 @@ class InputSource : public ComplexSource {
 };
 
 void mesh(MeshCall& call, Watch& watch) {
-  call.input.emplace(read(call.inputs, call.options, watch));
+  read(call, watch);
   PipelineOptions options = call.options;
   options.mesh.time_limit = 0;  // run_watched limits the time of the whole call
   InputSource source(call.options, *call.input);
   call.run = run_pipeline(source, options, watch.execution());
-  MeshResult& result = call.run.result;
-  if (result.status == MeshStatus::budget_hit) throw BudgetSpent(result.message);
-  if (result.status == MeshStatus::cancelled) throw Cancelled(result.message);
-  if (call.input->has_cad()) result.mesh.group_names = GroupNames::cad;
+  require_complete(call.run.result);
+  if (call.input->has_cad()) call.run.result.mesh.group_names = GroupNames::cad;
 }
 
 std::vector<std::string> warnings_of(const Plc& plc) {
@@ -138,11 +161,8 @@ std::vector<std::string> warnings_of(const Plc& plc) {
 }
 
 py::dict mesh_of(const py::list& inputs, const py::dict& options, const py::object& progress) {
-  const auto call = std::make_shared<MeshCall>();
-  call->inputs = inputs_of(inputs);
-  call->options = options_of(options);
-  const double time_limit = call->options.mesh.time_limit;
-  run_watched([call](Watch& watch) { mesh(*call, watch); }, progress, time_limit);
+  const auto call = new_call<MeshCall>(inputs, options);
+  run<MeshCall>(call, mesh, progress);
   py::dict arrays = arrays_of(std::move(call->run.result.mesh));
   arrays["status_message"] = call->run.result.message;
   arrays["check"] = parsed(report::check_json(call->run.check));
@@ -155,11 +175,8 @@ py::dict mesh_of(const py::list& inputs, const py::dict& options, const py::obje
   return arrays;
 }
 
-struct RemeshCall {
+struct RemeshCall : Call {
   TetMesh mesh;
-  Inputs against;
-  Options options;
-  std::optional<files::ComplexInput> input;
   RemeshResult run;
 };
 
@@ -167,33 +184,23 @@ void remesh(RemeshCall& call, Watch& watch) {
   watch.begin_stage("complex");
   PipelineOptions options = call.options;
   options.mesh.time_limit = 0;  // run_watched limits the time of the whole call
-  const auto adapt = [&](const Plc& plc, PipelineOptions& adapted) {
-    if (SizeField field = size_field_for(plc, call.options)) adapted.mesh.size_field = std::move(field);
-    if (!call.input || !call.input->has_cad()) return;
-    adapted.exact = call.input->exact_geometry(plc);
-    adapted.exact_measures = call.input->exact_measures(plc);
+  const auto adapt_to = [&](const Plc& plc, PipelineOptions& adapted) {
+    adapt(plc, call.options, call.input ? &*call.input : nullptr, adapted);
   };
-  if (call.against.paths.empty() && call.against.soups.empty()) {
-    call.run = collarmesh::remesh(call.mesh, options, adapt, watch.execution());
+  if (call.inputs.paths.empty() && call.inputs.soups.empty()) {
+    call.run = collarmesh::remesh(call.mesh, options, adapt_to, watch.execution());
   } else {
-    call.input.emplace(read(call.against, call.options, watch));
-    watch.begin_stage("complex");
-    const Plc plc = call.input->build(call.options.complex, call.options.repair);
-    call.run = collarmesh::remesh(call.mesh, plc, options, adapt, watch.execution());
+    build(call, watch);
+    call.run = collarmesh::remesh(call.mesh, call.plc, options, adapt_to, watch.execution());
   }
-  const MeshResult& result = call.run.result;
-  if (result.status == MeshStatus::budget_hit) throw BudgetSpent(result.message);
-  if (result.status == MeshStatus::cancelled) throw Cancelled(result.message);
+  require_complete(call.run.result);
 }
 
 py::dict remesh_mesh(const py::dict& mesh, const py::list& against, const py::dict& options,
                      const py::object& progress) {
-  const auto call = std::make_shared<RemeshCall>();
+  const auto call = new_call<RemeshCall>(against, options);
   call->mesh = tet_mesh_of(mesh);
-  call->against = inputs_of(against);
-  call->options = options_of(options);
-  const double time_limit = call->options.mesh.time_limit;
-  run_watched([call](Watch& watch) { remesh(*call, watch); }, progress, time_limit);
+  run<RemeshCall>(call, remesh, progress);
   py::dict arrays = arrays_of(std::move(call->run.result.mesh));
   arrays["status_message"] = call->run.result.message;
   arrays["check"] = parsed(report::check_json(call->run.check));
@@ -205,75 +212,56 @@ py::dict remesh_mesh(const py::dict& mesh, const py::list& against, const py::di
   return arrays;
 }
 
-struct CheckCall {
+struct CheckCall : Call {
   TetMesh mesh;
-  Inputs inputs;
-  Options options;
-  std::optional<files::ComplexInput> input;
   CheckReport report;
 };
 
 py::object check_mesh(const py::dict& mesh, const py::list& against, const py::dict& options) {
-  const auto call = std::make_shared<CheckCall>();
+  const auto call = new_call<CheckCall>(against, options);
   call->mesh = tet_mesh_of(mesh);
-  call->inputs = inputs_of(against);
-  call->options = options_of(options);
-  const auto work = [call](Watch& watch) {
-    call->input.emplace(read(call->inputs, call->options, watch));
+  run<CheckCall>(call, [](CheckCall& own, Watch& watch) {
+    read(own, watch);
     watch.begin_stage("check");
-    call->report = files::check_against(call->mesh, *call->input, call->options, watch.execution());
+    own.report = files::check_against(own.mesh, *own.input, own.options, watch.execution());
     watch.stop_if_asked();
-  };
-  run_watched(work, py::none(), call->options.mesh.time_limit);
+  });
   return parsed(report::check_json(call->report));
 }
 
-struct ComplexCall {
-  Inputs inputs;
-  Options options;
-  Complex complex;
+struct ComplexCall : Call {
   PlcSummary summary;
 };
 
 py::object info(const py::list& inputs, const py::dict& options) {
-  const auto call = std::make_shared<ComplexCall>();
-  call->inputs = inputs_of(inputs);
-  call->options = options_of(options);
-  const auto work = [call](Watch& watch) {
+  const auto call = new_call<ComplexCall>(inputs, options);
+  run<ComplexCall>(call, [](ComplexCall& own, Watch& watch) {
     try {
-      build(call->inputs, call->options, watch, call->complex);
+      build(own, watch);
     } catch (const PlcError&) {
-      call->options.complex.require_solid = false;
-      build(call->inputs, call->options, watch, call->complex);
+      own.options.complex.require_solid = false;
+      build(own, watch);
     }
-    call->summary = summarize(call->complex.plc, call->options.mesh.bounds.crease_angle);
-  };
-  run_watched(work, py::none(), call->options.mesh.time_limit);
-  nlohmann::ordered_json json{{"complex", report::complex_json(call->complex.plc, call->summary)},
-                              {"repair", report::repair_json(call->complex.input->repaired())}};
+    own.summary = summarize(own.plc, own.options.mesh.bounds.crease_angle);
+  });
+  nlohmann::ordered_json json{{"complex", report::complex_json(call->plc, call->summary)},
+                              {"repair", report::repair_json(call->input->repaired())}};
   return parsed(json);
 }
 
-struct PredictCall {
-  Inputs inputs;
-  Options options;
+struct PredictCall : Call {
   std::vector<double> sizes;
-  Complex complex;
   std::vector<Prediction> predictions;
 };
 
 py::object predicted(const py::list& inputs, const std::vector<double>& sizes, const py::dict& options) {
-  const auto call = std::make_shared<PredictCall>();
-  call->inputs = inputs_of(inputs);
-  call->options = options_of(options);
+  const auto call = new_call<PredictCall>(inputs, options);
   call->sizes = sizes;
-  const auto work = [call](Watch& watch) {
-    build(call->inputs, call->options, watch, call->complex);
-    const Plc& plc = call->complex.plc;
-    InputSource(call->options, *call->complex.input).adapt(plc, call->options);
-    call->predictions = predict(plc, call->options, call->sizes);
-  };
-  run_watched(work, py::none(), call->options.mesh.time_limit);
+  run<PredictCall>(call, [](PredictCall& own, Watch& watch) {
+    build(own, watch);
+    adapt(own.plc, own.options, &*own.input, own.options);
+    own.predictions = predict(own.plc, own.options, own.sizes);
+  });
   return parsed(report::predictions_json(call->predictions));
 }
 
@@ -285,40 +273,31 @@ py::object measures(const py::dict& arrays) {
 }
 
 py::list repaired(const py::list& inputs, const py::dict& options, py::list& messages) {
-  const auto call = std::make_shared<ComplexCall>();
-  call->inputs = inputs_of(inputs);
-  call->options = options_of(options);
-  run_watched([call](Watch& watch) { build(call->inputs, call->options, watch, call->complex); }, py::none(),
-              call->options.mesh.time_limit);
+  const auto call = new_call<Call>(inputs, options);
+  run<Call>(call, build);
   py::list soups;
-  for (const PolygonSoup& soup : call->complex.input->soups()) soups.append(arrays_of(soup));
-  for (const std::string& line : describe(call->complex.input->repaired())) messages.append(line);
+  for (const PolygonSoup& soup : call->input->soups()) soups.append(arrays_of(soup));
+  for (const std::string& line : describe(call->input->repaired())) messages.append(line);
   return soups;
 }
 
-struct ConvertCall {
-  Inputs inputs;
-  Options options;
+struct ConvertCall : Call {
   std::string output;
-  std::vector<PolygonSoup> soups;
   std::string told;
 };
 
 /// Joins surfaces into one file without repairing them. Returns a text on what was welded, merged and
 /// dropped.
 std::string convert_surfaces(const py::list& inputs, const std::string& output, const py::dict& options) {
-  const auto call = std::make_shared<ConvertCall>();
-  call->inputs = inputs_of(inputs);
-  call->options = options_of(options);
+  const auto call = new_call<ConvertCall>(inputs, options);
   call->output = output;
-  const auto work = [call](Watch& watch) {
-    const files::ComplexInput input = read(call->inputs, call->options, watch);
+  run<ConvertCall>(call, [](ConvertCall& own, Watch& watch) {
+    read(own, watch);
     const report::MergedSoup merged = report::merge_for_output(
-        input.soups(), call->output, call->options.output_format, call->options.complex);
-    files::write_surface(call->output, merged.soup, call->options.output_format);
-    call->told = merged.told;
-  };
-  run_watched(work, py::none(), call->options.mesh.time_limit);
+        own.input->soups(), own.output, own.options.output_format, own.options.complex);
+    files::write_surface(own.output, merged.soup, own.options.output_format);
+    own.told = merged.told;
+  });
   return call->told;
 }
 
@@ -342,7 +321,7 @@ void write_mesh(const py::dict& arrays, const std::string& path, const std::stri
   const auto mesh = std::make_shared<TetMesh>(tet_mesh_of(arrays));
   if (ghost_cells && mesh->tet_partition.empty())
     throw OptionError("ghost_cells: the mesh is not partitioned; see Mesh.partitioned");
-  const auto ghosts = ghost_cells ? io::GhostCells::one_layer : io::GhostCells::none;
+  const auto ghosts = ghost_cells ? GhostCells::one_layer : GhostCells::off;
   run_watched([mesh, path, format, ghosts](Watch&) { io::write_tet_mesh(path, *mesh, format, ghosts); },
               py::none(), 0);
 }

@@ -14,6 +14,7 @@
 
 #include "arrays.h"
 #include "collarmesh/error.h"
+#include "collarmesh/io/size_field_io.h"
 #include "process/machine.h"
 
 namespace py = pybind11;
@@ -127,7 +128,7 @@ void take_size_field(const py::object& field, Options& options) {
 }  // namespace
 
 SizeField size_field_for(const Plc& plc, const Options& options) {
-  if (!options.size_field_file.empty()) return read_size_field(options.size_field_file, plc);
+  if (!options.size_field_file.empty()) return io::read_size_field(options.size_field_file, plc);
   if (!options.size_field_json.empty()) return size_field_from_json(options.size_field_json, plc);
   if (options.sizes_at) return sampled_sizes(options.sizes_at, plc.bounds);
   return {};

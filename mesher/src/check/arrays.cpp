@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <span>
 #include <tuple>
 
 #include "check/subject.h"
+#include "common/flat_table.h"
 #include "common/found_in_ranges.h"
 #include "common/groups.h"
 #include "common/parallel_for.h"
@@ -103,16 +103,6 @@ void check_features(const TetMesh& mesh, const Plc& plc, Findings& findings) {
           "against the complex it was made from.",
           i, feature, static_cast<unsigned>(dimension));
   }
-}
-
-// Returns a hash that is equal for equal coordinates: zeros of both signs have the same hash.
-std::size_t hash_of(const Point& p) {
-  std::uint64_t hash = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    hash = (hash ^ std::bit_cast<std::uint64_t>(p[axis] + 0.0)) * 0x9e3779b97f4a7c15ULL;
-    hash ^= hash >> 32;
-  }
-  return hash;
 }
 
 void check_distinct(const TetMesh& mesh, Findings& findings) {

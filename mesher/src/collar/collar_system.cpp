@@ -36,117 +36,85 @@ CollarSystem::CollarSystem(const Plc& plc, std::span<const Point> points, std::s
 
 // Builds the tree over creases. A curve is one leaf, because its balls are added at once.
 void CollarSystem::plant(const Plc& plc, std::span<const Point> points) {
-  std::vector<Item> items;
-  std::vector<Feature> creases;
+  std::vector<Point> centres;
+  std::vector<std::size_t> numbers;  // places in `leaves_`
   for (const Index vertex : crease_vertices_) {
-    creases.push_back({0, vertex});
-    items.push_back({points[plc.vertices[vertex].point], {}});
+    numbers.push_back(vertex);
+    centres.push_back(points[plc.vertices[vertex].point]);
   }
   for (Index curve = 0; curve < plc.curves.size(); ++curve) {
     if (!crease_curve_[curve]) continue;
     Box box;
     for (const Index p : plc.curves[curve].points) box.add(points[p]);
-    creases.push_back({1, curve});
-    items.push_back({box.centre(), {}});
+    numbers.push_back(plc.vertices.size() + curve);
+    centres.push_back(box.centre());
   }
-  std::vector<Index> order(items.size());
+  const auto count = static_cast<Index>(centres.size());
+  std::vector<Index> order(count);
   std::iota(order.begin(), order.end(), Index{0});
-  Box box;
-  build(order, items, 0, box);
-  branches_.resize(nodes_.size());
+  const auto centre_of = [&](Index crease) { return centres[crease]; };
+  creases_.add(
+      0, count, 1, median_splits(std::span(order), centre_of), [](Index, Index) { return Box{}; }, joined);
+  root_of_.assign(count, none);
   leaves_.assign(plc.vertices.size() + plc.curves.size(), none);
-  for (Index n = 0; n < nodes_.size(); ++n) {
-    Node& node = nodes_[n];
-    node.box = CentredBox::empty();
-    if (node.left == none) {
-      const Feature& crease = creases[node.right];
-      leaves_[crease.index + (crease.dimension == 1 ? plc.vertices.size() : 0)] = n;
-      node.right = none;  // no balls yet
-    } else {
-      branches_[node.left].parent = branches_[node.right].parent = n;
-    }
-  }
+  for (Index node = 0; node < creases_.node_count(); ++node)
+    if (creases_.is_leaf(node))
+      leaves_[numbers[order[creases_.first(node)]]] = node;
+    else
+      creases_.bounds(creases_.left(node)).parent = creases_.bounds(creases_.right(node)).parent = node;
 }
 
 void CollarSystem::complete() {
-  if (branches_.empty()) return;
-  branches_.clear();
+  if (creases_.empty()) return;
+  creases_ = {};
   leaves_.clear();
-  nodes_.clear();
-  Box box;
-  if (!balls_.empty()) build_over_balls(0, box);
+  root_of_.clear();
+  trees_ = {};
+  if (!balls_.empty()) build_over_balls(0);
 }
 
-// Adds the balls since the last call to the tree. Precondition: the system is not complete.
+// Adds the balls since the last call to the trees. Precondition: the system is not complete.
 void CollarSystem::index_balls(const Feature& crease) {
-  assert(!branches_.empty());
+  assert(!creases_.empty());
   if (indexed_ == balls_.size()) return;
-  Box box;
-  const Index root = build_over_balls(indexed_, box), leaf = leaf_of(crease);
+  const Index leaf = leaf_of(crease);
+  root_of_[creases_.first(leaf)] = trees_.node_count();
+  const Box box = build_over_balls(indexed_);
   indexed_ = static_cast<Index>(balls_.size());
-  nodes_[leaf] = nodes_[root];
-  for (Index n = leaf; n != none; n = branches_[n].parent) {
-    branches_[n].box.add(box);
-    nodes_[n].box = CentredBox(branches_[n].box);
+  for (Index node = leaf; node != none; node = creases_.bounds(node).parent) {
+    OfCreases& bounds = creases_.bounds(node);
+    bounds.box.add(box);
+    bounds.centred = CentredBox(bounds.box);
   }
 }
 
-Index CollarSystem::build_over_balls(Index first, Box& box) {
-  std::vector<Item> items;
-  for (std::size_t i = first; i < balls_.size(); ++i) {
-    const Point& centre = balls_[i].centre;
-    const Vector reach = balls_[i].radius * (1 + 1e-9) * Vector{1, 1, 1};
-    items.push_back({centre, {centre - reach, centre + reach}});
-  }
-  std::vector<Index> order(items.size());
-  std::iota(order.begin(), order.end(), Index{0});
-  return build(order, items, first, box);
-}
-
-Index CollarSystem::build(std::span<Index> order, std::span<const Item> items, Index first, Box& box) {
-  const auto node = static_cast<Index>(nodes_.size());
-  nodes_.push_back({{}, none, none});
-  Box below;
-  if (order.size() == 1) {
-    below = items[order[0]].box;
-    nodes_[node].right = first + order[0];
-  } else {
-    Box spread;
-    for (const Index item : order) spread.add(items[item].centre);
-    const Vector sides = spread.max - spread.min;
-    const std::size_t axis = sides.x >= sides.y && sides.x >= sides.z ? 0 : sides.y >= sides.z ? 1 : 2;
-    const std::size_t half = order.size() / 2;
-    std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(half), order.end(),
-                     [&](Index a, Index b) {
-                       const double x = items[a].centre[axis], y = items[b].centre[axis];
-                       return x != y ? x < y : a < b;
-                     });
-    const Index left = build(order.subspan(0, half), items, first, below);
-    const Index right = build(order.subspan(half), items, first, below);
-    nodes_[node].left = left;
-    nodes_[node].right = right;
-  }
-  nodes_[node].box = CentredBox(below);
-  box.add(below);
-  return node;
+Box CollarSystem::build_over_balls(Index first) {
+  std::vector<Index> order(balls_.size() - first);
+  std::iota(order.begin(), order.end(), first);
+  const Index root = trees_.node_count();
+  const auto centre_of = [&](Index ball) { return balls_[ball].centre; };
+  const auto box_of = [&](Index place, Index) {
+    const auto& [centre, radius, dimension, feature] = balls_[order[place]];
+    const Vector reach = radius * (1 + 1e-9) * Vector{1, 1, 1};
+    return Box{centre - reach, centre + reach};
+  };
+  const Box box = trees_.add(0, static_cast<Index>(order.size()), 1,
+                             median_splits(std::span(order), centre_of), box_of, joined);
+  trees_.renumber([&](Index place) { return order[place]; }, root);
+  return box;
 }
 
 // Visits the balls below nodes whose box qualifies, until visit_ball returns true.
 template <class Meets, class Visit>
 void CollarSystem::visit(const Meets& meets_box, const Visit& visit_ball) const {
-  std::array<Index, 128> stack;
-  std::size_t top = 0;
-  if (!nodes_.empty()) stack[top++] = 0;
-  while (top > 0) {
-    const Node& node = nodes_[stack[--top]];
-    if (!meets_box(node.box)) continue;
-    if (node.left != none) {
-      stack[top++] = node.right;
-      stack[top++] = node.left;
-    } else if (node.right != none && visit_ball(node.right)) {
-      return;
-    }
-  }
+  if (!creases_.empty())
+    creases_.descend(
+        0, [&](const OfCreases& bounds) { return meets_box(bounds.centred); },
+        [&](Index crease) {
+          return root_of_[crease] != none && trees_.descend(root_of_[crease], meets_box, visit_ball);
+        });
+  else if (!trees_.empty())
+    trees_.descend(0, meets_box, visit_ball);
 }
 
 Index CollarSystem::ball_containing(const Point& p) const {

@@ -13,7 +13,7 @@
 #include "collarmesh/plc_builder.h"
 #include "collarmesh/surface_tolerance.h"
 #include "common/edge_key.h"
-#include "common/large_pages.h"
+#include "common/hierarchy.h"
 #include "location/centred_box.h"
 
 namespace collarmesh {
@@ -104,31 +104,22 @@ class CollarSystem {
   void balls_on_segment(const Point& p, const Point& q, std::vector<Index>& found) const;
 
  private:
-  struct Node {
-    CentredBox box;
-    Index left, right;  // in a leaf `left` is none and `right` is its ball
-  };
-  /// An item that a tree is built over.
-  struct Item {
-    Point centre;
-    Box box;
-  };
-  /// A node of the tree over creases, with the exact box of the balls added so far.
-  struct Branch {
+  /// Bounds of the balls of creases, with the exact box.
+  struct OfCreases {
+    CentredBox centred = CentredBox::empty();
     Box box;
     Index parent = none;
+
+    OfCreases() = default;
+    explicit OfCreases(const Box&) {}  // the box of creases without balls
   };
-  /// Builds a tree over creases. The trees over their balls are attached at its leaves, so that there is one
-  /// tree although balls are added later.
+  /// Builds the tree over creases, which may have no balls yet.
   void plant(const Plc& plc, std::span<const Point> points);
-  /// Adds the balls since the last call to the tree that queries use; all of them are on this vertex or
+  /// Adds the balls since the last call to the trees that queries use; all of them are on this vertex or
   /// curve.
   void index_balls(const Feature& crease);
-  /// Builds a tree over all balls from number `first` on. Returns its root.
-  Index build_over_balls(Index first, Box& box);
-  /// Builds a tree over items. Their numbers begin at the start of `order`'s items. Adds their boxes to the
-  /// box. Returns the root.
-  Index build(std::span<Index> order, std::span<const Item> items, Index first, Box& box);
+  /// Builds a tree over all balls from number `first` on. Returns their box.
+  Box build_over_balls(Index first);
   Index leaf_of(const Feature& crease) const {
     return leaves_[crease.index + (crease.dimension == 1 ? vertex_ball_.size() : 0)];
   }
@@ -143,10 +134,13 @@ class CollarSystem {
   std::vector<Index> vertex_ball_;
   std::vector<Index> crease_vertices_;             // sorted
   std::unordered_set<std::uint64_t> consecutive_;  // keys of pairs of consecutive balls
-  std::vector<Branch> branches_;  // by node: the first ones form a tree over creases; empty when complete
-  std::vector<Index> leaves_;     // leaves of that tree, by vertex, then by curve; none without a crease
-  Index indexed_ = 0;             // number of balls in the tree
-  LargeVector<Node> nodes_;
+  // While balls are added, there is a tree over creases and a tree for the balls of each; then there is one
+  // over all balls.
+  Hierarchy<OfCreases> creases_;
+  std::vector<Index> leaves_;    // in `creases_`, by vertex, then by curve; none without a crease
+  std::vector<Index> root_of_;   // of the tree over a crease's balls, by the leaf's item; none without balls
+  Hierarchy<CentredBox> trees_;  // over balls
+  Index indexed_ = 0;            // number of balls in trees
 
   friend class CollarPlacement;
 };

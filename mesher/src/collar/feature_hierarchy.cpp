@@ -34,7 +34,7 @@ FeatureHierarchy::FeatureHierarchy(const Plc& plc, std::span<const Point> points
   std::vector<Box> boxes(elements_.size());
   for (std::size_t e = 0; e < elements_.size(); ++e)
     for (const Index p : elements_[e]) boxes[e].add(points_[p]);
-  nodes_.reserve(2 * elements_.size() + 2 * features_.size());
+  trees_.reserve(2 * elements_.size() + 2 * features_.size());
   std::vector<Index> order(elements_.size());
   std::iota(order.begin(), order.end(), Index{0});
   std::vector<Box> feature_boxes;
@@ -43,7 +43,7 @@ FeatureHierarchy::FeatureHierarchy(const Plc& plc, std::span<const Point> points
     const Index first = first_element_[f], count = first_element_[f + 1] - first;
     std::fill_n(feature_of_.begin() + first, count, f);
     roots_.push_back(build(std::span(order).subspan(first, count), boxes));
-    feature_boxes.push_back(roots_.back() == none ? Box{} : nodes_[roots_.back()].box);
+    feature_boxes.push_back(roots_.back() == none ? Box{} : trees_.bounds(roots_.back()));
   }
   order.resize(features_.size());
   std::iota(order.begin(), order.end(), Index{0});
@@ -51,31 +51,15 @@ FeatureHierarchy::FeatureHierarchy(const Plc& plc, std::span<const Point> points
   root_ = build(order, feature_boxes);
 }
 
-Index FeatureHierarchy::build(std::span<Index> order, std::span<const Box> boxes) {
-  if (order.empty()) return none;
-  const auto node = static_cast<Index>(nodes_.size());
-  nodes_.emplace_back();
-  Box box;
-  for (const Index item : order) box.add(boxes[item]);
-  nodes_[node].box = box;
-  if (order.size() == 1) {
-    nodes_[node].right = order[0];
-    return node;
-  }
-  Box spread;
-  for (const Index item : order) spread.add(boxes[item].centre());
-  const Vector sides = spread.max - spread.min;
-  const std::size_t axis = sides.x >= sides.y && sides.x >= sides.z ? 0 : sides.y >= sides.z ? 1 : 2;
-  const std::size_t half = order.size() / 2;
-  std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(half), order.end(),
-                   [&](Index a, Index b) {
-                     const double x = boxes[a].centre()[axis], y = boxes[b].centre()[axis];
-                     return x != y ? x < y : a < b;
-                   });
-  const Index left = build(order.subspan(0, half), boxes), right = build(order.subspan(half), boxes);
-  nodes_[node].left = left;
-  nodes_[node].right = right;
-  return node;
+Index FeatureHierarchy::build(std::span<Index> items, std::span<const Box> boxes) {
+  if (items.empty()) return none;
+  const Index root = trees_.node_count();
+  const auto centre_of = [&](Index item) { return boxes[item].centre(); };
+  trees_.add(
+      0, static_cast<Index>(items.size()), 1, median_splits(items, centre_of),
+      [&](Index place, Index) { return boxes[items[place]]; }, joined);
+  trees_.renumber([&](Index place) { return items[place]; }, root);
+  return root;
 }
 
 double FeatureHierarchy::squared_distance_to(const Point& p, Index element) const {

@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "collarmesh/plc.h"
-#include "location/triangle_hierarchy.h"
+#include "common/distances.h"
+#include "common/hierarchy.h"
 
 namespace collarmesh {
 
@@ -53,13 +54,9 @@ class FeatureHierarchy {
   void visit_box(Feature feature, const Box& box, const Visit& visit) const;
 
  private:
-  struct Node {
-    Box box;
-    Index left = none, right = none;  // in a leaf `left` is none and `right` is its element or feature
-  };
-
   Index number_of(Feature feature) const { return first_feature_[feature.dimension] + feature.index; }
-  Index build(std::span<Index> order, std::span<const Box> boxes);
+  /// Adds a tree over these items. Returns its root.
+  Index build(std::span<Index> items, std::span<const Box> boxes);
   double squared_distance_to(const Point& p, Index element) const;
   /// Visits leaves, nearest first; `leaf(index, bound)` lowers the bound.
   template <class Leaf>
@@ -72,27 +69,15 @@ class FeatureHierarchy {
   std::vector<Index> feature_of_;     // by element
   std::vector<Index> first_element_;  // by feature
   std::vector<Index> roots_;          // by feature
-  std::vector<Node> nodes_;
-  Index root_ = none;
+  Hierarchy<Box> trees_;              // over the elements of each feature, and over features
+  Index root_ = none;                 // of the tree over features
 };
 
 template <class Leaf>
 void FeatureHierarchy::descend(Index root, const Point& p, double& squared_bound, const Leaf& leaf) const {
-  std::array<Index, 128> stack;
-  std::size_t top = 0;
-  if (root != none) stack[top++] = root;
-  while (top > 0) {
-    const Node& node = nodes_[stack[--top]];
-    if (squared_distance_to_box(p, node.box) >= squared_bound) continue;
-    if (node.left == none) {
-      leaf(node.right);
-      continue;
-    }
-    const bool left_first = squared_distance_to_box(p, nodes_[node.left].box) <
-                            squared_distance_to_box(p, nodes_[node.right].box);
-    stack[top++] = left_first ? node.right : node.left;
-    stack[top++] = left_first ? node.left : node.right;
-  }
+  if (root == none) return;
+  trees_.visit_near(
+      root, squared_bound, [&](Index node) { return squared_distance_to_box(p, trees_.bounds(node)); }, leaf);
 }
 
 template <class Counts>
@@ -122,21 +107,8 @@ double FeatureHierarchy::distance_within(Feature feature, const Point& p, double
 
 template <class Visit>
 void FeatureHierarchy::visit_box(Feature feature, const Box& box, const Visit& visit) const {
-  std::array<Index, 128> stack;
-  std::size_t top = 0;
-  stack[top++] = roots_[number_of(feature)];
-  while (top > 0) {
-    const Node& node = nodes_[stack[--top]];
-    if (node.box.min.x > box.max.x || node.box.max.x < box.min.x || node.box.min.y > box.max.y ||
-        node.box.max.y < box.min.y || node.box.min.z > box.max.z || node.box.max.z < box.min.z)
-      continue;
-    if (node.left == none) {
-      visit(node.right);
-    } else {
-      stack[top++] = node.left;
-      stack[top++] = node.right;
-    }
-  }
+  trees_.descend<ChildOrder::right_first>(
+      roots_[number_of(feature)], [&](const Box& bounds) { return boxes_meet(bounds, box); }, visit);
 }
 
 }  // namespace collarmesh

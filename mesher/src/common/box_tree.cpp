@@ -19,30 +19,23 @@ BoxTree::BoxTree(std::span<const Box> boxes, std::span<const Index> groups) {
     boxes_.push_back(boxes[key.item]);
     if (!groups.empty()) groups_.push_back(groups[key.item]);
   }
-  nodes_.reserve(keys.size());
-  build(keys, 0);
+  tree_.reserve(keys.size());
+  tree_.add(
+      0, static_cast<Index>(keys.size()), leaf_size, spatial_splits(keys),
+      [&](Index first, Index count) { return bounds_of(first, count); },
+      [](const Bounds& a, const Bounds& b) {
+        return Bounds{joined(a.box, b.box), of_one_group(a, b) ? a.group : none};
+      });
 }
 
-Index BoxTree::build(std::span<const SpatialKey> keys, Index first) {
-  const auto node = static_cast<Index>(nodes_.size());
-  const auto count = static_cast<Index>(keys.size());
-  nodes_.push_back({{}, first, count, none});
-  if (count <= leaf_size) {
-    Node& leaf = nodes_[node];
-    if (!groups_.empty()) leaf.group = groups_[first];
-    for (Index i = first; i < first + count; ++i) {
-      leaf.box.add(boxes_[i]);
-      if (!of_one_group(i, first)) leaf.group = none;
-    }
-    return node;
+BoxTree::Bounds BoxTree::bounds_of(Index first, Index count) const {
+  Bounds bounds;
+  if (!groups_.empty()) bounds.group = groups_[first];
+  for (Index i = first; i < first + count; ++i) {
+    bounds.box.add(boxes_[i]);
+    if (!of_one_group(i, first)) bounds.group = none;
   }
-  const std::size_t half = spatial_split(keys);
-  const Index left = build(keys.first(half), first),
-              right = build(keys.subspan(half), first + static_cast<Index>(half));
-  Box box = nodes_[left].box;
-  box.add(nodes_[right].box);
-  nodes_[node] = {box, right, 0, of_one_group(nodes_[left], nodes_[right]) ? nodes_[left].group : none};
-  return node;
+  return bounds;
 }
 
 bool BoxTree::may_meet(const Box& box, const Point& p, const Point& q) {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "collarmesh/geometry.h"
-#include "common/spatial_order.h"
+#include "common/hierarchy.h"
 
 namespace collarmesh {
 
@@ -18,89 +18,76 @@ class BoxTree {
   /// Calls visit(i, j) once for every pair of items of different groups whose boxes meet.
   template <class Visit>
   void for_each_pair(const Visit& visit) const {
-    if (!nodes_.empty()) pairs_within(0, visit);
+    if (!tree_.empty()) pairs_within(0, visit);
   }
 
   /// Calls visit(i) for every item whose box meets this one.
   template <class Visit>
   void for_each_meeting(const Box& box, const Visit& visit) const {
-    if (!nodes_.empty())
-      descend(
-          0, [&](const Box& b) { return meet(b, box); }, visit);
+    descend([&](const Box& b) { return boxes_meet(b, box); }, visit);
   }
 
   /// Calls visit(i) for every item whose box meets the segment pq, and perhaps for some others.
   template <class Visit>
   void for_each_near_segment(const Point& p, const Point& q, const Visit& visit) const {
-    if (!nodes_.empty())
-      descend(
-          0, [&](const Box& b) { return may_meet(b, p, q); }, visit);
+    descend([&](const Box& b) { return may_meet(b, p, q); }, visit);
   }
 
  private:
-  struct Node {
+  struct Bounds {
     Box box;
-    Index first, count;  // its items; count 0: the children are the next node and the node `first`
-    Index group;         // group of all its items, none if they differ
+    Index group = none;  // group of all items, none if they differ
   };
   static constexpr Index leaf_size = 4;
 
-  static bool meet(const Box& a, const Box& b) {
-    return a.min.x <= b.max.x && b.min.x <= a.max.x && a.min.y <= b.max.y && b.min.y <= a.max.y &&
-           a.min.z <= b.max.z && b.min.z <= a.max.z;
-  }
   // Tests conservatively: never returns false when the box and the segment meet.
   static bool may_meet(const Box& box, const Point& p, const Point& q);
 
-  Index build(std::span<const SpatialKey> keys, Index first);
+  Bounds bounds_of(Index first, Index count) const;
   // Returns whether all items below both nodes are of one group.
-  static bool of_one_group(const Node& a, const Node& b) { return a.group != none && a.group == b.group; }
+  static bool of_one_group(const Bounds& a, const Bounds& b) { return a.group != none && a.group == b.group; }
   bool of_one_group(Index i, Index j) const { return !groups_.empty() && groups_[i] == groups_[j]; }
   template <class Visit>
   void visit_pair(Index i, Index j, const Visit& visit) const {
-    if (meet(boxes_[i], boxes_[j]) && !of_one_group(i, j)) visit(items_[i], items_[j]);
+    if (boxes_meet(boxes_[i], boxes_[j]) && !of_one_group(i, j)) visit(items_[i], items_[j]);
   }
 
   template <class Test, class Visit>
-  void descend(Index node, const Test& test, const Visit& visit) const {
-    const Node& n = nodes_[node];
-    if (!test(n.box)) return;
-    if (n.count == 0) {
-      descend(node + 1, test, visit);
-      descend(n.first, test, visit);
-      return;
-    }
-    for (Index i = n.first; i < n.first + n.count; ++i)
-      if (test(boxes_[i])) visit(items_[i]);
+  void descend(const Test& test, const Visit& visit) const {
+    if (tree_.empty()) return;
+    tree_.descend(
+        0, [&](const Bounds& bounds) { return test(bounds.box); },
+        [&](Index i) {
+          if (test(boxes_[i])) visit(items_[i]);
+        });
   }
 
   template <class Visit>
   void pairs_within(Index node, const Visit& visit) const {
-    const Node& n = nodes_[node];
-    if (n.group != none) return;
-    if (n.count == 0) {
-      pairs_within(node + 1, visit);
-      pairs_within(n.first, visit);
-      pairs_between(node + 1, n.first, visit);
+    if (tree_.bounds(node).group != none) return;
+    if (!tree_.is_leaf(node)) {
+      pairs_within(tree_.left(node), visit);
+      pairs_within(tree_.right(node), visit);
+      pairs_between(tree_.left(node), tree_.right(node), visit);
       return;
     }
-    for (Index i = n.first; i < n.first + n.count; ++i)
-      for (Index j = i + 1; j < n.first + n.count; ++j) visit_pair(i, j, visit);
+    for (Index i = tree_.first(node); i < tree_.end(node); ++i)
+      for (Index j = i + 1; j < tree_.end(node); ++j) visit_pair(i, j, visit);
   }
 
   template <class Visit>
   void pairs_between(Index a, Index b, const Visit& visit) const {
-    const Node &m = nodes_[a], &n = nodes_[b];
-    if (of_one_group(m, n) || !meet(m.box, n.box)) return;
-    if (m.count == 0) {
-      pairs_between(a + 1, b, visit);
-      pairs_between(m.first, b, visit);
-    } else if (n.count == 0) {
-      pairs_between(a, b + 1, visit);
-      pairs_between(a, n.first, visit);
+    const Bounds &of_a = tree_.bounds(a), &of_b = tree_.bounds(b);
+    if (of_one_group(of_a, of_b) || !boxes_meet(of_a.box, of_b.box)) return;
+    if (!tree_.is_leaf(a)) {
+      pairs_between(tree_.left(a), b, visit);
+      pairs_between(tree_.right(a), b, visit);
+    } else if (!tree_.is_leaf(b)) {
+      pairs_between(a, tree_.left(b), visit);
+      pairs_between(a, tree_.right(b), visit);
     } else {
-      for (Index i = m.first; i < m.first + m.count; ++i)
-        for (Index j = n.first; j < n.first + n.count; ++j) visit_pair(i, j, visit);
+      for (Index i = tree_.first(a); i < tree_.end(a); ++i)
+        for (Index j = tree_.first(b); j < tree_.end(b); ++j) visit_pair(i, j, visit);
     }
   }
 
@@ -108,7 +95,7 @@ class BoxTree {
   std::vector<Index> items_;
   std::vector<Box> boxes_;
   std::vector<Index> groups_;
-  std::vector<Node> nodes_;
+  Hierarchy<Bounds> tree_;
 };
 
 }  // namespace collarmesh

@@ -28,8 +28,15 @@ DistanceTree::DistanceTree(std::vector<Triangle> triangles) : triangles_(std::mo
     number_.push_back(key.item);
   }
   put_in_order();
-  nodes_.reserve(keys.size());
-  build(keys, 0);
+  tree_.reserve(keys.size());
+  constexpr Index leaf_size = 2;
+  const auto box_of = [&](Index first, Index count) {
+    Box box;
+    for (Index i = first; i < first + count; ++i)
+      for (const Point& p : triangles_[i]) box.add(p);
+    return box;
+  };
+  tree_.add(0, static_cast<Index>(keys.size()), leaf_size, spatial_splits(keys), box_of, joined);
 }
 
 // Permutes the triangles in place, along the cycles of the permutation.
@@ -47,57 +54,21 @@ void DistanceTree::put_in_order() {
   }
 }
 
-Index DistanceTree::build(std::span<const SpatialKey> keys, Index first) {
-  const auto node = static_cast<Index>(nodes_.size());
-  nodes_.push_back({{}, first, static_cast<Index>(keys.size())});
-  if (keys.size() <= leaf_size) {
-    for (Index i = first; i < first + keys.size(); ++i)
-      for (const Point& p : triangles_[i]) nodes_[node].box.add(p);
-    return node;
-  }
-  const std::size_t half = spatial_split(keys);
-  const Index left = build(keys.first(half), first),
-              right = build(keys.subspan(half), first + static_cast<Index>(half));
-  Box box = nodes_[left].box;
-  box.add(nodes_[right].box);
-  nodes_[node] = {box, right, 0};
-  return node;
-}
-
-double DistanceTree::squared_distance_to(Index node, const Point& p) const {
-  return squared_distance_to_box(p, nodes_[node].box);
-}
-
 DistanceTree::Nearest DistanceTree::nearest(const Point& p, double enough, Index hint) const {
-  if (nodes_.empty()) return {INFINITY, none};
+  if (tree_.empty()) return {INFINITY, none};
   Index best = hint == none ? 0 : place_[hint];
   double least = squared_distance_to_triangle(p, triangles_[best]);
-  struct Waiting {
-    Index node;
-    double squared;
+  const auto bound_of = [&] { return least > enough * enough ? least : 0; };
+  double bound = bound_of();
+  const auto look_at = [&](Index i) {
+    const double squared = squared_distance_to_triangle(p, triangles_[i]);
+    if (!(squared < least)) return;
+    least = squared;
+    best = i;
+    bound = bound_of();
   };
-  std::array<Waiting, most_spatial_levels + 1> stack;  // on every level, one of two children waits
-  std::size_t size = 0;
-  stack[size++] = {0, squared_distance_to(0, p)};
-  const double squared_enough = enough * enough;
-  while (size > 0 && least > squared_enough) {
-    const auto [index, squared] = stack[--size];
-    if (squared >= least) continue;
-    const Node& node = nodes_[index];
-    for (Index i = node.first; i < node.first + node.count; ++i) {
-      const double d = squared_distance_to_triangle(p, triangles_[i]);
-      if (d < least) {
-        least = d;
-        best = i;
-      }
-    }
-    if (node.count != 0) continue;
-    Waiting near{index + 1, squared_distance_to(index + 1, p)},
-        far{node.first, squared_distance_to(node.first, p)};
-    if (far.squared < near.squared) std::swap(near, far);
-    if (far.squared < least) stack[size++] = far;
-    if (near.squared < least) stack[size++] = near;
-  }
+  tree_.visit_near<ChildOrder::left_first>(
+      0, bound, [&](Index node) { return squared_distance_to_box(p, tree_.bounds(node)); }, look_at);
   return {std::sqrt(least), number_[best]};
 }
 

@@ -2,11 +2,10 @@
 
 #include <array>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "collarmesh/geometry.h"
-#include "common/spatial_order.h"
+#include "common/hierarchy.h"
 
 namespace collarmesh {
 
@@ -27,21 +26,12 @@ class DistanceTree {
   Nearest nearest(const Point& p, double enough = 0, Index hint = none) const;
 
  private:
-  struct Node {
-    Box box;
-    // A leaf's triangles; count 0: `first` is the right child, and the left one follows the node.
-    Index first, count;
-  };
-  static constexpr Index leaf_size = 2;
-
   void put_in_order();
-  Index build(std::span<const SpatialKey> keys, Index first);
-  double squared_distance_to(Index node, const Point& p) const;
 
   std::vector<Triangle> triangles_;  // in the order of the leaves
   std::vector<Index> number_;        // constructor's number of each triangle
   std::vector<Index> place_;         // inverse of number_
-  std::vector<Node> nodes_;
+  Hierarchy<Box> tree_;
 };
 
 }  // namespace collarmesh

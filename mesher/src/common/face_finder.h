@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
 #include <vector>
 
 #include "collarmesh/geometry.h"
@@ -39,10 +38,7 @@ class PolygonFinder {
     return t;
   }
   Index& slot(const Polygon& key) {
-    std::uint64_t h = key[0];
-    for (std::size_t k = 1; k < n; ++k) h = (h * 0x9e3779b97f4a7c15ULL) ^ key[k];
-    h *= 0x9e3779b97f4a7c15ULL;
-    return find_slot(slots_, h ^ (h >> 31), [&](Index face) { return keys_[face] == key; });
+    return find_slot(slots_, hash_of(key), [&](Index face) { return keys_[face] == key; });
   }
 
   std::vector<Polygon> keys_;

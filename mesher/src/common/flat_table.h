@@ -1,15 +1,31 @@
 #pragma once
 
+#include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
 #include "collarmesh/geometry.h"
+#include "common/split_mix.h"
 
 namespace collarmesh {
 
 /// Returns a number whose lower 32 bits depend on all bits of the key.
-inline std::uint64_t spread(std::uint64_t key) { return key * 0x9e3779b97f4a7c15U >> 32U; }
+inline std::uint64_t spread(std::uint64_t key) { return key * split_mix_step >> 32U; }
+
+/// Returns a hash of whole numbers in their order.
+template <class Numbers>
+std::uint64_t hash_of(const Numbers& numbers) {
+  std::uint64_t hash = 0;
+  for (const auto number : numbers) hash = mixed(hash + split_mix_step + static_cast<std::uint64_t>(number));
+  return hash;
+}
+/// Returns a hash of a point, the same for equal points, although 0 and -0 are equal.
+inline std::uint64_t hash_of(const Point& p) {
+  const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x + 0.0); };
+  return hash_of(std::array{bits(p.x), bits(p.y), bits(p.z)});
+}
 
 /// Finds an item in a flat hash table: the slots hold numbers of items, or none, and an item is in the slot
 /// of its hash or, if that was taken, in the next free one. Returns its slot, or the free slot where it

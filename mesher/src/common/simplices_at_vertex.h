@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "collarmesh/tet_mesh.h"
+#include "common/edge_key.h"
 #include "common/flat_table.h"
 #include "common/groups.h"
 #include "common/tet_sides.h"
@@ -61,7 +62,7 @@ class EdgesAtVertex {
 
   /// Returns the number of an end; a new end gets the next number.
   Index number_of(Index end) {
-    Index& number = find_slot(table_, end * 0x9e3779b1U >> 8U, [&](Index n) { return ends_[n] == end; });
+    Index& number = find_slot(table_, spread(end), [&](Index n) { return ends_[n] == end; });
     if (number == none) {
       number = static_cast<Index>(ends_.size());
       ends_.push_back(end);
@@ -157,7 +158,7 @@ inline std::pair<Index, TriangleUse> triangle_use(std::array<Index, 3> c, Index 
     odd = !odd;
   };
   sort_pair(0, 1), sort_pair(1, 2), sort_pair(0, 1);
-  return {c[0], {std::uint64_t{c[1]} << 32U | c[2], cell, corner, odd}};
+  return {c[0], {pair_key(c[1], c[2]), cell, corner, odd}};
 }
 
 /// The triangles whose smallest corner is a vertex, each with the tets and listed faces that use it.
@@ -215,7 +216,7 @@ class TrianglesAtVertex {
       const Index middle = std::min(a, b), largest = std::max(a, b);
       if (middle < vertex) continue;
       // The vertex, a and b are clockwise as seen from outside the tet.
-      add({std::uint64_t{middle} << 32U | largest, cell, places[(i + 2) % 3], a < b});
+      add({pair_key(middle, largest), cell, places[(i + 2) % 3], a < b});
     }
   }
 

@@ -109,11 +109,4 @@ bool is_mesh_surface_format(const std::string& path, std::string_view format) {
   return find_mesh_format(path, format) != nullptr;
 }
 
-std::vector<std::string> mesh_surface_formats() {
-  std::vector<std::string> result;
-  result.reserve(mesh_formats.size());
-  for (const MeshFormat& format : mesh_formats) result.emplace_back(format.extension);
-  return result;
-}
-
 }  // namespace collarmesh::io

@@ -3,11 +3,11 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <functional>
 #include <limits>
 #include <unordered_map>
 #include <utility>
 
+#include "common/flat_table.h"
 #include "common/note_last.h"
 #include "common/parallel_for.h"
 #include "io/cell_nodes.h"
@@ -68,7 +68,7 @@ class EntityTable {
   using Key = std::pair<Index, Tag>;
   struct KeyHash {
     std::size_t operator()(const Key& key) const {
-      return std::hash<Tag>()(key.second) ^ std::size_t{key.first} * 0x9e3779b97f4a7c15;
+      return hash_of(std::array<std::int64_t, 2>{key.first, key.second});
     }
   };
 

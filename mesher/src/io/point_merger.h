@@ -1,6 +1,5 @@
 #pragma once
 
-#include <bit>
 #include <vector>
 
 #include "collarmesh/geometry.h"
@@ -25,20 +24,9 @@ class PointMerger {
   }
 
  private:
-  static std::uint64_t mixed(std::uint64_t h) {
-    h ^= h >> 32;
-    h *= 0x9e3779b97f4a7c15ULL;
-    return h ^ (h >> 29);
-  }
-  static std::uint64_t hash(const Point& p) {
-    std::uint64_t h = 0;
-    for (const double c : {p.x, p.y, p.z})
-      h = mixed(h + std::bit_cast<std::uint64_t>(c + 0.0));  // -0 + 0 is 0
-    return h;
-  }
   /// Returns the slot that holds the point, or the free one where it belongs.
   Index& find(const Point& p) {
-    return find_slot(slots_, hash(p), [&](Index i) { return points_[i] == p; });
+    return find_slot(slots_, hash_of(p), [&](Index i) { return points_[i] == p; });
   }
   void grow() {
     slots_.assign(2 * slots_.size(), none);

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/xml_text.h"
 #include "io/cell_nodes.h"
 #include "io/cell_partitions.h"
 #include "io/file_writer.h"
@@ -154,17 +155,6 @@ void add_ghost_marks(const Members& members, Index number, const std::vector<Ind
   grid.point_data.push_back({std::string(vtk_ghosts), std::move(points)});
 }
 
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) switch (c) {
-      case '&': result += "&amp;"; break;
-      case '<': result += "&lt;"; break;
-      case '"': result += "&quot;"; break;
-      default: result += c;
-    }
-  return result;
-}
-
 void declare(FileWriter& out, std::string_view section, std::span<const VtkArray> arrays) {
   out << "    <P" << section;
   for (const VtkArray& array : arrays)
@@ -190,7 +180,7 @@ void write_list(const std::string& path, const VtkGrid& like, const std::vector<
   declare(out, "PointData", like.point_data);
   declare(out, "CellData", like.cell_data);
   declare(out, "Points", {&like.points, 1});
-  for (const std::string& piece : pieces) out << "    <Piece Source=\"" << escaped(piece) << "\"/>\n";
+  for (const std::string& piece : pieces) out << "    <Piece Source=\"" << xml_text(piece) << "\"/>\n";
   out << "  </PUnstructuredGrid>\n</VTKFile>\n";
   out.commit();
 }

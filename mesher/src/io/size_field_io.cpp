@@ -1,4 +1,5 @@
-// Reads a size field from a file.
+#include "collarmesh/io/size_field_io.h"
+
 #include <fmt/format.h>
 
 #include <string_view>
@@ -6,15 +7,14 @@
 
 #include "collarmesh/error.h"
 #include "collarmesh/io/point_field_io.h"
-#include "collarmesh/size_field.h"
 #include "io/file_bytes.h"
 
-namespace collarmesh {
+namespace collarmesh::io {
 
 SizeField read_size_field(const std::string& path, const Plc& plc, const std::shared_ptr<SizeFieldUse>& use) {
   try {
-    if (path.ends_with(".json")) return size_field_from_json(io::read_bytes(path), plc, use);
-    const io::PointField read = io::read_point_field(path);
+    if (path.ends_with(".json")) return size_field_from_json(read_bytes(path), plc, use);
+    const PointField read = read_point_field(path);
     SizeField field = size_field_on_mesh(read.mesh, read.values);
     if (!use) return field;
     return [field = std::move(field), use, number = use->add("the field")](const Point& p) {
@@ -30,4 +30,4 @@ SizeField read_size_field(const std::string& path, const Plc& plc, const std::sh
   }
 }
 
-}  // namespace collarmesh
+}  // namespace collarmesh::io

@@ -59,42 +59,36 @@ TriangleHierarchy::TriangleHierarchy(std::span<const Point> points,
   std::vector<Point> centres;
   centres.reserve(triangles_.size());
   for (const auto& t : triangles_) centres.push_back((points_[t[0]] + points_[t[1]] + points_[t[2]]) / 3);
-  nodes_.reserve(2 * triangles_.size());
-  Box box;
-  build(spatial_order(centres), none, box);
+  const std::vector<SpatialKey> keys = spatial_order(centres);
+  tree_.reserve(2 * triangles_.size());
+  const auto box_of = [&](Index place, Index) {
+    Box box;
+    for (const Index point : triangles_[keys[place].item]) box.add(points_[point]);
+    return box;
+  };
+  tree_.add(0, static_cast<Index>(keys.size()), 1, spatial_splits(keys), box_of, joined);
+  tree_.renumber([&](Index place) { return keys[place].item; });
+  for (Index node = 0; node < tree_.node_count(); ++node)
+    if (!tree_.is_leaf(node))
+      tree_.bounds(tree_.left(node)).parent = tree_.bounds(tree_.right(node)).parent = node;
 }
 
-Index TriangleHierarchy::build(std::span<const SpatialKey> keys, Index parent, Box& box) {
-  const auto node = static_cast<Index>(nodes_.size());
-  nodes_.push_back({{}, 0, parent, none, none});
-  if (keys.size() == 1) {
-    for (const Index point : triangles_[keys[0].item]) box.add(points_[point]);
-    nodes_[node].right = keys[0].item;
-  } else {
-    const std::size_t half = spatial_split(keys);
-    Box right_box;
-    const Index left = build(keys.first(half), node, box);
-    const Index right = build(keys.subspan(half), node, right_box);
-    nodes_[node].left = left;
-    nodes_[node].right = right;
-    box.add(right_box);
-  }
-  nodes_[node].box = CentredBox(box);
-  const Vector sides = box.max - box.min;
-  nodes_[node].extent = std::max({sides.x, sides.y, sides.z});
-  return node;
+TriangleHierarchy::Bounds::Bounds(const Box& of_triangles) : box(of_triangles) {
+  const Vector sides = of_triangles.max - of_triangles.min;
+  extent = std::max({sides.x, sides.y, sides.z});
 }
 
 // Returns the common label below each node. Children come after their parents.
 std::vector<Index> TriangleHierarchy::common_labels(std::span<const Index> label_of_triangle) const {
   assert(label_of_triangle.size() == triangles_.size());
-  std::vector<Index> labels(nodes_.size());
-  for (std::size_t i = nodes_.size(); i-- > 0;) {
-    const Node& node = nodes_[i];
-    if (node.left == none)
-      labels[i] = label_of_triangle[node.right];
-    else
-      labels[i] = labels[node.left] == labels[node.right] ? labels[node.left] : none;
+  std::vector<Index> labels(tree_.node_count());
+  for (Index node = tree_.node_count(); node-- > 0;) {
+    if (tree_.is_leaf(node)) {
+      labels[node] = label_of_triangle[tree_.first(node)];
+    } else {
+      const Index of_left = labels[tree_.left(node)];
+      labels[node] = of_left == labels[tree_.right(node)] ? of_left : none;
+    }
   }
   return labels;
 }
@@ -102,31 +96,32 @@ std::vector<Index> TriangleHierarchy::common_labels(std::span<const Index> label
 void TriangleHierarchy::nodes_meeting(const Box& box, double extent, std::span<const Index> from,
                                       Marks& marks, std::vector<Index>& found) const {
   found.clear();
-  marks.of_nodes_.resize(nodes_.size());
+  marks.of_nodes_.resize(tree_.node_count());
   ++marks.search_;
   const CentredBox range(box);
   for (Index node : from) {
     if (marks.of_nodes_[node].started == marks.search_) continue;
     marks.of_nodes_[node].started = marks.search_;
-    while (nodes_[node].parent != none && nodes_[nodes_[node].parent].extent <= extent)
-      node = nodes_[node].parent;
+    for (Index above = tree_.bounds(node).parent; above != none && tree_.bounds(above).extent <= extent;
+         above = tree_.bounds(node).parent)
+      node = above;
     descend(node, range, extent, marks, found);
   }
 }
 
-void TriangleHierarchy::descend(Index index, const CentredBox& box, double extent, Marks& marks,
+void TriangleHierarchy::descend(Index node, const CentredBox& box, double extent, Marks& marks,
                                 std::vector<Index>& found) const {
-  const Node& node = nodes_[index];
-  if (marks.of_nodes_[index].met == marks.search_) return;
-  marks.of_nodes_[index].met = marks.search_;
-  if (!box.meets(node.box)) return;
-  if (node.extent <= extent) {
-    found.push_back(index);
-  } else if (node.left == none) {
-    if (!misses(box, corners(node.right))) found.push_back(index);
+  if (marks.of_nodes_[node].met == marks.search_) return;
+  marks.of_nodes_[node].met = marks.search_;
+  const Bounds& bounds = tree_.bounds(node);
+  if (!box.meets(bounds.box)) return;
+  if (bounds.extent <= extent) {
+    found.push_back(node);
+  } else if (tree_.is_leaf(node)) {
+    if (!misses(box, corners(tree_.first(node)))) found.push_back(node);
   } else {
-    descend(node.left, box, extent, marks, found);
-    descend(node.right, box, extent, marks, found);
+    descend(tree_.left(node), box, extent, marks, found);
+    descend(tree_.right(node), box, extent, marks, found);
   }
 }
 
@@ -134,50 +129,35 @@ void TriangleHierarchy::crossings(const Point& p, const Point& q, std::span<cons
                                   std::vector<Crossing>& found) const {
   found.clear();
   const SegmentAgainstBoxes segment(p, q);
-  std::array<Index, most_spatial_levels + 1> stack;
-  for (const Index start : nodes) {
-    std::size_t top = 0;
-    stack[top++] = start;
-    while (top > 0) {
-      const Node& node = nodes_[stack[--top]];
-      if (!segment.may_meet(node.box)) continue;
-      if (node.left != none) {
-        stack[top++] = node.left;
-        stack[top++] = node.right;
-      } else if (const int direction = crossing_direction(p, q, corners(node.right)); direction != 0) {
-        found.push_back({node.right, direction});
-      }
-    }
-  }
+  for (const Index start : nodes)
+    tree_.descend<ChildOrder::right_first>(
+        start, [&](const Bounds& bounds) { return segment.may_meet(bounds.box); },
+        [&](Index triangle) {
+          const int direction = crossing_direction(p, q, corners(triangle));
+          if (direction != 0) found.push_back({triangle, direction});
+        });
 }
 
 void TriangleHierarchy::crossings(const SegmentBundle& bundle, std::span<const Index> nodes,
                                   std::vector<BundleCrossing>& found) const {
+  using Mask = SegmentBundle::Mask;
   found.clear();
-  std::array<std::pair<Index, SegmentBundle::Mask>, most_spatial_levels + 1> stack;
   for (std::size_t part = 0; part < bundle.part_count(); ++part)
-    for (const Index start : nodes) {
-      std::size_t top = 0;
-      stack[top++] = {start, bundle.all(part)};
-      while (top > 0) {
-        const auto [index, candidates] = stack[--top];
-        const Node& node = nodes_[index];
-        SegmentBundle::Mask meeting = bundle.may_meet(node.box, part, candidates);
-        if (meeting == 0) continue;
-        if (node.left != none) {
-          stack[top++] = {node.left, meeting};
-          stack[top++] = {node.right, meeting};
-          continue;
-        }
-        const auto triangle = corners(node.right);
-        for (; meeting != 0; meeting &= meeting - 1) {
-          const auto segment =
-              static_cast<Index>(part * SegmentBundle::part_size + std::countr_zero(meeting));
-          const int direction = crossing_direction(bundle.from(segment), bundle.to(segment), triangle);
-          if (direction != 0) found.push_back({segment, {node.right, direction}});
-        }
-      }
-    }
+    for (const Index start : nodes)
+      tree_.descend<ChildOrder::right_first>(
+          start, bundle.all(part),
+          [&](const Bounds& bounds, Mask candidates) {
+            return bundle.may_meet(bounds.box, part, candidates);
+          },
+          [&](Index number, Mask meeting) {
+            const auto triangle = corners(number);
+            for (; meeting != 0; meeting &= meeting - 1) {
+              const auto segment =
+                  static_cast<Index>(part * SegmentBundle::part_size + std::countr_zero(meeting));
+              const int direction = crossing_direction(bundle.from(segment), bundle.to(segment), triangle);
+              if (direction != 0) found.push_back({segment, {number, direction}});
+            }
+          });
   std::stable_sort(found.begin(), found.end(),
                    [](const BundleCrossing& a, const BundleCrossing& b) { return a.segment < b.segment; });
 }
@@ -187,7 +167,7 @@ int TriangleHierarchy::crossing(const Point& p, const Point& q, Index triangle) 
 }
 
 std::size_t TriangleHierarchy::bytes() const {
-  return nodes_.capacity() * sizeof(Node) + triangles_.capacity() * sizeof(triangles_[0]);
+  return tree_.bytes() + triangles_.capacity() * sizeof(triangles_[0]);
 }
 
 std::unique_ptr<TriangleHierarchy> hierarchy_of_patch(const Plc& plc, Index patch) {

@@ -9,8 +9,7 @@
 #include "collarmesh/geometry.h"
 #include "collarmesh/plc.h"
 #include "common/distances.h"
-#include "common/large_pages.h"
-#include "common/spatial_order.h"
+#include "common/hierarchy.h"
 #include "location/centred_box.h"
 #include "location/segment_bundle.h"
 
@@ -47,7 +46,7 @@ class TriangleHierarchy {
   /// corners, which no segment crosses.
   TriangleHierarchy(std::span<const Point> points, std::vector<std::array<Index, 3>> triangles);
 
-  bool empty() const { return nodes_.empty(); }
+  bool empty() const { return tree_.empty(); }
   std::size_t triangle_count() const { return triangles_.size(); }
   Index root() const { return 0; }
   const std::array<Index, 3>& points(Index triangle) const { return triangles_[triangle]; }
@@ -125,21 +124,21 @@ class TriangleHierarchy {
   std::size_t bytes() const;
 
  private:
-  struct Node {
+  struct Bounds {
     CentredBox box;
     double extent;  // longest side of the box
-    Index parent;
-    Index left, right;  // in a leaf `left` is none and `right` is its triangle
+    Index parent = none;
+
+    Bounds() = default;
+    explicit Bounds(const Box& of_triangles);
   };
 
-  /// Builds the tree of these keys and adds its box to `box`. Returns its root.
-  Index build(std::span<const SpatialKey> keys, Index parent, Box& box);
   void descend(Index node, const CentredBox& box, double extent, Marks& marks,
                std::vector<Index>& found) const;
 
   std::span<const Point> points_;
   std::vector<std::array<Index, 3>> triangles_;
-  LargeVector<Node> nodes_;
+  Hierarchy<Bounds> tree_;  // every leaf is one triangle
 };
 
 /// Builds a hierarchy over the triangles of one patch. Keeps the complex's points by reference.
@@ -148,7 +147,7 @@ std::unique_ptr<TriangleHierarchy> hierarchy_of_patch(const Plc& plc, Index patc
 template <class Skips, class Counts>
 double TriangleHierarchy::squared_distance_to(const Point& p, double bound, Index* nearest,
                                               const Skips& skips, const Counts& counts) const {
-  if (nodes_.empty()) return bound;
+  if (tree_.empty()) return bound;
   const Index top = root();
   visit_near({&top, 1}, p, bound, skips, [&](Index triangle) {
     if (!counts(triangle)) return;
@@ -164,24 +163,10 @@ double TriangleHierarchy::squared_distance_to(const Point& p, double bound, Inde
 template <class Skips, class Visit>
 void TriangleHierarchy::visit_near(std::span<const Index> nodes, const Point& p, const double& squared_bound,
                                    const Skips& skips, const Visit& visit) const {
-  std::array<Index, most_spatial_levels + 1> stack;
-  for (const Index start : nodes) {
-    std::size_t top = 0;
-    stack[top++] = start;
-    while (top > 0) {
-      const Index index = stack[--top];
-      const Node& node = nodes_[index];
-      if (node.box.squared_distance(p) >= squared_bound || skips(index)) continue;
-      if (node.left == none) {
-        visit(node.right);
-        continue;
-      }
-      const bool left_first =
-          nodes_[node.left].box.squared_distance(p) < nodes_[node.right].box.squared_distance(p);
-      stack[top++] = left_first ? node.right : node.left;
-      stack[top++] = left_first ? node.left : node.right;
-    }
-  }
+  const auto distance = [&](Index node) {
+    return skips(node) ? INFINITY : tree_.bounds(node).box.squared_distance(p);
+  };
+  for (const Index start : nodes) tree_.visit_near(start, squared_bound, distance, visit);
 }
 
 template <class Counts>
@@ -191,22 +176,17 @@ Index TriangleHierarchy::triangle_within(const Point& p, double bound, Index hin
     const auto t = corners(triangle);
     return is_within(bound, p, t[0], t[1], t[2]);
   };
-  if (nodes_.empty()) return none;
+  if (tree_.empty()) return none;
   if (hint != none && is_near(hint)) return hint;
-  std::array<Index, most_spatial_levels + 1> stack;
-  std::size_t top = 0;
-  stack[top++] = root();
-  while (top > 0) {
-    const Node& node = nodes_[stack[--top]];
-    if (node.box.squared_distance(p) >= bound) continue;
-    if (node.left != none) {
-      stack[top++] = node.left;
-      stack[top++] = node.right;
-      continue;
-    }
-    if (counts(node.right) && is_near(node.right)) return node.right;
-  }
-  return none;
+  Index found = none;
+  tree_.descend<ChildOrder::right_first>(
+      root(), [&](const Bounds& bounds) { return bounds.box.squared_distance(p) < bound; },
+      [&](Index triangle) {
+        if (!counts(triangle) || !is_near(triangle)) return false;
+        found = triangle;
+        return true;
+      });
+  return found;
 }
 
 }  // namespace collarmesh

@@ -7,6 +7,7 @@
 
 #include "common/cell_shapes.h"
 #include "common/edge_key.h"
+#include "common/flat_table.h"
 #include "common/sorted.h"
 #include "common/tet_sides.h"
 #include "periodic/pair_choice.h"
@@ -15,14 +16,8 @@ namespace collarmesh::periodicity {
 
 namespace {
 
-std::uint64_t key_of(Index a, Index b) { return std::uint64_t{a} << 32U | b; }
-
 struct HashOfTriangle {
-  std::size_t operator()(const std::array<Index, 3>& corners) const {
-    std::uint64_t hash = 0;
-    for (const Index v : corners) hash = (hash ^ v) * 0x9e3779b97f4a7c15U;
-    return hash ^ hash >> 29U;
-  }
+  std::size_t operator()(const std::array<Index, 3>& corners) const { return hash_of(corners); }
 };
 template <class Value>
 using ByTriangle = std::unordered_map<std::array<Index, 3>, Value, HashOfTriangle>;
@@ -182,7 +177,7 @@ Recut::Place Recut::on_seam(Place place) const {
 Index Recut::vertex_at(Place place) {
   const Place at = on_seam(place);
   const auto [found, is_new] =
-      vertex_at_.try_emplace(key_of(at.vertex, at.shift), static_cast<Index>(places_.size()));
+      vertex_at_.try_emplace(pair_key(at.vertex, at.shift), static_cast<Index>(places_.size()));
   if (is_new) {
     places_.push_back(at);
     const Index copy = copy_of_.at(at.shift);
@@ -428,7 +423,7 @@ TetMesh Recut::back() const {
   const auto vertex_of = [&](Index v, Index copy) {
     const bool was_there = v < places_.size();
     const Index before = was_there ? vertex_back(places_[v], copies_[copy]) : none;
-    const std::uint64_t key = was_there ? key_of(none, before) : key_of(v, copy);
+    const std::uint64_t key = was_there ? pair_key(none, before) : pair_key(v, copy);
     return restored.vertex(key, [&] {
       const bool stays = was_there && made_.points[v] == points_[v];
       TetMesh::VertexFeature feature = made_.features[v];

@@ -4,7 +4,7 @@
 
 #include "collarmesh/pipeline.h"
 #include "common/known_neighbours.h"
-#include "pipeline/run_control.h"
+#include "common/run_control.h"
 #include "pipeline/vertex_budget.h"
 
 namespace collarmesh::pipeline {

@@ -21,7 +21,6 @@ namespace collarmesh {
 
 namespace {
 
-using pipeline::Ended;
 using pipeline::MeshJob;
 using pipeline::Tries;
 

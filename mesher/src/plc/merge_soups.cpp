@@ -1,7 +1,7 @@
 #include "collarmesh/merge_soups.h"
 
 #include <algorithm>
-#include <unordered_map>
+#include <set>
 #include <vector>
 
 #include "facets/draft.h"
@@ -28,16 +28,11 @@ class RepeatedFacets {
     std::vector<Index> key;
     for (const auto& polygon : facet.polygons) key.insert(key.end(), polygon.begin(), polygon.end());
     std::sort(key.begin(), key.end());
-    std::uint64_t hash = key.size();
-    for (const Index v : key) hash = (hash ^ (hash >> 29) ^ v) * 0x9e3779b97f4a7c15ULL;
-    auto& same = seen_[hash];
-    if (std::find(same.begin(), same.end(), key) != same.end()) return false;
-    same.push_back(std::move(key));
-    return true;
+    return seen_.insert(std::move(key)).second;
   }
 
  private:
-  std::unordered_map<std::uint64_t, std::vector<std::vector<Index>>> seen_;
+  std::set<std::vector<Index>> seen_;
 };
 
 class Merger {

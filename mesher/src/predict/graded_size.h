@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "collarmesh/geometry.h"
+#include "common/hierarchy.h"
 
 namespace collarmesh::prediction {
 
@@ -27,19 +28,15 @@ class GradedSize {
   double at(const Point& p, double largest) const;
 
  private:
-  struct Node {
+  struct Bounds {
     Box box;
-    double least;        // smallest size of the sources below
-    double growth;       // smallest growth of the sources below
-    Index first, count;  // its sources; count 0: the children are the next node and the node `first`
+    double least = INFINITY;   // smallest size of the sources below
+    double growth = INFINITY;  // smallest growth of the sources below
   };
-  static constexpr Index leaf_size = 4;
-
-  Index build(Index first, Index last);
 
   double growth_ = 0;
   std::vector<Source> sources_;
-  std::vector<Node> nodes_;
+  Hierarchy<Bounds> tree_;
 };
 
 }  // namespace collarmesh::prediction

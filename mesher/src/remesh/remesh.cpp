@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "check/labelled.h"
@@ -17,6 +17,7 @@
 #include "collarmesh/project_boundary.h"
 #include "collarmesh/second_order.h"
 #include "common/layer_tets.h"
+#include "common/run_control.h"
 #include "common/thread_limit.h"
 #include "improve/improve_workpiece.h"
 #include "remesh/edge_division.h"
@@ -54,31 +55,30 @@ constexpr double distance_left = 0.75, angle_reserve = 0.05;
 // keeps it.
 constexpr double good_angle = 15;
 
-/// Thrown if a stage stops early; the result says why.
-struct Ended {};
-
 class Remeshing {
  public:
   /// `complex`: the one that the mesh was made of; null: that of its own surface.
   Remeshing(const TetMesh& given, const Plc* complex, const PipelineOptions& options,
             const AdaptOptions& adapt, const Execution& execution)
-      : given_(given), complex_(complex), options_(options), adapt_(adapt), outer_(execution) {
+      : given_(given),
+        complex_(complex),
+        options_(options),
+        adapt_(adapt),
+        control_(options, execution, made_) {
     validate({options});
     if (options.partitions > 0) require_partitioner();
-    inner_.cancel = execution.cancel;
-    inner_.progress = [this](const ProgressReport& report) { return go_on(report); };
   }
 
   RemeshResult run() {
     try {
-      begin("complex", 0, 0.06);
+      control_.begin("complex", 0, 0.06);
       build();
       ThreadLimit(options_.mesh.threads).run([&] { reshape(); });
       project();
       raise_order();
       certify();
       forget_numbers();
-      divide();
+      partition_tets();
     } catch (const Ended&) {
       made_.result.mesh = {};
     }
@@ -123,9 +123,10 @@ class Remeshing {
     mesh().features.clear();
     std::fill(mesh().tet_region.begin(), mesh().tet_region.end(), none);
     made_.plc = *complex_;
-    mesh() = checks::labelled(mesh(), made_.plc,
-                              {.bounds = options_.mesh.bounds, .threads = options_.mesh.threads}, inner_);
-    stop_if_asked();
+    control_.watch([&](const Execution& execution) {
+      mesh() = checks::labelled(
+          mesh(), made_.plc, {.bounds = options_.mesh.bounds, .threads = options_.mesh.threads}, execution);
+    });
   }
 
   /// Chooses the bounds that operations keep: stricter ones if all angles of the mesh are already within
@@ -194,9 +195,9 @@ class Remeshing {
     if (is_full()) coarsen_and_improve();  // a mesh that is to become coarser may begin above the limit
     for (unsigned pass = 0; pass < most_passes; ++pass) {
       const double from = 0.06 + 0.24 * pass;
-      begin("remesh", from, from + 0.12);
+      control_.begin("remesh", from, from + 0.12);
       const std::size_t divided = refine(pass == 0);
-      begin("coarsen", from + 0.12, from + 0.24);
+      control_.begin("coarsen", from + 0.12, from + 0.24);
       coarsen_and_improve();
       if (static_cast<double>(divided) < least_share * static_cast<double>(mesh().points.size())) break;
     }
@@ -223,10 +224,10 @@ class Remeshing {
     EdgeDivision division(piece, options, target_sizes());
     std::size_t all = 0;
     for (unsigned round = 0; round < most_rounds; ++round) {
-      const std::size_t divided =
-          division.divide_all(first ? longest_at_first : longest_later, options_.mesh.max_vertices, inner_);
-      stop_if_asked();
-      require_budget();
+      const std::size_t divided = divide([&](const Execution& execution) {
+        return division.divide_all(first ? longest_at_first : longest_later, options_.mesh.max_vertices,
+                                   execution);
+      });
       if (divided == 0) break;
       all += divided;
       ++made_.remeshing.rounds;
@@ -238,14 +239,22 @@ class Remeshing {
     return all;
   }
 
+  /// Runs a division and returns its count. Throws Ended if the run was stopped or has too many vertices.
+  std::size_t divide(const std::function<std::size_t(const Execution&)>& division) {
+    std::size_t divided = 0;
+    control_.watch([&](const Execution& execution) { divided = division(execution); });
+    require_budget();
+    return divided;
+  }
+
   /// Divides edges that the mesh was given too far from the curves and patches of the complex.
   std::size_t follow_features(Workpiece& piece, EdgeDivision& division) {
     std::size_t all = 0;
     for (unsigned round = 0; round < most_distance_rounds; ++round) {
       piece.surfaces.accept_distant(distant_halves);
-      const std::size_t divided = division.divide_distant(options_.mesh.max_vertices, inner_);
-      stop_if_asked();
-      require_budget();
+      const std::size_t divided = divide([&](const Execution& execution) {
+        return division.divide_distant(options_.mesh.max_vertices, execution);
+      });
       if (divided == 0) break;
       all += divided;
       piece.surfaces.accept_distant(1);
@@ -265,13 +274,13 @@ class Remeshing {
     options.keep_vertices = keep_vertices;
     if (keep_vertices) options.passes = 1;
     // `coarsen_and_improve` also tries the slower operations on tets that are still poor.
-    add(improve(piece, options, inner_, false));
+    add(improve(piece, options, control_.execution(), false));
   }
 
   void coarsen_and_improve() {
     Workpiece piece = workpiece();
-    made_.coarsening = coarsen(piece, options_kept(), inner_);
-    stop_if_asked(made_.coarsening->cancelled);
+    made_.coarsening = coarsen(piece, options_kept(), control_.execution());
+    control_.stop_if_asked(made_.coarsening->cancelled);
     made_.remeshing.contracted_edges += made_.coarsening->contracted_edges;
     if (options_.improve > 0) {
       ImproveOptions options = improve_options(options_.improve);
@@ -279,40 +288,42 @@ class Remeshing {
       options.thin_above = options_.mesh.bounds.radius_edge;
       options.keep_vertices = true;
       if (options_.min_dihedral > 0) options.min_dihedral = options_.min_dihedral;
-      add(improve(piece, options, inner_));
+      add(improve(piece, options, control_.execution()));
     }
     piece.complex.store();
   }
 
   void add(const ImproveReport& report) {
-    stop_if_asked(report.cancelled);
+    control_.stop_if_asked(report.cancelled);
     made_.improvement = report;
   }
 
   void project() {
     if (!options_.exact) return;
-    begin("project", 0.78, 0.8);
-    made_.projection = project_boundary(mesh(), made_.plc, options_.exact,
-                                        {.bounds = promised_, .threads = options_.mesh.threads}, inner_);
-    stop_if_asked();
+    control_.begin("project", 0.78, 0.8);
+    control_.watch([&](const Execution& execution) {
+      made_.projection = project_boundary(mesh(), made_.plc, options_.exact,
+                                          {.bounds = promised_, .threads = options_.mesh.threads}, execution);
+    });
     improvement::mark_thin_tets(mesh(), promised_.radius_edge);
   }
 
   void raise_order() {
     if (options_.order == 1) return;
-    begin("second order", 0.8, 0.86);
+    control_.begin("second order", 0.8, 0.86);
     made_.second_order = make_second_order(
         mesh(), made_.plc, {.exact = options_.exact, .bounds = promised_, .threads = options_.mesh.threads},
-        inner_);
-    stop_if_asked(made_.second_order.cancelled);
+        control_.execution());
+    control_.stop_if_asked(made_.second_order.cancelled);
   }
 
   void certify() {
-    begin("check", 0.86, 0.96);
-    made_.check = check(
-        mesh(), made_.plc,
-        {.bounds = promised_, .exact = options_.exact_measures, .threads = options_.mesh.threads}, inner_);
-    stop_if_asked(made_.check.cancelled);
+    control_.begin("check", 0.86, 0.96);
+    made_.check =
+        check(mesh(), made_.plc,
+              {.bounds = promised_, .exact = options_.exact_measures, .threads = options_.mesh.threads},
+              control_.execution());
+    control_.stop_if_asked(made_.check.cancelled);
   }
 
   /// Removes feature numbers, which would refer to this internal complex. Tags identify features, as in a
@@ -323,9 +334,9 @@ class Remeshing {
     std::fill(mesh().edge_curve.begin(), mesh().edge_curve.end(), none);
   }
 
-  void divide() {
+  void partition_tets() {
     if (options_.partitions == 0) return;
-    begin("partition", 0.96, 1);
+    control_.begin("partition", 0.96, 1);
     partition(mesh(), options_.partitions);
   }
 
@@ -343,53 +354,15 @@ class Remeshing {
     throw Ended();
   }
 
-  void begin(std::string_view stage, double from, double to) {
-    from_ = from;
-    to_ = to;
-    stop_if_asked();
-    if (!go_on({.phase = stage,
-                .fraction = 0,
-                .vertices = mesh().points.size(),
-                .tets = mesh().tets.size(),
-                .begins = true}))
-      stop_if_asked(true);
-  }
-
-  bool go_on(ProgressReport report) {
-    fraction_ = std::max(fraction_, from_ + std::clamp(report.fraction, 0.0, 1.0) * (to_ - from_));
-    report.fraction = fraction_;
-    if (outer_.progress && !outer_.progress(report)) stopped_ = true;
-    const double limit = options_.mesh.time_limit;
-    if (limit > 0 && std::chrono::duration<double>(Clock::now() - started_).count() > limit)
-      out_of_time_ = true;
-    return !stopped_ && !out_of_time_;
-  }
-
-  void stop_if_asked(bool asked = false) {
-    if (!asked && !stopped_ && !out_of_time_ && !outer_.cancelled()) return;
-    made_.result.status = out_of_time_ ? MeshStatus::budget_hit : MeshStatus::cancelled;
-    made_.result.message =
-        out_of_time_ ? fmt::format("the time limit of {} s is reached; raise it, or size for a coarser mesh",
-                                   options_.mesh.time_limit)
-                     : "the run was stopped";
-    throw Ended();
-  }
-
-  using Clock = std::chrono::steady_clock;
-
   const TetMesh& given_;
   const Plc* complex_;
   PipelineOptions options_;
   const AdaptOptions& adapt_;
-  const Execution& outer_;
-  Execution inner_;
   RemeshResult made_;
+  RunControl control_;
   double largest_size_ = 0;
   Bounds promised_;  // bounds of the certificate
   Bounds kept_;      // bounds that operations keep
-  Clock::time_point started_ = Clock::now();
-  double from_ = 0, to_ = 0, fraction_ = 0;
-  bool stopped_ = false, out_of_time_ = false;
 };
 
 }  // namespace

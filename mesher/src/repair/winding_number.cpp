@@ -34,64 +34,59 @@ WindingNumber::WindingNumber(std::vector<WeightedTriangle> triangles) {
   const std::vector<SpatialKey> keys = spatial_order(centres);
   triangles_.reserve(triangles.size());
   for (const SpatialKey& key : keys) triangles_.push_back(triangles[key.item]);
-  if (!keys.empty()) build(keys, 0);
+  if (keys.empty()) return;
+  constexpr Index leaf_size = 8;
+  tree_.add(
+      0, static_cast<Index>(keys.size()), leaf_size, spatial_splits(keys),
+      [&](Index first, Index count) {
+        return Range{triangles_, first, count};
+      },
+      [](const Range& a, const Range& b) {
+        return Range{a.triangles, a.first, a.count + b.count};
+      });
 }
 
-WindingNumber::Node WindingNumber::summary(Index first, Index count) const {
-  Node node{{}, 0, {}, {}, first, count};
+WindingNumber::Summary::Summary(const Range& range) {
+  const std::span triangles = std::span(range.triangles).subspan(range.first, range.count);
   double total = 0;
-  for (Index i = first; i < first + count; ++i) {
-    const double area = norm(area_vector(triangles_[i]));
-    node.centre = node.centre + area * centroid(triangles_[i]);
-    total += area;
+  for (const WeightedTriangle& t : triangles) {
+    const double size = norm(area_vector(t));
+    centre = centre + size * centroid(t);
+    total += size;
   }
-  node.centre = total > 0 ? (1 / total) * node.centre : centroid(triangles_[first]);
-  for (Index i = first; i < first + count; ++i) {
-    const WeightedTriangle& t = triangles_[i];
-    const Vector area = t.weight * area_vector(t), arm = centroid(t) - node.centre;
-    node.area = node.area + area;
+  centre = total > 0 ? (1 / total) * centre : centroid(triangles[0]);
+  for (const WeightedTriangle& t : triangles) {
+    const Vector weighted = t.weight * area_vector(t), arm = centroid(t) - centre;
+    area = area + weighted;
     for (std::size_t r = 0; r < 3; ++r)
-      for (std::size_t c = 0; c < 3; ++c) node.moment[3 * r + c] += arm[r] * area[c];
-    for (const Point& corner : t.corners) node.radius = std::max(node.radius, distance(corner, node.centre));
+      for (std::size_t c = 0; c < 3; ++c) moment[3 * r + c] += arm[r] * weighted[c];
+    for (const Point& corner : t.corners) radius = std::max(radius, distance(corner, centre));
   }
-  return node;
-}
-
-Index WindingNumber::build(std::span<const SpatialKey> keys, Index first) {
-  const auto number = static_cast<Index>(nodes_.size());
-  const auto count = static_cast<Index>(keys.size());
-  nodes_.push_back(summary(first, count));
-  if (count <= leaf_size) return number;
-  nodes_[number].count = 0;
-  const std::size_t split = spatial_split(keys);
-  build(keys.first(split), first);
-  const Index right = build(keys.subspan(split), first + static_cast<Index>(split));
-  nodes_[number].first = right;
-  return number;
 }
 
 double WindingNumber::at(const Point& p, Index left_out) const {
-  return nodes_.empty() ? 0 : at_node(0, p, left_out) / (4 * std::numbers::pi);
+  return tree_.empty() ? 0 : at_node(0, p, left_out) / (4 * std::numbers::pi);
 }
 
 bool WindingNumber::is_on_another(const Point& p, Index left_out) const {
-  return !nodes_.empty() && is_on_another(0, p, left_out);
+  return !tree_.empty() && is_on_another(0, p, left_out);
 }
 
 bool WindingNumber::is_on_another(Index node, const Point& p, Index left_out) const {
   // Seen from a point on a triangle, the triangle covers half of the sphere.
   constexpr double half_sphere = 2 * std::numbers::pi - 1e-6;
-  const Node& n = nodes_[node];
+  const Summary& n = tree_.bounds(node);
   if (distance(n.centre, p) > 1.001 * n.radius) return false;
-  if (n.count == 0) return is_on_another(node + 1, p, left_out) || is_on_another(n.first, p, left_out);
-  for (Index i = n.first; i < n.first + n.count; ++i)
+  if (!tree_.is_leaf(node))
+    return is_on_another(tree_.left(node), p, left_out) || is_on_another(tree_.right(node), p, left_out);
+  for (Index i = tree_.first(node); i < tree_.end(node); ++i)
     if (triangles_[i].number != left_out && std::fabs(solid_angle(triangles_[i], p)) > half_sphere)
       return true;
   return false;
 }
 
 double WindingNumber::at_node(Index node, const Point& p, Index left_out) const {
-  const Node& n = nodes_[node];
+  const Summary& n = tree_.bounds(node);
   const Vector r = n.centre - p;
   const double distance = norm(r);
   if (distance > far * n.radius) {
@@ -104,9 +99,10 @@ double WindingNumber::at_node(Index node, const Point& p, Index left_out) const 
     }
     return (dot(r, n.area) + trace - 3 * along / (distance * distance)) / cubed;
   }
-  if (n.count == 0) return at_node(node + 1, p, left_out) + at_node(n.first, p, left_out);
+  if (!tree_.is_leaf(node))
+    return at_node(tree_.left(node), p, left_out) + at_node(tree_.right(node), p, left_out);
   double sum = 0;
-  for (Index i = n.first; i < n.first + n.count; ++i)
+  for (Index i = tree_.first(node); i < tree_.end(node); ++i)
     if (triangles_[i].number != left_out) sum += triangles_[i].weight * solid_angle(triangles_[i], p);
   return sum;
 }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "collarmesh/geometry.h"
-#include "common/spatial_order.h"
+#include "common/hierarchy.h"
 
 namespace collarmesh::repairing {
 
@@ -34,23 +34,26 @@ class WindingNumber {
   bool is_on_another(const Point& p, Index left_out) const;
 
  private:
-  struct Node {
-    Point centre;                  // centroid of the triangles, weighted by area
-    double radius;                 // radius of the smallest ball around the centre that contains all corners
-    Vector area;                   // sum of weight * area vectors
-    std::array<double, 9> moment;  // sum of weight * (centroid - centre) x area vector, as a matrix
-    Index first, count;            // triangles of a leaf; count 0: the children are the next node and the
-                                   // node `first`
+  /// Consecutive triangles.
+  struct Range {
+    const std::vector<WeightedTriangle>& triangles;
+    Index first, count;
   };
-  static constexpr Index leaf_size = 8;
+  struct Summary {
+    Point centre;       // centroid of the triangles, weighted by area
+    double radius = 0;  // radius of the smallest ball around the centre that contains all corners
+    Vector area{};      // sum of weight * area vectors
+    std::array<double, 9> moment{};  // sum of weight * (centroid - centre) x area vector, as a matrix
 
-  Index build(std::span<const SpatialKey> keys, Index first);
-  Node summary(Index first, Index count) const;
+    Summary() = default;
+    explicit Summary(const Range& range);
+  };
+
   double at_node(Index node, const Point& p, Index left_out) const;
   bool is_on_another(Index node, const Point& p, Index left_out) const;
 
   std::vector<WeightedTriangle> triangles_;  // in the order of the leaves
-  std::vector<Node> nodes_;
+  Hierarchy<Summary> tree_;
 };
 
 }  // namespace collarmesh::repairing

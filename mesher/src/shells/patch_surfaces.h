@@ -28,8 +28,6 @@ class PatchSurfaces {
   /// Returns the place of a patch that is nearest to p.
   Foot nearest(Index patch, const Point& p) const;
   bool planar(Index patch) const { return plc_.patches[patch].planar; }
-  /// Returns the unit normal of a planar patch.
-  const Vector& plane_normal(Index patch) const { return normals_[patch]; }
 
   /// Returns the place of a planar patch's plane that is nearest to p.
   Point onto_plane(Index patch, const Point& p) const {

@@ -13,7 +13,7 @@ namespace collarmesh::io {
 /// CONTACT; cohesive elements (COH3D6) are in the element set COHESIVE and in one set for each patch. Throws
 /// WriteError, also if the format has no place for them.
 void write_tet_mesh(const std::string& path, const TetMesh& mesh, const Interfaces& interfaces,
-                    std::string_view format = {}, GhostCells ghost_cells = GhostCells::none);
+                    std::string_view format = {}, GhostCells ghost_cells = GhostCells::off);
 
 /// Throws WriteError if the format cannot express the conditions or elements between sides that the options
 /// ask for.

@@ -2,7 +2,6 @@
 
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "collarmesh/polygon_soup.h"
 #include "collarmesh/tet_mesh.h"
@@ -20,7 +19,5 @@ TetMesh read_mesh_cells(const std::string& path, std::string_view format = {});
 
 /// Returns whether `read_mesh_surface` knows this extension or format.
 bool is_mesh_surface_format(const std::string& path, std::string_view format = {});
-
-std::vector<std::string> mesh_surface_formats();
 
 }  // namespace collarmesh::io

@@ -4,19 +4,17 @@
 #include <string_view>
 #include <vector>
 
+#include "collarmesh/partition.h"
 #include "collarmesh/tet_mesh.h"
 
 namespace collarmesh::io {
-
-/// Whether the file of each partition also has the tets of other partitions that share a vertex with it.
-enum class GhostCells { none, one_layer };
 
 /// Writes a mesh by the extension of `path`, or as `format` (an extension with its dot, lower case) says.
 /// Writes each file under another name and renames it, so a reader never sees half a file. The sources of the
 /// formats say which data each of them keeps (src/io/*_writer.cpp). Throws WriteError, also for ghost cells,
 /// prisms and pyramids where the format has no place for them.
 void write_tet_mesh(const std::string& path, const TetMesh& mesh, std::string_view format = {},
-                    GhostCells ghost_cells = GhostCells::none);
+                    GhostCells ghost_cells = GhostCells::off);
 
 /// Reads the files of `write_tet_mesh` and, as far as they carry tetrahedra, prisms, pyramids, triangles,
 /// quadrangles and lines of first or second order, other programs' files of these formats.

@@ -14,6 +14,7 @@
 #include <variant>
 #include <vector>
 
+#include "common/xml_text.h"
 #include "io/cell_nodes.h"
 #include "io/file_writer.h"
 #include "io/label_names.h"
@@ -181,18 +182,6 @@ class GridFile {
   FileWriter out_;
 };
 
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) switch (c) {
-      case '&': result += "&amp;"; break;
-      case '<': result += "&lt;"; break;
-      case '>': result += "&gt;"; break;
-      case '"': result += "&quot;"; break;
-      default: result += c;
-    }
-  return result;
-}
-
 /// Returns the names of tags that have one, in the form of meshio's field data.
 std::string names_information(const TetMesh& mesh) {
   std::string maps;
@@ -200,7 +189,7 @@ std::string names_information(const TetMesh& mesh) {
     for (const Tag tag : std::set<Tag>(tags.begin(), tags.end()))
       if (const std::string name = group_name(mesh, dimension, tag);
           name != group_name(GroupNames::complex, dimension, tag))
-        maps += fmt::format("<map key=\"{}\" dim=\"{}\">{}</map>", escaped(name), dimension, tag);
+        maps += fmt::format("<map key=\"{}\" dim=\"{}\">{}</map>", xml_text(name), dimension, tag);
   };
   add(1, mesh.edge_tag);
   add(2, mesh.face_tag);

@@ -7,7 +7,7 @@
 #include "collarmesh/pipeline.h"
 #include "collarmesh/progress.h"
 
-namespace collarmesh::pipeline {
+namespace collarmesh {
 
 /// Thrown if a stage stops early; `PipelineResult::result` says why.
 struct Ended {};
@@ -33,8 +33,8 @@ class RunControl {
   /// that case.
   void watch(const std::function<void(const Execution&)>& stage);
 
-  /// Throws Ended if the run is cancelled or out of time.
-  void stop_if_asked();
+  /// Throws Ended if the run is cancelled or out of time, or a stage was asked to end.
+  void stop_if_asked(bool asked = false);
   /// Writes the reason into the result and throws Ended.
   [[noreturn]] void stop();
   bool out_of_time() const;
@@ -53,4 +53,4 @@ class RunControl {
                                              // the last one reported
 };
 
-}  // namespace collarmesh::pipeline
+}  // namespace collarmesh

@@ -1,4 +1,4 @@
-#include "pipeline/run_control.h"
+#include "common/run_control.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include <stop_token>
 #include <thread>
 
-namespace collarmesh::pipeline {
+namespace collarmesh {
 
 /// A flag that becomes true when another flag is set or the time is up.
 class RunControl::Deadline {
@@ -72,8 +72,8 @@ void RunControl::watch(const std::function<void(const Execution&)>& stage) {
   stop_if_asked();
 }
 
-void RunControl::stop_if_asked() {
-  if (inner_.cancelled()) stop();
+void RunControl::stop_if_asked(bool asked) {
+  if (asked || inner_.cancelled()) stop();
 }
 
 void RunControl::stop() {
@@ -96,4 +96,4 @@ bool RunControl::go_on(ProgressReport report) {
   return outer_.progress(report);
 }
 
-}  // namespace collarmesh::pipeline
+}  // namespace collarmesh
