@@ -63,7 +63,10 @@ CheckReport check_as_built(const TetMesh& mesh, ComplexInput& input, const RunOp
 /// them.
 void check_against_further(const TetMesh& mesh, ComplexInput& input, const RunOptions& options,
                            const Execution& execution, CheckReport& report, RepairReport& repair) {
-  for (const RepairOptions& further : further_repairs(options.repair, repair)) {
+  std::vector<RepairOptions> all = further_repairs(options.repair, repair);
+  all.insert(all.begin(), options.repair);
+  all.front().target_size = options.mesh.size;  // collapses features, as `mesh` does
+  for (const RepairOptions& further : all) {
     try {
       CheckReport other = check_as_built(mesh, input, options, further, execution);
       if (other.cancelled || !other.passed()) continue;
@@ -75,7 +78,8 @@ void check_against_further(const TetMesh& mesh, ComplexInput& input, const RunOp
     }
     repair = input.repaired();
     report.notes.push_back(
-        repair.wrapped
+        further.target_size ? "features smaller than the feature size are collapsed in the mesh"
+        : repair.wrapped
             ? "the mesh was made from a wrap (a closed surface around the input)"
             : fmt::format("the mesh is one of a repair with --repair-tolerance {:.3g}", further.tolerance));
     return;

@@ -105,13 +105,27 @@ Execution ComplexInput::watched() const {
 
 Plc ComplexInput::build(const PlcOptions& options, const RepairOptions& repair) {
   built_ = {};
-  Plc plc = build_unnamed(options, repair);
+  Plc plc = without_small_features(build_unnamed(options, repair), options, repair);
   for (const Plc::Patch& patch : plc.patches) built_.patch_numbers.push_back(patch.tag);
   for (const Plc::Curve& curve : plc.curves) built_.curve_numbers.push_back(curve.tag);
   if (!built_.repaired.wrapped) add_replaced_faces(plc);
   name(plc);
   if (labels() != nullptr) name_regions(*labels(), plc);
   return plc;
+}
+
+/// Collapses features that are smaller than the feature size and have no name.
+Plc ComplexInput::without_small_features(Plc plc, const PlcOptions& options, const RepairOptions& repair) {
+  if (!repair.target_size || built_.repaired.wrapped) return plc;
+  RepairOptions kept = repair;
+  Plc named = plc;
+  name(named);
+  for (Index p = 0; p < plc.patches.size(); ++p)
+    if (named.names.of(2).contains(named.patches[p].tag)) kept.kept_patches.push_back(plc.patches[p].tag);
+  for (Index c = 0; c < plc.curves.size(); ++c)
+    if (named.names.of(1).contains(named.curves[c].tag)) kept.kept_curves.push_back(plc.curves[c].tag);
+  return take(collapse_small_features({std::move(plc), std::move(built_.repaired), std::move(built_.soups)},
+                                      soups_, options, kept, watched()));
 }
 
 /// Adds pairs of merged faces, where solids of a file touch, to those of the complex.

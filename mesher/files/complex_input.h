@@ -79,6 +79,7 @@ class ComplexInput {
   void name(Plc& plc) const;
   const brep::CadLabels* labels() const;
   Plc build_unnamed(const PlcOptions& options, const RepairOptions& repair);
+  Plc without_small_features(Plc plc, const PlcOptions& options, const RepairOptions& repair);
   Plc build_valid(const PlcOptions& options, const RepairOptions& repair);
   Plc build_finer(const PlcOptions& options, const RepairOptions& repair, bool with_noise);
   Plc resolved(Plc plc, const PlcOptions& options, const RepairOptions& repair);

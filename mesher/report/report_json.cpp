@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 
 #include "report/colour_text.h"
@@ -342,6 +343,17 @@ Json check_json(const CheckReport& r) {
             {"curve_lengths", kept_json(r.of_input.lengths, r.of_mesh.lengths)}}}};
 }
 
+Json small_features_json(const std::vector<SmallFeature>& features) {
+  constexpr std::array kinds{"curve", "patch", "tip"};  // as SmallFeature::Kind
+  Json list = Json::array();
+  for (const SmallFeature& feature : features)
+    list.push_back({{"kind", kinds[static_cast<std::size_t>(feature.kind)]},
+                    {"size", feature.size},
+                    {"tag", feature.tag},
+                    {"where", point_json(feature.where)}});
+  return list;
+}
+
 Json repair_json(const RepairReport& r) {
   return {{"repaired", r.repaired},
           {"wrapped", r.wrapped},
@@ -364,6 +376,8 @@ Json repair_json(const RepairReport& r) {
           {"collapsed", places_json(r.collapsed, "largest_distance")},
           {"kept", places_json(r.kept, nullptr)},
           {"filled", filled_json(r.filled)},
+          {"feature_size", r.feature_size},
+          {"small_features", small_features_json(r.small_features)},
           {"lost_tags", r.lost_tags},
           {"lost_groups", r.lost_groups},
           {"lost_regions", r.lost_regions},

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -27,6 +28,12 @@ struct RepairOptions {
   double wrap_offset =
       5e-3;  ///< tolerance of the closed surface around everything, relative to the bounding-box diagonal
   bool wrap_at_once = false;  ///< in `RepairMode::wrap`: wrap even if the other steps make a solid
+  /// Features of a complex that are smaller than this share of the target size are collapsed; 0: none.
+  double feature_size = 0.01;
+  /// The smallest target size that is given, absolute; 0: a twentieth of the diagonal. Nothing: no feature is
+  /// collapsed.
+  std::optional<double> target_size = {};
+  std::vector<Tag> kept_patches = {}, kept_curves = {};  ///< tags of features that are never collapsed
   /// Maximum work before repair gives up, counted in pairs of facets near each other; a cut of an
   /// intersecting pair counts 1000. Counting work instead of time makes the result the same on every machine.
   /// `RepairMode::wrap` gets a quarter of this.
@@ -47,6 +54,19 @@ struct FilledHole {
   double length = 0;      ///< length of the curve around it, input units
   double area = 0;        ///< area of the facets that fill it, input units squared
   Point where;            ///< the mean of the points around it
+};
+
+/// A feature that was collapsed, as it was smaller than the feature size.
+struct SmallFeature {
+  enum class Kind {
+    curve,  ///< size: its length
+    patch,  ///< size: its width
+    tip     ///< the part of a patch between two curves near their common vertex; size: its length
+  };
+  Kind kind = Kind::curve;
+  double size = 0;  ///< absolute
+  Tag tag = 0;      ///< tag of the curve or patch
+  Point where;
 };
 
 /// The changes that repair made to the input.
@@ -73,6 +93,8 @@ struct RepairReport {
   RepairPlaces united;  ///< number of other regions of valid input that are gone; places: in the remaining
                         ///< ones
   std::vector<FilledHole> filled;
+  double feature_size = 0;                   ///< size below which features were collapsed, absolute
+  std::vector<SmallFeature> small_features;  ///< the features that were collapsed
   std::vector<Tag> lost_tags;     ///< tags of facets that have no facet left
   std::vector<Tag> lost_groups;   ///< the lost tags except those that are only numbers of CAD faces
   std::vector<Tag> lost_regions;  ///< tags that the input gives and that no region of the complex has
@@ -90,7 +112,7 @@ struct RepairReport {
   bool changed() const {
     return split_polygons + dropped_polygons + repeated.count + turned.count + stitched.count +
                collapsed.count + cut.count + second_sides + flakes.count + merged.count + dropped.count +
-               filled.size() >
+               filled.size() + small_features.size() >
            0;
   }
 };
@@ -123,6 +145,15 @@ struct RepairedPlc {
 /// soups. If the features cannot be removed, returns `plc` with a warning.
 RepairedPlc remove_noise(Plc plc, std::span<const PolygonSoup> soups, const PlcOptions& options = {},
                          const RepairOptions& repair_options = {}, const Execution& execution = {});
+
+/// Collapses the curves, patches and tips of patches of a complex that are smaller than
+/// `RepairOptions::feature_size`, unless the target size is not known or the mode is `off`. Keeps features
+/// that carry a name or a kept tag, every tag that is no number of a CAD face, every region, and all volumes
+/// within 2%; where that fails, or the complex would not be valid, returns the complex as it was. `soups` are
+/// those from which the complex was built. Cost: O(n log n).
+RepairedPlc collapse_small_features(RepairedPlc complex, std::span<const PolygonSoup> soups,
+                                    const PlcOptions& options = {}, const RepairOptions& repair_options = {},
+                                    const Execution& execution = {});
 
 /// Builds the complex, after `repair` if there are faults or noise, with a tolerance that grows while that
 /// helps. For valid soups without features below the tolerance, returns the complex of `build_plc`. If the

@@ -414,6 +414,13 @@ std::vector<Option> complex_options() {
        .high = 0.01,
        .help = "Repair treats features smaller than this as noise, relative to the diagonal",
        .commands = complexes},
+      {.name = "feature-size F",
+       .place = at<&RunOptions::repair, &RepairOptions::feature_size>,
+       .high = 0.1,
+       .help = "Collapse curves, narrow patches and sharp tips of patches that are smaller than this share of "
+               "the target size and have no name, size or group; 0: keep all",
+       .details = "see [Features to the size](repair.md#features-to-the-size)",
+       .commands = refining | Option::check},
       {.name = "wrap-offset T",
        .place = at<&RunOptions::repair, &RepairOptions::wrap_offset>,
        .unit = Unit::of_diagonal,

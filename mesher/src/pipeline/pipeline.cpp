@@ -48,7 +48,8 @@ class SoupSource : public ComplexSource {
       : soups_(soups), options_(options) {}
 
   RepairedPlc build(const RepairOptions& repair, const Execution& execution) override {
-    return build_repaired_plc(soups_, options_, repair, execution);
+    return collapse_small_features(build_repaired_plc(soups_, options_, repair, execution), soups_, options_,
+                                   repair, execution);
   }
   void adapt(const Plc&, PipelineOptions&) override {}
 

@@ -5,10 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <new>
 #include <optional>
+#include <tuple>
 
+#include "check/findings.h"
 #include "check/guarantees.h"
+#include "collarmesh/plc_builder.h"
 #include "pipeline/explosion.h"
 #include "pipeline/lost_parts.h"
 #include "pipeline/vertex_bound.h"
@@ -17,6 +21,23 @@ namespace collarmesh::pipeline {
 
 namespace {
 
+/// Sets the size to which features are compared, and the tags of those with a size. No feature is collapsed
+/// where sizes depend on the place.
+void find_feature_size(const MeshOptions& mesh, RepairOptions& repair) {
+  if (mesh.size_field) return;
+  double size = mesh.size;
+  const auto add = [&](const std::map<Tag, double>& sizes, std::vector<Tag>* kept) {
+    for (const auto& [tag, asked] : sizes) {
+      size = size > 0 ? std::min(size, asked) : asked;
+      if (kept != nullptr) kept->push_back(tag);
+    }
+  };
+  add(mesh.region_size, nullptr);
+  add(mesh.patch_size, &repair.kept_patches);
+  add(mesh.curve_size, &repair.kept_curves);
+  repair.target_size = size;
+}
+
 /// Throws PlcError unless a coarser repair changed something and loses no part.
 void require_kept(const SoupPipelineResult& finer, const SoupPipelineResult& coarser) {
   const bool same =
@@ -24,6 +45,26 @@ void require_kept(const SoupPipelineResult& finer, const SoupPipelineResult& coa
   const std::string lost =
       same ? "nothing would change" : lost_parts(finer.plc, finer.repair, coarser.plc, coarser.repair);
   if (!lost.empty()) throw PlcError(lost, {});
+}
+
+std::vector<Point> points_near(const Plc& plc, const Point& place, double radius) {
+  std::vector<Point> near;
+  std::ranges::copy_if(plc.points, std::back_inserter(near),
+                       [&](const Point& p) { return squared_distance(p, place) < radius * radius; });
+  std::ranges::sort(near, {}, [](const Point& p) { return std::tuple(p.x, p.y, p.z); });
+  return near;
+}
+
+/// Throws PlcError unless another repair changed something near the place where a guarantee was missed, and
+/// lost no part.
+void require_change(const SoupPipelineResult& before, const SoupPipelineResult& other,
+                    const std::optional<Point>& place) {
+  constexpr double near = 0.02;  // of the diagonal
+  require_kept(before, other);
+  if (!place) return;
+  const double radius = near * before.plc.bounds.diagonal();
+  if (points_near(before.plc, *place, radius) == points_near(other.plc, *place, radius))
+    throw PlcError("nothing would change there", {});
 }
 
 }  // namespace
@@ -44,6 +85,8 @@ void Tries::mesh_repaired(SoupPipelineResult& all) {
   const PipelineOptions& given = job_.given;
   PipelineResult& made = job_.made;
   build(given.repair, all);
+  RepairOptions current = given.repair;
+  const std::string sharp = repair_sharp_creases(current, all);
   if (job_.start == Start::constrained) {
     job_.budget.bound(Ways::none);
     return maker_.make(all.plc, given.mesh.seed);
@@ -53,15 +96,18 @@ void Tries::mesh_repaired(SoupPipelineResult& all) {
   const auto tried = attempt(all.plc, error);
   const End end = tried.first;
   const std::string& why = tried.second;
+  if (!sharp.empty() && end != End::exploded && end != End::refused) made.check.notes.push_back(sharp);
   if (end == End::holds) return;
-  RepairOptions current = given.repair;
   bool has_mesh = end == End::missed, built_last = true;
+  std::optional<Point> place;
+  if (!made.check.findings.empty()) place = made.check.findings.front().where;
   for (const RepairOptions& repair : repairs_after(end, all)) {
     SoupPipelineResult other;
     const bool better = find_better(has_mesh, [&] {
       build(repair, other);
       if (repair.wrap_at_once) job_.budget.bound(Ways::none);
       if (end == End::exploded && !repair.wrap_at_once) require_kept(all, other);
+      if (end == End::missed && !repair.wrap_at_once) require_change(all, other, place);
       maker_.make(other.plc, given.mesh.seed);
     });
     built_last = better;
@@ -98,8 +144,39 @@ void Tries::mesh_repaired(SoupPipelineResult& all) {
   try_seeds(all.plc);
 }
 
-void Tries::build(const RepairOptions& repair, SoupPipelineResult& all) {
+/// Repairs the input with a larger tolerance if the repaired complex has creases so sharp that refinement would
+/// hardly end, the larger one leaves none that are nearly as sharp, and nothing is lost. Sets the repair that is
+/// used, and returns a note of it.
+std::string Tries::repair_sharp_creases(RepairOptions& repair, SoupPipelineResult& all) {
+  constexpr double too_sharp = 0.1, blunter = 3;  // degrees, and a factor
+  if (!all.repair.repaired || all.repair.wrapped) return {};
+  const std::vector<Crease> creases = find_creases(all.plc, too_sharp);
+  if (creases.empty()) return {};
+  const double diagonal = all.plc.bounds.diagonal();
+  for (const RepairOptions& coarser :
+       coarser_repairs(repair, smallest_size(job_.given.mesh, diagonal), diagonal)) {
+    SoupPipelineResult other;
+    try {
+      build(coarser, other);
+      require_kept(all, other);
+    } catch (const PlcError&) {
+      continue;
+    }
+    if (!find_creases(other.plc, blunter * creases.front().angle).empty()) continue;
+    repair = coarser;
+    all.plc = std::move(other.plc);
+    all.repair = std::move(other.repair);
+    return fmt::format("repaired with a tolerance of {:.3g}, as with {:.3g} features meet at {:.2g} degrees at {}",
+                       coarser.tolerance, job_.given.repair.tolerance, creases.front().angle,
+                       checks::At{creases.front().where});
+  }
+  build(repair, all);  // makes the source know this complex again
+  return {};
+}
+
+void Tries::build(RepairOptions repair, SoupPipelineResult& all) {
   job_.control.begin("complex", 0, 0.06);
+  find_feature_size(job_.given.mesh, repair);
   RepairedPlc built = source_->build(repair, job_.execution());
   all.repair = std::move(built.report);
   if (all.repair.cancelled) job_.control.stop();
@@ -126,12 +203,14 @@ std::vector<RepairOptions> Tries::repairs_after(End end, const SoupPipelineResul
   const PipelineOptions& given = job_.given;
   if (end == End::missed && misses_collar_angle_only()) return {};
   std::vector<RepairOptions> repairs = further_repairs(given.repair, all.repair);
-  if (end != End::exploded) return repairs;
-  std::erase_if(repairs, [](const RepairOptions& repair) { return !repair.wrap_at_once; });
+  if (end == End::refused || (end == End::missed && !all.repair.repaired)) return repairs;
+  if (end == End::exploded)
+    std::erase_if(repairs, [](const RepairOptions& repair) { return !repair.wrap_at_once; });
   const double diagonal = all.plc.bounds.diagonal();
   std::vector<RepairOptions> coarser =
       coarser_repairs(given.repair, smallest_size(given.mesh, diagonal), diagonal);
-  repairs.insert(repairs.begin(), coarser.begin(), coarser.end());
+  const auto wraps = [](const RepairOptions& repair) { return repair.wrap_at_once; };
+  repairs.insert(std::ranges::find_if(repairs, wraps), coarser.begin(), coarser.end());
   return repairs;
 }
 

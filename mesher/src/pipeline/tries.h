@@ -34,7 +34,8 @@ class Tries {
     refused    ///< no collar fits between features
   };
 
-  void build(const RepairOptions& repair, SoupPipelineResult& all);
+  std::string repair_sharp_creases(RepairOptions& repair, SoupPipelineResult& all);
+  void build(RepairOptions repair, SoupPipelineResult& all);
   std::pair<End, std::string> attempt(const Plc& plc, std::exception_ptr& error);
   std::vector<RepairOptions> repairs_after(End end, const SoupPipelineResult& all) const;
   bool misses_collar_angle_only() const;

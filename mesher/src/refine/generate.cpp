@@ -19,7 +19,10 @@ void require(bool holds, const std::string& message) {
 }
 
 void require_valid(const MeshOptions& o) {
-  validate({{.mesh = o, .coarsen = false}});  // coarsening validates its own options
+  RunOptions options;
+  options.mesh = o;
+  options.coarsen = false;  // it validates its own options
+  validate(options);
   require(o.edges_per_hole >= 0, "edges per hole must not be negative; 0 switches them off");
   require(o.exterior_radius_edge >= 1, "the exterior radius-edge bound must be at least 1");
   require(o.representation_angle > 0 && o.representation_angle < 90,

@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <iterator>
+
 #include "collarmesh/repair.h"
 
 namespace collarmesh {
@@ -25,6 +28,32 @@ std::string moved_text(const RepairReport& r) {
       r.largest_distance_of_input > r.tolerance
           ? fmt::format("; the farthest part of the input that is gone is at {}", place(r.farthest_of_input))
           : "");
+}
+
+const char* kind_name(SmallFeature::Kind kind) {
+  switch (kind) {
+    case SmallFeature::Kind::curve: return "curve";
+    case SmallFeature::Kind::patch: return "patch";
+    case SmallFeature::Kind::tip: break;
+  }
+  return "tip";
+}
+
+/// Lists the small features by kind, and the place of each.
+std::string small_features_text(const RepairReport& r) {
+  constexpr std::size_t most_listed = 10;
+  std::string text = fmt::format("{} feature{} smaller than the feature size of {:.3g} collapsed:",
+                                 r.small_features.size(), plural(r.small_features.size()), r.feature_size);
+  for (std::size_t i = 0; i < std::min(most_listed, r.small_features.size()); ++i) {
+    const SmallFeature& f = r.small_features[i];
+    fmt::format_to(std::back_inserter(text), "{} {}{} of size {:.3g} at {}", i == 0 ? "" : ",",
+                   kind_name(f.kind), f.tag != 0 ? fmt::format(" (tag {})", f.tag) : "", f.size,
+                   place(f.where));
+  }
+  if (r.small_features.size() > most_listed)
+    fmt::format_to(std::back_inserter(text), ", ... and {} more (all in the JSON report)",
+                   r.small_features.size() - most_listed);
+  return text + "; --feature-size 0 keeps them";
 }
 
 }  // namespace
@@ -94,6 +123,7 @@ std::vector<std::string> describe(const RepairReport& r) {
   if (r.kept.count > 0)
     lines.push_back(fmt::format("{} place{} left as before, as creases there would become sharper{}",
                                 r.kept.count, plural(r.kept.count), first_place(r.kept)));
+  if (!r.small_features.empty()) lines.push_back(small_features_text(r));
   if (!r.lost_tags.empty())
     lines.push_back(fmt::format("nothing is left of the facets with tag{} {}", plural(r.lost_tags.size()),
                                 fmt::join(r.lost_tags, ", ")));

@@ -22,12 +22,14 @@
 #include "plc/lost_bodies.h"
 #include "repair/arrangement.h"
 #include "repair/better_places.h"
+#include "repair/changes.h"
 #include "repair/distances.h"
 #include "repair/holes.h"
 #include "repair/inside.h"
 #include "repair/most_places.h"
 #include "repair/noise.h"
 #include "repair/repeated.h"
+#include "repair/small_features.h"
 #include "repair/snapping.h"
 #include "repair/to_soups.h"
 #include "repair/twins.h"
@@ -95,6 +97,35 @@ class Repairer {
     }
   }
 
+  /// Collapses the features of the complex of these soups that are smaller than a size (absolute). Precondition:
+  /// the soups are valid. The distances are measured to `input`.
+  RepairResult collapse_features(const Plc& plc, double size, std::span<const PolygonSoup> input) {
+    try {
+      collect();
+      first_new_point_ = static_cast<Index>(draft_.points.size());
+      const State valid = state();
+      const std::vector<CollapsedFeature> collapsed = collapse_in_draft(draft_, plc, size, options_, work_);
+      if (collapsed.empty()) return finished();
+      const Draft after = draft_;
+      if (!cut_and_keep() || encloses_nothing_) {
+        const Changes changes(valid.draft, after);
+        std::vector<bool> taken_back(changes.places(), false);
+        restore(valid);
+        draft_ = without_what_meets(changes, taken_back);
+      }
+      keep_better_places(valid);
+      report_.small_features = gone_from(draft_, collapsed);
+      Repairer of_input(input, options_, complex_, Execution());
+      of_input.collect();
+      input_triangles_ = std::move(of_input.input_triangles_);
+      return finished();
+    } catch (const WorkStopped& stopped) {
+      RepairResult result;
+      result.report.cancelled = stopped.cancelled;
+      return result;
+    }
+  }
+
   std::span<const PolygonSoup> input() const { return soups_; }
   double tolerance() const { return tolerance_; }  // the tolerance that is used, absolute
   /// Returns whether all sheets are open and do not even meet, or most of the area is in open sheets.
@@ -139,6 +170,10 @@ class Repairer {
       make_valid();
     }
     work_.spend(0);
+    return finished();
+  }
+
+  RepairResult finished() {
     RepairResult result{to_soups(soups_, draft_, first_new_point_), std::move(report_)};
     result.report.repaired = true;
     result.report.lost_tags = lost_tags(result.soups, false);
@@ -511,6 +546,54 @@ PlcError given_up(const PlcError& error, const RepairOptions& options) {
       error.faults};
 }
 
+// Returns the size below which features are collapsed, absolute; 0: none are.
+double feature_size_of(const Plc& plc, const RepairOptions& options) {
+  constexpr double sizes_per_diagonal = 20, most_of_diagonal = 1e-3;
+  if (!options.target_size || options.mode == RepairMode::off || plc.regions.size() < 2) return 0;
+  const double diagonal = plc.bounds.diagonal(),
+               size = *options.target_size > 0 ? *options.target_size : diagonal / sizes_per_diagonal;
+  return std::min(options.feature_size * size, most_of_diagonal * diagonal);
+}
+
+std::vector<double> sorted_volumes(const Plc& plc) {
+  std::vector<double> volumes;
+  for (std::size_t r = 1; r < plc.regions.size(); ++r) volumes.push_back(std::fabs(plc.regions[r].volume));
+  std::sort(volumes.begin(), volumes.end());
+  return volumes;
+}
+
+// Throws PlcError unless both have the same regions, with nearly the same volumes, and the same groups.
+void require_same_parts(const RepairedPlc& before, const RepairedPlc& after) {
+  constexpr double most = 0.02;  // share that a region may lose or gain
+  const std::vector<double> old = sorted_volumes(before.plc), now = sorted_volumes(after.plc);
+  bool same = old.size() == now.size() &&
+              after.report.lost_groups.empty() &&
+              after.report.lost_regions.size() <= before.report.lost_regions.size();
+  for (std::size_t r = 0; same && r < old.size(); ++r) same = std::fabs(now[r] - old[r]) <= most * old[r];
+  if (!same) throw PlcError("A part would be lost.", {});
+}
+
+// Returns the complex with the report of an earlier repair and the small features collapsed since.
+RepairedPlc with_report_of(const RepairReport& before, RepairedPlc complex, double size) {
+  RepairReport report = before;
+  const RepairReport& now = complex.report;
+  if (!before.repaired) report.tolerance = now.tolerance;
+  report.repaired = true;
+  report.feature_size = size;
+  std::ranges::copy(now.small_features, std::back_inserter(report.small_features));
+  add_places(report.kept, now.kept.count, 0, now.kept.where);
+  for (auto list : {&RepairReport::lost_tags, &RepairReport::lost_groups, &RepairReport::lost_regions}) {
+    std::ranges::copy(now.*list, std::back_inserter(report.*list));
+    std::sort((report.*list).begin(), (report.*list).end());
+    (report.*list).erase(std::unique((report.*list).begin(), (report.*list).end()), (report.*list).end());
+  }
+  report.largest_distance = now.largest_distance;
+  report.largest_distance_of_input = now.largest_distance_of_input;
+  report.farthest_of_input = now.farthest_of_input;
+  complex.report = std::move(report);
+  return complex;
+}
+
 }  // namespace
 
 RepairResult repair(std::span<const PolygonSoup> soups, const RepairOptions& options,
@@ -521,6 +604,33 @@ RepairResult repair(std::span<const PolygonSoup> soups, const RepairOptions& opt
   RepairResult result = repairer.run();
   if (result.report.repaired) repairer.measure(result.report);
   return result;
+}
+
+RepairedPlc collapse_small_features(RepairedPlc complex, std::span<const PolygonSoup> soups,
+                                    const PlcOptions& options, const RepairOptions& repair_options,
+                                    const Execution& execution) {
+  const double size = feature_size_of(complex.plc, repair_options);
+  if (options.domain == DomainShape::box && size > 0)
+    return collapse_small_features(std::move(complex), facets::with_box(soups, options),
+                                   facets::enclosed(options), repair_options, execution);
+  constexpr int most_tries = 3;  // a collapse may make neighbours small
+  for (int i = 0; i < most_tries && size > 0; ++i) {
+    const std::vector<PolygonSoup> current = complex.soups;
+    Repairer repairer(current.empty() ? soups : std::span<const PolygonSoup>(current), repair_options, options,
+                      execution);
+    RepairResult result = repairer.collapse_features(complex.plc, size, soups);
+    if (result.report.cancelled) return {Plc(), std::move(result.report), {}};
+    if (result.report.small_features.empty()) break;
+    try {
+      RepairedPlc after = judged(repairer, std::move(result), options);
+      require_same_parts(complex, after);
+      keep_numbers(complex.plc, after.plc);
+      complex = with_report_of(complex.report, std::move(after), size);
+    } catch (const PlcError&) {
+      break;  // the complex is valid with these features
+    }
+  }
+  return complex;
 }
 
 bool has_noise(const Plc& plc, const RepairOptions& options) {

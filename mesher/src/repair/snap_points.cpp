@@ -43,7 +43,8 @@ bool PointMerger::merge() {
     state_.done().push_back({SnapState::Done::What::merged, p, distance(state_.at(p), state_.at(near))});
   }
   if (merged.empty()) return false;
-  rename(merged);
+  keep_pinned(merged);
+  rename_points(state_, merged);
   return true;
 }
 
@@ -69,29 +70,34 @@ std::vector<Index> PointMerger::points_to_compare() {
   return order;
 }
 
-void PointMerger::rename(const std::vector<std::pair<Index, Index>>& merged) {
-  Draft& draft = state_.draft();
+void PointMerger::keep_pinned(const std::vector<std::pair<Index, Index>>& merged) {
+  for (const auto& [p, into] : merged) {
+    if (!is_pinned(p)) continue;
+    pinned_.resize(std::max<std::size_t>(pinned_.size(), into + 1), false);
+    pinned_[into] = true;
+  }
+}
+
+void rename_points(SnapState& state, const std::vector<std::pair<Index, Index>>& merged) {
+  if (merged.empty()) return;
+  Draft& draft = state.draft();
   std::map<Index, Index> name(merged.begin(), merged.end());
   const auto renamed = [&](Index p) {
     const auto found = name.find(p);
     return found == name.end() ? p : found->second;
   };
   std::vector<Index> changed;
-  for (const auto& [p, into] : merged) {
-    state_.triangles().for_each_at(p, [&](Index side) { changed.push_back(side / 3); });
-    if (!is_pinned(p)) continue;
-    pinned_.resize(std::max<std::size_t>(pinned_.size(), into + 1), false);
-    pinned_[into] = true;
-  }
+  for (const auto& [p, into] : merged)
+    state.triangles().for_each_at(p, [&](Index side) { changed.push_back(side / 3); });
   std::sort(changed.begin(), changed.end());
   changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
   for (const Index t : changed) {
     const Corners before = draft.triangles[t];
     const Corners corners{renamed(before[0]), renamed(before[1]), renamed(before[2])};
     const Origin origin = draft.origins[t];
-    state_.take(t);
+    state.take(t);
     if (corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0])
-      state_.put(corners, origin);
+      state.put(corners, origin);
   }
   for (Segment& s : draft.segments) s = {renamed(s.a), renamed(s.b), s.tag, s.soup};
   std::erase_if(draft.segments, [](const Segment& s) { return s.a == s.b; });

@@ -8,6 +8,10 @@
 
 namespace collarmesh::repairing {
 
+/// Replaces points by others, given as pairs: a point, and the one that takes its place. Triangles and
+/// segments that become degenerate are removed.
+void rename_points(SnapState& state, const std::vector<std::pair<Index, Index>>& merged);
+
 /// Merges points that are near each other.
 class PointMerger {
  public:
@@ -23,7 +27,7 @@ class PointMerger {
   bool is_pinned(Index p) const { return p < pinned_.size() && pinned_[p]; }
   bool before(Index p, Index q) const;
   std::vector<Index> points_to_compare();
-  void rename(const std::vector<std::pair<Index, Index>>& merged);
+  void keep_pinned(const std::vector<std::pair<Index, Index>>& merged);
 
   SnapState& state_;
   std::vector<bool> pinned_;   // by point: whether it is loose or the end of a segment

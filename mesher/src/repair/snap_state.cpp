@@ -1,6 +1,9 @@
 #include "repair/snap_state.h"
 
 #include <algorithm>
+#include <utility>
+
+#include "repair/twins.h"
 
 namespace collarmesh::repairing {
 
@@ -71,6 +74,28 @@ std::vector<bool> SnapState::unseen(By by) const {
   for (Index t = 0; t < triangles_.end(); ++t)
     if (triangles_.alive(t)) result.push_back((flags_[t] & by) != 0);
   return result;
+}
+
+std::size_t cancel_new_twins(SnapState& state) {
+  std::size_t cancelled = 0;
+  const Draft& draft = state.draft();
+  for (const Index t : state.take_added()) {
+    if (!state.triangles().alive(t)) continue;
+    const Corners& corners = draft.triangles[t];
+    const Index soup = draft.origins[t].soup;
+    std::vector<Twin> twins;
+    state.triangles().for_each_at(corners[0], [&](Index side) {
+      const Corners& c = draft.triangles[side / 3];
+      if (draft.origins[side / 3].soup == soup && std::find(c.begin(), c.end(), corners[1]) != c.end() &&
+          std::find(c.begin(), c.end(), corners[2]) != c.end())
+        twins.push_back({is_odd(c), side / 3});
+    });
+    for (const Index twin : cancelled_among(std::move(twins), draft.soup_is_complex[soup])) {
+      state.take(twin);
+      ++cancelled;
+    }
+  }
+  return cancelled;
 }
 
 }  // namespace collarmesh::repairing

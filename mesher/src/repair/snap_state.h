@@ -81,4 +81,8 @@ class SnapState {
   std::vector<Done> done_;
 };
 
+/// Cancels twins among the triangles added since the last call; others cannot have become twins. Returns the
+/// number of cancelled triangles.
+std::size_t cancel_new_twins(SnapState& state);
+
 }  // namespace collarmesh::repairing

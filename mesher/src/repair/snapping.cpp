@@ -122,25 +122,8 @@ class Snapper {
     if (report_.places.size() < most_places) report_.places.push_back(state_.at(done.point));
   }
 
-  // Cancels twins among added triangles; others cannot have become twins.
   void cancel_new_twins() {
-    if (!cancel_) return;
-    for (const Index t : state_.take_added()) {
-      if (!state_.triangles().alive(t)) continue;
-      const Corners& corners = draft_.triangles[t];
-      const Index soup = draft_.origins[t].soup;
-      std::vector<Twin> twins;
-      state_.triangles().for_each_at(corners[0], [&](Index side) {
-        const Corners& c = draft_.triangles[side / 3];
-        if (draft_.origins[side / 3].soup == soup && std::find(c.begin(), c.end(), corners[1]) != c.end() &&
-            std::find(c.begin(), c.end(), corners[2]) != c.end())
-          twins.push_back({is_odd(c), side / 3});
-      });
-      for (const Index twin : cancelled_among(std::move(twins), draft_.soup_is_complex[soup])) {
-        state_.take(twin);
-        ++report_.cancelled_triangles;
-      }
-    }
+    if (cancel_) report_.cancelled_triangles += repairing::cancel_new_twins(state_);
   }
 
   bool cancel_;      // whether twins are cancelled

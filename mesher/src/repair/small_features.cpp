@@ -1,0 +1,464 @@
+#include "repair/small_features.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "common/distances.h"
+#include "repair/snap_cuts.h"
+#include "repair/snap_points.h"
+#include "repair/snap_state.h"
+
+namespace collarmesh::repairing {
+
+using namespace facets;
+
+namespace {
+
+constexpr double sharp_tip = 0.01;  // radians; sharper tips are blunted
+constexpr std::size_t most_feature_rounds = 200;
+
+std::array<double, 3> key_of(const Point& p) { return {p.x, p.y, p.z}; }
+
+Corners sorted(Corners corners) {
+  std::sort(corners.begin(), corners.end());
+  return corners;
+}
+Corners as_corners(const Edge& edge) { return {edge[0], edge[1], none}; }
+
+double length_of(const Plc& plc, const Plc::Curve& curve) {
+  double length = 0;
+  for (std::size_t i = 0; i + 1 < curve.points.size() + (curve.closed ? 1 : 0); ++i)
+    length += distance(plc.points[curve.points[i]], plc.points[curve.points[(i + 1) % curve.points.size()]]);
+  return length;
+}
+
+/// The sides of a triangle and its height above the longest one.
+struct Needle {
+  unsigned longest = 0, shortest = 0;
+  double least = 0, most = 0;  // lengths of these sides
+  double height = 0;
+};
+
+Needle needle_of(const Draft& draft, const Corners& c) {
+  Needle needle;
+  std::array<double, 3> lengths{};
+  for (unsigned i = 0; i < 3; ++i) lengths[i] = distance(draft.points[c[i]], draft.points[c[(i + 1) % 3]]);
+  const auto [least, most] = std::minmax_element(lengths.begin(), lengths.end());
+  needle.shortest = static_cast<unsigned>(least - lengths.begin());
+  needle.longest = static_cast<unsigned>(most - lengths.begin());
+  needle.least = *least;
+  needle.most = *most;
+  needle.height = *most > 0 ? 2 * area_of(draft, c) / *most : 0;
+  return needle;
+}
+
+/// Decides which patches and curves of a complex are small and may be collapsed.
+class SmallOnes {
+ public:
+  SmallOnes(const Plc& plc, const Draft& draft, double size, const RepairOptions& options)
+      : plc_(plc),
+        size_(size),
+        patches_(plc.patches.size()),
+        curves_(plc.curves.size()),
+        kept_(patches_.size(), false) {
+    for (Index p = 0; p < patches_.size(); ++p)
+      if (const double width = width_of(plc.patches[p]); width < size) patches_[p] = width;
+    for (Index c = 0; c < curves_.size(); ++c)
+      if (const double length = length_of(plc, plc.curves[c]); length < size) curves_[c] = length;
+    find_kept(options);
+    keep_groups(draft);
+    for (Index p = 0; p < patches_.size(); ++p)
+      if (kept_[p]) patches_[p] = 0;
+    for (Index c = 0; c < curves_.size(); ++c)
+      if (std::ranges::any_of(plc.curves[c].patches, [&](Index p) { return kept_[p]; })) curves_[c] = 0;
+  }
+
+  /// Returns the width of a patch that is to be collapsed; 0: it stays.
+  double patch(Index p) const { return patches_[p]; }
+  /// Returns the length of a curve that is to be collapsed; 0: it stays.
+  double curve(Index c) const { return curves_[c]; }
+
+ private:
+  // Returns the mean width, or infinity where a triangle is as wide as the size.
+  double width_of(const Plc::Patch& patch) const {
+    double area = 0, border = 0;
+    for (Index t = patch.first_triangle; t < patch.first_triangle + patch.triangle_count; ++t) {
+      const auto& [a, b, c] = plc_.triangles[t].points;
+      const Point &p = plc_.points[a], &q = plc_.points[b], &r = plc_.points[c];
+      const double twice = norm(cross(q - p, r - p));
+      area += twice / 2;
+      if (twice > size_ * std::max({distance(p, q), distance(q, r), distance(r, p)})) return INFINITY;
+    }
+    for (const Index c : patch.curves) border += length_of(plc_, plc_.curves[c]);
+    return border > 0 ? 2 * area / border : INFINITY;
+  }
+
+  // Keeps what has a name or a size, and what bounds a region thinner than the size.
+  void find_kept(const RepairOptions& options) {
+    const std::vector<bool> thin = thin_regions();
+    for (Index p = 0; p < kept_.size(); ++p)
+      kept_[p] = std::ranges::count(options.kept_patches, plc_.patches[p].tag) > 0 ||
+                 std::ranges::any_of(plc_.patches[p].regions, [&](Index r) { return thin[r]; });
+    for (Index c = 0; c < curves_.size(); ++c)
+      if (const Tag tag = plc_.curves[c].tag;
+          std::ranges::count(options.kept_curves, tag) > 0 || plc_.names.of(1).contains(tag))
+        curves_[c] = 0;
+  }
+
+  std::vector<bool> thin_regions() const {
+    std::vector<double> area(plc_.regions.size(), 0);
+    for (const Plc::Triangle& t : plc_.triangles) {
+      const Point &a = plc_.points[t.points[0]], &b = plc_.points[t.points[1]], &c = plc_.points[t.points[2]];
+      for (const Index r : plc_.patches[t.patch].regions) area[r] += norm(cross(b - a, c - a)) / 2;
+    }
+    std::vector<bool> thin(area.size(), false);
+    for (Index r = 1; r < thin.size(); ++r) thin[r] = 2 * std::fabs(plc_.regions[r].volume) < size_ * area[r];
+    return thin;
+  }
+
+  // Keeps the small patches of a tag that no other patch has, except if the tag is only a number.
+  void keep_groups(const Draft& draft) {
+    if (plc_.numbered_patches) return;
+    std::set<Tag> stay;
+    for (Index p = 0; p < patches_.size(); ++p)
+      if (patches_[p] == 0) stay.insert(plc_.patches[p].tag);
+    for (Index p = 0; p < patches_.size(); ++p) {
+      const Plc::Patch& patch = plc_.patches[p];
+      const bool is_number = draft.soup_gives_features[patch.file] && !plc_.names.of(2).contains(patch.tag);
+      if (!is_number && !stay.contains(patch.tag)) kept_[p] = true;
+    }
+  }
+
+  const Plc& plc_;
+  double size_;
+  std::vector<double> patches_, curves_;
+  std::vector<bool> kept_;  // by patch: whether it and its curves stay, however small
+};
+
+/// Finds the points of a complex in the draft that it was built from.
+class DraftPoints {
+ public:
+  DraftPoints(const Plc& plc, const Draft& draft) : of_plc_(plc.points.size(), none) {
+    std::map<std::array<double, 3>, Index> at;
+    for (const Corners& c : draft.triangles)
+      for (const Index p : c) at.emplace(key_of(draft.points[p]), p);
+    for (Index p = 0; p < plc.points.size(); ++p)
+      if (const auto found = at.find(key_of(plc.points[p])); found != at.end()) of_plc_[p] = found->second;
+  }
+  Index operator[](Index p) const { return of_plc_[p]; }
+
+ private:
+  std::vector<Index> of_plc_;
+};
+
+class FeatureCollapser {
+ public:
+  FeatureCollapser(Draft& draft, const Plc& plc, double size, const RepairOptions& options, Work& work)
+      : draft_(draft), plc_(plc), size_(size), state_(draft, size, SnapWhat::all, work, {}), cuts_(state_) {
+    const SmallOnes small(plc, draft, size, options);
+    const DraftPoints points(plc, draft);
+    find_curves(small, points);
+    find_patches(small, points);
+    rank_points(points);
+  }
+
+  std::vector<CollapsedFeature> run() {
+    for (std::size_t round = 0; round < most_feature_rounds && run_round(); ++round) {
+    }
+    draft_ = state_.triangles().compacted();
+    return std::move(collapsed_);
+  }
+
+ private:
+  void find_curves(const SmallOnes& small, const DraftPoints& points) {
+    for (Index c = 0; c < plc_.curves.size(); ++c) {
+      const Plc::Curve& curve = plc_.curves[c];
+      Edge edge{none, none};
+      for (std::size_t i = 0; i + 1 < curve.points.size() + (curve.closed ? 1 : 0); ++i) {
+        const Index a = points[curve.points[i]], b = points[curve.points[(i + 1) % curve.points.size()]];
+        if (a == none || b == none) continue;
+        edge = edge_key(a, b);
+        features_.insert(edge);
+        if (small.curve(c) > 0) short_.insert(edge);
+      }
+      if (small.curve(c) > 0 && edge[0] != none)
+        collapsed_.push_back({{SmallFeature::Kind::curve, small.curve(c), curve.tag, draft_.points[edge[0]]},
+                              as_corners(edge)});
+    }
+  }
+
+  // Marks the triangles of narrow patches by the numbers of their facets.
+  void find_patches(const SmallOnes& small, const DraftPoints& points) {
+    std::set<Corners> narrow;
+    for (Index p = 0; p < plc_.patches.size(); ++p) {
+      if (!(small.patch(p) > 0)) continue;
+      const Plc::Patch& patch = plc_.patches[p];
+      for (Index t = patch.first_triangle; t < patch.first_triangle + patch.triangle_count; ++t) {
+        const auto& [a, b, c] = plc_.triangles[t].points;
+        const Corners corners = sorted({points[a], points[b], points[c]});
+        narrow.insert(corners);
+        if (t > patch.first_triangle || corners[2] == none) continue;
+        const Point where = (plc_.points[a] + plc_.points[b] + plc_.points[c]) / 3;
+        collapsed_.push_back({{SmallFeature::Kind::patch, small.patch(p), patch.tag, where}, corners});
+      }
+    }
+    for (Index t = 0; t < draft_.triangles.size(); ++t)
+      draft_.origins[t].facet = narrow.contains(sorted(draft_.triangles[t])) ? in_narrow_patch : 0;
+  }
+
+  // Of two points, the one of the lower rank moves.
+  void rank_points(const DraftPoints& points) {
+    constexpr int of_vertex = 1000, of_input = 100'000;
+    rank_.assign(draft_.points.size(), 0);
+    for (const Plc::Vertex& v : plc_.vertices)
+      if (points[v.point] != none) rank_[points[v.point]] += of_vertex;
+    for (const Edge& e : features_)
+      for (const Index p : e) ++rank_[p];
+    for (const Segment& s : draft_.segments)
+      for (const Index p : {s.a, s.b}) ++rank_[p];
+    for (const Index p : draft_.loose_points) rank_[p] += of_input;
+  }
+
+  bool in_patch(Index t) const { return draft_.origins[t].facet == in_narrow_patch; }
+  bool is_feature(Index a, Index b) const { return features_.contains(edge_key(a, b)); }
+
+  // Changes triangles, flattest first, where no other change of this round is. Returns whether any changed.
+  bool run_round() {
+    std::vector<std::pair<double, Index>> found;
+    for (Index t = 0; t < state_.triangles().end(); ++t) {
+      if (!state_.triangles().alive(t)) continue;
+      const Needle needle = needle_of(draft_, draft_.triangles[t]);
+      const bool tip = is_tip(t, needle);
+      if (needle.height < size_ ? tip || in_patch(t) || has_short_curve(t)
+                                : tip && needle.least < sharp_tip * needle.most)
+        found.emplace_back(needle.height, t);
+    }
+    std::sort(found.begin(), found.end());
+    touched_.clear();
+    cuts_.clear();
+    merges_.clear();
+    for (const auto& [height, t] : found) change(t);
+    return apply();
+  }
+
+  bool has_short_curve(Index t) const {
+    const Corners& c = draft_.triangles[t];
+    for (unsigned i = 0; i < 3; ++i)
+      if (short_.contains(edge_key(c[i], c[(i + 1) % 3]))) return true;
+    return false;
+  }
+
+  // Returns whether both long sides are pieces of curves.
+  bool is_tip(Index t, const Needle& needle) const {
+    const Corners& c = draft_.triangles[t];
+    for (unsigned i = 0; i < 3; ++i)
+      if (i != needle.shortest && !is_feature(c[i], c[(i + 1) % 3])) return false;
+    return true;
+  }
+
+  void change(Index t) {
+    const Corners c = draft_.triangles[t];
+    const Needle needle = needle_of(draft_, c);
+    const Index a = c[needle.shortest], b = c[(needle.shortest + 1) % 3], tip = c[(needle.shortest + 2) % 3];
+    constexpr double below = 0.9;
+    double length = needle.most;
+    bool changes = false;
+    if (needle.least < size_) {
+      changes = merge(a, b);
+    } else if (needle.height < size_) {
+      changes = insert(edge_key(c[needle.longest], c[(needle.longest + 1) % 3]), c[(needle.longest + 2) % 3]);
+    } else {
+      const double share = below * size_ / needle.least;
+      length *= share;
+      changes = blunt(tip, a, b, share);
+    }
+    if (changes && !in_patch(t) && !has_short_curve(t) && tips_.insert(tip).second && tip < first_new())
+      collapsed_.push_back(
+          {{SmallFeature::Kind::tip, length, draft_.origins[t].tag, draft_.points[tip]}, sorted(c)});
+  }
+  Index first_new() const { return static_cast<Index>(rank_.size()); }
+
+  bool touch(const std::vector<Index>& triangles) {
+    if (std::ranges::any_of(triangles, [&](Index t) { return touched_.contains(t); })) return false;
+    touched_.insert(triangles.begin(), triangles.end());
+    return true;
+  }
+  void add_triangles_at(Index p, std::vector<Index>& all) const {
+    state_.triangles().for_each_at(p, [&](Index side) { all.push_back(side / 3); });
+  }
+  void add_triangles_at(const Edge& e, std::vector<Index>& all) const {
+    for (const Index side : state_.triangles().sides(e)) all.push_back(side / 3);
+  }
+
+  int rank_of(Index p) const { return p < rank_.size() ? rank_[p] : 0; }
+
+  bool merge(Index a, Index b) {
+    if (std::pair(rank_of(b), a) < std::pair(rank_of(a), b)) std::swap(a, b);
+    std::vector<Index> around;
+    add_triangles_at(a, around);
+    add_triangles_at(b, around);
+    if (!touch(around)) return false;
+    merges_.emplace_back(a, b);
+    return true;
+  }
+
+  bool insert(const Edge& e, Index p) {
+    const double parameter = parameter_on_segment(draft_.points[p], draft_.points[e[0]], draft_.points[e[1]]);
+    std::vector<Index> around;
+    add_triangles_at(e, around);
+    if (!(parameter > 0 && parameter < 1) || !touch(around)) return false;
+    cuts_.add(e, {parameter, p}, 0);
+    return true;
+  }
+
+  // Cuts the long sides of a tip at the same share of their lengths.
+  bool blunt(Index tip, Index a, Index b, double share) {
+    std::vector<Index> around;
+    add_triangles_at(edge_key(tip, a), around);
+    add_triangles_at(edge_key(tip, b), around);
+    if (!touch(around)) return false;
+    for (const Index end : {a, b}) {
+      const Index p = static_cast<Index>(draft_.points.size());
+      draft_.points.push_back(draft_.points[tip] + share * (draft_.points[end] - draft_.points[tip]));
+      draft_.point_tags.push_back(0);
+      cuts_.add(edge_key(tip, end), {tip < end ? share : 1 - share, p}, 0);
+    }
+    return true;
+  }
+
+  bool apply() {
+    if (merges_.empty() && cuts_.empty()) return false;
+    std::vector<Edge> cut;
+    cuts_.for_each_edge([&](const Edge& e) { cut.push_back(e); });
+    for (const Edge& e : cut)
+      for (std::set<Edge>* set : {&features_, &short_}) {
+        if (set->erase(e) == 0) continue;
+        const std::vector<Index> points = cuts_.chain(e[0], e[1]);
+        for (std::size_t i = 0; i + 1 < points.size(); ++i) set->insert(edge_key(points[i], points[i + 1]));
+      }
+    cuts_.apply();
+    rename_edges();
+    rename_points(state_, merges_);
+    cancel_new_twins(state_);
+    return true;
+  }
+
+  void rename_edges() {
+    const std::map<Index, Index> name(merges_.begin(), merges_.end());
+    for (std::set<Edge>* set : {&features_, &short_}) {
+      std::vector<Edge> changed;
+      for (const Edge& e : *set)
+        if (name.contains(e[0]) || name.contains(e[1])) changed.push_back(e);
+      for (const Edge& e : changed) {
+        set->erase(e);
+        const auto renamed = [&](Index p) { return name.contains(p) ? name.at(p) : p; };
+        if (renamed(e[0]) != renamed(e[1])) set->insert(edge_key(renamed(e[0]), renamed(e[1])));
+      }
+    }
+  }
+
+  static constexpr Index in_narrow_patch = 1;  // number of the facet of triangles in narrow patches
+
+  Draft& draft_;
+  const Plc& plc_;
+  double size_;
+  SnapState state_;
+  SnapCuts cuts_;
+  std::set<Edge> features_, short_;  // pieces of curves, and of curves to be collapsed
+  std::vector<int> rank_;            // by point, except added ones
+  std::vector<CollapsedFeature> collapsed_;
+  std::set<Index> tips_;  // points of tips in the list
+  // Of this round:
+  std::set<Index> touched_;                      // triangles that change
+  std::vector<std::pair<Index, Index>> merges_;  // a point, and the one that takes its place
+};
+
+/// Returns the tag of the nearest old feature with a common piece, for each piece of the new ones.
+template <class Pieces>
+std::vector<Tag> numbers_from(const Pieces& before, const std::vector<Tag>& tags, const Pieces& after) {
+  std::map<std::vector<std::array<double, 3>>, Tag> known;
+  for (Index i = 0; i < before.size(); ++i)
+    for (const auto& piece : before[i]) known.emplace(piece, tags[i]);
+  Tag next = tags.empty() ? 0 : *std::max_element(tags.begin(), tags.end());
+  std::vector<Tag> numbers;
+  std::set<Tag> taken;
+  for (const auto& pieces : after) {
+    Tag number = 0;
+    for (const auto& piece : pieces)
+      if (const auto found = known.find(piece);
+          number == 0 && found != known.end() && taken.insert(found->second).second)
+        number = found->second;
+    numbers.push_back(number != 0 ? number : ++next);
+  }
+  return numbers;
+}
+
+using Piece = std::vector<std::array<double, 3>>;
+
+Piece piece_of(const Plc& plc, std::initializer_list<Index> points) {
+  Piece piece;
+  for (const Index p : points) piece.push_back(key_of(plc.points[p]));
+  std::sort(piece.begin(), piece.end());
+  return piece;
+}
+
+std::vector<std::vector<Piece>> pieces_of_patches(const Plc& plc) {
+  std::vector<std::vector<Piece>> pieces(plc.patches.size());
+  for (const Plc::Triangle& t : plc.triangles)
+    pieces[t.patch].push_back(piece_of(plc, {t.points[0], t.points[1], t.points[2]}));
+  return pieces;
+}
+
+std::vector<std::vector<Piece>> pieces_of_curves(const Plc& plc) {
+  std::vector<std::vector<Piece>> pieces(plc.curves.size());
+  for (Index c = 0; c < plc.curves.size(); ++c) {
+    const std::vector<Index>& points = plc.curves[c].points;
+    for (std::size_t i = 0; i + 1 < points.size(); ++i)
+      pieces[c].push_back(piece_of(plc, {points[i], points[i + 1]}));
+  }
+  return pieces;
+}
+
+template <class Features>
+std::vector<Tag> tags_of(const Features& features) {
+  std::vector<Tag> tags;
+  for (const auto& feature : features) tags.push_back(feature.tag);
+  return tags;
+}
+
+}  // namespace
+
+std::vector<CollapsedFeature> collapse_in_draft(Draft& draft, const Plc& plc, double size,
+                                                const RepairOptions& options, Work& work) {
+  return FeatureCollapser(draft, plc, size, options, work).run();
+}
+
+std::vector<SmallFeature> gone_from(const Draft& draft, const std::vector<CollapsedFeature>& features) {
+  std::set<Corners> there;
+  for (const Corners& c : draft.triangles) {
+    there.insert(sorted(c));
+    for (unsigned i = 0; i < 3; ++i) there.insert(as_corners(edge_key(c[i], c[(i + 1) % 3])));
+  }
+  std::vector<SmallFeature> gone;
+  for (const CollapsedFeature& each : features)
+    if (!there.contains(each.corners)) gone.push_back(each.feature);
+  return gone;
+}
+
+void keep_numbers(const Plc& before, Plc& after) {
+  if (before.numbered_patches && after.numbered_patches) {
+    const std::vector<Tag> numbers =
+        numbers_from(pieces_of_patches(before), tags_of(before.patches), pieces_of_patches(after));
+    for (Index p = 0; p < numbers.size(); ++p) after.patches[p].tag = numbers[p];
+  }
+  if (before.numbered_curves && after.numbered_curves) {
+    const std::vector<Tag> numbers =
+        numbers_from(pieces_of_curves(before), tags_of(before.curves), pieces_of_curves(after));
+    for (Index c = 0; c < numbers.size(); ++c) after.curves[c].tag = numbers[c];
+  }
+}
+
+}  // namespace collarmesh::repairing

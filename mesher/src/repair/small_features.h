@@ -1,0 +1,34 @@
+#pragma once
+
+#include <vector>
+
+#include "collarmesh/plc.h"
+#include "collarmesh/repair.h"
+#include "facets/draft.h"
+#include "repair/work.h"
+
+namespace collarmesh::repairing {
+
+/// A small feature that was collapsed, and an edge or a triangle of it in the draft.
+struct CollapsedFeature {
+  SmallFeature feature;
+  facets::Corners corners{none, none, none};  ///< sorted; of an edge, the last one is `none`
+};
+
+/// Collapses the features of a complex that are smaller than `size` (absolute) in the draft that it was built
+/// from: curves to points, narrow patches and sharp tips of patches to curves. Keeps features with names or
+/// kept tags, the last patch of a group, and patches around regions thinner than the size. Returns the
+/// features. Corners move by less than the size; surfaces stay closed, but facets may intersect. Cost:
+/// O(n log n).
+std::vector<CollapsedFeature> collapse_in_draft(facets::Draft& draft, const Plc& plc, double size,
+                                                const RepairOptions& options, Work& work);
+
+/// Returns the features of which the edge or the triangle is gone.
+std::vector<SmallFeature> gone_from(const facets::Draft& draft,
+                                    const std::vector<CollapsedFeature>& features);
+
+/// Gives the patches and curves of a changed complex the numbers that they had before, if both were numbered
+/// by `number_untagged`; new ones get numbers after these.
+void keep_numbers(const Plc& before, Plc& after);
+
+}  // namespace collarmesh::repairing
