@@ -18,6 +18,8 @@ constexpr unsigned most_detours = 30;
 // Number of operations that are tried before the first detour is taken, and its increase with each detour
 // taken.
 constexpr std::size_t first_trials = 2000, trials_per_detour = 200;
+// Most proposals for tets with angles near 180 degrees, each of which costs as much as several trials.
+constexpr std::size_t most_blunt = 2000;
 constexpr double least_detour_gain = 1e-3, rounding = 1e-9;
 
 // Compares two sorted lists from the worst entry up. Returns whether the first differing entry is larger in
@@ -37,7 +39,12 @@ Detours::Detours(Workpiece& workpiece, Remedies& remedies, Operations& operation
     : workpiece_(workpiece), remedies_(remedies), operations_(operations), most_trials_(most_trials) {}
 
 bool Detours::exhausted() const {
-  return trials_ >= std::min(most_trials_, first_trials + trials_per_detour * taken_);
+  return blunt_ >= most_blunt || trials_ >= std::min(most_trials_, first_trials + trials_per_detour * taken_);
+}
+
+Change Detours::propose(Index tet) {
+  if (remedies_.is_blunt(tet)) ++blunt_;
+  return remedies_.propose(operations_, tet);
 }
 
 std::size_t Detours::take_all(std::vector<Index> tets, const std::function<bool()>& stopped) {
@@ -94,7 +101,7 @@ void Detours::note_changes(std::vector<Index>& tets) {
 // good and no more of them thin than before, or else the detour with the best worst tet. Returns whether
 // `changed_` changed.
 bool Detours::help(Index tet, Effort effort) {
-  if (Change change = remedies_.propose(operations_, tet); change.kind != Change::Kind::none) {
+  if (Change change = propose(tet); change.kind != Change::Kind::none) {
     ++trials_;
     begin_trial();
     apply(std::move(change));
@@ -209,7 +216,7 @@ void Detours::improve_changed() {
     if (remedies_.poor_quality(tet) == INFINITY) return;
     *worst = to_improve_.back();
     to_improve_.pop_back();
-    Change change = remedies_.propose(operations_, tet);
+    Change change = propose(tet);
     if (change.kind != Change::Kind::none) apply(std::move(change));
   }
 }

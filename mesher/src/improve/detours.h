@@ -51,6 +51,7 @@ class Detours {
   using Asked = std::vector<std::uint32_t>;
 
   bool exhausted() const;
+  Change propose(Index tet);
   bool is_new_to(Index tet, const Asked& asked) const;
   bool take_round(std::vector<Index>& tets, Effort effort, const std::function<bool()>& stopped);
   bool help(Index tet, Effort effort);
@@ -71,6 +72,7 @@ class Detours {
   Remedies& remedies_;
   Operations& operations_;
   std::size_t most_trials_, trials_ = 0;
+  std::size_t blunt_ = 0;  // number of proposals for blunt tets
   std::uint32_t taken_ = 0;
   bool ended_ = false;                         // no trials remain, or the caller stopped it
   std::vector<std::uint32_t> last_detour_at_;  // by vertex: the last detour that changed a tet there

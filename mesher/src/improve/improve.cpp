@@ -149,12 +149,13 @@ class Improvement {
       }
       proposals_.assign(batch_.size(), {});
       parallel_for(batch_.size(), [&](std::size_t i) {
-        proposals_[i] = remedies_.propose(operations_.local(), batch_[i].tet);
+        if (!is_known_to_fail(batch_[i].tet))
+          proposals_[i] = remedies_.propose(operations_.local(), batch_[i].tet);
       });
       ++batch_number_;
       changed_in_.resize(complex().size(), 0);
       for (std::size_t i = 0; i < batch_.size(); ++i)
-        if (proposals_[i].kind == Change::Kind::none) remedies_.nothing_helps(batch_[i].tet);
+        if (proposals_[i].kind == Change::Kind::none) nothing_helps(batch_[i].tet);
       for (std::size_t i = 0; i < batch_.size(); ++i) {
         if (is_untouched(proposals_[i]))
           apply(std::move(proposals_[i]));
@@ -168,6 +169,33 @@ class Improvement {
     return execution_.cancelled() ||
            (execution_.progress &&
             !execution_.progress({"improve", 0, complex().mesh().points.size(), complex().size()}));
+  }
+
+  void nothing_helps(Index tet) {
+    remedies_.nothing_helps(tet);
+    failed_in_.resize(complex().size(), 0);
+    failed_in_[tet] = batch_number_;
+  }
+
+  // Returns whether nothing has helped this tet and nothing has changed since that a proposal may depend on:
+  // the tets at its corners and at the neighbours of these.
+  bool is_known_to_fail(Index tet) const {
+    if (tet >= failed_in_.size() || failed_in_[tet] == 0) return false;
+    const auto is_old = [&](Index v) {
+      return !complex().pinched(v) && (v >= changed_at_.size() || changed_at_[v] < failed_in_[tet]);
+    };
+    std::vector<Index> around;
+    return std::ranges::all_of(complex()[tet].corners, [&](Index corner) {
+      if (!is_old(corner)) return false;
+      complex().star(corner, around);
+      return std::ranges::all_of(around,
+                                 [&](Index t) { return std::ranges::all_of(complex()[t].corners, is_old); });
+    });
+  }
+
+  void note_change_at(Index tet) {
+    changed_at_.resize(complex().mesh().points.size(), 0);
+    for (const Index v : complex()[tet].corners) changed_at_[v] = batch_number_;
   }
 
   // Takes detours. Returns false if none was tried, so that `poor_` is still up to date. Precondition:
@@ -212,9 +240,12 @@ class Improvement {
         ++report_.inserted_vertices;
         break;
     }
+    for (const Index t : change.replacement.old) note_change_at(t);
     for (const Index t : workpiece_.apply(std::move(change))) {
       if (t >= changed_in_.size()) changed_in_.resize(complex().size(), 0);
       changed_in_[t] = batch_number_;
+      if (t < failed_in_.size()) failed_in_[t] = 0;
+      note_change_at(t);
       remedies_.changed(t);
       queue(t);
     }
@@ -235,6 +266,8 @@ class Improvement {
   std::vector<Change> proposals_;
   std::uint32_t batch_number_ = 0;
   std::vector<std::uint32_t> changed_in_;  // by tet: the batch that changed it last
+  std::vector<std::uint32_t> failed_in_;   // by tet: the batch in which nothing helped it; 0: none
+  std::vector<std::uint32_t> changed_at_;  // by vertex: the last batch that changed a tet at it
   ImproveReport report_;
 };
 

@@ -1,5 +1,6 @@
 // Operations that replace the tets around two edges at once.
 #include <algorithm>
+#include <set>
 
 #include "common/cell_shapes.h"
 #include "improve/operations.h"
@@ -18,7 +19,7 @@ bool has(std::span<const Index> sorted, Index item) {
 }  // namespace
 
 void Operations::reconnect(Index tet, Change& change) {
-  std::vector<std::vector<Index>> tried;
+  std::set<std::vector<Index>> tried;
   TetComplex::Ring first, second;
   for (const auto& [i, j] : cell_shapes::corner_pairs) {
     complex_.ring(tet, complex_[tet].corners[i], complex_[tet].corners[j], first);
@@ -29,10 +30,8 @@ void Operations::reconnect(Index tet, Change& change) {
         cavity.insert(cavity.end(), second.tets.begin(), second.tets.end());
         std::sort(cavity.begin(), cavity.end());
         cavity.erase(std::unique(cavity.begin(), cavity.end()), cavity.end());
-        if (cavity.size() > most_tets_around || std::find(tried.begin(), tried.end(), cavity) != tried.end())
-          continue;
+        if (cavity.size() > most_tets_around || !tried.insert(cavity).second) continue;
         refill(cavity, change);
-        tried.push_back(std::move(cavity));
       }
   }
 }

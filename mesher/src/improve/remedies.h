@@ -27,6 +27,9 @@ class Remedies {
   Change propose(Operations& operations, Index tet) const;
   /// Returns whether the tet counts as thin.
   bool is_thin(Index tet) const { return !thin_above_.holds(complex_.corners(tet)); }
+  /// Returns whether the tet has an angle above the largest one of thin tets. Proposals for such a tet cost
+  /// far more than others, as the space around it is filled anew in many ways.
+  bool is_blunt(Index tet) const { return rule_.is_blunt(quality(tet)); }
   /// Returns whether the number of vertices may change at this tet. Walls of a coarsened mesh are one element
   /// thick, which makes their tets poor, but new vertices would undo coarsening. So the number may change
   /// only at tets with an angle above the largest one of thin tets, and at tets that are not near a thin one.

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <utility>
 
 #include "collarmesh/error.h"
+#include "common/cell_shapes.h"
 #include "common/thread_limit.h"
 #include "periodic/make_periodic.h"
 #include "periodic/tolerance_across.h"
@@ -15,12 +17,19 @@
 #include "pipeline/periodic_faces.h"
 #include "pipeline/refinement.h"
 #include "pipeline/reshaping.h"
+#include "pipeline/vertex_bound.h"
 #include "predict/vertex_counts.h"
+#include "tolerance/thin_shells.h"
 
 namespace collarmesh::pipeline {
 
 void MeshMaker::make(const Plc& plc, std::uint64_t seed) {
   set_up(plc, seed);
+  if (begins_better_constrained()) {
+    if (take_constrained(plc, "its curved walls or gaps are far thinner than the elements", Lengths::kept))
+      return;
+    set_up(plc, seed);
+  }
   if (job_.start == Start::constrained)
     tetrahedralize(job_);
   else
@@ -52,6 +61,16 @@ void MeshMaker::set_up(const Plc& plc, std::uint64_t seed) {
   if (job_.budget.most() > 0) options.mesh.max_vertices = job_.budget.most();
   options.mesh.seed = seed;
   job_.refined_with = options_of_refinement(job_, narrow_cells_);
+}
+
+/// Returns whether a refinement would make many times the elements that are needed, so that constrained
+/// tetrahedra are tried before.
+bool MeshMaker::begins_better_constrained() const {
+  if (job_.start != Start::automatic || !may_start_constrained(job_.given) ||
+      !may_take_constrained(*job_.plc))
+    return false;
+  const double size = smallest_size(job_.options.mesh, job_.plc->bounds.diagonal());
+  return has_thin_shells(*job_.plc, *job_.options.mesh.bounds.tolerance, size);
 }
 
 /// Returns whether a refinement made many times the predicted number of tets, as thin parts cause. Coarsening
@@ -94,12 +113,30 @@ void MeshMaker::make_or_take_constrained(const Plc& plc, const std::string& why)
   }
 }
 
-/// Uses a mesh made from the constrained tetrahedra if it keeps every guarantee.
-bool MeshMaker::take_constrained(const Plc& plc, const std::string& why) {
+bool MeshMaker::may_take_constrained(const Plc& plc) const {
   constexpr std::size_t most_triangles = 12'000;  // with more triangles, other ways are faster
-  if (plc.triangles.size() > most_triangles || hopeless_ == &plc) return false;
+  return plc.triangles.size() <= most_triangles && hopeless_ != &plc;
+}
+
+/// Returns whether hardly any tet has an edge far longer than the target.
+bool MeshMaker::keeps_lengths(const TetMesh& mesh) const {
+  constexpr double longest = 2.5, tets_per_long = 100;
+  const double size = smallest_size(job_.options.mesh, job_.plc->bounds.diagonal());
+  const auto is_long = [&](const std::array<Index, 4>& tet) {
+    return std::ranges::any_of(cell_shapes::corner_pairs, [&](const auto& edge) {
+      return distance(mesh.points[tet[edge[0]]], mesh.points[tet[edge[1]]]) > longest * size;
+    });
+  };
+  return tets_per_long * static_cast<double>(std::ranges::count_if(mesh.tets, is_long)) <=
+         static_cast<double>(mesh.tets.size());
+}
+
+/// Uses a mesh made from the constrained tetrahedra if it keeps every guarantee and, if asked for, lengths.
+bool MeshMaker::take_constrained(const Plc& plc, const std::string& why, Lengths lengths) {
+  if (!may_take_constrained(plc)) return false;
   std::optional<PipelineResult> constrained = from_constrained(plc, why, Hope::good);
-  is_constrained_ = constrained && constrained->guarantees_hold();
+  is_constrained_ = constrained && constrained->guarantees_hold() &&
+                    (lengths == Lengths::any || keeps_lengths(constrained->result.mesh));
   hopeless_ = is_constrained_ ? nullptr : &plc;
   if (is_constrained_) job_.made = std::move(*constrained);
   return is_constrained_;

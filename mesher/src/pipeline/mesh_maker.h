@@ -43,9 +43,14 @@ class MeshMaker {
 
  private:
   void set_up(const Plc& plc, std::uint64_t seed);
+  bool begins_better_constrained() const;
+  bool may_take_constrained(const Plc& plc) const;
   bool is_far_too_fine() const;
   bool replace_refined();
-  bool take_constrained(const Plc& plc, const std::string& why);
+  /// Whether edges of constrained tetrahedra must be about as short as the targets, as those of a refinement.
+  enum class Lengths { any, kept };
+  bool take_constrained(const Plc& plc, const std::string& why, Lengths lengths = Lengths::any);
+  bool keeps_lengths(const TetMesh& mesh) const;
   void make_or_take_constrained(const Plc& plc, const std::string& why);
   const SurfaceTolerance& tolerance(const Plc& plc);
   SurfaceTolerance tolerance(const Plc& plc, int order) const;

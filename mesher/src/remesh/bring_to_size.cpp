@@ -22,6 +22,8 @@ using improvement::Workpiece;
 
 // Number of rounds of divisions and improvement, and number of passes of divisions in each round.
 constexpr unsigned rounds = 3, divisions = 2;
+// A round that makes fewer changes than this share of the tets is the last one.
+constexpr double least_share_of_round = 0.01;
 // Most divisions of thin parts. Each halves the edges along them.
 constexpr unsigned most_halvings = 12;
 // Edges shorter than this share of the target lie around or across a thin part.
@@ -93,8 +95,13 @@ class Bringing {
     relax([](Relaxation& relaxation) { relaxation.contract(); });
     if (is_thin()) divide_thin();
     for (unsigned round = 0; round < rounds && may_go_on(); ++round) {
-      for (unsigned pass = 0; pass < divisions && may_go_on(); ++pass) divide();
-      relax([](Relaxation& relaxation) { relaxation.improve(); });
+      std::size_t changes = 0;
+      for (unsigned pass = 0; pass < divisions && may_go_on(); ++pass) changes += divide();
+      relax([&](Relaxation& relaxation) {
+        relaxation.improve();
+        changes += relaxation.changes();
+      });
+      if (static_cast<double>(changes) < least_share_of_round * static_cast<double>(mesh_.tets.size())) break;
     }
     return may_go_on();
   }
@@ -176,10 +183,13 @@ class Bringing {
     return sum;
   }
 
-  void divide() {
+  /// Divides long edges. Returns how many.
+  std::size_t divide() {
     Workpiece piece = workpiece();
-    EdgeDivision(piece, options_, graded_sizes()).divide_all(longest, options_.max_vertices, execution_);
+    const std::size_t divided =
+        EdgeDivision(piece, options_, graded_sizes()).divide_all(longest, options_.max_vertices, execution_);
     piece.complex.store();
+    return divided;
   }
 
   TetMesh& mesh_;

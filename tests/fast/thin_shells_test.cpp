@@ -1,0 +1,47 @@
+// Which complexes have curved walls far thinner than the chords of their elements.
+#include "tolerance/thin_shells.h"
+
+#include <gtest/gtest.h>
+
+#include "collarmesh/plc_builder.h"
+#include "support/shapes.h"
+
+namespace collarmesh {
+namespace {
+
+using namespace testing;
+
+constexpr double size = 1;
+
+bool has_thin(const std::vector<PolygonSoup>& soups) {
+  const Plc plc = build_plc(soups);
+  return has_thin_shells(plc, default_tolerance(plc, size), size);
+}
+
+PolygonSoup hollow_ball(double radius, double thickness) {
+  return joined(uv_sphere(radius, 12, 24), inverted(uv_sphere(radius - thickness, 12, 24)));
+}
+
+TEST(ThinShells, AreHollowBallsFarThinnerThanTheSize) {
+  EXPECT_TRUE(has_thin({hollow_ball(6, 0.002)}));
+  EXPECT_TRUE(has_thin({hollow_ball(6, 0.05)}));
+  EXPECT_FALSE(has_thin({hollow_ball(6, 0.5)}));
+}
+
+TEST(ThinShells, AreCoatings) {
+  EXPECT_TRUE(has_thin({uv_sphere(6, 12, 24), uv_sphere(5.97, 12, 24)}));
+  EXPECT_FALSE(has_thin({uv_sphere(6, 12, 24), uv_sphere(4, 12, 24)}));
+}
+
+// Around a thin rod chords are as short as it is thin; planar sheets need no elements as short as their gap.
+TEST(ThinShells, AreNeitherRodsNorPlates) {
+  EXPECT_FALSE(has_thin({cylinder(0.02, 20, 24)}));
+  EXPECT_FALSE(has_thin({box({0, 0, 0}, {20, 20, 0.01})}));
+  EXPECT_FALSE(has_thin({icosphere(6, 8)}));
+}
+
+// Without curved walls that are wide enough refinement is cheap.
+TEST(ThinShells, AreNotSmallOnes) { EXPECT_FALSE(has_thin({hollow_ball(0.3, 0.01)})); }
+
+}  // namespace
+}  // namespace collarmesh
