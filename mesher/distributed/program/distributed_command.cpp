@@ -195,6 +195,34 @@ struct Coarse {
   PipelineOptions options;
 };
 
+/// Gives all ranks the repair of rank 0.
+void share(RepairOptions& repair, bool is_first) {
+  struct Numbers {
+    RepairMode mode;
+    double tolerance, wrap_offset;
+    bool wrap_at_once;
+    double feature_size;
+    std::optional<double> target_size;
+    std::size_t max_work;
+  };
+  const auto of_first = [&]<class Value>(const std::vector<Value>& values) {
+    return gathered(MPI_COMM_WORLD, is_first ? values : std::vector<Value>());
+  };
+  const Numbers numbers =
+      of_first(std::vector<Numbers>{{repair.mode, repair.tolerance, repair.wrap_offset, repair.wrap_at_once,
+                                     repair.feature_size, repair.target_size, repair.max_work}})
+          .front();
+  repair = {.mode = numbers.mode,
+            .tolerance = numbers.tolerance,
+            .wrap_offset = numbers.wrap_offset,
+            .wrap_at_once = numbers.wrap_at_once,
+            .feature_size = numbers.feature_size,
+            .target_size = numbers.target_size,
+            .kept_patches = of_first(repair.kept_patches),
+            .kept_curves = of_first(repair.kept_curves),
+            .max_work = numbers.max_work};
+}
+
 /// Makes the mesh on rank 0, and its complex on the other ranks.
 Coarse make_coarse(const DistributedArguments& arguments) {
   const Ranks ranks(MPI_COMM_WORLD);
@@ -205,8 +233,7 @@ Coarse make_coarse(const DistributedArguments& arguments) {
   together([&] {
     if (ranks.rank == 0) coarse.made = cli::make_mesh(first_order);
   });
-  static_assert(std::is_trivially_copyable_v<RepairOptions>);
-  MPI_Bcast(&coarse.made.repair, sizeof(RepairOptions), MPI_BYTE, 0, MPI_COMM_WORLD);
+  share(coarse.made.repair, ranks.rank == 0);
   together([&] {
     if (ranks.rank == 0) return;
     coarse.made.input = cli::read_inputs(first_order);
