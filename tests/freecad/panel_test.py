@@ -258,7 +258,7 @@ async def an_older_program_tells_no_numbers():
         os.environ["COLLARMESH_PROGRAM"] = stand_in(folder, "if '--predict' in sys.argv: sys.exit(2)")
         await open_panel(obj)
         await pause(1500)
-        require([row[2:] for row in table()] == 6 * [["", ""]], f"{table()}")
+        await wait_until(lambda: [row[2:] for row in table()] == 6 * [["", ""]], "a table without numbers")
         require("Every guarantee holds" in await run_mesher("4 mm"), "and meshes")
         os.environ["COLLARMESH_PROGRAM"] = PROGRAM
     await close(document)
