@@ -41,7 +41,7 @@ TEST(ThinShells, AreNeitherRodsNorPlates) {
 }
 
 // Without curved walls that are wide enough refinement is cheap.
-TEST(ThinShells, AreNotSmallOnes) { EXPECT_FALSE(has_thin({hollow_ball(0.3, 0.01)})); }
+TEST(ThinShells, AreNotSmallOnes) { EXPECT_FALSE(has_thin({hollow_ball(0.3, 0.02)})); }
 
 }  // namespace
 }  // namespace collarmesh

@@ -196,11 +196,9 @@ TEST(ConstrainedStart, MeshesWhatIsFarThinnerThanTheSize) {
 
 // Refinement makes tens of thousands of vertices there, so it is not even begun.
 TEST(ConstrainedStart, IsChosenForThinShells) {
-  PipelineOptions options;
-  options.mesh.size = 1;
   for (const double thickness : {0.05, 0.002}) {
     const PolygonSoup ball = joined(uv_sphere(6, 12, 24), inverted(uv_sphere(6 - thickness, 12, 24)));
-    const SoupPipelineResult made = run_pipeline(std::vector{ball}, options);
+    const SoupPipelineResult made = run_pipeline(std::vector{ball}, PipelineOptions());
     EXPECT_TRUE(made.guarantees_hold()) << made.missed();
     EXPECT_EQ(made.result.statistics.vertices_inserted, 0U) << thickness;
     EXPECT_LT(made.result.mesh.tets.size(), 6'000U) << thickness;

@@ -173,9 +173,8 @@ bool EdgeDivision::divide(Index a, Index b) {
   for (const Index t : ring.tets)
     worst = std::min(worst, rule_.quality(complex().corners(t), complex()[t].corners));
   Change change;
-  // Nothing is known yet about what a new vertex faces, so in thin parts qualities beside it mean nothing.
-  const double least_quality = facing_ ? 0 : std::max(0.0, least_quality_share * worst);
-  operations_.divide_edge(a, b, facing_ ? share_facing(a, b, ring) : 0.5, least_quality, change);
+  operations_.divide_edge(a, b, facing_ ? share_facing(a, b, ring) : 0.5,
+                          std::max(0.0, least_quality_share * worst), change);
   if (change.kind == Change::Kind::none || !stays_oriented(complex(), change)) return false;
   const double size =
       std::min(0.5 * (sizes_[a] + sizes_[b]), size_at(change.feature, complex()[at].region, change.place));
