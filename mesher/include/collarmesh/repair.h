@@ -95,7 +95,7 @@ struct RepairReport {
   std::vector<FilledHole> filled;
   double feature_size = 0;                   ///< size below which features were collapsed, absolute
   std::vector<SmallFeature> small_features;  ///< the features that were collapsed
-  std::vector<Tag> lost_tags;     ///< tags of facets that have no facet left
+  std::vector<Tag> lost_tags;                ///< tags of facets that have no facet left
   std::vector<Tag> lost_groups;   ///< the lost tags except those that are only numbers of CAD faces
   std::vector<Tag> lost_regions;  ///< tags that the input gives and that no region of the complex has
   /// The largest distance of the repaired facets from those of the input, absolute. Facets that fill holes do

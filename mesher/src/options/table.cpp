@@ -417,8 +417,9 @@ std::vector<Option> complex_options() {
       {.name = "feature-size F",
        .place = at<&RunOptions::repair, &RepairOptions::feature_size>,
        .high = 0.1,
-       .help = "Collapse curves, narrow patches and sharp tips of patches that are smaller than this share of "
-               "the target size and have no name, size or group; 0: keep all",
+       .help =
+           "Collapse curves, narrow patches and sharp tips of patches that are smaller than this share of "
+           "the target size and have no name, size or group; 0: keep all",
        .details = "see [Features to the size](repair.md#features-to-the-size)",
        .commands = refining | Option::check},
       {.name = "wrap-offset T",

@@ -144,9 +144,9 @@ void Tries::mesh_repaired(SoupPipelineResult& all) {
   try_seeds(all.plc);
 }
 
-/// Repairs the input with a larger tolerance if the repaired complex has creases so sharp that refinement would
-/// hardly end, the larger one leaves none that are nearly as sharp, and nothing is lost. Sets the repair that is
-/// used, and returns a note of it.
+/// Repairs the input with a larger tolerance if the repaired complex has creases so sharp that refinement
+/// would hardly end, the larger one leaves none that are nearly as sharp, and nothing is lost. Sets the
+/// repair that is used, and returns a note of it.
 std::string Tries::repair_sharp_creases(RepairOptions& repair, SoupPipelineResult& all) {
   constexpr double too_sharp = 0.1, blunter = 3;  // degrees, and a factor
   if (!all.repair.repaired || all.repair.wrapped) return {};
@@ -166,9 +166,10 @@ std::string Tries::repair_sharp_creases(RepairOptions& repair, SoupPipelineResul
     repair = coarser;
     all.plc = std::move(other.plc);
     all.repair = std::move(other.repair);
-    return fmt::format("repaired with a tolerance of {:.3g}, as with {:.3g} features meet at {:.2g} degrees at {}",
-                       coarser.tolerance, job_.given.repair.tolerance, creases.front().angle,
-                       checks::At{creases.front().where});
+    return fmt::format(
+        "repaired with a tolerance of {:.3g}, as with {:.3g} features meet at {:.2g} degrees at {}",
+        coarser.tolerance, job_.given.repair.tolerance, creases.front().angle,
+        checks::At{creases.front().where});
   }
   build(repair, all);  // makes the source know this complex again
   return {};

@@ -42,8 +42,9 @@ const char* kind_name(SmallFeature::Kind kind) {
 /// Lists the small features by kind, and the place of each.
 std::string small_features_text(const RepairReport& r) {
   constexpr std::size_t most_listed = 10;
-  std::string text = fmt::format("{} feature{} smaller than the feature size of {:.3g} collapsed:",
-                                 r.small_features.size(), plural(r.small_features.size()), r.feature_size);
+  std::string text =
+      fmt::format("{} feature{} smaller than the feature size of {:.3g} collapsed:", r.small_features.size(),
+                  plural(r.small_features.size()), r.feature_size);
   for (std::size_t i = 0; i < std::min(most_listed, r.small_features.size()); ++i) {
     const SmallFeature& f = r.small_features[i];
     fmt::format_to(std::back_inserter(text), "{} {}{} of size {:.3g} at {}", i == 0 ? "" : ",",

@@ -97,14 +97,17 @@ class Repairer {
     }
   }
 
-  /// Collapses the features of the complex of these soups that are smaller than a size (absolute). Precondition:
-  /// the soups are valid. The distances are measured to `input`.
-  RepairResult collapse_features(const Plc& plc, double size, std::span<const PolygonSoup> input) {
+  /// Collapses the features of the complex of these soups that are smaller than a size (absolute).
+  /// Precondition: the soups are valid. The distances are measured to `input`.
+  RepairResult collapse_features(const RepairedPlc& complex, double size,
+                                 std::span<const PolygonSoup> input) {
     try {
       collect();
+      report_.filled = complex.report.filled;
       first_new_point_ = static_cast<Index>(draft_.points.size());
       const State valid = state();
-      const std::vector<CollapsedFeature> collapsed = collapse_in_draft(draft_, plc, size, options_, work_);
+      const std::vector<CollapsedFeature> collapsed =
+          collapse_in_draft(draft_, complex.plc, size, options_, work_);
       if (collapsed.empty()) return finished();
       const Draft after = draft_;
       if (!cut_and_keep() || encloses_nothing_) {
@@ -566,8 +569,7 @@ std::vector<double> sorted_volumes(const Plc& plc) {
 void require_same_parts(const RepairedPlc& before, const RepairedPlc& after) {
   constexpr double most = 0.02;  // share that a region may lose or gain
   const std::vector<double> old = sorted_volumes(before.plc), now = sorted_volumes(after.plc);
-  bool same = old.size() == now.size() &&
-              after.report.lost_groups.empty() &&
+  bool same = old.size() == now.size() && after.report.lost_groups.empty() &&
               after.report.lost_regions.size() <= before.report.lost_regions.size();
   for (std::size_t r = 0; same && r < old.size(); ++r) same = std::fabs(now[r] - old[r]) <= most * old[r];
   if (!same) throw PlcError("A part would be lost.", {});
@@ -616,9 +618,9 @@ RepairedPlc collapse_small_features(RepairedPlc complex, std::span<const Polygon
   constexpr int most_tries = 3;  // a collapse may make neighbours small
   for (int i = 0; i < most_tries && size > 0; ++i) {
     const std::vector<PolygonSoup> current = complex.soups;
-    Repairer repairer(current.empty() ? soups : std::span<const PolygonSoup>(current), repair_options, options,
-                      execution);
-    RepairResult result = repairer.collapse_features(complex.plc, size, soups);
+    Repairer repairer(current.empty() ? soups : std::span<const PolygonSoup>(current), repair_options,
+                      options, execution);
+    RepairResult result = repairer.collapse_features(complex, size, soups);
     if (result.report.cancelled) return {Plc(), std::move(result.report), {}};
     if (result.report.small_features.empty()) break;
     try {
