@@ -65,7 +65,10 @@ void check_against_further(const TetMesh& mesh, ComplexInput& input, const RunOp
                            const Execution& execution, CheckReport& report, RepairReport& repair) {
   std::vector<RepairOptions> all = further_repairs(options.repair, repair);
   all.insert(all.begin(), options.repair);
-  all.front().target_size = options.mesh.size;  // collapses features, as `mesh` does
+  constexpr double size = 1, diagonal = 20;  // as for the default size
+  for (const RepairOptions& coarser : coarser_repairs(options.repair, size, diagonal)) all.push_back(coarser);
+  for (RepairOptions& each : all)
+    if (!each.wrap_at_once) each.target_size = options.mesh.size;  // collapses features, as `mesh` does
   for (const RepairOptions& further : all) {
     try {
       CheckReport other = check_as_built(mesh, input, options, further, execution);
@@ -78,7 +81,8 @@ void check_against_further(const TetMesh& mesh, ComplexInput& input, const RunOp
     }
     repair = input.repaired();
     report.notes.push_back(
-        further.target_size ? "features smaller than the feature size are collapsed in the mesh"
+        !repair.small_features.empty() && further.tolerance == options.repair.tolerance
+            ? "features smaller than the feature size are collapsed in the mesh"
         : repair.wrapped
             ? "the mesh was made from a wrap (a closed surface around the input)"
             : fmt::format("the mesh is one of a repair with --repair-tolerance {:.3g}", further.tolerance));

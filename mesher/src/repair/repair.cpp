@@ -99,12 +99,15 @@ class Repairer {
 
   /// Collapses the features of the complex of these soups that are smaller than a size (absolute).
   /// Precondition: the soups are valid. The distances are measured to `input`.
-  RepairResult collapse_features(const Plc& plc, double size, std::span<const PolygonSoup> input) {
+  RepairResult collapse_features(const RepairedPlc& complex, double size,
+                                 std::span<const PolygonSoup> input) {
     try {
       collect();
+      report_.filled = complex.report.filled;
       first_new_point_ = static_cast<Index>(draft_.points.size());
       const State valid = state();
-      const std::vector<CollapsedFeature> collapsed = collapse_in_draft(draft_, plc, size, options_, work_);
+      const std::vector<CollapsedFeature> collapsed =
+          collapse_in_draft(draft_, complex.plc, size, options_, work_);
       if (collapsed.empty()) return finished();
       const Draft after = draft_;
       if (!cut_and_keep() || encloses_nothing_) {
@@ -617,7 +620,7 @@ RepairedPlc collapse_small_features(RepairedPlc complex, std::span<const Polygon
     const std::vector<PolygonSoup> current = complex.soups;
     Repairer repairer(current.empty() ? soups : std::span<const PolygonSoup>(current), repair_options,
                       options, execution);
-    RepairResult result = repairer.collapse_features(complex.plc, size, soups);
+    RepairResult result = repairer.collapse_features(complex, size, soups);
     if (result.report.cancelled) return {Plc(), std::move(result.report), {}};
     if (result.report.small_features.empty()) break;
     try {

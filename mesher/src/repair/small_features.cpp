@@ -80,6 +80,8 @@ class SmallOnes {
   double patch(Index p) const { return patches_[p]; }
   /// Returns the length of a curve that is to be collapsed; 0: it stays.
   double curve(Index c) const { return curves_[c]; }
+  /// Returns whether a patch stays, however small it is.
+  bool is_kept(Index p) const { return kept_[p]; }
 
  private:
   // Returns the mean width, or infinity where a triangle is as wide as the size.
@@ -162,7 +164,7 @@ class FeatureCollapser {
     const DraftPoints points(plc, draft);
     find_curves(small, points);
     find_patches(small, points);
-    rank_points(points);
+    rank_points(small, points);
   }
 
   std::vector<CollapsedFeature> run() {
@@ -190,28 +192,38 @@ class FeatureCollapser {
     }
   }
 
-  // Marks the triangles of narrow patches by the numbers of their facets.
+  // Marks the triangles of narrow patches by the numbers of their facets. Polygons may have been divided into
+  // other triangles for the complex; these belong to the patch that has all their corners.
   void find_patches(const SmallOnes& small, const DraftPoints& points) {
-    std::set<Corners> narrow;
-    for (Index p = 0; p < plc_.patches.size(); ++p) {
-      if (!(small.patch(p) > 0)) continue;
-      const Plc::Patch& patch = plc_.patches[p];
-      for (Index t = patch.first_triangle; t < patch.first_triangle + patch.triangle_count; ++t) {
-        const auto& [a, b, c] = plc_.triangles[t].points;
-        const Corners corners = sorted({points[a], points[b], points[c]});
-        narrow.insert(corners);
-        if (t > patch.first_triangle || corners[2] == none) continue;
-        const Point where = (plc_.points[a] + plc_.points[b] + plc_.points[c]) / 3;
-        collapsed_.push_back({{SmallFeature::Kind::patch, small.patch(p), patch.tag, where}, corners});
-      }
+    std::map<Corners, Index> patch_of;
+    std::vector<std::set<Index>> narrow_at(draft_.points.size());
+    for (const Plc::Triangle& t : plc_.triangles) {
+      const Corners corners = sorted({points[t.points[0]], points[t.points[1]], points[t.points[2]]});
+      patch_of.emplace(corners, t.patch);
+      if (corners[2] != none && small.patch(t.patch) > 0)
+        for (const Index p : corners) narrow_at[p].insert(t.patch);
     }
-    for (Index t = 0; t < draft_.triangles.size(); ++t)
-      draft_.origins[t].facet = narrow.contains(sorted(draft_.triangles[t])) ? in_narrow_patch : 0;
+    std::vector<bool> listed(plc_.patches.size(), false);
+    for (Index t = 0; t < draft_.triangles.size(); ++t) {
+      const Corners corners = sorted(draft_.triangles[t]);
+      const auto known = patch_of.find(corners);
+      Index patch = known != patch_of.end() ? known->second : none;
+      for (const Index p : narrow_at[corners[0]])
+        if (known == patch_of.end() && narrow_at[corners[1]].contains(p) && narrow_at[corners[2]].contains(p))
+          patch = p;
+      const bool is_narrow = patch != none && small.patch(patch) > 0;
+      draft_.origins[t].facet = is_narrow ? in_narrow_patch : 0;
+      if (!is_narrow || listed[patch]) continue;
+      listed[patch] = true;
+      const Point where = (draft_.corner(t, 0) + draft_.corner(t, 1) + draft_.corner(t, 2)) / 3;
+      collapsed_.push_back(
+          {{SmallFeature::Kind::patch, small.patch(patch), plc_.patches[patch].tag, where}, corners});
+    }
   }
 
   // Of two points, the one of the lower rank moves.
-  void rank_points(const DraftPoints& points) {
-    constexpr int of_vertex = 1000, of_input = 100'000;
+  void rank_points(const SmallOnes& small, const DraftPoints& points) {
+    constexpr int of_vertex = 1000;
     rank_.assign(draft_.points.size(), 0);
     for (const Plc::Vertex& v : plc_.vertices)
       if (points[v.point] != none) rank_[points[v.point]] += of_vertex;
@@ -219,7 +231,10 @@ class FeatureCollapser {
       for (const Index p : e) ++rank_[p];
     for (const Segment& s : draft_.segments)
       for (const Index p : {s.a, s.b}) ++rank_[p];
-    for (const Index p : draft_.loose_points) rank_[p] += of_input;
+    for (const Index p : draft_.loose_points) rank_[p] += of_fixed;
+    for (const Plc::Triangle& t : plc_.triangles)
+      for (const Index p : t.points)
+        if (small.is_kept(t.patch) && points[p] != none) rank_[points[p]] = of_fixed;
   }
 
   bool in_patch(Index t) const { return draft_.origins[t].facet == in_narrow_patch; }
@@ -300,7 +315,7 @@ class FeatureCollapser {
     std::vector<Index> around;
     add_triangles_at(a, around);
     add_triangles_at(b, around);
-    if (!touch(around)) return false;
+    if (rank_of(a) >= of_fixed || !touch(around)) return false;
     merges_.emplace_back(a, b);
     return true;
   }
@@ -360,6 +375,7 @@ class FeatureCollapser {
     }
   }
 
+  static constexpr int of_fixed = 100'000;     // rank of points that stay
   static constexpr Index in_narrow_patch = 1;  // number of the facet of triangles in narrow patches
 
   Draft& draft_;
@@ -376,50 +392,68 @@ class FeatureCollapser {
   std::vector<std::pair<Index, Index>> merges_;  // a point, and the one that takes its place
 };
 
-/// Returns the tag of the nearest old feature with a common piece, for each piece of the new ones.
-template <class Pieces>
-std::vector<Tag> numbers_from(const Pieces& before, const std::vector<Tag>& tags, const Pieces& after) {
-  std::map<std::vector<std::array<double, 3>>, Tag> known;
-  for (Index i = 0; i < before.size(); ++i)
-    for (const auto& piece : before[i]) known.emplace(piece, tags[i]);
-  Tag next = tags.empty() ? 0 : *std::max_element(tags.begin(), tags.end());
-  std::vector<Tag> numbers;
-  std::set<Tag> taken;
-  for (const auto& pieces : after) {
-    Tag number = 0;
-    for (const auto& piece : pieces)
-      if (const auto found = known.find(piece);
-          number == 0 && found != known.end() && taken.insert(found->second).second)
-        number = found->second;
-    numbers.push_back(number != 0 ? number : ++next);
+/// The points of a feature, and the direction of its normal or of its ends.
+struct Shape {
+  std::set<std::array<double, 3>> points;
+  Vector direction;
+};
+
+Vector unit(const Vector& v) { return norm(v) > 0 ? v / norm(v) : Vector(); }
+
+std::vector<Shape> shapes_of_patches(const Plc& plc) {
+  std::vector<Shape> shapes(plc.patches.size());
+  for (const Plc::Triangle& t : plc.triangles) {
+    const Point &a = plc.points[t.points[0]], &b = plc.points[t.points[1]], &c = plc.points[t.points[2]];
+    for (const Point& p : {a, b, c}) shapes[t.patch].points.insert(key_of(p));
+    shapes[t.patch].direction = shapes[t.patch].direction + cross(b - a, c - a);
   }
-  return numbers;
+  for (Shape& shape : shapes) shape.direction = unit(shape.direction);
+  return shapes;
 }
 
-using Piece = std::vector<std::array<double, 3>>;
-
-Piece piece_of(const Plc& plc, std::initializer_list<Index> points) {
-  Piece piece;
-  for (const Index p : points) piece.push_back(key_of(plc.points[p]));
-  std::sort(piece.begin(), piece.end());
-  return piece;
-}
-
-std::vector<std::vector<Piece>> pieces_of_patches(const Plc& plc) {
-  std::vector<std::vector<Piece>> pieces(plc.patches.size());
-  for (const Plc::Triangle& t : plc.triangles)
-    pieces[t.patch].push_back(piece_of(plc, {t.points[0], t.points[1], t.points[2]}));
-  return pieces;
-}
-
-std::vector<std::vector<Piece>> pieces_of_curves(const Plc& plc) {
-  std::vector<std::vector<Piece>> pieces(plc.curves.size());
-  for (Index c = 0; c < plc.curves.size(); ++c) {
+std::vector<Shape> shapes_of_curves(const Plc& plc) {
+  std::vector<Shape> shapes(plc.curves.size());
+  for (Index c = 0; c < shapes.size(); ++c) {
     const std::vector<Index>& points = plc.curves[c].points;
-    for (std::size_t i = 0; i + 1 < points.size(); ++i)
-      pieces[c].push_back(piece_of(plc, {points[i], points[i + 1]}));
+    for (const Index p : points) shapes[c].points.insert(key_of(plc.points[p]));
+    shapes[c].direction = unit(plc.points[points.back()] - plc.points[points.front()]);
   }
-  return pieces;
+  return shapes;
+}
+
+/// Returns the tags of the old features that new ones have most points in common with and, of several, are
+/// most parallel to; each is given once. Other new features get numbers after these.
+std::vector<Tag> numbers_from(const std::vector<Shape>& before, const std::vector<Tag>& tags,
+                              const std::vector<Shape>& after) {
+  std::map<std::array<double, 3>, std::vector<Index>> at;
+  for (Index i = 0; i < before.size(); ++i)
+    for (const auto& p : before[i].points) at[p].push_back(i);
+  struct Match {
+    double score;
+    Index now, old;
+  };
+  std::vector<Match> matches;
+  for (Index i = 0; i < after.size(); ++i) {
+    std::map<Index, double> common;
+    for (const auto& p : after[i].points)
+      if (const auto found = at.find(p); found != at.end())
+        for (const Index old : found->second) ++common[old];
+    for (const auto& [old, points] : common)
+      matches.push_back({points + 0.9 * std::fabs(dot(after[i].direction, before[old].direction)), i, old});
+  }
+  std::stable_sort(matches.begin(), matches.end(),
+                   [](const Match& a, const Match& b) { return a.score > b.score; });
+  std::vector<Tag> numbers(after.size(), 0);
+  std::vector<bool> taken(before.size(), false);
+  for (const Match& match : matches) {
+    if (numbers[match.now] != 0 || taken[match.old]) continue;
+    numbers[match.now] = tags[match.old];
+    taken[match.old] = true;
+  }
+  Tag next = tags.empty() ? 0 : *std::max_element(tags.begin(), tags.end());
+  for (Tag& number : numbers)
+    if (number == 0) number = ++next;
+  return numbers;
 }
 
 template <class Features>
@@ -451,12 +485,12 @@ std::vector<SmallFeature> gone_from(const Draft& draft, const std::vector<Collap
 void keep_numbers(const Plc& before, Plc& after) {
   if (before.numbered_patches && after.numbered_patches) {
     const std::vector<Tag> numbers =
-        numbers_from(pieces_of_patches(before), tags_of(before.patches), pieces_of_patches(after));
+        numbers_from(shapes_of_patches(before), tags_of(before.patches), shapes_of_patches(after));
     for (Index p = 0; p < numbers.size(); ++p) after.patches[p].tag = numbers[p];
   }
   if (before.numbered_curves && after.numbered_curves) {
     const std::vector<Tag> numbers =
-        numbers_from(pieces_of_curves(before), tags_of(before.curves), pieces_of_curves(after));
+        numbers_from(shapes_of_curves(before), tags_of(before.curves), shapes_of_curves(after));
     for (Index c = 0; c < numbers.size(); ++c) after.curves[c].tag = numbers[c];
   }
 }
