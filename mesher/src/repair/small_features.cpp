@@ -247,9 +247,9 @@ class FeatureCollapser {
       if (!state_.triangles().alive(t)) continue;
       const Needle needle = needle_of(draft_, draft_.triangles[t]);
       const bool tip = is_tip(t, needle);
-      if (needle.height < size_ ? tip || in_patch(t) || has_short_curve(t)
-                                : tip && needle.least < sharp_tip * needle.most)
-        found.emplace_back(needle.height, t);
+      const bool is_small = needle.height < size_ ? tip || in_patch(t) || has_short_curve(t)
+                                                  : tip && needle.least < sharp_tip * needle.most;
+      if (is_small && !is_at_wall(t)) found.emplace_back(needle.height, t);
     }
     std::sort(found.begin(), found.end());
     touched_.clear();
@@ -264,6 +264,25 @@ class FeatureCollapser {
     for (unsigned i = 0; i < 3; ++i)
       if (short_.contains(edge_key(c[i], c[(i + 1) % 3]))) return true;
     return false;
+  }
+
+  // Returns whether facets around the triangle face opposite ways, as the sides of a blade do: a wall would
+  // lose its thickness. Needles do not count.
+  bool is_at_wall(Index t) const {
+    constexpr double opposed = -0.5;
+    std::vector<Index> around;
+    for (const Index p : draft_.triangles[t]) add_triangles_at(p, around);
+    std::vector<Vector> normals;
+    for (const Index other : around) {
+      const Corners& c = draft_.triangles[other];
+      if (needle_of(draft_, c).height < size_) continue;
+      const Point& a = draft_.points[c[0]];
+      const Vector n = cross(draft_.points[c[1]] - a, draft_.points[c[2]] - a);
+      normals.push_back(n / norm(n));
+    }
+    return std::ranges::any_of(normals, [&](const Vector& n) {
+      return std::ranges::any_of(normals, [&](const Vector& m) { return dot(n, m) < opposed; });
+    });
   }
 
   // Returns whether both long sides are pieces of curves.
