@@ -119,7 +119,11 @@ Plc ComplexInput::without_small_features(Plc plc, const PlcOptions& options, con
   if (!repair.target_size || built_.repaired.wrapped) return plc;
   RepairOptions kept = repair;
   Plc named = plc;
-  name(named);
+  try {
+    name(named);
+  } catch (const std::runtime_error&) {
+    return plc;  // names that do not fit are told when the complex gets them
+  }
   for (Index p = 0; p < plc.patches.size(); ++p)
     if (named.names.of(2).contains(named.patches[p].tag)) kept.kept_patches.push_back(plc.patches[p].tag);
   for (Index c = 0; c < plc.curves.size(); ++c)

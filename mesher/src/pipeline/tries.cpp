@@ -63,7 +63,8 @@ void require_change(const SoupPipelineResult& before, const SoupPipelineResult& 
   require_kept(before, other);
   if (!place) return;
   const double radius = near * before.plc.bounds.diagonal();
-  if (points_near(before.plc, *place, radius) == points_near(other.plc, *place, radius))
+  const std::vector<Point> near_before = points_near(before.plc, *place, radius);
+  if (!near_before.empty() && near_before == points_near(other.plc, *place, radius))
     throw PlcError("nothing would change there", {});
 }
 

@@ -266,23 +266,37 @@ class FeatureCollapser {
     return false;
   }
 
-  // Returns whether facets around the triangle face opposite ways, as the sides of a blade do: a wall would
-  // lose its thickness. Needles do not count.
+  // Returns whether the facets on both sides of a narrow place face opposite ways, as those of a blade do: a
+  // wall would lose its thickness.
   bool is_at_wall(Index t) const {
     constexpr double opposed = -0.5;
-    std::vector<Index> around;
-    for (const Index p : draft_.triangles[t]) add_triangles_at(p, around);
     std::vector<Vector> normals;
-    for (const Index other : around) {
-      const Corners& c = draft_.triangles[other];
-      if (needle_of(draft_, c).height < size_) continue;
-      const Point& a = draft_.points[c[0]];
-      const Vector n = cross(draft_.points[c[1]] - a, draft_.points[c[2]] - a);
-      normals.push_back(n / norm(n));
-    }
+    add_normals_beside(t, true, normals);
     return std::ranges::any_of(normals, [&](const Vector& n) {
       return std::ranges::any_of(normals, [&](const Vector& m) { return dot(n, m) < opposed; });
     });
+  }
+
+  // Adds the normals of the triangles across the long sides that are pieces of curves, and, if `further`, of
+  // those beside the other half of a narrow quadrangle.
+  void add_normals_beside(Index t, bool further, std::vector<Vector>& normals) const {
+    const Corners& corners = draft_.triangles[t];
+    const Needle needle = needle_of(draft_, corners);
+    for (unsigned i = 0; i < 3; ++i) {
+      if (i == needle.shortest) continue;
+      const Edge side = edge_key(corners[i], corners[(i + 1) % 3]);
+      for (const Index other_side : state_.triangles().sides(side)) {
+        const Index other = other_side / 3;
+        if (other == t) continue;
+        const Corners& c = draft_.triangles[other];
+        const Point& a = draft_.points[c[0]];
+        const Vector n = cross(draft_.points[c[1]] - a, draft_.points[c[2]] - a);
+        if (is_feature(side[0], side[1]))
+          normals.push_back(n / norm(n));
+        else if (further && in_patch(other))
+          add_normals_beside(other, false, normals);
+      }
+    }
   }
 
   // Returns whether both long sides are pieces of curves.
