@@ -80,11 +80,11 @@ class InputSource : public ComplexSource {
     if (repair.wrap_at_once)
       stages_.print("wrapped: no mesh of the complex keeps every guarantee within its vertices\n");
     else if (repair.tolerance != arguments_.repair.tolerance)
-      stages_.print(
-          fmt::format("repaired again, with --repair-tolerance {:.3g}: the previous complex could not be "
-                      "meshed with every "
-                      "guarantee and a number of vertices in proportion to the sizes\n",
-                      repair.tolerance));
+      stages_.print(fmt::format(
+          "repaired again, with --repair-tolerance {:.3g}: the smaller tolerance leaves a complex "
+          "that cannot be meshed with every guarantee and a number of vertices in proportion to the "
+          "sizes\n",
+          repair.tolerance));
     RepairedPlc built{input_.build(arguments_.complex, repair), input_.repaired(), {}};
     built_with_ = repair;
     const std::string told =
