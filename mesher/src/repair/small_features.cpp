@@ -492,6 +492,7 @@ std::vector<Tag> numbers_from(const std::vector<Shape>& before, const std::vecto
 template <class Features>
 std::vector<Tag> tags_of(const Features& features) {
   std::vector<Tag> tags;
+  tags.reserve(features.size());
   for (const auto& feature : features) tags.push_back(feature.tag);
   return tags;
 }
