@@ -35,8 +35,6 @@ namespace collarmesh::distributed {
 
 namespace {
 
-using process::ExitCode;
-using process::tell;
 
 /// Initializes MPI and PETSc for its lifetime.
 class Session {

@@ -289,9 +289,10 @@ class FeatureCollapser {
         const Index other = other_side / 3;
         if (other == t) continue;
         const Corners& c = draft_.triangles[other];
+        const bool is_needle = needle_of(draft_, c).height < size_;  // its normal says little
         const Point& a = draft_.points[c[0]];
         const Vector n = cross(draft_.points[c[1]] - a, draft_.points[c[2]] - a);
-        if (is_feature(side[0], side[1]))
+        if (is_feature(side[0], side[1]) && !is_needle)
           normals.push_back(n / norm(n));
         else if (further && in_patch(other))
           add_normals_beside(other, false, normals);
