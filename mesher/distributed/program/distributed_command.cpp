@@ -35,7 +35,6 @@ namespace collarmesh::distributed {
 
 namespace {
 
-
 /// Initializes MPI and PETSc for its lifetime.
 class Session {
  public:
