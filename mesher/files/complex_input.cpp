@@ -121,7 +121,7 @@ Plc ComplexInput::without_small_features(Plc plc, const PlcOptions& options, con
   Plc named = plc;
   try {
     name(named);
-  } catch (const std::runtime_error&) {
+  } catch (const OptionError&) {
     return plc;  // names that do not fit are told when the complex gets them
   }
   for (Index p = 0; p < plc.patches.size(); ++p)

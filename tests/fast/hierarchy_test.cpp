@@ -10,7 +10,7 @@
 
 #include "common/distances.h"
 
-namespace collarmesh {
+namespace collarmesh::hierarchy_test {
 namespace {
 
 std::vector<Point> points_in_a_cube(std::size_t count, unsigned seed) {
@@ -149,4 +149,4 @@ TEST(Hierarchy, ItemsCanBeNumberedAnew) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::hierarchy_test

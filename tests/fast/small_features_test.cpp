@@ -10,7 +10,7 @@
 #include "collarmesh/repair.h"
 #include "support/shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::small_features_test {
 namespace {
 
 constexpr double side = 10;
@@ -91,6 +91,23 @@ TEST(SmallFeatures, NarrowPatchBecomesACurve) {
     EXPECT_NEAR(patch->where.y, side, chamfer);
     EXPECT_EQ(complex.report.small_features.size(), 3U);  // the patch and its two short curves
   }
+}
+
+// Its rim is far narrower than the feature size, but between sides that face opposite ways.
+TEST(SmallFeatures, FinsKeepTheirThickness) {
+  constexpr double half = 2.5e-3, middle = side / 2, height = 15;
+  const std::vector<Point> polygon{{0, 0, 0},
+                                   {side, 0, 0},
+                                   {side, side, 0},
+                                   {middle + half, side, 0},
+                                   {middle + half, height, 0},
+                                   {middle - half, height, 0},
+                                   {middle - half, side, 0},
+                                   {0, side, 0}};
+  const PolygonSoup soup = without_tags(testing::extrusion(polygon, side));
+  const RepairedPlc complex = collapsed(soup);
+  EXPECT_NEAR(complex.plc.regions[1].volume, build_plc({&soup, 1}).regions[1].volume, 1e-9);
+  EXPECT_EQ(complex.plc.patches.size(), 10U);
 }
 
 TEST(SmallFeatures, PatchesAboveTheSizeStay) {
@@ -175,4 +192,4 @@ TEST(SmallFeatures, CostNothing) {
 }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::small_features_test

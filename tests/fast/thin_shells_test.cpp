@@ -6,7 +6,7 @@
 #include "collarmesh/plc_builder.h"
 #include "support/shapes.h"
 
-namespace collarmesh {
+namespace collarmesh::thin_shells_test {
 namespace {
 
 using namespace testing;
@@ -44,4 +44,4 @@ TEST(ThinShells, AreNeitherRodsNorPlates) {
 TEST(ThinShells, AreNotSmallOnes) { EXPECT_FALSE(has_thin({hollow_ball(0.3, 0.02)})); }
 
 }  // namespace
-}  // namespace collarmesh
+}  // namespace collarmesh::thin_shells_test
