@@ -17,7 +17,7 @@ namespace collarmesh {
 
 namespace {
 
-constexpr unsigned most_rounds = 60;
+constexpr unsigned most_rounds = 240;  // sheets of one patch near each other settle slowly
 // Six times a cell's volume over its longest edge cubed: below this value it may be zero but for rounding.
 constexpr double rounded_volume = 1e-13;
 constexpr std::size_t seeds_per_closed_patch = 4, seeds_per_missed_patch = 8;
