@@ -202,7 +202,7 @@ def measure(family: str, thinness: float, options: argparse.Namespace) -> Row:
 
 def steepest(rows: list[Row]) -> str:
     powers = [math.log(b.vertices / a.vertices) / math.log(a.thinness / b.thinness) for a, b in zip(rows, rows[1:])
-              if a.tets and b.tets]
+              if a.vertices and b.vertices]  # none are inserted into constrained tetrahedra
     return f"{max(max(powers), 0):.1f}" if powers else ""
 
 

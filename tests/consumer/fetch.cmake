@@ -1,4 +1,5 @@
-# Configure a project that fetches the sources; with ccache build and run it, as else all is compiled anew.
+# Configure a project that fetches the sources; with ccache build and run it, as else all is compiled anew. Compiled
+# without optimization, as only the build is tested.
 function(must)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE result)
   if(NOT result EQUAL 0)
@@ -7,9 +8,9 @@ function(must)
 endfunction()
 
 file(REMOVE_RECURSE ${WORK})
-must(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK} -G ${GENERATOR} -D CMAKE_BUILD_TYPE=Release
-  -D CMAKE_CXX_FLAGS=${CXX_FLAGS} -D CMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER} -D COLLARMESH_SOURCES=${SOURCES}
-  -D COLLARMESH_WERROR=${WERROR} -D COLLARMESH_IN_GROUPS=ON)
+must(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK} -G ${GENERATOR} -D CMAKE_BUILD_TYPE=Plain
+  -D CMAKE_CXX_FLAGS_PLAIN=-DNDEBUG -D CMAKE_CXX_FLAGS=${CXX_FLAGS}
+  -D CMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER} -D COLLARMESH_SOURCES=${SOURCES} -D COLLARMESH_WERROR=${WERROR} -D COLLARMESH_IN_GROUPS=ON)
 if(NOT LAUNCHER)
   return()
 endif()

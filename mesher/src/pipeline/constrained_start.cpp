@@ -56,6 +56,7 @@ void settle(MeshJob& job, Hope hope) {
       made.improvement = before;
       return;
     }
+    if (hope == Hope::good && 2 * poor > least) throw Hopeless();  // a round takes longer than another way
     least = poor;
     made.result.mesh = std::move(mesh);
   }

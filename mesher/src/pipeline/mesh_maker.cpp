@@ -25,14 +25,18 @@ namespace collarmesh::pipeline {
 
 void MeshMaker::make(const Plc& plc, std::uint64_t seed) {
   set_up(plc, seed);
+  bool refined = false;
   if (begins_better_constrained()) {
-    if (take_constrained(plc, "its curved walls or gaps are far thinner than the elements", Lengths::kept))
-      return;
-    set_up(plc, seed);
+    refined = refines_with_few_vertices();
+    if (!refined) {
+      if (take_constrained(plc, "its curved walls or gaps are far thinner than the elements", Lengths::kept))
+        return;
+      set_up(plc, seed);
+    }
   }
   if (job_.start == Start::constrained)
     tetrahedralize(job_);
-  else
+  else if (!refined)
     refine(job_);
   if (is_far_too_fine() && replace_refined()) return;
   reshape(job_);
@@ -71,6 +75,24 @@ bool MeshMaker::begins_better_constrained() const {
     return false;
   const double size = smallest_size(job_.options.mesh, job_.plc->bounds.diagonal());
   return has_thin_shells(*job_.plc, *job_.options.mesh.bounds.tolerance, size);
+}
+
+/// Refines with a bound on vertices that is a fraction of the time of constrained tetrahedra. Returns whether
+/// the refinement ended within it.
+bool MeshMaker::refines_with_few_vertices() {
+  constexpr std::size_t few = 15'000;
+  const std::size_t most = job_.refined_with.max_vertices;
+  if (most > 0 && most <= few) return false;
+  job_.refined_with.max_vertices = few;
+  try {
+    refine(job_);
+  } catch (const Ended&) {
+    const bool is_bound = job_.made.result.status == MeshStatus::budget_hit && !job_.control.out_of_time();
+    if (!is_bound) throw;
+    return false;
+  }
+  job_.refined_with.max_vertices = most;
+  return true;
 }
 
 /// Returns whether a refinement made many times the predicted number of tets, as thin parts cause. Coarsening
@@ -131,7 +153,6 @@ bool MeshMaker::keeps_lengths(const TetMesh& mesh) const {
          static_cast<double>(mesh.tets.size());
 }
 
-/// Uses a mesh made from the constrained tetrahedra if it keeps every guarantee and, if asked for, lengths.
 bool MeshMaker::take_constrained(const Plc& plc, const std::string& why, Lengths lengths) {
   if (!may_take_constrained(plc)) return false;
   std::optional<PipelineResult> constrained = from_constrained(plc, why, Hope::good);

@@ -13,6 +13,9 @@ namespace collarmesh::pipeline {
 /// starts from constrained tetrahedra instead.
 class MeshMaker {
  public:
+  /// Whether edges of constrained tetrahedra must be about as short as the targets, as those of a refinement.
+  enum class Lengths { any, kept };
+
   /// Keeps a reference to the job. `source` makes the complexes; null if there is only one.
   MeshMaker(MeshJob& job, ComplexSource* source) : job_(job), source_(source) {}
 
@@ -33,6 +36,10 @@ class MeshMaker {
   /// many tets miss these. The job keeps its mesh.
   std::optional<PipelineResult> from_constrained(const Plc& plc, const std::string& why, Hope hope);
 
+  /// Uses a mesh made from the constrained tetrahedra if it keeps every guarantee and, if asked for, lengths.
+  /// Returns whether it does. Tries each complex once only.
+  bool take_constrained(const Plc& plc, const std::string& why, Lengths lengths = Lengths::any);
+
   /// Returns whether another seed may change the kept mesh. Constrained tetrahedra do not depend on it.
   bool depends_on_seed() const { return !is_constrained_ && job_.start != Start::constrained; }
 
@@ -44,12 +51,10 @@ class MeshMaker {
  private:
   void set_up(const Plc& plc, std::uint64_t seed);
   bool begins_better_constrained() const;
+  bool refines_with_few_vertices();
   bool may_take_constrained(const Plc& plc) const;
   bool is_far_too_fine() const;
   bool replace_refined();
-  /// Whether edges of constrained tetrahedra must be about as short as the targets, as those of a refinement.
-  enum class Lengths { any, kept };
-  bool take_constrained(const Plc& plc, const std::string& why, Lengths lengths = Lengths::any);
   bool keeps_lengths(const TetMesh& mesh) const;
   void make_or_take_constrained(const Plc& plc, const std::string& why);
   const SurfaceTolerance& tolerance(const Plc& plc);

@@ -230,11 +230,13 @@ bool Tries::missed(const char* guarantee) const {
                              [&](const Finding& finding) { return finding.guarantee == guarantee; });
 }
 
-/// Tries further seeds: if refinement does not end at some place with the random samples of one seed, it may
-/// end with those of another. If regions do not keep their volumes, also reduces the surface distance.
+/// If angles miss their bounds, as in places far thinner than the size, tries constrained tetrahedra, then
+/// further seeds: if refinement does not end at some place with the random samples of one seed, it may end
+/// with those of another. If regions do not keep their volumes, also reduces the surface distance.
 void Tries::try_seeds(const Plc& plc) {
   if (!maker_.depends_on_seed()) return;
   PipelineResult& made = job_.made;
+  if (missed(guarantee::thin_angles) && maker_.take_constrained(plc, made.missed())) return;
   const std::uint64_t first = job_.given.mesh.seed;
   for (std::uint64_t seed = first + 1; seed < first + job_.given.seeds && !made.guarantees_hold(); ++seed) {
     const std::string missed = made.missed();
