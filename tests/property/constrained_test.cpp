@@ -205,6 +205,17 @@ TEST(ConstrainedStart, IsChosenForThinShells) {
   }
 }
 
+// Refinement needs few vertices there, while improving constrained tetrahedra would take far longer.
+TEST(ConstrainedStart, IsNotForCylindersThatNearlyTouch) {
+  const PolygonSoup one = cylinder(3, 10, 72), other = translated(one, {6.01, 0, 0});
+  PipelineOptions options;
+  options.mesh.size = 1;
+  const SoupPipelineResult made = run_pipeline(std::vector{joined(one, other)}, options);
+  EXPECT_TRUE(made.guarantees_hold()) << made.missed();
+  EXPECT_GT(made.result.statistics.vertices_inserted, 0U);
+  EXPECT_LT(made.result.mesh.tets.size(), 8'000U);
+}
+
 TEST(ConstrainedStart, StopsWhenProgressSaysSo) {
   PipelineOptions options;
   options.start = Start::constrained;
