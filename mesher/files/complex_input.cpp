@@ -9,6 +9,7 @@
 #include <iterator>
 #include <optional>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "collarmesh/error.h"
@@ -74,6 +75,18 @@ std::string advice(const PlcError& error, const RepairOptions& options, bool of_
       open ? "close the surface, mesh it with triangles (--dimension 2), " : "", wider);
 }
 
+// All members, for comparison.
+auto all_of(const PlcOptions& options) {
+  const auto& [domain, box_margin, feature_angle, planar_tolerance, weld, require_solid] = options;
+  return std::tie(domain, box_margin, feature_angle, planar_tolerance, weld, require_solid);
+}
+auto all_of(const RepairOptions& options) {
+  const auto& [mode, tolerance, wrap_offset, wrap_at_once, feature_size, target_size, kept_patches,
+               kept_curves, max_work] = options;
+  return std::tie(mode, tolerance, wrap_offset, wrap_at_once, feature_size, target_size, kept_patches,
+                  kept_curves, max_work);
+}
+
 }  // namespace
 
 ComplexInput::ComplexInput(const std::vector<std::string>& paths, InputReading reading)
@@ -104,6 +117,25 @@ Execution ComplexInput::watched() const {
 }
 
 Plc ComplexInput::build(const PlcOptions& options, const RepairOptions& repair) {
+  const auto known = std::ranges::find_if(known_, [&](const Known& other) {
+    return all_of(other.options) == all_of(options) && all_of(other.repair) == all_of(repair);
+  });
+  if (known == known_.end()) return build_anew(options, repair);
+  if (!cad_.empty()) tessellate(known->finer);
+  built_ = known->built;
+  return known->plc;
+}
+
+/// Keeps a repaired complex for `build`, unless it is large.
+void ComplexInput::remember(const PlcOptions& options, const RepairOptions& repair, const Plc& plc) {
+  constexpr std::size_t most = 4, most_triangles = 500'000;
+  const bool some_finer = !cad_.empty() && finer_ == 0;
+  if (!built_.repaired.repaired || some_finer || plc.triangles.size() > most_triangles) return;
+  if (known_.size() == most) known_.erase(known_.begin());
+  known_.push_back({options, repair, finer_, plc, built_});
+}
+
+Plc ComplexInput::build_anew(const PlcOptions& options, const RepairOptions& repair) {
   built_ = {};
   Plc plc = without_small_features(build_unnamed(options, repair), options, repair);
   for (const Plc::Patch& patch : plc.patches) built_.patch_numbers.push_back(patch.tag);
@@ -111,6 +143,7 @@ Plc ComplexInput::build(const PlcOptions& options, const RepairOptions& repair) 
   if (!built_.repaired.wrapped) add_replaced_faces(plc);
   name(plc);
   if (labels() != nullptr) name_regions(*labels(), plc);
+  remember(options, repair, plc);
   return plc;
 }
 

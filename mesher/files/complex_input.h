@@ -49,7 +49,10 @@ class ComplexInput {
   explicit ComplexInput(const std::vector<std::string>& paths, InputReading reading = {});
 
   /// Adds a surface that does not come from a file.
-  void add(PolygonSoup soup) { soups_.push_back(std::move(soup)); }
+  void add(PolygonSoup soup) {
+    soups_.push_back(std::move(soup));
+    known_.clear();
+  }
 
   /// Returns the soups from which the last complex was built or, before the first one, the soups that were
   /// read.
@@ -61,7 +64,8 @@ class ComplexInput {
   std::vector<std::string> notes(unsigned dimension = 3) const { return cad_.notes(dimension == 3); }
 
   /// Builds the complex, of repaired facets if necessary. If triangles of CAD faces intersect, tries finer
-  /// ones first. Throws PlcError; the messages name CAD faces.
+  /// ones first. Remembers the last few repaired complexes, so that to build one of them again costs little.
+  /// Throws PlcError; the messages name CAD faces.
   Plc build(const PlcOptions& options, const RepairOptions& repair = {});
   /// Returns the colours that a CAD file gives to the tags of the complex built last.
   TagColours colours() const;
@@ -75,6 +79,8 @@ class ComplexInput {
   ShapeMeasures exact_measures(const Plc& plc) const;
 
  private:
+  Plc build_anew(const PlcOptions& options, const RepairOptions& repair);
+  void remember(const PlcOptions& options, const RepairOptions& repair, const Plc& plc);
   void add_replaced_faces(Plc& plc) const;
   void name(Plc& plc) const;
   const brep::CadLabels* labels() const;
@@ -99,12 +105,22 @@ class ComplexInput {
     std::vector<Tag> patch_numbers, curve_numbers;  // tags before names were applied
   };
 
+  /// A complex that was built, with the options.
+  struct Known {
+    PlcOptions options;
+    RepairOptions repair;
+    double finer = 1;
+    Plc plc;
+    Built built;
+  };
+
   InputReading reading_;
   std::vector<PolygonSoup> soups_;  // the soups as they were read
   CadFiles cad_;
   double finer_ = 1;  // factor relative to the first triangles of CAD shapes; 0 if only some faces have finer
                       // ones
   Built built_;
+  std::vector<Known> known_;  // the last repaired complexes
 };
 
 }  // namespace collarmesh::files

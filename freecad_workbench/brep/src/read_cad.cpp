@@ -16,6 +16,7 @@
 #include <new>
 
 #include "collarmesh/brep/cad_model.h"
+#include "sphere_sides.h"
 #include "step_labels.h"
 #include "topology.h"
 
@@ -89,9 +90,21 @@ CadLabels labels_of(const STEPControl_Reader& reader, const TopoDS_Shape& shape)
   }
 }
 
+/// Mends the shape; leaves it as it is if OpenCASCADE fails on that.
+void mend(const STEPControl_Reader& reader, const TopoDS_Shape& shape) {
+  try {
+    mend_sphere_sides(reader, shape);
+  } catch (const Standard_OutOfMemory&) {
+    throw;
+  } catch (const Standard_Failure&) {
+    return;
+  }
+}
+
 TopoDS_Shape read_step(const std::string& path, CadLabels& labels) {
   STEPControl_Reader reader;
   TopoDS_Shape shape = read_exchange(path, "STEP", reader);
+  mend(reader, shape);
   labels = labels_of(reader, shape);
   return shape;
 }

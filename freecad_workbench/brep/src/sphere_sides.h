@@ -1,0 +1,21 @@
+#pragma once
+
+#include <STEPControl_Reader.hxx>
+#include <TopoDS_Shape.hxx>
+#include <cstddef>
+
+namespace collarmesh::brep {
+
+/// Mends faces of spheres that OpenCASCADE's reader took for the other side of their outline. An outline
+/// through both poles divides a sphere into two parts. The file says by the direction of the outline which
+/// one the face is, but where the outline lies on the seam, the reader may place it a period away, and then
+/// turns the face to make it fit. Such a face has the other orientation than the file gives it, and the faces
+/// around it do not. Changes the shape in place.
+void mend_sphere_sides(const STEPControl_Reader& reader, const TopoDS_Shape& shape);
+
+/// Gives a face of a shell, on a sphere and through both poles, the other side of its outline, and turns it
+/// so that it fits its neighbours. Changes the shell in place, but not the order of its faces. Returns
+/// whether that worked; if not, nothing is changed.
+bool take_other_side(const TopoDS_Shape& shell, std::size_t face);
+
+}  // namespace collarmesh::brep
