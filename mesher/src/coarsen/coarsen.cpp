@@ -10,11 +10,13 @@
 #include <optional>
 
 #include "coarsen/coarsen_workpiece.h"
+#include "coarsen/failed_repairs.h"
 #include "coarsen/proposals.h"
 #include "coarsen/target_sizes.h"
 #include "collarmesh/error.h"
 #include "common/found_in_ranges.h"
 #include "common/parallel_for.h"
+#include "common/tet_sides.h"
 #include "common/thread_limit.h"
 
 namespace collarmesh {
@@ -249,10 +251,7 @@ class Coarsening {
     return for_each<VertexProposal>(
                candidates,
                [&](Proposer& proposer, const Candidate& candidate, VertexProposal& found) {
-                 if (complex().in_use(candidate.vertex))
-                   proposer.contractions(candidate.vertex, candidate.worth_repairs, found);
-                 else
-                   found = {};
+                 propose(proposer, candidate, found);
                },
                [&](const Candidate& candidate, const VertexProposal& found, std::uint32_t begun) {
                  return changes_.at_vertex[candidate.vertex] < begun &&
@@ -262,8 +261,24 @@ class Coarsening {
                         std::all_of(found.to_repair.begin(), found.to_repair.end(),
                                     [&](const Change& change) { return may_still_be_made(change); });
                },
-               [&](const Candidate&, VertexProposal& found) { contract(found); }) &&
+               [&](const Candidate& candidate, VertexProposal& found) {
+                 contract(candidate.vertex, found);
+               }) &&
            worthwhile(before);
+  }
+
+  void propose(Proposer& proposer, const Candidate& candidate, VertexProposal& found) const {
+    const Index v = candidate.vertex;
+    if (candidate.worth_repairs)
+      if (const auto looked_at = failed_.still_fails(v, changes_); !looked_at.empty()) {
+        found = {};
+        found.read.assign(looked_at.begin(), looked_at.end());
+        return;
+      }
+    if (complex().in_use(v))
+      proposer.contractions(v, candidate.worth_repairs, found);
+    else
+      found = {};
   }
 
   bool worthwhile(std::size_t before) const {
@@ -282,7 +297,7 @@ class Coarsening {
     return contraction.kind == Change::Kind::none || workpiece_.curve_can_spare(contraction);
   }
 
-  void contract(VertexProposal& found) {
+  void contract(Index vertex, VertexProposal& found) {
     if (found.change.kind != Change::Kind::none) {
       forget_touched();
       apply(std::move(found.change));
@@ -290,13 +305,22 @@ class Coarsening {
       ++report_.contracted_edges;
       return;
     }
+    if (found.to_repair.empty()) return;
+    looked_at_ = found.read;
+    looked_at_.push_back(vertex);
     for (Change& change : found.to_repair)
       if (contract_and_repair(std::move(change), found.floor)) return;
+    // Whether an edge of a curve can be spared depends on more than the tets around; and not all tets at a
+    // pinched vertex are found.
+    if (mesh().features[vertex].dimension > 1 &&
+        std::none_of(looked_at_.begin(), looked_at_.end(), [&](Index v) { return complex().pinched(v); }))
+      failed_.note(vertex, looked_at_, changes_.now);
   }
 
   bool contract_and_repair(Change change, double floor) {
     workpiece_.begin_trial();
     forget_touched();
+    examined_.clear();
     const std::size_t before = tets_;
     rule_.set_mode(Mode::trial);
     apply_on_trial(std::move(change));
@@ -310,13 +334,41 @@ class Coarsening {
         return true;
       }
       if (step + count > most_repairs + 1) break;
+      examined_.insert(examined_.end(), complex()[worst].corners.begin(), complex()[worst].corners.end());
       change = proposer_.improvement_of(worst, Mode::trial);
       if (change.kind == Change::Kind::none) break;
       apply_on_trial(std::move(change));
     }
+    look_at_touched();
     workpiece_.undo();
     tets_ = before;
+    look_at_examined();
     return false;
+  }
+
+  // Notes the corners of the faces of tets that a trial made: whether an edge of a patch may be turned also
+  // depends on the faces around.
+  void look_at_touched() {
+    for (const Index t : touched_)
+      if (complex()[t].alive) look_at_faces(t);
+  }
+
+  // Notes the vertices that a trial examined and, without the trial, the corners of the faces there.
+  void look_at_examined() {
+    sort_uniquely(examined_);
+    for (const Index v : examined_) {
+      looked_at_.push_back(v);
+      complex().star(v, star_);
+      for (const Index t : star_) look_at_faces(t);
+    }
+    sort_uniquely(looked_at_);
+  }
+
+  void look_at_faces(Index tet) {
+    const auto& of = complex()[tet];
+    for (unsigned corner = 0; corner < 4; ++corner)
+      if (of.faces[corner] != none)
+        for (const Index v : side_corners(of.corners, corner)) looked_at_.push_back(v);
   }
 
   struct ToMend {
@@ -528,6 +580,10 @@ class Coarsening {
   std::uint32_t log_begins_ = 1;         // the time from which the log is complete
   std::vector<Index> touched_;           // tets that were made or changed
   std::vector<Index> touched_vertices_;  // vertices of removed tets
+  std::vector<Index> examined_;          // corners of the tets that a trial tried to improve
+  std::vector<Index> looked_at_;         // vertices at whose tets the trials for a vertex looked
+  std::vector<Index> star_;
+  FailedRepairs failed_;
   std::vector<double> trial_qualities_;  // by tet, for tets that a trial changed
   std::vector<double> known_qualities_;  // by tet; infinite where good enough, NaN if not known
   CoarsenReport report_;

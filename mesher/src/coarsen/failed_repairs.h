@@ -1,0 +1,44 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "coarsen/proposals.h"
+
+namespace collarmesh::coarsening {
+
+/// Remembers vertices of which no collapse could be repaired, and what these trials depended on. As long as
+/// none of that changes, they would fail again in the same way.
+class FailedRepairs {
+ public:
+  /// Notes that all collapses of a vertex have failed now, and the vertices at whose tets they looked.
+  void note(Index vertex, std::vector<Index> looked_at, std::uint32_t now) {
+    std::sort(looked_at.begin(), looked_at.end());
+    looked_at.erase(std::unique(looked_at.begin(), looked_at.end()), looked_at.end());
+    failures_.insert_or_assign(vertex, Failure{now, std::move(looked_at)});
+  }
+
+  /// Returns the vertices at whose tets the trials looked if nothing has changed there since; otherwise
+  /// nothing.
+  std::span<const Index> still_fails(Index vertex, const Changes& changes) const {
+    const auto found = failures_.find(vertex);
+    if (found == failures_.end()) return {};
+    const Failure& failure = found->second;
+    const bool unchanged = std::all_of(failure.looked_at.begin(), failure.looked_at.end(),
+                                       [&](Index v) { return changes.at_vertex[v] <= failure.when; });
+    return unchanged ? std::span<const Index>(failure.looked_at) : std::span<const Index>();
+  }
+
+ private:
+  struct Failure {
+    std::uint32_t when;
+    std::vector<Index> looked_at;
+  };
+  std::unordered_map<Index, Failure> failures_;
+};
+
+}  // namespace collarmesh::coarsening
