@@ -130,8 +130,10 @@ Plc ComplexInput::build(const PlcOptions& options, const RepairOptions& repair) 
 void ComplexInput::remember(const PlcOptions& options, const RepairOptions& repair, const Plc& plc) {
   constexpr std::size_t most = 4, most_triangles = 500'000;
   const bool some_finer = !cad_.empty() && finer_ == 0;
-  if (!built_.repaired.repaired || some_finer || plc.triangles.size() > most_triangles) return;
-  if (known_.size() == most) known_.erase(known_.begin());
+  if (!built_.repaired.repaired || built_.repaired.cancelled || some_finer ||
+      plc.triangles.size() > most_triangles)
+    return;
+  if (known_.size() == most) known_.erase(known_.begin() + 1);  // tries come back to the first one
   known_.push_back({options, repair, finer_, plc, built_});
 }
 

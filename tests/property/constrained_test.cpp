@@ -194,7 +194,7 @@ TEST(ConstrainedStart, MeshesWhatIsFarThinnerThanTheSize) {
   }
 }
 
-// Refinement makes tens of thousands of vertices there, so it is not even begun.
+// Refinement makes tens of thousands of vertices there, so it is given up at 15,000.
 TEST(ConstrainedStart, IsChosenForThinShells) {
   for (const double thickness : {0.05, 0.002}) {
     const PolygonSoup ball = joined(uv_sphere(6, 12, 24), inverted(uv_sphere(6 - thickness, 12, 24)));

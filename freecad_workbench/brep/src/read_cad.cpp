@@ -90,7 +90,7 @@ CadLabels labels_of(const STEPControl_Reader& reader, const TopoDS_Shape& shape)
   }
 }
 
-/// Mends the shape; leaves it as it is if OpenCASCADE fails on that.
+/// Mends the shape as far as OpenCASCADE can.
 void mend(const STEPControl_Reader& reader, const TopoDS_Shape& shape) {
   try {
     mend_sphere_sides(reader, shape);

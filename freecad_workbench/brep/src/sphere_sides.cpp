@@ -181,8 +181,14 @@ bool take_other_side(const TopoDS_Shape& shell, std::size_t index) {
 
 void mend_sphere_sides(const STEPControl_Reader& reader, const TopoDS_Shape& shape) {
   const Senses senses = senses_of(reader);
-  for (const TopoDS_Shape& shell : subshapes(shape, TopAbs_SHELL))
-    for (const std::size_t face : turned_spheres(shell, senses)) take_other_side(shell, face);
+  const auto shells = subshapes(shape, TopAbs_SHELL);
+  std::map<const TopoDS_TShape*, int> uses;
+  for (const TopoDS_Shape& shell : shells)
+    for (const TopoDS_Face& face : faces_in_shell(shell)) ++uses[face.TShape().get()];
+  for (const TopoDS_Shape& shell : shells)
+    for (const std::size_t face : turned_spheres(shell, senses))
+      // Shells that share a face use it in two orientations, of which only one would be mended.
+      if (uses[faces_in_shell(shell)[face].TShape().get()] == 1) take_other_side(shell, face);
 }
 
 }  // namespace collarmesh::brep

@@ -107,16 +107,16 @@ class ComplexSource {
 };
 
 /// Meshes the solids of a complex, and certifies the mesh against it. If a guarantee is missed, tries further
-/// repairs (`further_repairs`), then further seeds; if no mesh passes, the first one is kept. A refinement
-/// that takes far more vertices than the sizes ask for ends early, and coarser repairs (`coarser_repairs`)
-/// are tried; such a repair must lose no body, region, name or tag except numbers of CAD faces. If none of
-/// these complexes does better, the first one is meshed within the budgets, or, without budgets, with up to
-/// twice as many vertices as the first try took; if that fails, too, the mesh is made from the constrained
-/// tetrahedra of the complex (`Start`). `check.notes` lists the attempts. `execution.progress` is also called
-/// at the beginning of each stage (`ProgressReport::begins`); its fraction covers all stages. If cancelled or
-/// out of time, the result has that status and no mesh. Throws PlcError for facets that are no complex and
-/// cannot be repaired, OptionError for options that contradict each other and for sizes of tags that the
-/// complex does not have.
+/// repairs (`further_repairs`), then constrained tetrahedra if angles miss their bounds, then further seeds;
+/// if no mesh passes, the first one is kept. A refinement that takes far more vertices than the sizes ask for
+/// ends early, and coarser repairs (`coarser_repairs`) are tried; such a repair must lose no body, region,
+/// name or tag except numbers of CAD faces. If none of these complexes does better, the first one is meshed
+/// within the budgets, or, without budgets, with up to twice as many vertices as the first try took; if that
+/// fails, too, the mesh is made from the constrained tetrahedra of the complex (`Start`). `check.notes` lists
+/// the attempts. `execution.progress` is also called at the beginning of each stage
+/// (`ProgressReport::begins`); its fraction covers all stages. If cancelled or out of time, the result has
+/// that status and no mesh. Throws PlcError for facets that are no complex and cannot be repaired,
+/// OptionError for options that contradict each other and for sizes of tags that the complex does not have.
 SoupPipelineResult run_pipeline(ComplexSource& source, const PipelineOptions& options = {},
                                 const Execution& execution = {});
 

@@ -56,9 +56,10 @@ void settle(MeshJob& job, Hope hope) {
       made.improvement = before;
       return;
     }
-    if (hope == Hope::good && 2 * poor > least) throw Hopeless();  // a round takes longer than another way
+    const bool goes_on = hope == Hope::any || 2 * poor <= least;  // else another way takes less time
     least = poor;
     made.result.mesh = std::move(mesh);
+    if (!goes_on) return;
   }
 }
 

@@ -25,18 +25,15 @@ namespace collarmesh::pipeline {
 
 void MeshMaker::make(const Plc& plc, std::uint64_t seed) {
   set_up(plc, seed);
-  bool refined = false;
-  if (begins_better_constrained()) {
-    refined = refines_with_few_vertices();
-    if (!refined) {
-      if (take_constrained(plc, "its curved walls or gaps are far thinner than the elements", Lengths::kept))
-        return;
-      set_up(plc, seed);
-    }
+  if (may_be_better_constrained()) {
+    if (!refines_with_few_vertices() &&
+        take_constrained(plc, "its curved walls or gaps are far thinner than the elements", Lengths::kept))
+      return;
+    set_up(plc, seed);
   }
   if (job_.start == Start::constrained)
     tetrahedralize(job_);
-  else if (!refined)
+  else
     refine(job_);
   if (is_far_too_fine() && replace_refined()) return;
   reshape(job_);
@@ -67,9 +64,9 @@ void MeshMaker::set_up(const Plc& plc, std::uint64_t seed) {
   job_.refined_with = options_of_refinement(job_, narrow_cells_);
 }
 
-/// Returns whether a refinement would make many times the elements that are needed, so that constrained
-/// tetrahedra are tried before.
-bool MeshMaker::begins_better_constrained() const {
+/// Returns whether a refinement probably makes many times the elements that are needed. Cylinders that nearly
+/// touch look the same and need few, so `refines_with_few_vertices` decides.
+bool MeshMaker::may_be_better_constrained() const {
   if (job_.start != Start::automatic || !may_start_constrained(job_.given) ||
       !may_take_constrained(*job_.plc))
     return false;
@@ -77,8 +74,9 @@ bool MeshMaker::begins_better_constrained() const {
   return has_thin_shells(*job_.plc, *job_.options.mesh.bounds.tolerance, size);
 }
 
-/// Refines with a bound on vertices that is a fraction of the time of constrained tetrahedra. Returns whether
-/// the refinement ended within it.
+/// Refines until there are so many vertices that it has taken about as long as constrained tetrahedra would.
+/// Returns whether the refinement ended before. Only this answer is of use: the bound also changes the order
+/// of insertions.
 bool MeshMaker::refines_with_few_vertices() {
   constexpr std::size_t few = 15'000;
   const std::size_t most = job_.refined_with.max_vertices;
@@ -87,11 +85,9 @@ bool MeshMaker::refines_with_few_vertices() {
   try {
     refine(job_);
   } catch (const Ended&) {
-    const bool is_bound = job_.made.result.status == MeshStatus::budget_hit && !job_.control.out_of_time();
-    if (!is_bound) throw;
+    if (!job_.budget.ended_at_vertices(job_.made.result, job_.control.out_of_time())) throw;
     return false;
   }
-  job_.refined_with.max_vertices = most;
   return true;
 }
 

@@ -50,7 +50,7 @@ class MeshMaker {
 
  private:
   void set_up(const Plc& plc, std::uint64_t seed);
-  bool begins_better_constrained() const;
+  bool may_be_better_constrained() const;
   bool refines_with_few_vertices();
   bool may_take_constrained(const Plc& plc) const;
   bool is_far_too_fine() const;

@@ -236,7 +236,7 @@ bool Tries::missed(const char* guarantee) const {
 void Tries::try_seeds(const Plc& plc) {
   if (!maker_.depends_on_seed()) return;
   PipelineResult& made = job_.made;
-  if (missed(guarantee::thin_angles) && maker_.take_constrained(plc, made.missed())) return;
+  if (missed(guarantee::thin_angles) && take_constrained(plc)) return;
   const std::uint64_t first = job_.given.mesh.seed;
   for (std::uint64_t seed = first + 1; seed < first + job_.given.seeds && !made.guarantees_hold(); ++seed) {
     const std::string missed = made.missed();
@@ -245,6 +245,14 @@ void Tries::try_seeds(const Plc& plc) {
       made.check.notes.push_back(fmt::format("made with seed {}, as with {} {}", seed, first, missed));
   }
   try_narrow_places_otherwise(plc);
+}
+
+/// Uses constrained tetrahedra if they keep every guarantee; otherwise keeps the mesh.
+bool Tries::take_constrained(const Plc& plc) {
+  const std::string why = job_.made.missed();
+  return find_better(true, [&] {
+    if (!maker_.take_constrained(plc, why)) throw Hopeless();
+  });
 }
 
 /// Tries again with the opposite treatment of narrow places. Cells that were left there may keep large
@@ -306,6 +314,8 @@ bool Tries::find_better(bool has_mesh, const Way& way) {
     way();
     better = !has_mesh || made.guarantees_hold();
   } catch (const PlcError&) {
+    better = false;
+  } catch (const Hopeless&) {
     better = false;
   } catch (const OptionError&) {  // a tag with a size may not exist in the other complex
     better = false;

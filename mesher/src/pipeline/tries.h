@@ -41,6 +41,7 @@ class Tries {
   bool misses_collar_angle_only() const;
   bool missed(const char* guarantee) const;
   void try_seeds(const Plc& plc);
+  bool take_constrained(const Plc& plc);
   void try_narrow_places_otherwise(const Plc& plc);
   double share_for_volumes() const;
 

@@ -31,10 +31,14 @@ void VertexBudget::find(const Plc& plc, const PipelineOptions& options) {
   if (given == 0 || given > most) most_ = most;
 }
 
-bool VertexBudget::hit(const MeshResult& result, bool out_of_time) const {
+bool VertexBudget::ended_at_vertices(const MeshResult& result, bool out_of_time) const {
   const std::size_t memory = given_.mesh.max_memory;
-  return most_ > 0 && result.status == MeshStatus::budget_hit && !out_of_time &&
+  return result.status == MeshStatus::budget_hit && !out_of_time &&
          (memory == 0 || result.statistics.peak_bytes <= memory);
+}
+
+bool VertexBudget::hit(const MeshResult& result, bool out_of_time) const {
+  return most_ > 0 && ended_at_vertices(result, out_of_time);
 }
 
 }  // namespace collarmesh::pipeline

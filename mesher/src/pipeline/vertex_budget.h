@@ -28,7 +28,9 @@ class VertexBudget {
   std::size_t most() const { return most_; }
   void set_most(std::size_t vertices) { most_ = vertices; }
 
-  /// Returns whether a refinement ended at this number, and not because time or memory ran out.
+  /// Returns whether a refinement ended at a number of vertices, and not because time or memory ran out.
+  bool ended_at_vertices(const MeshResult& result, bool out_of_time) const;
+  /// Returns whether that number was this one.
   bool hit(const MeshResult& result, bool out_of_time) const;
 
  private:
