@@ -13,6 +13,7 @@
 #include <gp_Ax2.hxx>
 
 #include <cmath>
+#include <memory>
 #include <numbers>
 
 #include "collarmesh/brep/cad_model.h"
@@ -62,22 +63,23 @@ class ShapeFromFile {
  public:
   ShapeFromFile() {
     const std::string path = folder_.file("ball.step");
-    const LeaksAllowed of_writer;
+    const LeaksAllowed of_writer_and_reader;
+    reader_ = std::make_unique<STEPControl_Reader>();
     STEPControl_Writer writer;
     writer.Transfer(half_ball_with_bore(), STEPControl_AsIs);
     writer.Write(path.c_str());
-    reader_.ReadFile(path.c_str());
-    reader_.TransferRoots();
-    shape_ = reader_.OneShape();
+    reader_->ReadFile(path.c_str());
+    reader_->TransferRoots();
+    shape_ = reader_->OneShape();
     shell_ = brep::subshapes(shape_, TopAbs_SHELL).at(0);
   }
-  const STEPControl_Reader& reader() const { return reader_; }
+  const STEPControl_Reader& reader() const { return *reader_; }
   const TopoDS_Shape& shape() const { return shape_; }
   const TopoDS_Shape& shell() const { return shell_; }
 
  private:
   TemporaryFolder folder_;
-  STEPControl_Reader reader_;
+  std::unique_ptr<STEPControl_Reader> reader_;
   TopoDS_Shape shape_, shell_;
 };
 
