@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -180,6 +181,35 @@ TEST(RepairHard, MeshOfAFoldedTerrainIsCertified) {
     const PolygonSoup soup = folded_terrain(random, 8 + static_cast<unsigned>(random() % 5), fold);
     SCOPED_TRACE(fmt::format("member {}: fold {}", member, fold));
     EXPECT_EQ(testing::faults(testing::mesh_of(repaired(soup).plc, testing::with_size(0.4))), "");
+  }
+}
+
+// Plates between the planes 0 and 1, up to noise that differs from corner to corner. They overlap at random;
+// their sides lie on a grid, so counting its squares gives the volume.
+TEST(RepairHard, ManyPlatesBetweenPlanesThatDifferByNoise) {
+  constexpr unsigned grid = 24, plates = 40;
+  Random random(5);
+  for (unsigned member = 0; member < members(4); ++member) {
+    std::array<std::array<bool, grid>, grid> covered{};
+    std::vector<PolygonSoup> soups;
+    for (unsigned k = 0; k < plates; ++k) {
+      std::array<std::array<unsigned, 2>, 2> range{};
+      for (auto& [low, high] : range) {
+        low = std::uniform_int_distribution<unsigned>(0, grid - 5)(random);
+        high = low + std::uniform_int_distribution<unsigned>(2, 5)(random);
+      }
+      for (unsigned i = range[0][0]; i < range[0][1]; ++i)
+        for (unsigned j = range[1][0]; j < range[1][1]; ++j) covered[i][j] = true;
+      const auto at = [](unsigned i) { return static_cast<double>(i) / 8; };
+      PolygonSoup plate =
+          testing::box({at(range[0][0]), at(range[1][0]), 0}, {at(range[0][1]), at(range[1][1]), 1});
+      for (Point& p : plate.points) p.z += uniform(random, -2e-7, 2e-7);
+      soups.push_back(plate);
+    }
+    unsigned squares = 0;
+    for (const auto& row : covered)
+      squares += static_cast<unsigned>(std::count(row.begin(), row.end(), true));
+    EXPECT_EQ(wrong_volume(joined(soups), squares / 64.0), "") << "member " << member;
   }
 }
 

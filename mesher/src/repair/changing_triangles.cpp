@@ -1,5 +1,6 @@
 #include "repair/changing_triangles.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -15,6 +16,7 @@ ChangingTriangles::ChangingTriangles(Draft& draft, double reach, Work& work)
   first_.assign(draft.points.size(), none);
   degree_.assign(draft.points.size(), 0);
   next_.assign(3 * count_, none);
+  previous_.assign(3 * count_, none);
   for (Index t = 0; t < end(); ++t) link(t);
 }
 
@@ -26,6 +28,8 @@ void ChangingTriangles::link(Index t) {
   for (unsigned i = 0; i < 3; ++i) {
     const Index p = draft_.triangles[t][i];
     next_[3 * t + i] = first_[p];
+    if (first_[p] != none) previous_[first_[p]] = 3 * t + i;
+    previous_[3 * t + i] = none;
     first_[p] = 3 * t + i;
     ++degree_[p];
   }
@@ -39,6 +43,7 @@ Index ChangingTriangles::add(const Corners& corners, const Origin& origin) {
   first_.resize(draft_.points.size(), none);
   degree_.resize(draft_.points.size(), 0);
   next_.resize(next_.size() + 3, none);
+  previous_.resize(next_.size(), none);
   link(end() - 1);
   assert(consistent(corners));
   return end() - 1;
@@ -61,12 +66,16 @@ void ChangingTriangles::remove(Index t) {
   alive_[t] = false;
   --count_;
   for (unsigned i = 0; i < 3; ++i) {
-    --degree_[draft_.triangles[t][i]];
-    Index* at = &first_[draft_.triangles[t][i]];
-    while (*at != 3 * t + i) at = &next_[*at];
-    *at = next_[3 * t + i];
+    const Index point = draft_.triangles[t][i], before = previous_[3 * t + i], after = next_[3 * t + i];
+    --degree_[point];
+    (before == none ? first_[point] : next_[before]) = after;
+    if (after != none) previous_[after] = before;
   }
   assert(consistent(draft_.triangles[t]));
+}
+
+Index ChangingTriangles::least_busy(const Corners& corners) const {
+  return *std::ranges::min_element(corners, {}, [&](Index p) { return degree_[p]; });
 }
 
 std::vector<Index> ChangingTriangles::sides(const Edge& edge) const {

@@ -44,6 +44,8 @@ class ChangingTriangles {
       for (Index side = first_[point]; side != none; side = next_[side]) visit(side);
   }
   bool uses(Index point) const { return point < first_.size() && first_[point] != none; }
+  /// Returns the corner of a triangle at which the fewest triangles are.
+  Index least_busy(const facets::Corners& corners) const;
   /// Returns the sides on an edge, in order.
   std::vector<Index> sides(const Edge& edge) const;
 
@@ -155,8 +157,9 @@ class ChangingTriangles {
   std::size_t count_ = 0;
   std::vector<bool> alive_;
   std::vector<Vector> normals_;
-  std::vector<Index> first_, next_;  // by point and by side: linked list of the sides that start there
-  std::vector<Index> degree_;        // by point: length of the list
+  // By point, by side and by side: doubly linked list of the sides that start at a point.
+  std::vector<Index> first_, next_, previous_;
+  std::vector<Index> degree_;  // by point: length of the list
   ItemTrees<Index> trees_, corner_trees_;
   ItemTrees<Edge> edge_trees_;
 };

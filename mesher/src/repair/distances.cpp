@@ -73,6 +73,55 @@ double diagonal_of(std::span<const CornerPoints> triangles) {
   return box.diagonal();
 }
 
+/// Finds the sample outside of a surface that is farthest from it. Winding numbers cost far more than
+/// distances, so they are only computed for the farthest of many samples, and not for those nearer to a
+/// sample inside than the surface is.
+class FarthestOutside {
+ public:
+  explicit FarthestOutside(const WindingNumber& winding) : winding_(winding) {}
+
+  double distance() const { return farthest_.distance; }
+  const Point& place() const { return farthest_.place; }
+
+  void add(const Point& place, double distance) {
+    constexpr std::size_t most = 4000;
+    if (distance > farthest_.distance) waiting_.push_back({distance, place});
+    if (waiting_.size() == most) finish();
+  }
+
+  /// Looks at the samples added since the last time.
+  void finish() {
+    constexpr double half = 0.5;
+    std::ranges::stable_sort(waiting_, std::ranges::greater(), &Sample::distance);
+    for (const Sample& sample : waiting_) {
+      if (sample.distance <= farthest_.distance) break;
+      if (is_in_ball_inside(sample.place)) continue;
+      if (winding_.at(sample.place) < half)
+        farthest_ = sample;
+      else
+        inside_.push_back(sample);
+    }
+    waiting_.clear();
+    inside_.clear();
+  }
+
+ private:
+  struct Sample {
+    double distance = 0;
+    Point place{};
+  };
+
+  bool is_in_ball_inside(const Point& place) const {
+    return std::ranges::any_of(inside_, [&](const Sample& centre) {
+      return squared_distance(place, centre.place) < centre.distance * centre.distance;
+    });
+  }
+
+  const WindingNumber& winding_;
+  Sample farthest_;
+  std::vector<Sample> waiting_, inside_;
+};
+
 WindingNumber winding_of(std::span<const CornerPoints> repaired, std::span<const CornerPoints> filled) {
   std::vector<WeightedTriangle> triangles;
   triangles.reserve(repaired.size() + filled.size());
@@ -104,6 +153,7 @@ RepairDistances measure_distances(std::span<const CornerPoints> input, std::span
   all.insert(all.end(), filled.begin(), filled.end());
   const DistanceTree tree(std::move(all));
   const WindingNumber winding = winding_of(repaired, filled);
+  FarthestOutside farthest(winding);
   constexpr double half = 0.5;
   Index hint = none;
   for (const CornerPoints& t : gone) {
@@ -111,16 +161,16 @@ RepairDistances measure_distances(std::span<const CornerPoints> input, std::span
     const Point centroid = (1.0 / 3) * (t[0] + t[1] + t[2]);
     const double radius =
         std::max({distance(centroid, t[0]), distance(centroid, t[1]), distance(centroid, t[2])});
-    if (winding.at(centroid) > half && tree.nearest(centroid, radius, hint).distance > radius) continue;
+    if (tree.nearest(centroid, radius, hint).distance > radius && winding.at(centroid) > half) continue;
     for_each_sample(t, spacing, [&](const Point& p) {
-      const DistanceTree::Nearest nearest = tree.nearest(p, distances.of_input, hint);
-      if (nearest.distance > distances.of_input && winding.at(p) < half) {
-        distances.of_input = nearest.distance;
-        distances.farthest_of_input = p;
-      }
+      const DistanceTree::Nearest nearest = tree.nearest(p, farthest.distance(), hint);
+      farthest.add(p, nearest.distance);
       hint = nearest.triangle;
     });
   }
+  farthest.finish();
+  distances.of_input = farthest.distance();
+  distances.farthest_of_input = farthest.place();
   return distances;
 }
 

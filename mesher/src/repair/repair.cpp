@@ -21,6 +21,7 @@
 #include "facets/weld.h"
 #include "plc/lost_bodies.h"
 #include "repair/arrangement.h"
+#include "repair/axis_planes.h"
 #include "repair/better_places.h"
 #include "repair/changes.h"
 #include "repair/distances.h"
@@ -273,6 +274,7 @@ class Repairer {
 
   void make_valid() {
     first_new_point_ = static_cast<Index>(draft_.points.size());
+    flatten();
     if (!cut_what_nearly_coincides() || encloses_nothing_) return;
     const State valid = state();
     try_on([&] { snap_in_rounds(); });
@@ -283,6 +285,11 @@ class Repairer {
       if (!collapse(grain * tolerance_).changed() || !cut_and_keep()) restore(clean);
     });
     keep_better_places(valid);
+  }
+
+  void flatten() {
+    const FlattenReport flattened = flatten_axis_planes(draft_, tolerance_);
+    add_places(report_.collapsed, flattened.moved_points, flattened.largest_distance, flattened.places);
   }
 
   /// Tries a step. If it takes too much work, restores the state before it.

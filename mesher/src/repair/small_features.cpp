@@ -243,12 +243,11 @@ class FeatureCollapser {
   // Changes triangles, flattest first, where no other change of this round is. Returns whether any changed.
   bool run_round() {
     std::vector<std::pair<double, Index>> found;
-    for (Index t = 0; t < state_.triangles().end(); ++t) {
-      if (!state_.triangles().alive(t)) continue;
+    find_narrow();
+    for (const Index t : narrow_) {
       const Needle needle = needle_of(draft_, draft_.triangles[t]);
       const bool tip = is_tip(t, needle);
-      const bool is_small = needle.height < size_ ? tip || in_patch(t) || has_short_curve(t)
-                                                  : tip && needle.least < sharp_tip * needle.most;
+      const bool is_small = needle.height < size_ ? tip || in_patch(t) || has_short_curve(t) : tip;
       if (is_small && !is_at_wall(t)) found.emplace_back(needle.height, t);
     }
     std::sort(found.begin(), found.end());
@@ -257,6 +256,18 @@ class FeatureCollapser {
     merges_.clear();
     for (const auto& [height, t] : found) change(t);
     return apply();
+  }
+
+  // Adds the new triangles that are narrow or have a sharp corner to the list, and removes those that are
+  // gone.
+  void find_narrow() {
+    std::erase_if(narrow_, [&](Index t) { return !state_.triangles().alive(t); });
+    for (; looked_at_ < state_.triangles().end(); ++looked_at_) {
+      const Needle needle = needle_of(draft_, draft_.triangles[looked_at_]);
+      if (state_.triangles().alive(looked_at_) &&
+          (needle.height < size_ || needle.least < sharp_tip * needle.most))
+        narrow_.push_back(looked_at_);
+    }
   }
 
   bool has_short_curve(Index t) const {
@@ -420,7 +431,9 @@ class FeatureCollapser {
   std::set<Edge> features_, short_;  // pieces of curves, and of curves to be collapsed
   std::vector<int> rank_;            // by point, except added ones
   std::vector<CollapsedFeature> collapsed_;
-  std::set<Index> tips_;  // points of tips in the list
+  std::set<Index> tips_;       // points of tips in the list
+  std::vector<Index> narrow_;  // existing triangles that are narrow or have a sharp corner, in order
+  Index looked_at_ = 0;        // triangles before this one have been looked at
   // Of this round:
   std::set<Index> touched_;                      // triangles that change
   std::vector<std::pair<Index, Index>> merges_;  // a point, and the one that takes its place

@@ -84,10 +84,11 @@ std::size_t cancel_new_twins(SnapState& state) {
     const Corners& corners = draft.triangles[t];
     const Index soup = draft.origins[t].soup;
     std::vector<Twin> twins;
-    state.triangles().for_each_at(corners[0], [&](Index side) {
+    const auto has = [](const Corners& c, Index p) { return std::find(c.begin(), c.end(), p) != c.end(); };
+    state.triangles().for_each_at(state.triangles().least_busy(corners), [&](Index side) {
       const Corners& c = draft.triangles[side / 3];
-      if (draft.origins[side / 3].soup == soup && std::find(c.begin(), c.end(), corners[1]) != c.end() &&
-          std::find(c.begin(), c.end(), corners[2]) != c.end())
+      if (draft.origins[side / 3].soup == soup &&
+          std::ranges::all_of(corners, [&](Index p) { return has(c, p); }))
         twins.push_back({is_odd(c), side / 3});
     });
     for (const Index twin : cancelled_among(std::move(twins), draft.soup_is_complex[soup])) {
