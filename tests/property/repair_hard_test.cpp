@@ -10,6 +10,7 @@
 #include <map>
 #include <numbers>
 #include <numeric>
+#include <set>
 
 #include "support/meshing.h"
 #include "support/repair_shapes.h"
@@ -184,12 +185,28 @@ TEST(RepairHard, MeshOfAFoldedTerrainIsCertified) {
   }
 }
 
-// Plates between the planes 0 and 1, up to noise that differs from corner to corner. They overlap at random;
-// their sides lie on a grid, so counting its squares gives the volume.
-TEST(RepairHard, ManyPlatesBetweenPlanesThatDifferByNoise) {
-  constexpr unsigned grid = 24, plates = 40;
+// Lifts the corners of plates between the planes 0 and 1 by noise.
+std::vector<PolygonSoup> with_noise(std::vector<PolygonSoup> plates, Random& random) {
+  constexpr double noise = 2e-7;
+  for (PolygonSoup& plate : plates)
+    for (Point& p : plate.points) p.z += uniform(random, -noise, noise);
+  return plates;
+}
+
+// Returns the number of different heights of points of a repaired complex that are near both planes.
+std::size_t heights(const PolygonSoup& soup) {
+  constexpr double near = 1e-3;
+  std::set<double> found;
+  for (const Point& p : build_repaired_plc({&soup, 1}).plc.points)
+    if (std::fabs(p.z) < near || std::fabs(p.z - 1) < near) found.insert(p.z);
+  return found.size();
+}
+
+// The plates' sides lie on a grid, so counting its squares gives the volume.
+TEST(RepairHard, ManyPlatesOfAGridBetweenPlanesThatDifferByNoise) {
+  constexpr unsigned grid = 24, plates = 30, squares_per_unit = 64;
   Random random(5);
-  for (unsigned member = 0; member < members(4); ++member) {
+  for (unsigned member = 0; member < members(2); ++member) {
     std::array<std::array<bool, grid>, grid> covered{};
     std::vector<PolygonSoup> soups;
     for (unsigned k = 0; k < plates; ++k) {
@@ -198,18 +215,38 @@ TEST(RepairHard, ManyPlatesBetweenPlanesThatDifferByNoise) {
         low = std::uniform_int_distribution<unsigned>(0, grid - 5)(random);
         high = low + std::uniform_int_distribution<unsigned>(2, 5)(random);
       }
-      for (unsigned i = range[0][0]; i < range[0][1]; ++i)
-        for (unsigned j = range[1][0]; j < range[1][1]; ++j) covered[i][j] = true;
-      const auto at = [](unsigned i) { return static_cast<double>(i) / 8; };
-      PolygonSoup plate =
-          testing::box({at(range[0][0]), at(range[1][0]), 0}, {at(range[0][1]), at(range[1][1]), 1});
-      for (Point& p : plate.points) p.z += uniform(random, -2e-7, 2e-7);
+      const auto& [x, y] = range;
+      for (unsigned i = x[0]; i < x[1]; ++i)
+        for (unsigned j = y[0]; j < y[1]; ++j) covered[i][j] = true;
+      soups.push_back(testing::box({x[0] / 8.0, y[0] / 8.0, 0}, {x[1] / 8.0, y[1] / 8.0, 1}));
+    }
+    double squares = 0;
+    for (const auto& row : covered) squares += static_cast<double>(std::count(row.begin(), row.end(), true));
+    const PolygonSoup soup = joined(with_noise(soups, random));
+    EXPECT_EQ(wrong_volume(soup, squares / squares_per_unit), "") << "member " << member;
+    EXPECT_EQ(heights(soup), 2U) << "member " << member;
+  }
+}
+
+// Plates turned by any angle about the axis across them. Without noise, their cuts are in the planes.
+TEST(RepairHard, ManyTurnedPlatesBetweenPlanesThatDifferByNoise) {
+  constexpr unsigned plates = 20;
+  Random random(6);
+  for (unsigned member = 0; member < members(2); ++member) {
+    std::vector<PolygonSoup> soups;
+    for (unsigned k = 0; k < plates; ++k) {
+      const double width = uniform(random, 0.2, 0.6), depth = uniform(random, 0.2, 0.6),
+                   angle = uniform(random, 0, 3), x = uniform(random, 0, 3), y = uniform(random, 0, 3);
+      PolygonSoup plate = testing::box({-width, -depth, 0}, {width, depth, 1});
+      for (Point& p : plate.points)
+        p = {x + std::cos(angle) * p.x - std::sin(angle) * p.y,
+             y + std::sin(angle) * p.x + std::cos(angle) * p.y, p.z};
       soups.push_back(plate);
     }
-    unsigned squares = 0;
-    for (const auto& row : covered)
-      squares += static_cast<unsigned>(std::count(row.begin(), row.end(), true));
-    EXPECT_EQ(wrong_volume(joined(soups), squares / 64.0), "") << "member " << member;
+    const PolygonSoup exact = joined(soups), noisy = joined(with_noise(soups, random));
+    const double volume = total_volume(build_repaired_plc({&exact, 1}).plc);
+    EXPECT_EQ(wrong_volume(noisy, volume), "") << "member " << member;
+    EXPECT_EQ(heights(noisy), 2U) << "member " << member;
   }
 }
 
