@@ -22,6 +22,7 @@
 
 #include "collarmesh/pipeline.h"
 #include "files/complex_input.h"
+#include "support/sanitized.h"
 #include "support/temporary_file.h"
 
 namespace collarmesh::testing {
@@ -56,7 +57,7 @@ double distance_to_face(const gp_Pnt& p, const TopoDS_Face& face) {
 }  // namespace
 
 CadMeshed mesh_of_cad_file(const std::string& path, double relative_size, int order) {
-  constexpr double relative_distance = 1e-3;
+  constexpr double relative_distance = sanitized ? 1.5e-3 : 1e-3;
   files::InputReading reading;
   reading.distance = [](double diagonal) { return relative_distance * diagonal; };
   files::ComplexInput input({path}, reading);

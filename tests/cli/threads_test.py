@@ -21,10 +21,11 @@ class AnyNumberOfThreads(ProgramTest):
     def expect_the_same(self, *arguments, formats=("vtu", "msh")):
         for suffix in formats:
             written = []
-            for threads in COUNTS:
+            counts = COUNTS if suffix == formats[0] else (1, 3, max(COUNTS))  # the mesh is that of the first format
+            for threads in counts:
                 self.expect(0, *arguments, "-o", f"mesh.{suffix}", "--threads", threads)
                 written.append((self.folder / f"mesh.{suffix}").read_bytes())
-            for threads, bytes_of in zip(COUNTS, written):
+            for threads, bytes_of in zip(counts, written):
                 self.assertEqual(bytes_of, written[0], f"{threads} threads, .{suffix}")
 
     def test_a_box(self):

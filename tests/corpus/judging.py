@@ -2,8 +2,9 @@
 
 COLLARMESH_JUDGE may name one:
     JUDGE MESH --surface FILE [--exact | --distance D] [--rho BOUND]; exit code 0 when everything holds.
-It takes some milliseconds for a tet. So it sees a third of the meshes each day, and of those that are made in
-addition only the small ones; all of them where COLLARMESH_LONG is set. The certificate judges every mesh.
+It takes some milliseconds for a tet, and five seconds for a surface. So it sees a sixth of the meshes each day, and of
+those that are made in addition only the small ones; all of them where COLLARMESH_LONG is set. The certificate judges
+every mesh.
 """
 
 import datetime
@@ -18,7 +19,7 @@ JUDGE = os.environ.get("COLLARMESH_JUDGE", "")
 TIME_LIMIT = 120  # seconds
 LONG = bool(os.environ.get("COLLARMESH_LONG"))
 MOST_TETS = math.inf if LONG else 4000  # larger additional meshes are not judged
-DAYS = 1 if LONG else 3  # until the judge has seen every mesh
+DAYS = 1 if LONG else 6  # until the judge has seen every mesh
 
 
 class Failed(Exception):
@@ -33,9 +34,9 @@ def run(*arguments, limit=TIME_LIMIT):
 
 
 def verdict(mesh, *against, radius_edge=2):
-    """Runs the judge where it is the day of meshes of this name; returns its last line if it finds no fault. The
+    """Runs the judge where it is the day of meshes of this name and bound; returns its last line if it finds no fault. The
     judge knows no thin tetrahedra, so coarsened meshes need an infinite bound. Raises Failed."""
-    if (zlib.crc32(pathlib.Path(mesh).name.encode()) + datetime.date.today().toordinal()) % DAYS:
+    if (zlib.crc32(f"{pathlib.Path(mesh).name} {radius_edge}".encode()) + datetime.date.today().toordinal()) % DAYS:
         return "not judged today"
     result = run(sys.executable, JUDGE, mesh, *against, "--rho", radius_edge)
     last = (result.stdout + result.stderr or "it says nothing").strip().splitlines()[-1]

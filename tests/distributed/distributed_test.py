@@ -331,7 +331,7 @@ class Solutions(DistributedTest):
     def test_in_memory(self):
         results = []
         for ranks in RANKS:
-            run = self.mpirun(ranks, POISSON, MODELS / "box.off", "0.5", "3")
+            run = self.mpirun(ranks, POISSON, MODELS / "box.off", "1", "3")
             self.assertNotIn("NOT certified", run.stdout)
             results.append(self.errors(run, r"error (\S+), norm (\S+)"))
         errors = [error for error, _ in results[0]]
@@ -345,7 +345,7 @@ class Solutions(DistributedTest):
             self.skipTest("dolfinx is not there")
         for order, expected in ("1", 2), ("2", 3):
             for level in range(3):
-                self.mesh(2, MODELS / "box.off", "--size", "0.5", "--levels",
+                self.mesh(2, MODELS / "box.off", "--size", "1", "--levels",
                           level, "--order", order, output=f"part_{level}.h5")
             results = []
             for ranks in RANKS:

@@ -6,6 +6,7 @@
 
 #include "collarmesh/tet_mesh.h"
 #include "improve/thin_shape.h"
+#include "support/sanitized.h"
 
 namespace collarmesh::mark_thin_tets_test {
 namespace {
@@ -15,7 +16,7 @@ TEST(MarkThinTets, MarksWhatIsAboveTheBound) {
   std::normal_distribution<double> normal;
   const auto point = [&] { return Point{normal(random), normal(random), normal(random)}; };
   TetMesh mesh;
-  for (int i = 0; i < 20000; ++i) {
+  for (int i = 0; i < (testing::sanitized ? 2000 : 20000); ++i) {
     const Point a = point(), b = point(), c = point();
     Point d = point();
     // Tets that get flatter and flatter, some inverted.
@@ -29,7 +30,7 @@ TEST(MarkThinTets, MarksWhatIsAboveTheBound) {
     mesh.tet_collar.push_back(i % 10 == 0 ? 1 : 0);
   }
   // Uses bounds that equal the ratios of tets, or are slightly off.
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < (testing::sanitized ? 100 : 300); ++i) {
     const auto measured = [&](std::size_t t) {
       const auto& v = mesh.tets[t];
       return measure(mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]], mesh.points[v[3]]).radius_edge;

@@ -10,6 +10,7 @@
 #include "collarmesh/noise.h"
 #include "collarmesh/repair.h"
 #include "support/repair_shapes.h"
+#include "support/sanitized.h"
 #include "support/shapes.h"
 
 namespace collarmesh::repair_bounds_test {
@@ -91,7 +92,7 @@ TEST(RepairBounds, NoiseThatStaysIsTold) {
 
 // A curved sheet with a long border: neither stitching nor filling makes a solid of it.
 TEST(RepairBounds, OpenSheetsAreRefused) {
-  constexpr Index n = 100;
+  constexpr Index n = testing::sanitized ? 20 : 100;
   PolygonSoup sheet;
   for (Index j = 0; j <= n; ++j)
     for (Index i = 0; i <= n; ++i) {

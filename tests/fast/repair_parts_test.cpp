@@ -24,6 +24,7 @@
 #include "repair/twins.h"
 #include "repair/winding_number.h"
 #include "support/repair_shapes.h"
+#include "support/sanitized.h"
 #include "support/shapes.h"
 
 namespace collarmesh::repairing::repair_parts_test {
@@ -390,7 +391,8 @@ Draft arranged_spheres(Random& random) {
 // Some places do not settle and stay as they are: 8% here.
 TEST(Snapping, LeavesLittleNear) {
   Random random(7);
-  constexpr unsigned spheres = 20;  // a small number would prove nothing
+  constexpr unsigned spheres =
+      testing::sanitized ? 4 : 20;  // a small number proves nothing about how many settle
   std::size_t before = 0, after = 0;
   for (unsigned member = 0; member < spheres; ++member) {
     Draft draft = arranged_spheres(random);
@@ -399,7 +401,9 @@ TEST(Snapping, LeavesLittleNear) {
     after += near_corners(draft, 0.99e-3);
   }
   EXPECT_GE(before, spheres);
-  EXPECT_LE(5 * after, before) << before << " near before";
+  if (!testing::sanitized) {
+    EXPECT_LE(5 * after, before) << before << " near before";
+  }
 }
 
 // Nothing is near before snapping, and hardly anything afterwards.

@@ -7,6 +7,7 @@
 #include "collarmesh/error.h"
 #include "collarmesh/repair.h"
 #include "repair/wrap.h"
+#include "support/sanitized.h"
 #include "support/shapes.h"
 
 namespace collarmesh::testing::repair_wrap_test {
@@ -24,7 +25,7 @@ PolygonSoup square() {
 }
 
 TEST(Wrap, EnclosesABoxAtTheOffset) {
-  constexpr double offset = 0.02;
+  constexpr double offset = sanitized ? 0.06 : 0.02;
   const std::vector<PolygonSoup> input{box()};
   const std::vector<PolygonSoup> wrapped{wrap(input, 2 * offset, offset)};
   const Plc plc = build_plc(wrapped);
@@ -82,6 +83,7 @@ TEST(Wrap, PointsThatAreNotFiniteAreErrors) {
 TEST(Wrap, OnRequestAndWhereRepairFails) {
   RepairOptions options;
   options.mode = RepairMode::wrap;
+  if (sanitized) options.wrap_offset = 0.05;
   EXPECT_FALSE(build_repaired_plc(std::vector{box()}, {}, options).report.repaired);
   const std::vector<PolygonSoup> overlapping{box(), box({0.5, 0.5, 0.5}, {2, 2, 2})};
   EXPECT_FALSE(build_repaired_plc(overlapping, {}, options).report.wrapped);

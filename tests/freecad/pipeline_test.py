@@ -68,32 +68,32 @@ def filleted_bracket():
 
 def acute_wedge():
     """A wedge of 40 degrees with a hole: pulled along its edge, with pressure in the hole."""
-    length, width, pressure, force = 20, 6, 60, 6000
+    length, width, pressure, force = 20, 2, 60, 2000
     height = length * math.tan(math.radians(40))
     corners = [Vector(0, 0, 0), Vector(length, 0, 0), Vector(length, height, 0), Vector(0, 0, 0)]
     wedge = Part.Face(Part.makePolygon(corners)).extrude(Vector(0, 0, width))
     hole, radius = Vector(13, 5, 0), 3
     analysis = Analysis(wedge.cut(Part.makeCylinder(radius, width, hole)))
-    analysis.hold("x", (length, height / 2, 3))
-    analysis.hold("y", (length / 2, 0, 3))
+    analysis.hold("x", (length, height / 2, width / 2))
+    analysis.hold("y", (length / 2, 0, width / 2))
     analysis.hold("z", (18, 2, 0))
     analysis.pull((18, 2, width), force, (0, 0, 1))
-    analysis.press((hole.x + radius, hole.y, 3), pressure)
-    return Case(analysis, (0, 0, -force), 0.8, 0.2, (hole.x + radius, hole.y, 3))
+    analysis.press((hole.x + radius, hole.y, width / 2), pressure)
+    return Case(analysis, (0, 0, -force), 0.8, 0.2, (hole.x + radius, hole.y, width / 2))
 
 
 def two_solids():
     """A plate with a stiffer disc in it, in plane strain: pulled."""
-    thickness, force = 2, 3000
+    thickness, force = 1, 1500
     hole = Part.makeCylinder(5, thickness)
     box = Part.makeBox(20, 15, thickness)
     parts = SplitAPI.booleanFragments([box.cut(hole), box.common(hole)], "CompSolid")
     analysis = Analysis(parts, youngs_moduli=(70000, 210000))
-    analysis.hold("x", (0, 10, 1), (0, 3, 1))
-    analysis.hold("y", (12, 0, 1), (3, 0, 1))
+    analysis.hold("x", (0, 10, thickness / 2), (0, 3, thickness / 2))
+    analysis.hold("y", (12, 0, thickness / 2), (3, 0, thickness / 2))
     analysis.hold("z", (12, 8, 0), (2, 2, 0), (12, 8, thickness), (2, 2, thickness))
-    analysis.pull((20, 7, 1), force, (1, 0, 0))
-    return Case(analysis, (-force, 0, None), 1.1, 0.3, (3, 4, 1))
+    analysis.pull((20, 7, thickness / 2), force, (1, 0, 0))
+    return Case(analysis, (-force, 0, None), 1.1, 0.3, (3, 4, thickness / 2))
 
 
 class Pipeline(unittest.TestCase):

@@ -280,7 +280,7 @@ def draw_gallery(sources, build):
         return 77
     with tempfile.TemporaryDirectory() as folder:
         environment = {**os.environ, "PATH": f"{build}/bin:{os.environ['PATH']}"}
-        subprocess.run(["xvfb-run", "-a", sys.executable, sources / "resources/gallery.py", "--into", folder], check=True,
+        subprocess.run(["xvfb-run", "-a", sys.executable, sources / "resources/gallery.py", "--draft", "--into", folder], check=True,
                        env=environment)
         made = {path.name for path in pathlib.Path(folder).glob("*.png") if path.stat().st_size > SMALLEST_PICTURE}
     shown = re.findall(r"!\[[^\]]+\]\(images/(\w+\.png)\)", (sources / "mesher/doc/gallery.md").read_text())

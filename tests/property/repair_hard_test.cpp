@@ -108,7 +108,7 @@ TEST(RepairHard, RegularPrismsTwistedByHalfATurn) {
 TEST(RepairHard, ManySpheresOfALattice) {
   Random random(22);
   for (unsigned member = 0; member < members(1); ++member) {
-    constexpr int side = 6, count = side * side * side, pairs = 3 * side * side * (side - 1);
+    constexpr int side = 5, count = side * side * side, pairs = 3 * side * side * (side - 1);
     constexpr double spacing = 1.955, offset = 0.01;
     std::vector<PolygonSoup> balls;
     for (int i = 0; i < count; ++i) {

@@ -6,9 +6,10 @@ import unittest
 import collarmesh
 import numpy
 
-from module_test import box
+from module_test import SANITIZED, box
 
 CUBE = box((0, 0, 0), (1, 1, 1))
+FINEST = 0.1 if SANITIZED else 0.05
 
 
 def median_lengths(mesh):
@@ -43,7 +44,7 @@ class CallablesOfArrays(unittest.TestCase):
         self.calls.append(len(places))
         self.assertEqual(places.shape, (len(places), 3))
         self.assertTrue(((places >= 0) & (places <= 1)).all())  # in the part's box
-        return 0.05 + 0.3 * places[:, 2]
+        return FINEST + 0.3 * places[:, 2]
 
     def setUp(self):
         self.calls = []
@@ -54,7 +55,7 @@ class CallablesOfArrays(unittest.TestCase):
 
         def size(x, y, z):
             one_by_one.append(z)
-            return 0.05 + 0.3 * z
+            return FINEST + 0.3 * z
 
         of_places = collarmesh.mesh(CUBE, size=1, size_field=size)
         self.assertTrue(of_arrays.passed)
@@ -80,7 +81,7 @@ class CallablesOfArrays(unittest.TestCase):
         self.assertGreater(numpy.median(lengths[centres > 0.4]), 0.08)
 
     def test_threads_change_nothing(self):
-        one, several = (collarmesh.mesh(CUBE, size=1, size_field=lambda p: 0.03 + 0.1 * p[:, 0], threads=threads)
+        one, several = (collarmesh.mesh(CUBE, size=1, size_field=lambda p: 0.6 * FINEST + 0.1 * p[:, 0], threads=threads)
                         for threads in (1, 4))
         numpy.testing.assert_array_equal(one.points, several.points)
         numpy.testing.assert_array_equal(one.tets, several.tets)
@@ -88,12 +89,12 @@ class CallablesOfArrays(unittest.TestCase):
     def test_objects_methods_and_defaults(self):
         class Field:
             def __call__(self, places, method=None, *, extra=None):
-                return numpy.full(len(places), 0.3)
+                return numpy.full(len(places), 6 * FINEST)
 
-        def scaled(places, scale=0.3):
+        def scaled(places, scale=6 * FINEST):
             return scale + 0 * places[:, 0]
 
-        expected = collarmesh.mesh(CUBE, size_field=lambda x, y, z: 0.3)
+        expected = collarmesh.mesh(CUBE, size_field=lambda x, y, z: 6 * FINEST)
         for field in (Field(), Field().__call__, scaled):
             numpy.testing.assert_array_equal(collarmesh.mesh(CUBE, size_field=field).points, expected.points)
 

@@ -48,7 +48,6 @@ class CavityEditor {
   /// Returns the quality of the worst tet that the cavity has with this apex; negative if it is below
   /// `least_quality`. `vertex` is the apex, or none if it is new; sides that contain it do not count.
   double worst(const Cavity& cavity, const Point& apex, Index vertex) const;
-  double worst_at(Index vertex) const { return worst(around_vertex(vertex), at(vertex), vertex); }
 
   /// Fills the cavity with tets that share the apex.
   void fill(const Cavity& cavity, Index apex);

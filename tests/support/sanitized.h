@@ -1,0 +1,22 @@
+#pragma once
+
+namespace collarmesh::testing {
+
+// Clang tells it by a feature, GCC by a macro.
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define COLLARMESH_SANITIZED
+#endif
+#endif
+#if defined(__SANITIZE_ADDRESS__)
+#define COLLARMESH_SANITIZED
+#endif
+
+/// Whether AddressSanitizer watches, with which work takes tens of times as long.
+#if defined(COLLARMESH_SANITIZED)
+constexpr bool sanitized = true;
+#else
+constexpr bool sanitized = false;
+#endif
+
+}  // namespace collarmesh::testing
