@@ -15,7 +15,6 @@
 #include "pipeline/certification.h"
 #include "pipeline/exact_shape.h"
 #include "pipeline/periodic_faces.h"
-#include "pipeline/refinement.h"
 #include "pipeline/reshaping.h"
 #include "pipeline/vertex_bound.h"
 #include "predict/vertex_counts.h"
@@ -34,7 +33,7 @@ void MeshMaker::make(const Plc& plc, std::uint64_t seed) {
   if (job_.start == Start::constrained)
     tetrahedralize(job_);
   else
-    refine(job_);
+    refine(job_, fineness_);
   if (is_far_too_fine() && replace_refined()) return;
   reshape(job_);
   if (job_.start == Start::constrained) settle(job_, hope_);

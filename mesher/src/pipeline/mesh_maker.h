@@ -6,6 +6,7 @@
 
 #include "pipeline/constrained_start.h"
 #include "pipeline/mesh_job.h"
+#include "pipeline/refinement.h"
 
 namespace collarmesh::pipeline {
 
@@ -22,7 +23,7 @@ class MeshMaker {
   /// Forgets everything about the previous complex.
   void take_new_complex();
 
-  /// Takes a complex through all stages. Throws Ended and PlcError. Throws Hopeless if it starts from
+  /// Takes a complex through all stages. Throws Ended, PlcError and, if set, FarTooFine. Throws Hopeless if it starts from
   /// constrained tetrahedra that must yield a good mesh (Hope::good), but many tets miss their bounds.
   void make(const Plc& plc, std::uint64_t seed);
 
@@ -47,6 +48,8 @@ class MeshMaker {
   void come_nearer(const Plc& plc, double share);
 
   void set_narrow_cells(NarrowCells cells) { narrow_cells_ = cells; }
+  /// Sets whether `make` throws FarTooFine.
+  void set_fineness(Fineness fineness) { fineness_ = fineness; }
 
  private:
   void set_up(const Plc& plc, std::uint64_t seed);
@@ -63,6 +66,7 @@ class MeshMaker {
   MeshJob& job_;
   ComplexSource* source_;
   NarrowCells narrow_cells_ = NarrowCells::bounded_if_cheap;
+  Fineness fineness_ = Fineness::any;
   Hope hope_ = Hope::any;
   bool is_constrained_ = false;                // whether the kept mesh started from constrained tetrahedra
   const Plc* hopeless_ = nullptr;              // the complex whose constrained tetrahedra were tried in vain

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "collarmesh/plc.h"
+
+namespace collarmesh {
+
+/// Returns the area of walls, gaps and wedges that are thinner than this, in squares whose sides are as long
+/// as the thickness at the centres of the triangles there. A refinement with bounded ratios makes about this
+/// many vertices. Cost: near linear in the triangles.
+double squares_in_thin_places(const Plc& plc, double thinner_than);
+
+}  // namespace collarmesh
