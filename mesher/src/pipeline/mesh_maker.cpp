@@ -7,6 +7,7 @@
 #include <memory>
 #include <utility>
 
+#include "check/guarantees.h"
 #include "collarmesh/error.h"
 #include "common/cell_shapes.h"
 #include "common/thread_limit.h"
@@ -21,6 +22,17 @@
 #include "tolerance/thin_shells.h"
 
 namespace collarmesh::pipeline {
+
+namespace {
+
+/// Returns whether all that is missed may be kept with a smaller surface distance.
+bool misses_volumes_only(const CheckReport& check) {
+  return !check.findings.empty() && std::ranges::all_of(check.findings, [](const Finding& f) {
+    return f.guarantee == guarantee::volume_kept || f.guarantee == guarantee::thickness_kept;
+  });
+}
+
+}  // namespace
 
 void MeshMaker::make(const Plc& plc, std::uint64_t seed) {
   set_up(plc, seed);
@@ -170,8 +182,14 @@ std::optional<PipelineResult> MeshMaker::from_constrained(const Plc& plc, const 
     maker->job_.start = Start::automatic;
     maker->hope_ = Hope::any;
   });
+  const std::optional<SurfaceTolerance> nearer = nearer_;
   try {
     make(plc, given.mesh.seed);
+    if (misses_volumes_only(made.check)) {
+      constexpr double share = 0.25;
+      come_nearer(plc, share);
+      make(plc, given.mesh.seed);
+    }
     made.check.notes.push_back(fmt::format("begun with constrained tetrahedra, as {}", why));
     if (std::ranges::all_of(made.check.findings, is_about_shape)) found = std::move(made);
   } catch (const Hopeless&) {
@@ -181,6 +199,7 @@ std::optional<PipelineResult> MeshMaker::from_constrained(const Plc& plc, const 
   } catch (const Ended&) {
     if (!job_.hit_bound()) throw;
   }
+  if (!found) nearer_ = nearer;
   made = std::move(before);
   return found;
 }

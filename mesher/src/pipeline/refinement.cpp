@@ -55,8 +55,8 @@ class VertexCounter {
   std::size_t most() const { return most_; }
 
  private:
-  // Most parts without thin features have up to two vertices for each tet that is left after coarsening.
-  static constexpr std::size_t few = 3000, by_tet = 2;
+  // Most parts without thin features have less than one vertex for each tet that is left after coarsening.
+  static constexpr std::size_t few = 1500, by_tet = 1;
 
   std::size_t find_most() const {
     constexpr double largest = 1e15;

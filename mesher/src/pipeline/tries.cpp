@@ -183,12 +183,14 @@ std::pair<Tries::End, std::string> Tries::attempt_simplest(RepairOptions& repair
   if (!may_overlay()) return attempt(all.plc, error);
   maker_.set_fineness(Fineness::as_asked);
   auto tried = attempt(all.plc, error);
-  const bool overlaid =
-      tried.first == End::too_fine && overlay_thin_features(repair, all, most_asked_for_);
+  const bool overlaid = tried.first == End::too_fine && overlay_thin_features(repair, all, most_asked_for_);
   maker_.set_fineness(Fineness::any);
   if (overlaid) return {End::holds, {}};
   if (tried.first != End::too_fine) return tried;
   build(repair, all);  // makes the source know this complex again
+  if (maker_.take_constrained(all.plc, "thin features make far more vertices than the sizes ask for",
+                              MeshMaker::Lengths::kept))
+    return {End::holds, {}};
   return attempt(all.plc, error);
 }
 
@@ -198,8 +200,8 @@ bool Tries::may_overlay() const {
          !given.mesh.size_field && !given.periodic.any();
 }
 
-/// Repairs the input with a larger tolerance, up to the feature size, so that opposite sides of thin walls and
-/// gaps become one. Returns whether that makes a mesh that keeps every guarantee and no part is lost;
+/// Repairs the input with a larger tolerance, up to the feature size, so that opposite sides of thin walls
+/// and gaps become one. Returns whether that makes a mesh that keeps every guarantee and no part is lost;
 /// otherwise nothing has changed. `most`: the number of vertices that the sizes ask for.
 bool Tries::overlay_thin_features(RepairOptions& repair, SoupPipelineResult& all, std::size_t most) {
   const double diagonal = all.plc.bounds.diagonal(), size = smallest_size(job_.given.mesh, diagonal);

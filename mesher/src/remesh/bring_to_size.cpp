@@ -116,6 +116,14 @@ class Bringing {
                      options_.bounds.lower_where_forced);
   }
 
+  /// Divides edges of flat tets where they cross. Returns the number of pairs.
+  std::size_t divide_crossing() {
+    Workpiece piece = workpiece();
+    const std::size_t divided = EdgeDivision(piece, options_, sizes()).divide_crossing(execution_);
+    piece.complex.store();
+    return divided;
+  }
+
   template <class Stage>
   void relax(const Stage& stage) {
     Workpiece piece = workpiece();
@@ -208,7 +216,14 @@ bool bring_to_size(TetMesh& mesh, const Plc& plc, const MeshOptions& options, co
 
 void relax(TetMesh& mesh, const Plc& plc, const MeshOptions& options, const Execution& execution) {
   ThreadLimit(options.threads).run([&] {
-    Bringing(mesh, plc, options, execution).relax([](Relaxation& relaxation) { relaxation.improve(); });
+    Bringing bringing(mesh, plc, options, execution);
+    const auto improve = [](Relaxation& relaxation) { relaxation.improve(); };
+    bringing.relax(improve);
+    for (unsigned round = 0; round < rounds; ++round) {
+      const std::size_t divided = bringing.divide_crossing();
+      if (divided == 0) break;
+      bringing.relax(improve);
+    }
   });
 }
 
