@@ -103,6 +103,7 @@ class Bringing {
       });
       if (static_cast<double>(changes) < least_share_of_round * static_cast<double>(mesh_.tets.size())) break;
     }
+    if (may_go_on()) face_each_other();
     return may_go_on();
   }
 
@@ -116,12 +117,15 @@ class Bringing {
                      options_.bounds.lower_where_forced);
   }
 
-  /// Divides edges of flat tets where they cross. Returns the number of pairs.
-  std::size_t divide_crossing() {
-    Workpiece piece = workpiece();
-    const std::size_t divided = EdgeDivision(piece, options_, sizes()).divide_crossing(execution_);
-    piece.complex.store();
-    return divided;
+  /// Gives tets that miss their bounds vertices that face each other, and improves the others.
+  void face_each_other() {
+    for (unsigned round = 0; round < rounds && may_go_on(); ++round) {
+      Workpiece piece = workpiece();
+      const std::size_t divided = EdgeDivision(piece, options_, sizes()).divide_crossing(execution_);
+      piece.complex.store();
+      if (divided == 0) break;
+      relax([](Relaxation& relaxation) { relaxation.improve(); });
+    }
   }
 
   template <class Stage>
@@ -217,13 +221,8 @@ bool bring_to_size(TetMesh& mesh, const Plc& plc, const MeshOptions& options, co
 void relax(TetMesh& mesh, const Plc& plc, const MeshOptions& options, const Execution& execution) {
   ThreadLimit(options.threads).run([&] {
     Bringing bringing(mesh, plc, options, execution);
-    const auto improve = [](Relaxation& relaxation) { relaxation.improve(); };
-    bringing.relax(improve);
-    for (unsigned round = 0; round < rounds; ++round) {
-      const std::size_t divided = bringing.divide_crossing();
-      if (divided == 0) break;
-      bringing.relax(improve);
-    }
+    bringing.relax([](Relaxation& relaxation) { relaxation.improve(); });
+    bringing.face_each_other();
   });
 }
 
