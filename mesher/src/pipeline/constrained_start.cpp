@@ -37,7 +37,7 @@ void tetrahedralize(MeshJob& job) {
 }
 
 void settle(MeshJob& job, Hope hope) {
-  constexpr unsigned most_rounds = 5;
+  constexpr unsigned most_rounds = 6;
   constexpr std::size_t tets_per_poor = 50;
   if (job.refined_with.bounds.interior_node)
     return;  // interior nodes are complete; coarsening would remove
@@ -64,7 +64,6 @@ void settle(MeshJob& job, Hope hope) {
     least = poor;
     made.result.mesh = std::move(mesh);
     if (!goes_on) return;  // another way takes less time
-    thoroughly = true;
   }
 }
 

@@ -176,21 +176,22 @@ std::string Tries::repair_sharp_creases(RepairOptions& repair, SoupPipelineResul
   return {};
 }
 
-/// Meshes the complex. If its refinement is far finer than the sizes ask for, which thin features cause,
-/// first tries to overlay those that are thinner than the feature size. Sets the repair that is used.
+/// Meshes the complex. If features thinner than the feature size make its refinement far finer than the
+/// sizes ask for, first tries constrained tetrahedra, then to overlay these features. Sets the repair that is
+/// used.
 std::pair<Tries::End, std::string> Tries::attempt_simplest(RepairOptions& repair, SoupPipelineResult& all,
                                                            std::exception_ptr& error) {
   if (!may_overlay()) return attempt(all.plc, error);
   maker_.set_fineness(Fineness::as_asked);
   auto tried = attempt(all.plc, error);
-  const bool overlaid = tried.first == End::too_fine && overlay_thin_features(repair, all, most_asked_for_);
+  if (tried.first == End::too_fine &&
+      (maker_.take_constrained(all.plc, "thin features make far more vertices than the sizes ask for",
+                               MeshMaker::Lengths::kept) ||
+       overlay_thin_features(repair, all, most_asked_for_)))
+    tried = {End::holds, {}};
   maker_.set_fineness(Fineness::any);
-  if (overlaid) return {End::holds, {}};
   if (tried.first != End::too_fine) return tried;
   build(repair, all);  // makes the source know this complex again
-  if (maker_.take_constrained(all.plc, "thin features make far more vertices than the sizes ask for",
-                              MeshMaker::Lengths::kept))
-    return {End::holds, {}};
   return attempt(all.plc, error);
 }
 

@@ -26,7 +26,8 @@ constexpr std::size_t edges_between_reports = 4096;
 // Crossing edges are divided in their middle part; edges on curves, which are divided in the middle, if they
 // cross near it.
 constexpr double middle_part = 0.4, middle_part_of_curve = 0.1;  // from the middle, relative to the edge
-constexpr std::size_t most_trials = 1000;
+// Number of trials before the first division that helps, and its increase with each.
+constexpr std::size_t first_trials = 60, trials_per_division = 8;
 constexpr unsigned most_steps = 20;  // of improvement in a trial
 
 bool is_inside(double share) { return std::fabs(share - 0.5) < middle_part; }
@@ -212,7 +213,7 @@ std::size_t EdgeDivision::divide_crossing(const Execution& execution) {
   std::ranges::sort(poor);
   std::size_t count = 0;
   for (const auto& [q, t] : poor) {
-    if (execution.cancelled() || trials_ > most_trials) break;
+    if (execution.cancelled() || trials_ > first_trials + trials_per_division * count) break;
     if (complex()[t].alive && quality(t) == q && divide_facing_at(t)) ++count;
   }
   return count;
