@@ -48,7 +48,10 @@ void MeshMaker::make(const Plc& plc, std::uint64_t seed) {
     refine(job_, fineness_);
   if (is_far_too_fine() && replace_refined()) return;
   reshape(job_);
-  if (job_.start == Start::constrained) settle(job_, hope_);
+  if (job_.start == Start::constrained)
+    settle(job_, hope_);
+  else
+    mend_flat_tets(job_);
   make_faces_periodic(job_);
   project(job_);
   raise_order(job_);
@@ -105,7 +108,7 @@ bool MeshMaker::refines_with_few_vertices() {
 /// Returns whether a refinement made many times the predicted number of tets, as thin parts cause. Coarsening
 /// such a mesh takes far longer than starting with constrained tetrahedra.
 bool MeshMaker::is_far_too_fine() const {
-  constexpr double times = 5, least = 200'000;
+  constexpr double times = 15, least = 60'000;
   const auto tets = static_cast<double>(job_.made.result.mesh.tets.size());
   return job_.start == Start::automatic && job_.options.coarsen &&
          job_.made.result.status == MeshStatus::complete && tets > least &&

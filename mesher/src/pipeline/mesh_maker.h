@@ -42,6 +42,10 @@ class MeshMaker {
   /// Returns whether it does. Tries each complex once only.
   bool take_constrained(const Plc& plc, const std::string& why, Lengths lengths = Lengths::any);
 
+  /// Does not try the constrained tetrahedra of this complex unless all else fails.
+  void give_up_constrained(const Plc& plc) { hopeless_ = &plc; }
+  bool has_given_up_constrained(const Plc& plc) const { return hopeless_ == &plc; }
+
   /// Returns whether another seed may change the kept mesh. Constrained tetrahedra do not depend on it.
   bool depends_on_seed() const { return !is_constrained_ && job_.start != Start::constrained; }
 
@@ -70,7 +74,7 @@ class MeshMaker {
   Fineness fineness_ = Fineness::any;
   Hope hope_ = Hope::any;
   bool is_constrained_ = false;                // whether the kept mesh started from constrained tetrahedra
-  const Plc* hopeless_ = nullptr;              // the complex whose constrained tetrahedra were tried in vain
+  const Plc* hopeless_ = nullptr;              // the complex whose constrained tetrahedra are not tried
   std::optional<SurfaceTolerance> tolerance_;  // tolerance of the current complex
   std::optional<SurfaceTolerance> nearer_;     // smaller tolerance for another try, after regions lost volume
 };

@@ -62,8 +62,7 @@ class VertexCounter {
     constexpr double largest = 1e15;
     const double tets = prediction::count_tets(prediction::Shape(*job_.plc), job_.options.mesh),
                  most = std::min(static_cast<double>(few) + static_cast<double>(by_tet) * tets, largest);
-    const double thin = job_.given.repair.feature_size *
-                        smallest_size(job_.options.mesh, job_.plc->bounds.diagonal()) * (1 + 1e-9);
+    const double thin = thinner_than_asked(job_.given, job_.plc->bounds.diagonal());
     return squares_in_thin_places(*job_.plc, thin) > most ? static_cast<std::size_t>(most)
                                                           : std::numeric_limits<std::size_t>::max();
   }
@@ -91,6 +90,11 @@ MeshOptions options_of_refinement(const MeshJob& job, NarrowCells narrow_cells) 
 
 double least_thin_ratio(const MeshJob& job) {
   return job.options.mesh.bounds.radius_edge / (job.exact() ? ratio_left : 1);
+}
+
+double thinner_than_asked(const PipelineOptions& given, double diagonal) {
+  constexpr double rounding = 1e-9;
+  return given.repair.feature_size * smallest_size(given.mesh, diagonal) * (1 + rounding);
 }
 
 void refine(MeshJob& job, Fineness fineness) {

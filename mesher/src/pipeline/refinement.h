@@ -14,6 +14,9 @@ MeshOptions options_of_refinement(const MeshJob& job, NarrowCells narrow_cells);
 /// bound, because a tet just above the bound may be within it once its vertices have moved.
 double least_thin_ratio(const MeshJob& job);
 
+/// Returns the feature size, with a margin for rounding: thinner walls, gaps and wedges need not be resolved.
+double thinner_than_asked(const PipelineOptions& given, double diagonal);
+
 /// Thrown if a refinement inserts many times the vertices that its sizes ask for, because of features thinner
 /// than the feature size.
 struct FarTooFine {

@@ -16,6 +16,7 @@
 #include "pipeline/explosion.h"
 #include "pipeline/lost_parts.h"
 #include "pipeline/vertex_bound.h"
+#include "tolerance/thin_places.h"
 
 namespace collarmesh::pipeline {
 
@@ -184,14 +185,18 @@ std::pair<Tries::End, std::string> Tries::attempt_simplest(RepairOptions& repair
   if (!may_overlay()) return attempt(all.plc, error);
   maker_.set_fineness(Fineness::as_asked);
   auto tried = attempt(all.plc, error);
-  if (tried.first == End::too_fine &&
-      (maker_.take_constrained(all.plc, "thin features make far more vertices than the sizes ask for",
-                               MeshMaker::Lengths::kept) ||
-       overlay_thin_features(repair, all, most_asked_for_)))
-    tried = {End::holds, {}};
+  bool gave_up = false, better = false;
+  if (tried.first == End::too_fine) {
+    better = maker_.take_constrained(all.plc, "thin features make far more vertices than the sizes ask for",
+                                     MeshMaker::Lengths::kept);
+    gave_up = maker_.has_given_up_constrained(all.plc);
+    if (!better) better = overlay_thin_features(repair, all, most_asked_for_);
+  }
   maker_.set_fineness(Fineness::any);
+  if (better) return {End::holds, {}};
   if (tried.first != End::too_fine) return tried;
   build(repair, all);  // makes the source know this complex again
+  if (gave_up) maker_.give_up_constrained(all.plc);
   return attempt(all.plc, error);
 }
 
@@ -205,15 +210,19 @@ bool Tries::may_overlay() const {
 /// and gaps become one. Returns whether that makes a mesh that keeps every guarantee and no part is lost;
 /// otherwise nothing has changed. `most`: the number of vertices that the sizes ask for.
 bool Tries::overlay_thin_features(RepairOptions& repair, SoupPipelineResult& all, std::size_t most) {
-  const double diagonal = all.plc.bounds.diagonal(), size = smallest_size(job_.given.mesh, diagonal);
+  const double diagonal = all.plc.bounds.diagonal(), size = smallest_size(job_.given.mesh, diagonal),
+               thin = thinner_than_asked(job_.given, diagonal);
   for (const RepairOptions& coarser : coarser_repairs(repair, size, diagonal)) {
-    if (coarser.tolerance * diagonal > repair.feature_size * size * (1 + 1e-9)) break;
+    if (coarser.tolerance * diagonal > thin) break;
     SoupPipelineResult other;
     if (!find_better(true, [&] {
           build(coarser, other);
           require_kept(all, other);
           if (other.plc.regions.size() != all.plc.regions.size())
             throw PlcError("a region would be lost", {});
+          if (squares_in_thin_places(other.plc, thin) > static_cast<double>(most))
+            throw PlcError("thin features would be left", {});
+          maker_.give_up_constrained(other.plc);
           maker_.make(other.plc, job_.given.mesh.seed);
         }))
       continue;

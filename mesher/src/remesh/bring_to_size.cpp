@@ -119,13 +119,15 @@ class Bringing {
 
   /// Gives tets that miss their bounds vertices that face each other, and improves the others.
   void face_each_other() {
-    for (unsigned round = 0; round < rounds && may_go_on(); ++round) {
-      Workpiece piece = workpiece();
-      const std::size_t divided = EdgeDivision(piece, options_, sizes()).divide_crossing(execution_);
-      piece.complex.store();
-      if (divided == 0) break;
+    for (unsigned round = 0; round < rounds && may_go_on() && divide_crossing() > 0; ++round)
       relax([](Relaxation& relaxation) { relaxation.improve(); });
-    }
+  }
+
+  std::size_t divide_crossing() {
+    Workpiece piece = workpiece();
+    const std::size_t divided = EdgeDivision(piece, options_, sizes()).divide_crossing(execution_);
+    piece.complex.store();
+    return divided;
   }
 
   template <class Stage>
@@ -224,6 +226,15 @@ void relax(TetMesh& mesh, const Plc& plc, const MeshOptions& options, const Exec
     bringing.relax([](Relaxation& relaxation) { relaxation.improve(); });
     bringing.face_each_other();
   });
+}
+
+bool face_each_other(TetMesh& mesh, const Plc& plc, const MeshOptions& options, const Execution& execution) {
+  bool changed = false;
+  ThreadLimit(options.threads).run([&] {
+    Bringing bringing(mesh, plc, options, execution);
+    for (unsigned round = 0; round < rounds && bringing.divide_crossing() > 0; ++round) changed = true;
+  });
+  return changed;
 }
 
 }  // namespace collarmesh::remeshing
