@@ -59,6 +59,8 @@ TEST(ThinPlaces, AreGapsAndWedges) {
   })});
   EXPECT_GT(squares_in_thin_places(wedge, 2), 200);
   EXPECT_EQ(squares_in_thin_places(wedge, 0.05), 0);
+  const PolygonSoup one = cylinder(3, 10, 72);
+  EXPECT_EQ(squares_in_thin_places(build_plc(std::vector{one, translated(one, {6.01, 0, 0})}), 0.1), 0);
 }
 
 }  // namespace

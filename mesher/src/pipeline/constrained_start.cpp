@@ -55,7 +55,7 @@ void tetrahedralize(MeshJob& job) {
 
 void settle(MeshJob& job, Hope hope) {
   constexpr unsigned most_rounds = 6;
-  constexpr std::size_t tets_per_poor = 50, most_for_detours = 20;
+  constexpr std::size_t tets_per_poor = 50, few = 20;
   if (job.refined_with.bounds.interior_node)
     return;  // interior nodes are complete; coarsening would remove
              // them
@@ -73,11 +73,11 @@ void settle(MeshJob& job, Hope hope) {
     const std::size_t poor = count_misshapen(job, mesh);
     if (poor >= least) {
       made.improvement = before;
-      if (thoroughly || (hope == Hope::good && least > most_for_detours)) return;
+      if (thoroughly || (hope == Hope::good && least > few)) return;
       thoroughly = true;
       continue;
     }
-    const bool goes_on = hope == Hope::any || 4 * poor <= 3 * least;
+    const bool goes_on = hope == Hope::any || poor <= few || 4 * poor <= 3 * least;
     least = poor;
     made.result.mesh = std::move(mesh);
     if (!goes_on) return;  // another way takes less time

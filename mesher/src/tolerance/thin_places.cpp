@@ -17,6 +17,7 @@ double squares_in_thin_places(const Plc& plc, double thinner_than) {
   parallel_for_ranges(squares.size(), 256, [&](std::size_t begin, std::size_t end) {
     Thickness::Crossings crossings;
     for (auto t = static_cast<Index>(begin); t < end; ++t) {
+      if (!plc.patches[plc.triangles[t].patch].planar) continue;
       double thin = INFINITY;
       for (unsigned side = 0; side < 2; ++side) {
         const Thickness::Opposite first = thickness.at(t, side, crossings).first;
