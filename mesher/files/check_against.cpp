@@ -59,22 +59,13 @@ CheckReport check_as_built(const TetMesh& mesh, ComplexInput& input, const RunOp
   return report;
 }
 
-/// Returns the target size and the diagonal of the input; of the default size only their ratio.
-std::pair<double, double> size_and_diagonal(ComplexInput& input, const RunOptions& options) {
-  if (options.mesh.size > 0) try {
-      return {options.mesh.size, input.build(options.complex, options.repair).bounds.diagonal()};
-    } catch (const PlcError&) {  // then the default is as good as any
-    }
-  return {1, 20};
-}
-
 /// Checks the mesh against complexes of further repairs. Keeps the first report if the mesh fits none of
 /// them.
 void check_against_further(const TetMesh& mesh, ComplexInput& input, const RunOptions& options,
                            const Execution& execution, CheckReport& report, RepairReport& repair) {
   std::vector<RepairOptions> all = further_repairs(options.repair, repair);
   all.insert(all.begin(), options.repair);
-  const auto [size, diagonal] = size_and_diagonal(input, options);
+  constexpr double size = 1, diagonal = 20;  // as for the default size
   for (const RepairOptions& coarser : coarser_repairs(options.repair, size, diagonal)) all.push_back(coarser);
   for (RepairOptions& each : all)
     if (!each.wrap_at_once) each.target_size = options.mesh.size;  // collapses features, as `mesh` does
