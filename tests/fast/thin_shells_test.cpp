@@ -1,10 +1,12 @@
-// Which complexes have curved walls far thinner than the chords of their elements.
+// Which complexes have curved walls far thinner than the chords of their elements, and how large places are
+// that are thinner than a limit.
 #include "tolerance/thin_shells.h"
 
 #include <gtest/gtest.h>
 
 #include "collarmesh/plc_builder.h"
 #include "support/shapes.h"
+#include "tolerance/thin_places.h"
 
 namespace collarmesh::thin_shells_test {
 namespace {
@@ -42,6 +44,24 @@ TEST(ThinShells, AreNeitherRodsNorPlates) {
 
 // Without curved walls that are wide enough refinement is cheap.
 TEST(ThinShells, AreNotSmallOnes) { EXPECT_FALSE(has_thin({hollow_ball(0.3, 0.02)})); }
+
+TEST(ThinPlaces, AreCountedInSquaresAsLongAsTheyAreThin) {
+  const Plc plate = build_plc(std::vector{box({0, 0, 0}, {10, 10, 0.1})});
+  EXPECT_NEAR(squares_in_thin_places(plate, 0.11), 2 * 100 / 0.01, 1e-6);
+  EXPECT_EQ(squares_in_thin_places(plate, 0.09), 0);
+}
+
+TEST(ThinPlaces, AreGapsAndWedges) {
+  const Plc gap = build_plc(std::vector{box({0, 0, 0}, {10, 10, 3}), box({0, 0, 3.1}, {10, 10, 6})});
+  EXPECT_NEAR(squares_in_thin_places(gap, 0.11), 2 * 100 / 0.01, 1e-6);
+  const Plc wedge = build_plc(std::vector{transformed(box({0, 0, 0}, {10, 10, 1}), [](const Point& p) {
+    return Point{p.x, p.y, p.z * 0.1 * (1 + p.x)};
+  })});
+  EXPECT_GT(squares_in_thin_places(wedge, 2), 200);
+  EXPECT_EQ(squares_in_thin_places(wedge, 0.05), 0);
+  const PolygonSoup one = cylinder(3, 10, 72);
+  EXPECT_EQ(squares_in_thin_places(build_plc(std::vector{one, translated(one, {6.01, 0, 0})}), 0.1), 0);
+}
 
 }  // namespace
 }  // namespace collarmesh::thin_shells_test

@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -251,6 +253,91 @@ TEST(ConstrainedStart, DoesNotDependOnThreads) {
   EXPECT_EQ(made[0].points, made[1].points);
   EXPECT_EQ(made[0].tets, made[1].tets);
   EXPECT_EQ(made[0].edges, made[1].edges);
+}
+
+/// A polygon in x and z, counterclockwise from x to z, drawn along y to 10.
+PolygonSoup extruded(const std::vector<std::array<double, 2>>& outline) {
+  const auto n = static_cast<Index>(outline.size());
+  PolygonSoup soup;
+  for (const double y : {0., 10.})
+    for (const auto& [x, z] : outline) soup.points.push_back({x, y, z});
+  std::vector<Index> front, back;
+  for (Index i = 0; i < n; ++i) {
+    const Index next = (i + 1) % n;
+    soup.add_facet({{i, i + n, next + n, next}});
+    front.push_back(i);
+    back.push_back(2 * n - 1 - i);
+  }
+  soup.add_facet(front);
+  soup.add_facet(back);
+  return soup;
+}
+
+PolygonSoup block_with_wedge(double h) {
+  return extruded({{0, 0}, {10, 0}, {10, 3}, {16, 3}, {10, 3 + h}, {10, 6}, {0, 6}});
+}
+PolygonSoup block_with_fin(double h) {
+  return extruded({{0, 0}, {10, 0}, {10, 3}, {16, 3}, {16, 3 + h}, {10, 3 + h}, {10, 6}, {0, 6}});
+}
+PolygonSoup block_with_fold(double h) {
+  return extruded({{0, 0}, {10, 0}, {10, 6}, {4, 6}, {6, 6 + h}, {0, 6 + 2 * h}});
+}
+PolygonSoup block_with_slit(double h) {
+  return extruded({{0, 0}, {10, 0}, {10, 3}, {4, 3}, {4, 3 + h}, {10, 3 + h}, {10, 6}, {0, 6}});
+}
+
+SoupPipelineResult with_elements_of_1(const PolygonSoup& soup, double feature_size = 0.01) {
+  PipelineOptions options;
+  options.mesh.size = 1;
+  options.repair.feature_size = feature_size;
+  return run_pipeline(std::vector{soup}, options);
+}
+
+double volume_of(const SoupPipelineResult& made) {
+  return std::accumulate(made.check.region_volumes.begin() + 1, made.check.region_volumes.end(), 0.0);
+}
+
+// Refinement would make up to hundreds of thousands of vertices there.
+TEST(ThinFeatures, CostTheSameHoweverThinTheyAreBelowTheFeatureSize) {
+  for (const auto make : {block_with_wedge, block_with_fin, block_with_fold, block_with_slit})
+    for (const double h : {0.009, 0.001, 0.0002}) {
+      const SoupPipelineResult made = with_elements_of_1(make(h));
+      EXPECT_TRUE(made.guarantees_hold()) << h << " " << made.missed();
+      EXPECT_LT(made.result.statistics.vertices_inserted, 6'000U) << h;
+      EXPECT_LT(made.result.mesh.tets.size(), 7'000U) << h;
+      EXPECT_NEAR(volume_of(made), 600, 100 * h) << h;
+    }
+}
+
+// A closed flake is a body of its own, which must not be overlaid.
+TEST(ThinFeatures, AreKeptWhereTheyAreBodies) {
+  for (const double h : {0.01, 0.001, 0.0001}) {
+    PolygonSoup flake;
+    flake.points = {{10.5, 4, 2}, {10.5, 6, 2}, {10.5, 5, 4}, {10.5 + h, 5, 2.7}};
+    for (const std::array<Index, 3> f : {std::array<Index, 3>{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}})
+      flake.add_facet(f);
+    const SoupPipelineResult made = with_elements_of_1(joined(box({0, 0, 0}, {10, 10, 6}), flake));
+    EXPECT_TRUE(made.guarantees_hold()) << h << " " << made.missed();
+    ASSERT_EQ(made.check.region_volumes.size(), 3U) << h;
+    EXPECT_NEAR(std::min(made.check.region_volumes[1], made.check.region_volumes[2]), 2 * h / 3, 0.05 * h);
+    EXPECT_LT(made.result.mesh.tets.size(), 7'000U) << h;
+  }
+}
+
+TEST(ThinFeatures, AreKeptWithoutAFeatureSize) {
+  const SoupPipelineResult made = with_elements_of_1(block_with_slit(0.005), 0);
+  EXPECT_TRUE(made.guarantees_hold()) << made.missed();
+  EXPECT_FALSE(made.repair.repaired);
+  EXPECT_NEAR(volume_of(made), 600 - 0.3, 1e-6);
+}
+
+// Opposite vertices of thin walls must face each other; those of constrained tetrahedra do not.
+TEST(ConstrainedStart, GivesThinWallsVerticesThatFaceEachOther) {
+  for (const double h : {0.1, 0.01}) {
+    const SoupPipelineResult made = begun_constrained({block_with_fold(h)}, 1);
+    EXPECT_TRUE(made.guarantees_hold()) << h << " " << made.missed();
+    EXPECT_NEAR(volume_of(made), 600 + 80 * h, 1e-6) << h;
+  }
 }
 
 }  // namespace

@@ -419,7 +419,8 @@ std::vector<Option> complex_options() {
        .high = 0.1,
        .help =
            "Collapse curves, narrow patches and sharp tips of patches that are smaller than this share of "
-           "the target size and have no name, size or group; 0: keep all",
+           "the target size and have no name, size or group, and walls and gaps as thin that cannot be "
+           "meshed otherwise; 0: keep all",
        .details = "see [Features to the size](repair.md#features-to-the-size)",
        .commands = refining | Option::check},
       {.name = "wrap-offset T",

@@ -6,11 +6,28 @@
 #include <utility>
 
 #include "constrained/constrained_tetrahedra.h"
+#include "improve/cell_bounds.h"
+#include "improve/thin_shape.h"
 #include "pipeline/certification.h"
 #include "pipeline/reshaping.h"
 #include "remesh/bring_to_size.h"
 
 namespace collarmesh::pipeline {
+
+namespace {
+
+/// Returns whether a thin tet or one of a collar has a larger angle than these may have.
+bool has_flat_tet(const TetMesh& mesh) {
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    if (mesh.tet_thin[t] == 0 && mesh.tet_collar[t] == 0) continue;
+    const auto& [a, b, c, d] = mesh.tets[t];
+    const improvement::Corners p{mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]};
+    if (improvement::extreme_angles(p).largest > improvement::ThinShape::largest_angle) return true;
+  }
+  return false;
+}
+
+}  // namespace
 
 bool may_start_constrained(const PipelineOptions& options) {
   return options.start == Start::automatic && options.coarsen && !options.periodic.any();
@@ -37,30 +54,51 @@ void tetrahedralize(MeshJob& job) {
 }
 
 void settle(MeshJob& job, Hope hope) {
-  constexpr unsigned most_rounds = 4;
-  constexpr std::size_t tets_per_poor = 50;
+  constexpr unsigned most_rounds = 6;
+  constexpr std::size_t tets_per_poor = 50, few = 20;
   if (job.refined_with.bounds.interior_node)
     return;  // interior nodes are complete; coarsening would remove
              // them
   PipelineResult& made = job.made;
   std::size_t least = count_misshapen(job, made.result.mesh);
   if (hope == Hope::good && tets_per_poor * least > made.result.mesh.tets.size()) throw Hopeless();
+  // Vertices that face each other help more tets in less time than detours do.
+  bool thoroughly = false;
   for (unsigned round = 0; round < most_rounds && least > 0; ++round) {
     TetMesh mesh = made.result.mesh;
     const auto before = made.improvement;
     job.control.watch(
         [&](const Execution& watched) { remeshing::relax(mesh, *job.plc, job.refined_with, watched); });
-    coarsen_and_improve(job, mesh, {});
+    coarsen_and_improve(job, mesh, {}, thoroughly);
     const std::size_t poor = count_misshapen(job, mesh);
     if (poor >= least) {
       made.improvement = before;
-      return;
+      if (thoroughly || (hope == Hope::good && least > few)) return;
+      thoroughly = true;
+      continue;
     }
-    const bool goes_on = hope == Hope::any || 2 * poor <= least;  // else another way takes less time
+    const bool goes_on = hope == Hope::any || poor <= few || 4 * poor <= 3 * least;
     least = poor;
     made.result.mesh = std::move(mesh);
-    if (!goes_on) return;
+    if (!goes_on) return;  // another way takes less time
   }
+}
+
+void mend_flat_tets(MeshJob& job) {
+  const bool inserts = job.options.coarsen && job.options.improve > 0 && !job.given.periodic.any() &&
+                       !job.refined_with.bounds.interior_node;
+  if (!inserts || job.made.result.status != MeshStatus::complete || !has_flat_tet(job.made.result.mesh))
+    return;
+  const std::size_t least = count_misshapen(job, job.made.result.mesh);
+  if (least == 0) return;
+  TetMesh mesh = job.made.result.mesh;
+  bool changed = false;
+  job.control.watch([&](const Execution& watched) {
+    changed = remeshing::face_each_other(mesh, *job.plc, job.refined_with, watched);
+  });
+  if (!changed) return;
+  improvement::mark_cells(mesh, *job.plc, job.refined_with.bounds);
+  if (count_misshapen(job, mesh) < least) job.made.result.mesh = std::move(mesh);
 }
 
 }  // namespace collarmesh::pipeline

@@ -21,4 +21,8 @@ void tetrahedralize(MeshJob& job);
 /// bounds. With Hope::good, throws Hopeless if many tets miss them.
 void settle(MeshJob& job, Hope hope);
 
+/// Gives flat tets of a refined and coarsened mesh vertices that face each other if they miss their bounds
+/// and fewer tets do so then.
+void mend_flat_tets(MeshJob& job);
+
 }  // namespace collarmesh::pipeline

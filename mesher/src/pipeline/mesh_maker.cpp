@@ -7,6 +7,7 @@
 #include <memory>
 #include <utility>
 
+#include "check/guarantees.h"
 #include "collarmesh/error.h"
 #include "common/cell_shapes.h"
 #include "common/thread_limit.h"
@@ -15,13 +16,23 @@
 #include "pipeline/certification.h"
 #include "pipeline/exact_shape.h"
 #include "pipeline/periodic_faces.h"
-#include "pipeline/refinement.h"
 #include "pipeline/reshaping.h"
 #include "pipeline/vertex_bound.h"
 #include "predict/vertex_counts.h"
 #include "tolerance/thin_shells.h"
 
 namespace collarmesh::pipeline {
+
+namespace {
+
+/// Returns whether all that is missed may be kept with a smaller surface distance.
+bool misses_volumes_only(const CheckReport& check) {
+  return !check.findings.empty() && std::ranges::all_of(check.findings, [](const Finding& f) {
+    return f.guarantee == guarantee::volume_kept || f.guarantee == guarantee::thickness_kept;
+  });
+}
+
+}  // namespace
 
 void MeshMaker::make(const Plc& plc, std::uint64_t seed) {
   set_up(plc, seed);
@@ -34,10 +45,13 @@ void MeshMaker::make(const Plc& plc, std::uint64_t seed) {
   if (job_.start == Start::constrained)
     tetrahedralize(job_);
   else
-    refine(job_);
+    refine(job_, fineness_);
   if (is_far_too_fine() && replace_refined()) return;
   reshape(job_);
-  if (job_.start == Start::constrained) settle(job_, hope_);
+  if (job_.start == Start::constrained)
+    settle(job_, hope_);
+  else
+    mend_flat_tets(job_);
   make_faces_periodic(job_);
   project(job_);
   raise_order(job_);
@@ -94,7 +108,7 @@ bool MeshMaker::refines_with_few_vertices() {
 /// Returns whether a refinement made many times the predicted number of tets, as thin parts cause. Coarsening
 /// such a mesh takes far longer than starting with constrained tetrahedra.
 bool MeshMaker::is_far_too_fine() const {
-  constexpr double times = 5, least = 200'000;
+  constexpr double times = 15, least = 60'000;
   const auto tets = static_cast<double>(job_.made.result.mesh.tets.size());
   return job_.start == Start::automatic && job_.options.coarsen &&
          job_.made.result.status == MeshStatus::complete && tets > least &&
@@ -171,8 +185,14 @@ std::optional<PipelineResult> MeshMaker::from_constrained(const Plc& plc, const 
     maker->job_.start = Start::automatic;
     maker->hope_ = Hope::any;
   });
+  const std::optional<SurfaceTolerance> nearer = nearer_;
   try {
     make(plc, given.mesh.seed);
+    if (misses_volumes_only(made.check)) {
+      constexpr double share = 0.25;
+      come_nearer(plc, share);
+      make(plc, given.mesh.seed);
+    }
     made.check.notes.push_back(fmt::format("begun with constrained tetrahedra, as {}", why));
     if (std::ranges::all_of(made.check.findings, is_about_shape)) found = std::move(made);
   } catch (const Hopeless&) {
@@ -182,6 +202,7 @@ std::optional<PipelineResult> MeshMaker::from_constrained(const Plc& plc, const 
   } catch (const Ended&) {
     if (!job_.hit_bound()) throw;
   }
+  if (!found) nearer_ = nearer;
   made = std::move(before);
   return found;
 }

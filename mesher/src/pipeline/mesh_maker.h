@@ -6,6 +6,7 @@
 
 #include "pipeline/constrained_start.h"
 #include "pipeline/mesh_job.h"
+#include "pipeline/refinement.h"
 
 namespace collarmesh::pipeline {
 
@@ -22,8 +23,9 @@ class MeshMaker {
   /// Forgets everything about the previous complex.
   void take_new_complex();
 
-  /// Takes a complex through all stages. Throws Ended and PlcError. Throws Hopeless if it starts from
-  /// constrained tetrahedra that must yield a good mesh (Hope::good), but many tets miss their bounds.
+  /// Takes a complex through all stages. Throws Ended, PlcError and, if set, FarTooFine. Throws Hopeless if
+  /// it starts from constrained tetrahedra that must yield a good mesh (Hope::good), but many tets miss their
+  /// bounds.
   void make(const Plc& plc, std::uint64_t seed);
 
   /// Meshes a complex when other ways have failed: from its constrained tetrahedra if that keeps every
@@ -40,6 +42,10 @@ class MeshMaker {
   /// Returns whether it does. Tries each complex once only.
   bool take_constrained(const Plc& plc, const std::string& why, Lengths lengths = Lengths::any);
 
+  /// Does not try the constrained tetrahedra of this complex unless all else fails.
+  void give_up_constrained(const Plc& plc) { hopeless_ = &plc; }
+  bool has_given_up_constrained(const Plc& plc) const { return hopeless_ == &plc; }
+
   /// Returns whether another seed may change the kept mesh. Constrained tetrahedra do not depend on it.
   bool depends_on_seed() const { return !is_constrained_ && job_.start != Start::constrained; }
 
@@ -47,6 +53,8 @@ class MeshMaker {
   void come_nearer(const Plc& plc, double share);
 
   void set_narrow_cells(NarrowCells cells) { narrow_cells_ = cells; }
+  /// Sets whether `make` throws FarTooFine.
+  void set_fineness(Fineness fineness) { fineness_ = fineness; }
 
  private:
   void set_up(const Plc& plc, std::uint64_t seed);
@@ -63,9 +71,10 @@ class MeshMaker {
   MeshJob& job_;
   ComplexSource* source_;
   NarrowCells narrow_cells_ = NarrowCells::bounded_if_cheap;
+  Fineness fineness_ = Fineness::any;
   Hope hope_ = Hope::any;
   bool is_constrained_ = false;                // whether the kept mesh started from constrained tetrahedra
-  const Plc* hopeless_ = nullptr;              // the complex whose constrained tetrahedra were tried in vain
+  const Plc* hopeless_ = nullptr;              // the complex whose constrained tetrahedra are not tried
   std::optional<SurfaceTolerance> tolerance_;  // tolerance of the current complex
   std::optional<SurfaceTolerance> nearer_;     // smaller tolerance for another try, after regions lost volume
 };

@@ -1,9 +1,14 @@
 #include "pipeline/refinement.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <limits>
 
 #include "pipeline/explosion.h"
+#include "pipeline/vertex_bound.h"
+#include "predict/vertex_counts.h"
 #include "refine/generate_linked.h"
+#include "tolerance/thin_places.h"
 
 namespace collarmesh::pipeline {
 
@@ -19,6 +24,54 @@ constexpr double reserve_for_layers = 0.2;
 // Bound on angles in collars with which refinement ended on all shapes tried. Coarsening and improvement
 // reach smaller bounds.
 constexpr double reached_collar_angle = 130;
+
+/// Compares the number of vertices of a refinement with what its sizes ask for. That, and whether features
+/// thinner than the feature size may cause more, is found only for refinements that insert many.
+class VertexCounter {
+ public:
+  VertexCounter(const MeshJob& job, Fineness fineness) : job_(job), fineness_(fineness) {}
+
+  /// Returns whether these vertices are far more than the sizes ask for, because of features thinner than
+  /// the feature size.
+  bool exceeds(std::size_t vertices) {
+    if (fineness_ == Fineness::any || vertices <= few) return false;
+    if (most_ == 0) most_ = find_most();
+    exceeded_ |= vertices > most_;
+    return exceeded_;
+  }
+
+  /// Returns an execution that ends when there are far more vertices than the sizes ask for. It keeps
+  /// references to this object and to the other execution.
+  Execution watched(const Execution& execution) {
+    Execution watched = execution;
+    if (fineness_ == Fineness::as_asked)
+      watched.progress = [this, &execution](const ProgressReport& report) {
+        return !exceeds(report.vertices) && (!execution.progress || execution.progress(report));
+      };
+    return watched;
+  }
+
+  bool has_exceeded() const { return exceeded_; }
+  std::size_t most() const { return most_; }
+
+ private:
+  // Most parts without thin features have less than one vertex for each tet that is left after coarsening.
+  static constexpr std::size_t few = 1500, by_tet = 1;
+
+  std::size_t find_most() const {
+    constexpr double largest = 1e15;
+    const double tets = prediction::count_tets(prediction::Shape(*job_.plc), job_.options.mesh),
+                 most = std::min(static_cast<double>(few) + static_cast<double>(by_tet) * tets, largest);
+    const double thin = thinner_than_asked(job_.given, job_.plc->bounds.diagonal());
+    return squares_in_thin_places(*job_.plc, thin) > most ? static_cast<std::size_t>(most)
+                                                          : std::numeric_limits<std::size_t>::max();
+  }
+
+  const MeshJob& job_;
+  Fineness fineness_;
+  bool exceeded_ = false;
+  std::size_t most_ = 0;  // 0: not known
+};
 
 }  // namespace
 
@@ -39,14 +92,24 @@ double least_thin_ratio(const MeshJob& job) {
   return job.options.mesh.bounds.radius_edge / (job.exact() ? ratio_left : 1);
 }
 
-void refine(MeshJob& job) {
+double thinner_than_asked(const PipelineOptions& given, double diagonal) {
+  constexpr double rounding = 1e-9;
+  return given.repair.feature_size * smallest_size(given.mesh, diagonal) * (1 + rounding);
+}
+
+void refine(MeshJob& job, Fineness fineness) {
   job.control.begin("refine", 0.06, job.options.coarsen ? 0.6 : 0.7);
   MeshOptions options = job.refined_with;
   options.bounds.interior_node = false;  // a later stage inserts these nodes
   if (job.options.coarsen)
     options.bounds.collar_angle = std::max(options.bounds.collar_angle, reached_collar_angle);
-  MeshResult& result = job.made.result = generate(*job.plc, options, job.execution(), job.neighbours,
-                                                  job.options.trace ? &job.made.trace : nullptr);
+  VertexCounter counter(job, fineness);
+  MeshResult& result = job.made.result =
+      generate(*job.plc, options, counter.watched(job.execution()), job.neighbours,
+               job.options.trace ? &job.made.trace : nullptr);
+  if (result.status == MeshStatus::complete ? counter.exceeds(result.statistics.vertices_inserted)
+                                            : counter.has_exceeded())
+    throw FarTooFine{counter.most()};
   if (result.status == MeshStatus::cancelled && job.control.out_of_time()) job.control.stop();
   if (job.hit_bound())
     result.message = describe_explosion(*job.plc, job.budget.most(), result.where) +

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 #include "pipeline/mesh_job.h"
 
 namespace collarmesh::pipeline {
@@ -12,7 +14,19 @@ MeshOptions options_of_refinement(const MeshJob& job, NarrowCells narrow_cells);
 /// bound, because a tet just above the bound may be within it once its vertices have moved.
 double least_thin_ratio(const MeshJob& job);
 
-/// Makes the refined mesh. Throws Ended if the run is cancelled or a budget is hit.
-void refine(MeshJob& job);
+/// Returns the feature size, with a margin for rounding: thinner walls, gaps and wedges need not be resolved.
+double thinner_than_asked(const PipelineOptions& given, double diagonal);
+
+/// Thrown if a refinement inserts many times the vertices that its sizes ask for, because of features thinner
+/// than the feature size.
+struct FarTooFine {
+  std::size_t most;  ///< the number of vertices that was exceeded
+};
+/// Whether a refinement may insert as many vertices as the budgets permit.
+enum class Fineness { any, as_asked };
+
+/// Makes the refined mesh. Throws Ended if the run is cancelled or a budget is hit; with Fineness::as_asked,
+/// throws FarTooFine, whether or not there is a mesh.
+void refine(MeshJob& job, Fineness fineness = Fineness::any);
 
 }  // namespace collarmesh::pipeline

@@ -31,11 +31,11 @@ ImproveOptions options_of_improvement(const MeshJob& job) {
   return options;
 }
 
-void improve_elements(MeshJob& job, improvement::Workpiece& workpiece) {
+void improve_elements(MeshJob& job, improvement::Workpiece& workpiece, bool thoroughly = true) {
   if (job.options.improve == 0) return;
   if (job.made.coarsening) job.control.begin("improve", 0.7, 0.8);
   const ImproveOptions options = options_of_improvement(job);
-  job.made.improvement = improve(workpiece, options, job.execution());
+  job.made.improvement = improve(workpiece, options, job.execution(), thoroughly);
   if (job.made.improvement.cancelled) job.control.stop();
 }
 
@@ -47,6 +47,11 @@ void coarsen_elements(MeshJob& job, improvement::Workpiece& workpiece) {
   TetMesh coarsened = workpiece.complex.stored();
   improvement::mark_cells(coarsened, *job.plc, job.refined_with.bounds);
   job.trace("coarsen", coarsened);
+}
+
+/// Returns whether `settle` follows, which first tries faster means than thorough improvement.
+bool is_settled_later(const MeshJob& job) {
+  return job.start == Start::constrained && !job.refined_with.bounds.interior_node;
 }
 
 /// Inserts interior nodes; coarsening removes those that are not needed.
@@ -101,7 +106,7 @@ void reshape(MeshJob& job) {
                                      job.refined_with.bounds.lower_where_forced, job.neighbours);
     job.neighbours = KnownNeighbours();
     coarsen_elements(job, workpiece);
-    improve_elements(job, workpiece);
+    improve_elements(job, workpiece, !is_settled_later(job));
     complete_interior_nodes(job, workpiece);
     workpiece.complex.store();
     if (job.options.coarsen) improvement::mark_cells(mesh, *job.plc, job.refined_with.bounds);
@@ -109,7 +114,7 @@ void reshape(MeshJob& job) {
   job.trace(job.options.improve > 0 ? "improve" : "coarsen", mesh);
 }
 
-void coarsen_and_improve(MeshJob& job, TetMesh& mesh, const std::vector<Index>& fixed) {
+void coarsen_and_improve(MeshJob& job, TetMesh& mesh, const std::vector<Index>& fixed, bool thoroughly) {
   ThreadLimit(job.options.mesh.threads).run([&] {
     const Bounds& bounds = job.refined_with.bounds;
     improvement::Workpiece workpiece(mesh, *job.plc, *bounds.tolerance, job.refined_with.edges_per_hole,
@@ -118,7 +123,7 @@ void coarsen_and_improve(MeshJob& job, TetMesh& mesh, const std::vector<Index>& 
     const CoarsenReport coarsening = coarsen(workpiece, job.refined_with, job.execution());
     if (coarsening.cancelled) job.control.stop();
     if (!job.made.coarsening) job.made.coarsening = coarsening;
-    improve_elements(job, workpiece);
+    improve_elements(job, workpiece, thoroughly);
     workpiece.complex.store();
     improvement::mark_cells(mesh, *job.plc, bounds);
   });

@@ -11,8 +11,9 @@ namespace collarmesh::pipeline {
 void reshape(MeshJob& job);
 
 /// Coarsens and improves a mesh of the complex, with the bounds of the job. Fixed vertices stay where they
-/// are.
-void coarsen_and_improve(MeshJob& job, TetMesh& mesh, const std::vector<Index>& fixed);
+/// are. `thoroughly`: also by means that are slow where many tets stay poor.
+void coarsen_and_improve(MeshJob& job, TetMesh& mesh, const std::vector<Index>& fixed,
+                         bool thoroughly = true);
 
 /// Coarsens and improves a workpiece's mesh by these options. If asked to, inserts vertices where tets still
 /// miss their bounds. Completes interior nodes.

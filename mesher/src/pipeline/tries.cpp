@@ -16,6 +16,7 @@
 #include "pipeline/explosion.h"
 #include "pipeline/lost_parts.h"
 #include "pipeline/vertex_bound.h"
+#include "tolerance/thin_places.h"
 
 namespace collarmesh::pipeline {
 
@@ -94,7 +95,7 @@ void Tries::mesh_repaired(SoupPipelineResult& all) {
   }
   job_.budget.bound(Ways::others);
   std::exception_ptr error;
-  const auto tried = attempt(all.plc, error);
+  const auto tried = attempt_simplest(current, all, error);
   const End end = tried.first;
   const std::string& why = tried.second;
   if (!sharp.empty() && end != End::exploded && end != End::refused) made.check.notes.push_back(sharp);
@@ -176,6 +177,67 @@ std::string Tries::repair_sharp_creases(RepairOptions& repair, SoupPipelineResul
   return {};
 }
 
+/// Meshes the complex. If features thinner than the feature size make its refinement far finer than the
+/// sizes ask for, first tries constrained tetrahedra, then to overlay these features. Sets the repair that is
+/// used.
+std::pair<Tries::End, std::string> Tries::attempt_simplest(RepairOptions& repair, SoupPipelineResult& all,
+                                                           std::exception_ptr& error) {
+  if (!may_overlay()) return attempt(all.plc, error);
+  maker_.set_fineness(Fineness::as_asked);
+  auto tried = attempt(all.plc, error);
+  bool gave_up = false, better = false;
+  if (tried.first == End::too_fine) {
+    better = maker_.take_constrained(all.plc, "thin features make far more vertices than the sizes ask for",
+                                     MeshMaker::Lengths::kept);
+    gave_up = maker_.has_given_up_constrained(all.plc);
+    if (!better) better = overlay_thin_features(repair, all, most_asked_for_);
+  }
+  maker_.set_fineness(Fineness::any);
+  if (better) return {End::holds, {}};
+  if (tried.first != End::too_fine) return tried;
+  build(repair, all);  // makes the source know this complex again
+  if (gave_up) maker_.give_up_constrained(all.plc);
+  return attempt(all.plc, error);
+}
+
+bool Tries::may_overlay() const {
+  const PipelineOptions& given = job_.given;
+  return given.coarsen && given.repair.feature_size > 0 && given.mesh.profile == Profile::standard &&
+         !given.mesh.size_field && !given.periodic.any();
+}
+
+/// Repairs the input with a larger tolerance, up to the feature size, so that opposite sides of thin walls
+/// and gaps become one. Returns whether that makes a mesh that keeps every guarantee and no part is lost;
+/// otherwise nothing has changed. `most`: the number of vertices that the sizes ask for.
+bool Tries::overlay_thin_features(RepairOptions& repair, SoupPipelineResult& all, std::size_t most) {
+  const double diagonal = all.plc.bounds.diagonal(), size = smallest_size(job_.given.mesh, diagonal),
+               thin = thinner_than_asked(job_.given, diagonal);
+  for (const RepairOptions& coarser : coarser_repairs(repair, size, diagonal)) {
+    if (coarser.tolerance * diagonal > thin) break;
+    SoupPipelineResult other;
+    if (!find_better(true, [&] {
+          build(coarser, other);
+          require_kept(all, other);
+          if (other.plc.regions.size() != all.plc.regions.size())
+            throw PlcError("a region would be lost", {});
+          if (squares_in_thin_places(other.plc, thin) > static_cast<double>(most))
+            throw PlcError("thin features would be left", {});
+          maker_.give_up_constrained(other.plc);
+          maker_.make(other.plc, job_.given.mesh.seed);
+        }))
+      continue;
+    repair = coarser;
+    all.plc = std::move(other.plc);
+    all.repair = std::move(other.repair);
+    job_.made.check.notes.push_back(fmt::format(
+        "repaired with a tolerance of {:.3g}: with {:.3g}, features thinner than the feature size make more "
+        "than {} vertices, far more than the sizes ask for; feature-size 0 keeps them",
+        coarser.tolerance, job_.given.repair.tolerance, most));
+    return true;
+  }
+  return false;
+}
+
 void Tries::build(RepairOptions repair, SoupPipelineResult& all) {
   job_.control.begin("complex", 0, 0.06);
   find_feature_size(job_.given.mesh, repair);
@@ -195,6 +257,9 @@ std::pair<Tries::End, std::string> Tries::attempt(const Plc& plc, std::exception
   } catch (const Ended&) {
     if (!job_.hit_bound()) throw;
     return {End::exploded, describe_explosion(plc, job_.budget.most(), job_.made.result.where)};
+  } catch (const FarTooFine& e) {
+    most_asked_for_ = e.most;
+    return {End::too_fine, {}};
   } catch (const PlcError& e) {
     error = std::current_exception();
     return {End::refused, e.what()};
@@ -316,6 +381,8 @@ bool Tries::find_better(bool has_mesh, const Way& way) {
   } catch (const PlcError&) {
     better = false;
   } catch (const Hopeless&) {
+    better = false;
+  } catch (const FarTooFine&) {
     better = false;
   } catch (const OptionError&) {  // a tag with a size may not exist in the other complex
     better = false;

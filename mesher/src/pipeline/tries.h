@@ -30,11 +30,16 @@ class Tries {
   enum class End {
     holds,     ///< every guarantee holds
     missed,    ///< a guarantee is missed
-    exploded,  ///< the refinement took more vertices than the sizes ask for
+    too_fine,  ///< the refinement took far more vertices than the sizes ask for
+    exploded,  ///< the refinement hit the bound on vertices
     refused    ///< no collar fits between features
   };
 
   std::string repair_sharp_creases(RepairOptions& repair, SoupPipelineResult& all);
+  std::pair<End, std::string> attempt_simplest(RepairOptions& repair, SoupPipelineResult& all,
+                                               std::exception_ptr& error);
+  bool may_overlay() const;
+  bool overlay_thin_features(RepairOptions& repair, SoupPipelineResult& all, std::size_t most);
   void build(RepairOptions repair, SoupPipelineResult& all);
   std::pair<End, std::string> attempt(const Plc& plc, std::exception_ptr& error);
   std::vector<RepairOptions> repairs_after(End end, const SoupPipelineResult& all) const;
@@ -53,6 +58,7 @@ class Tries {
   MeshJob& job_;
   ComplexSource* source_;
   MeshMaker maker_;
+  std::size_t most_asked_for_ = 0;  // number of vertices that a refinement that is too fine exceeded
 };
 
 }  // namespace collarmesh::pipeline

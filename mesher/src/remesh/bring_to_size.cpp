@@ -103,6 +103,7 @@ class Bringing {
       });
       if (static_cast<double>(changes) < least_share_of_round * static_cast<double>(mesh_.tets.size())) break;
     }
+    if (may_go_on()) face_each_other();
     return may_go_on();
   }
 
@@ -114,6 +115,19 @@ class Bringing {
   Workpiece workpiece() {
     return Workpiece(mesh_, plc_, *options_.bounds.tolerance, options_.edges_per_hole,
                      options_.bounds.lower_where_forced);
+  }
+
+  /// Gives tets that miss their bounds vertices that face each other, and improves the others.
+  void face_each_other() {
+    for (unsigned round = 0; round < rounds && may_go_on() && divide_crossing() > 0; ++round)
+      relax([](Relaxation& relaxation) { relaxation.improve(); });
+  }
+
+  std::size_t divide_crossing() {
+    Workpiece piece = workpiece();
+    const std::size_t divided = EdgeDivision(piece, options_, sizes()).divide_crossing(execution_);
+    piece.complex.store();
+    return divided;
   }
 
   template <class Stage>
@@ -208,8 +222,19 @@ bool bring_to_size(TetMesh& mesh, const Plc& plc, const MeshOptions& options, co
 
 void relax(TetMesh& mesh, const Plc& plc, const MeshOptions& options, const Execution& execution) {
   ThreadLimit(options.threads).run([&] {
-    Bringing(mesh, plc, options, execution).relax([](Relaxation& relaxation) { relaxation.improve(); });
+    Bringing bringing(mesh, plc, options, execution);
+    bringing.relax([](Relaxation& relaxation) { relaxation.improve(); });
+    bringing.face_each_other();
   });
+}
+
+bool face_each_other(TetMesh& mesh, const Plc& plc, const MeshOptions& options, const Execution& execution) {
+  bool changed = false;
+  ThreadLimit(options.threads).run([&] {
+    Bringing bringing(mesh, plc, options, execution);
+    for (unsigned round = 0; round < rounds && bringing.divide_crossing() > 0; ++round) changed = true;
+  });
+  return changed;
 }
 
 }  // namespace collarmesh::remeshing

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <tuple>
 #include <utility>
 
+#include "common/contains.h"
 #include "common/found_in_ranges.h"
 #include "common/tet_sides.h"
 #include "remesh/orientations.h"
@@ -21,6 +23,25 @@ constexpr double least_quality_share = 0.4;
 // Tets of at least this quality may become as bad as `least_quality_share` times it.
 constexpr double good_enough = 1;
 constexpr std::size_t edges_between_reports = 4096;
+// Crossing edges are divided in their middle part; edges on curves, which are divided in the middle, if they
+// cross near it.
+constexpr double middle_part = 0.4, middle_part_of_curve = 0.1;  // from the middle, relative to the edge
+// Number of trials before the first division that helps, and its increase with each.
+constexpr std::size_t first_trials = 60, trials_per_division = 8;
+constexpr unsigned most_steps = 20;  // of improvement in a trial
+
+bool is_inside(double share) { return std::fabs(share - 0.5) < middle_part; }
+
+/// Returns the shares of the lengths of two edges at which their lines are nearest to each other; nothing if
+/// they are parallel.
+std::optional<std::pair<double, double>> shares_of_crossing(const Point& a, const Point& b, const Point& c,
+                                                            const Point& d) {
+  const Vector u = b - a, v = d - c, w = a - c;
+  const double uu = squared_norm(u), uv = dot(u, v), vv = squared_norm(v), uw = dot(u, w), vw = dot(v, w);
+  const double determinant = uu * vv - uv * uv;
+  if (!(determinant > 0)) return std::nullopt;
+  return std::pair((uv * vw - vv * uw) / determinant, (uu * vw - uv * uw) / determinant);
+}
 
 }  // namespace
 
@@ -181,6 +202,140 @@ bool EdgeDivision::divide(Index a, Index b) {
   workpiece_.apply(std::move(change));
   sizes_.push_back(size);
   return true;
+}
+
+std::size_t EdgeDivision::divide_crossing(const Execution& execution) {
+  add_missing_sizes();
+  std::vector<std::pair<double, Index>> poor;
+  for (Index t = 0; t < complex().size(); ++t)
+    if (complex()[t].alive)
+      if (const double q = quality(t); q < good_enough) poor.emplace_back(q, t);
+  std::ranges::sort(poor);
+  std::size_t count = 0;
+  for (const auto& [q, t] : poor) {
+    if (execution.cancelled() || trials_ > first_trials + trials_per_division * count) break;
+    if (complex()[t].alive && quality(t) == q && divide_facing_at(t)) ++count;
+  }
+  return count;
+}
+
+/// Divides edges of a tet at places that face each other or a corner, if that helps.
+bool EdgeDivision::divide_facing_at(Index tet) {
+  const auto corners = complex()[tet].corners;
+  const auto point = [&](unsigned corner) { return mesh().points[corners[corner]]; };
+  for (const auto& [i, j, k, l] : {std::array<unsigned, 4>{0, 1, 2, 3}, {0, 2, 1, 3}, {0, 3, 1, 2}}) {
+    const auto shares = shares_of_crossing(point(i), point(j), point(k), point(l));
+    if (shares && is_inside(shares->first) && is_inside(shares->second) &&
+        try_to_divide({{corners[i], corners[j], shares->first}, {corners[k], corners[l], shares->second}}))
+      return true;
+  }
+  for (unsigned i = 0; i < 4; ++i)
+    for (unsigned j = i + 1; j < 4; ++j)
+      for (unsigned k = 0; k < 4; ++k) {
+        if (k == i || k == j) continue;
+        const Vector along = point(j) - point(i);
+        const double share = dot(point(k) - point(i), along) / squared_norm(along);
+        if (is_inside(share) && try_to_divide({{corners[i], corners[j], share}})) return true;
+      }
+  return false;
+}
+
+/// Divides edges and improves the tets there. Keeps the result only if fewer tets miss their bounds then.
+bool EdgeDivision::try_to_divide(const std::vector<Division>& divisions) {
+  ++trials_;
+  before_.clear(), touched_.clear();
+  workpiece_.begin_trial();
+  bool divided = true;
+  for (const auto& [a, b, share] : divisions) {
+    Change change;
+    if (complex().on_curve(a, b) && std::fabs(share - 0.5) > middle_part_of_curve)
+      divided = false;
+    else
+      operations_.divide_edge(a, b, share, 0, change);
+    divided = divided && change.kind != Change::Kind::none && stays_oriented(complex(), change);
+    if (!divided) break;
+    sizes_.push_back(
+        std::min(0.5 * (sizes_[a] + sizes_[b]),
+                 size_at(change.feature, complex()[complex().tet_at_edge(a, b)].region, change.place)));
+    apply_on_trial(std::move(change));
+  }
+  if (divided) {
+    improve_touched();
+    if (is_better()) {
+      workpiece_.keep();
+      return true;
+    }
+  }
+  workpiece_.undo();
+  sizes_.resize(mesh().points.size());
+  return false;
+}
+
+void EdgeDivision::apply_on_trial(Change change) {
+  std::vector<Index> old;
+  if (change.kind == Change::Kind::move) complex().star(change.vertex, old);
+  old.insert(old.end(), change.replacement.old.begin(), change.replacement.old.end());
+  for (const Index t : old)
+    if (!contains(touched_, t)) {
+      before_.push_back(std::min(good_enough, quality(t)));
+      touched_.push_back(t);
+    }
+  for (const Index t : workpiece_.apply(std::move(change)))
+    if (!contains(touched_, t)) touched_.push_back(t);
+}
+
+void EdgeDivision::improve_touched() {
+  for (unsigned step = 0; step < most_steps; ++step) {
+    double worst = good_enough;
+    Index poor = none;
+    for (const Index t : touched_)
+      if (complex()[t].alive && !contains(given_up_, t))
+        if (const double q = quality(t); q < worst) worst = q, poor = t;
+    if (poor == none) break;
+    Change change = improvement_of(poor);
+    if (change.kind == Change::Kind::none || !stays_oriented(complex(), change) ||
+        (change.kind == Change::Kind::contraction && !workpiece_.curve_can_spare(change))) {
+      given_up_.push_back(poor);
+      continue;
+    }
+    apply_on_trial(std::move(change));
+    given_up_.clear();
+  }
+  given_up_.clear();
+}
+
+Change EdgeDivision::improvement_of(Index tet) {
+  const auto corners = complex()[tet].corners;
+  Change change;
+  for (unsigned i = 0; i < 4; ++i)
+    for (unsigned j = i + 1; j < 4; ++j) operations_.remove_edge(tet, i, j, change);
+  const auto found = [&] { return change.kind != Change::Kind::none; };
+  for (const Index v : corners)
+    if (!found()) operations_.move_to_face(v, change);
+  for (const Index v : corners)
+    if (!found()) operations_.move_vertex(v, change);
+  for (const Index v : corners)
+    for (const Index w : corners)
+      if (v != w && !found()) operations_.contract_edge(v, w, change);
+  return change;
+}
+
+/// Returns whether fewer tets miss their bounds than before the trial, or as many and the worst are better.
+bool EdgeDivision::is_better() {
+  std::vector<double> now;
+  for (const Index t : touched_)
+    if (complex()[t].alive)
+      if (const double q = quality(t); q < good_enough) now.push_back(q);
+  std::erase_if(before_, [](double q) { return q >= good_enough; });
+  if (now.size() != before_.size()) return now.size() < before_.size();
+  constexpr double gain = 1.01;
+  std::ranges::sort(now);
+  std::ranges::sort(before_);
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    if (now[i] > gain * before_[i]) return true;
+    if (now[i] < before_[i]) return false;
+  }
+  return false;
 }
 
 /// Returns the share of the edge's length at which a vertex faces one of the tets around, in the middle part

@@ -27,6 +27,10 @@ class EdgeDivision {
   std::size_t divide_distant(std::size_t most_vertices, const Execution& execution);
   /// Divides edges beside a vertex near them at the place that faces it, not in the middle.
   void divide_facing() { facing_ = true; }
+  /// Divides opposite edges of a flat tet, as between the two sides of a thin wall, where they cross: at two
+  /// places that face each other. Does so for tets that miss their bounds, if fewer miss them then. Returns
+  /// the number of pairs.
+  std::size_t divide_crossing(const Execution& execution);
 
  private:
   struct LongEdge {
@@ -50,6 +54,18 @@ class EdgeDivision {
   double ratio_by_field(const LongEdge& edge) const;
   void add_missing_sizes();
   bool divide(Index a, Index b);
+  double quality(Index tet) const { return rule_.quality(complex().corners(tet), complex()[tet].corners); }
+  /// An edge, and the share of its length at which to divide it.
+  struct Division {
+    Index a, b;
+    double share;
+  };
+  bool divide_facing_at(Index tet);
+  bool try_to_divide(const std::vector<Division>& divisions);
+  void apply_on_trial(improvement::Change change);
+  void improve_touched();
+  improvement::Change improvement_of(Index tet);
+  bool is_better();
   double share_facing(Index a, Index b, const improvement::TetComplex::Ring& ring) const;
   double size_at(const TetMesh::VertexFeature& feature, Index region, const Point& p) const;
 
@@ -62,6 +78,11 @@ class EdgeDivision {
   improvement::CellBounds cells_;
   improvement::ThinRule rule_;
   improvement::Operations operations_;
+  // The current trial:
+  std::vector<double> before_;   // qualities of the tets that it replaced
+  std::vector<Index> touched_;   // tets that it changed
+  std::vector<Index> given_up_;  // tets that nothing improved since
+  std::size_t trials_ = 0;
 };
 
 }  // namespace collarmesh::remeshing

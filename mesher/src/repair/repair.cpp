@@ -540,15 +540,6 @@ void compare_regions(const Plc& before, RepairedPlc& repaired) {
     add_places(report.united, left - repaired.plc.regions.size(), 0, lost.others);
 }
 
-// Rounds down to 1, 2 or 5 times a power of ten, for messages.
-double round_down(double x) {
-  if (!(x > 0)) return 0;
-  const double ten = std::pow(10, std::floor(std::log10(x)));
-  for (const double digit : {5.0, 2.0})
-    if (digit * ten <= x * (1 + 1e-9)) return digit * ten;
-  return ten;
-}
-
 PlcError given_up(const PlcError& error, const RepairOptions& options) {
   return {
       fmt::format("{} Its repair was given up after {} steps; try a smaller repair tolerance, or wrap it.",
@@ -734,7 +725,7 @@ RepairedPlc build_repaired_plc(std::span<const PolygonSoup> soups, const PlcOpti
 
 std::vector<RepairOptions> coarser_repairs(const RepairOptions& options, double size, double diagonal) {
   constexpr double most_of_size = 0.01, least_factor = 2;
-  const double most = round_down(most_of_size * size / diagonal);
+  const double most = most_of_size * size / diagonal;
   std::vector<RepairOptions> coarser;
   if (options.mode == RepairMode::off || options.wrap_at_once) return coarser;
   double last = options.tolerance;
