@@ -46,7 +46,9 @@ void MeshMaker::make(const Plc& plc, std::uint64_t seed) {
     tetrahedralize(job_);
   else
     refine(job_, fineness_);
-  if (is_far_too_fine() && replace_refined()) return;
+  const bool too_fine = is_far_too_fine();
+  if (too_fine && replace_refined()) return;
+  was_far_too_fine_ = too_fine;
   reshape(job_);
   if (job_.start == Start::constrained)
     settle(job_, hope_);

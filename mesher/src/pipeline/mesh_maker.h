@@ -46,6 +46,9 @@ class MeshMaker {
   void give_up_constrained(const Plc& plc) { hopeless_ = &plc; }
   bool has_given_up_constrained(const Plc& plc) const { return hopeless_ == &plc; }
 
+  /// Returns whether the last mesh was refined to many times the predicted number of tets, and coarsened.
+  bool was_far_too_fine() const { return was_far_too_fine_; }
+
   /// Returns whether another seed may change the kept mesh. Constrained tetrahedra do not depend on it.
   bool depends_on_seed() const { return !is_constrained_ && job_.start != Start::constrained; }
 
@@ -73,6 +76,7 @@ class MeshMaker {
   NarrowCells narrow_cells_ = NarrowCells::bounded_if_cheap;
   Fineness fineness_ = Fineness::any;
   Hope hope_ = Hope::any;
+  bool was_far_too_fine_ = false;
   bool is_constrained_ = false;                // whether the kept mesh started from constrained tetrahedra
   const Plc* hopeless_ = nullptr;              // the complex whose constrained tetrahedra are not tried
   std::optional<SurfaceTolerance> tolerance_;  // tolerance of the current complex

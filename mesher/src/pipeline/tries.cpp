@@ -102,7 +102,8 @@ void Tries::mesh_repaired(SoupPipelineResult& all) {
   if (end == End::holds) return;
   bool has_mesh = end == End::missed, built_last = true;
   std::optional<Point> place;
-  if (!made.check.findings.empty()) place = made.check.findings.front().where;
+  // If places far thinner than the sizes spoil the mesh, a change of these may help anywhere.
+  if (!made.check.findings.empty() && !maker_.was_far_too_fine()) place = made.check.findings.front().where;
   for (const RepairOptions& repair : repairs_after(end, all)) {
     SoupPipelineResult other;
     const bool better = find_better(has_mesh, [&] {
@@ -271,7 +272,7 @@ std::vector<RepairOptions> Tries::repairs_after(End end, const SoupPipelineResul
   if (end == End::missed && misses_collar_angle_only()) return {};
   std::vector<RepairOptions> repairs = further_repairs(given.repair, all.repair);
   if (end == End::refused || (end == End::missed && !all.repair.repaired)) return repairs;
-  if (end == End::exploded)
+  if (end == End::exploded || maker_.was_far_too_fine())
     std::erase_if(repairs, [](const RepairOptions& repair) { return !repair.wrap_at_once; });
   const double diagonal = all.plc.bounds.diagonal();
   std::vector<RepairOptions> coarser =
