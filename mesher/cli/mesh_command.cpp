@@ -81,9 +81,8 @@ class InputSource : public ComplexSource {
       stages_.print("wrapped: no mesh of the complex keeps every guarantee within its vertices\n");
     else if (repair.tolerance != arguments_.repair.tolerance)
       stages_.print(fmt::format(
-          "repaired again, with --repair-tolerance {:.3g}: the smaller tolerance leaves a complex "
-          "that cannot be meshed with every guarantee and a number of vertices in proportion to the "
-          "sizes\n",
+          "trying --repair-tolerance {:.3g}: with the smaller tolerance, places far thinner than the sizes "
+          "take too many vertices, or the mesh misses a guarantee\n",
           repair.tolerance));
     RepairedPlc built{input_.build(arguments_.complex, repair), input_.repaired(), {}};
     built_with_ = repair;

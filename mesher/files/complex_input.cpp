@@ -140,6 +140,7 @@ void ComplexInput::remember(const PlcOptions& options, const RepairOptions& repa
 Plc ComplexInput::build_anew(const PlcOptions& options, const RepairOptions& repair) {
   built_ = {};
   Plc plc = without_small_features(build_unnamed(options, repair), options, repair);
+  if (!built_.repaired.wrapped) keep_numbers(options, plc);
   for (const Plc::Patch& patch : plc.patches) built_.patch_numbers.push_back(patch.tag);
   for (const Plc::Curve& curve : plc.curves) built_.curve_numbers.push_back(curve.tag);
   if (!built_.repaired.wrapped) add_replaced_faces(plc);
@@ -147,6 +148,15 @@ Plc ComplexInput::build_anew(const PlcOptions& options, const RepairOptions& rep
   if (labels() != nullptr) name_regions(*labels(), plc);
   remember(options, repair, plc);
   return plc;
+}
+
+/// Gives features the numbers of the first complex with these options, to which names and sizes refer.
+void ComplexInput::keep_numbers(const PlcOptions& options, Plc& plc) {
+  if (!plc.numbered_patches && !plc.numbered_curves) return;
+  if (first_ && all_of(first_->options) == all_of(options))
+    keep_feature_numbers(first_->plc, plc);
+  else
+    first_ = {options, plc};
 }
 
 /// Collapses features that are smaller than the feature size and have no name.

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <functional>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -52,6 +53,7 @@ class ComplexInput {
   void add(PolygonSoup soup) {
     soups_.push_back(std::move(soup));
     known_.clear();
+    first_.reset();
   }
 
   /// Returns the soups from which the last complex was built or, before the first one, the soups that were
@@ -81,6 +83,7 @@ class ComplexInput {
  private:
   Plc build_anew(const PlcOptions& options, const RepairOptions& repair);
   void remember(const PlcOptions& options, const RepairOptions& repair, const Plc& plc);
+  void keep_numbers(const PlcOptions& options, Plc& plc);
   void add_replaced_faces(Plc& plc) const;
   void name(Plc& plc) const;
   const brep::CadLabels* labels() const;
@@ -121,6 +124,13 @@ class ComplexInput {
                       // ones
   Built built_;
   std::vector<Known> known_;  // the last repaired complexes
+
+  /// The first complex with features numbered by the program, without names.
+  struct First {
+    PlcOptions options;
+    Plc plc;
+  };
+  std::optional<First> first_;
 };
 
 }  // namespace collarmesh::files

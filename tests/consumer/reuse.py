@@ -4,7 +4,8 @@
 
 A compiler launcher. BUILD is the folder of the other build, COMMANDS a table of its commands (`ninja -t compdb`), and
 FETCHED the folder for the same sources in the project. An object is taken when the two commands are equal but for the
-names of these folders, and so are the contents of a source that lies in them; else it is compiled.
+names of these folders, and so are the contents of the source and of all headers that were generated in them; else it is
+compiled.
 """
 
 import json
@@ -33,8 +34,19 @@ def essence(words):
     return found
 
 
+def headers_agree(build, fetched):
+    """Returns whether the headers that were generated in one folder have the same bytes in the other."""
+    for header in (path for kind in ("*.h", "*.hpp") for path in fetched.rglob(kind)):
+        twin = build / header.relative_to(fetched)
+        if not twin.exists() or twin.read_bytes() != header.read_bytes():
+            return False
+    return True
+
+
 def made_before(table, build, fetched, words):
     """Returns the object that the other build has made by the same command, None if there is none."""
+    if not headers_agree(build, fetched):
+        return None
     source = option(words, "-c")
     moved = [word.replace(str(fetched), str(build)) for word in essence(words)]
     for entry in json.loads(table.read_text()):

@@ -37,7 +37,7 @@ PolygonSoup plate() { return box({0, 0, 0}, {100, 100, 1}); }
 std::vector<Shape> thin_shapes() {
   return {{"plate", {plate()}, 10, 0, 8, 1220},
           {"plate with a hole", {scaled(plate_with_hole(1, 32), 1)}, 1.5, 30, 8, 130},
-          {"sphere in a sphere", {icosphere(1, 12), icosphere(0.9, 12)}, 0.3, 30, 8, 4420},
+          {"sphere in a sphere", {icosphere(1, 12), icosphere(0.95, 12)}, 0.3, 30, 8, 5900},
           {"wedge of 1 degree", acute::wedge(1).soups, 0.28, 0, 0.5, 1850, 3},  // 1664 to 1809, depending on
                                                                                 // the seed
           {"wedge of 2 degrees", acute::wedge(2).soups, 0.3, 0, 1, 370},

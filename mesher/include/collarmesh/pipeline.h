@@ -110,12 +110,12 @@ class ComplexSource {
 /// repairs (`further_repairs`), then constrained tetrahedra if angles miss their bounds, then further seeds;
 /// if no mesh passes, the first one is kept. Where features thinner than the feature size make a refinement
 /// far too fine, tries constrained tetrahedra, then coarser repairs (`coarser_repairs`). A refinement that
-/// takes far more vertices than any features should ends early for such repairs; they must lose no body,
-/// region, name or tag except numbers of CAD faces. If none does better, the first complex is meshed within
-/// the budgets, or, without budgets, with up to twice as many vertices as the first try took; if that fails,
-/// from its constrained tetrahedra (`Start`). `check.notes` lists the attempts. `execution.progress` is also
-/// called at the beginning of each stage (`ProgressReport::begins`); its fraction covers all stages. If
-/// cancelled or out of time, the result has that status and no mesh. Throws PlcError for facets that are no
+/// hits the bound on vertices ends early for such repairs; they must lose no body, region, name or tag except
+/// numbers of CAD faces. If none does better, the first complex is meshed within the budgets, or, without
+/// budgets, with up to twice as many vertices as the first try took; if that fails, from its constrained
+/// tetrahedra (`Start`). `check.notes` lists the attempts. `execution.progress` is also called at the
+/// beginning of each stage (`ProgressReport::begins`); its fraction covers all stages. If cancelled or out of
+/// time, the result has that status and no mesh. Throws PlcError for facets that are no
 /// complex and cannot be repaired, OptionError for options in conflict and for sizes of unknown tags.
 SoupPipelineResult run_pipeline(ComplexSource& source, const PipelineOptions& options = {},
                                 const Execution& execution = {});

@@ -155,6 +155,11 @@ RepairedPlc collapse_small_features(RepairedPlc complex, std::span<const Polygon
                                     const PlcOptions& options = {}, const RepairOptions& repair_options = {},
                                     const Execution& execution = {});
 
+/// Gives the patches and curves of a complex that was repaired otherwise the numbers that they have in
+/// `before`, where untagged facets and edges were numbered; new ones get numbers after these. Without that, a
+/// number given by the user would mean another feature. Cost: O(n log n).
+void keep_feature_numbers(const Plc& before, Plc& after);
+
 /// Builds the complex, after `repair` if there are faults or noise, with a tolerance that grows while that
 /// helps. For valid soups without features below the tolerance, returns the complex of `build_plc`. If the
 /// report says that it was cancelled, the complex is empty. Throws PlcError with the faults of the input and

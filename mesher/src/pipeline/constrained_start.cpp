@@ -62,6 +62,12 @@ void settle(MeshJob& job, Hope hope) {
   PipelineResult& made = job.made;
   std::size_t least = count_misshapen(job, made.result.mesh);
   if (hope == Hope::good && tets_per_poor * least > made.result.mesh.tets.size()) throw Hopeless();
+  if (least == 0 && hope == Hope::any) {  // the last means of improvement have not been used yet
+    TetMesh mesh = made.result.mesh;
+    coarsen_and_improve(job, mesh, {}, true);
+    if (count_misshapen(job, mesh) == 0) made.result.mesh = std::move(mesh);
+    return;
+  }
   // Vertices that face each other help more tets in less time than detours do.
   bool thoroughly = false;
   for (unsigned round = 0; round < most_rounds && least > 0; ++round) {
@@ -80,7 +86,7 @@ void settle(MeshJob& job, Hope hope) {
     const bool goes_on = hope == Hope::any || poor <= few || 4 * poor <= 3 * least;
     least = poor;
     made.result.mesh = std::move(mesh);
-    if (!goes_on) return;  // another way takes less time
+    if (!goes_on || (thoroughly && hope == Hope::good)) return;  // another way takes less time
   }
 }
 

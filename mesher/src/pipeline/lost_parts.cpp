@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <set>
+#include <utility>
 #include <vector>
 
 namespace collarmesh {
@@ -70,11 +72,15 @@ std::string lost_beyond(const std::vector<Tag>& before, const std::vector<Tag>& 
 }
 
 std::string lost_names(const Plc& finer, const Plc& coarser) {
-  std::set<Tag> before, after;
-  for (const Plc::Patch& patch : finer.patches) before.insert(patch.tag);
-  for (const Plc::Patch& patch : coarser.patches) after.insert(patch.tag);
-  for (const auto& [tag, name] : finer.names.of(2))
-    if (before.contains(tag) && !after.contains(tag)) return fmt::format("nothing of {} would be left", name);
+  std::array<std::set<Tag>, 3> before, after;  // by dimension
+  for (const auto& [plc, tags] : {std::pair{&finer, &before}, std::pair{&coarser, &after}}) {
+    for (const Plc::Curve& curve : plc->curves) (*tags)[1].insert(curve.tag);
+    for (const Plc::Patch& patch : plc->patches) (*tags)[2].insert(patch.tag);
+  }
+  for (const unsigned dimension : {1U, 2U})
+    for (const auto& [tag, name] : finer.names.of(dimension))
+      if (before[dimension].contains(tag) && !after[dimension].contains(tag))
+        return fmt::format("nothing of {} would be left", name);
   return {};
 }
 

@@ -167,11 +167,15 @@ bool MeshMaker::keeps_lengths(const TetMesh& mesh) const {
 
 bool MeshMaker::take_constrained(const Plc& plc, const std::string& why, Lengths lengths) {
   if (!may_take_constrained(plc)) return false;
+  const std::optional<SurfaceTolerance> nearer = nearer_;
   std::optional<PipelineResult> constrained = from_constrained(plc, why, Hope::good);
   is_constrained_ = constrained && constrained->guarantees_hold() &&
                     (lengths == Lengths::any || keeps_lengths(constrained->result.mesh));
   hopeless_ = is_constrained_ ? nullptr : &plc;
-  if (is_constrained_) job_.made = std::move(*constrained);
+  if (is_constrained_)
+    job_.made = std::move(*constrained);
+  else
+    nearer_ = nearer;
   return is_constrained_;
 }
 
@@ -190,7 +194,8 @@ std::optional<PipelineResult> MeshMaker::from_constrained(const Plc& plc, const 
   const std::optional<SurfaceTolerance> nearer = nearer_;
   try {
     make(plc, given.mesh.seed);
-    if (misses_volumes_only(made.check)) {
+    const Bounds& bounds = given.mesh.bounds;
+    if (misses_volumes_only(made.check) && !(bounds.distance > 0) && !bounds.tolerance) {
       constexpr double share = 0.25;
       come_nearer(plc, share);
       make(plc, given.mesh.seed);
@@ -213,6 +218,11 @@ void MeshMaker::take_new_complex() {
   tolerance_.reset();
   nearer_.reset();
   hopeless_ = nullptr;
+}
+
+void MeshMaker::move_to(const Plc& plc) {
+  job_.plc = &plc;
+  if (source_ != nullptr) source_->adapt(plc, job_.options);
 }
 
 void MeshMaker::come_nearer(const Plc& plc, double share) { nearer_ = tolerance(plc, 1).scaled(share); }

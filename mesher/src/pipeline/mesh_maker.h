@@ -22,10 +22,12 @@ class MeshMaker {
 
   /// Forgets everything about the previous complex.
   void take_new_complex();
+  /// Takes note that the complex of the kept mesh, the one that the source built last, is here now.
+  void move_to(const Plc& plc);
 
-  /// Takes a complex through all stages. Throws Ended, PlcError and, if set, FarTooFine. Throws Hopeless if
-  /// it starts from constrained tetrahedra that must yield a good mesh (Hope::good), but many tets miss their
-  /// bounds.
+  /// Takes a complex through all stages. Throws Ended, PlcError and, with Fineness::as_asked, FarTooFine.
+  /// Throws Hopeless if it starts from constrained tetrahedra that must yield a good mesh (Hope::good), but
+  /// many tets miss their bounds.
   void make(const Plc& plc, std::uint64_t seed);
 
   /// Meshes a complex when other ways have failed: from its constrained tetrahedra if that keeps every

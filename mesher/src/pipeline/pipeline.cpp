@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <optional>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -48,14 +49,22 @@ class SoupSource : public ComplexSource {
       : soups_(soups), options_(options) {}
 
   RepairedPlc build(const RepairOptions& repair, const Execution& execution) override {
-    return collapse_small_features(build_repaired_plc(soups_, options_, repair, execution), soups_, options_,
-                                   repair, execution);
+    RepairedPlc built = collapse_small_features(build_repaired_plc(soups_, options_, repair, execution),
+                                                soups_, options_, repair, execution);
+    if (!built.report.wrapped && !built.report.cancelled) {
+      if (first_)
+        keep_feature_numbers(*first_, built.plc);
+      else
+        first_ = built.plc;
+    }
+    return built;
   }
   void adapt(const Plc&, PipelineOptions&) override {}
 
  private:
   std::span<const PolygonSoup> soups_;
   const PlcOptions& options_;
+  std::optional<Plc> first_;  // the first complex, to whose numbers of features the options refer
 };
 
 void require_valid(const PipelineOptions& options) {

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <limits>
+#include <optional>
 
+#include "common/thread_limit.h"
 #include "pipeline/explosion.h"
 #include "pipeline/vertex_bound.h"
 #include "predict/vertex_counts.h"
@@ -31,12 +32,11 @@ class VertexCounter {
  public:
   VertexCounter(const MeshJob& job, Fineness fineness) : job_(job), fineness_(fineness) {}
 
-  /// Returns whether these vertices are far more than the sizes ask for, because of features thinner than
-  /// the feature size.
+  /// Returns whether a refinement that ended with these vertices made far more than the sizes ask for,
+  /// because of features thinner than the feature size.
   bool exceeds(std::size_t vertices) {
     if (fineness_ == Fineness::any || vertices <= few) return false;
-    if (most_ == 0) most_ = find_most();
-    exceeded_ |= vertices > most_;
+    exceeded_ |= vertices > most() && may_be_thin();
     return exceeded_;
   }
 
@@ -46,31 +46,53 @@ class VertexCounter {
     Execution watched = execution;
     if (fineness_ == Fineness::as_asked)
       watched.progress = [this, &execution](const ProgressReport& report) {
-        return !exceeds(report.vertices) && (!execution.progress || execution.progress(report));
+        return !will_exceed(report.vertices) && (!execution.progress || execution.progress(report));
       };
     return watched;
   }
 
   bool has_exceeded() const { return exceeded_; }
-  std::size_t most() const { return most_; }
+  std::size_t most() {
+    if (most_ == 0) most_ = find_most();
+    return most_;
+  }
 
  private:
   // Most parts without thin features have less than one vertex for each tet that is left after coarsening.
   static constexpr std::size_t few = 1500, by_tet = 1;
 
+  // Returns whether a refinement with these vertices can only end with too many. When progress is reported
+  // depends on the clock, so this must not be true for any refinement whose end `exceeds` would accept: these
+  // may have twice the vertices and some more, while they bound narrow cells, and take that back.
+  bool will_exceed(std::size_t vertices) {
+    constexpr std::size_t some_more = 5000;
+    return fineness_ == Fineness::as_asked && vertices > few && vertices > 2 * most() + some_more &&
+           exceeds(vertices);
+  }
+
   std::size_t find_most() const {
     constexpr double largest = 1e15;
-    const double tets = prediction::count_tets(prediction::Shape(*job_.plc), job_.options.mesh),
-                 most = std::min(static_cast<double>(few) + static_cast<double>(by_tet) * tets, largest);
-    const double thin = thinner_than_asked(job_.given, job_.plc->bounds.diagonal());
-    return squares_in_thin_places(*job_.plc, thin) > most ? static_cast<std::size_t>(most)
-                                                          : std::numeric_limits<std::size_t>::max();
+    const double tets = prediction::count_tets(prediction::Shape(*job_.plc), job_.options.mesh);
+    return static_cast<std::size_t>(
+        std::min(static_cast<double>(few) + static_cast<double>(by_tet) * tets, largest));
+  }
+
+  // Returns whether thin places can have that many vertices. This costs far more than the prediction.
+  bool may_be_thin() {
+    if (!thin_) {
+      const double thinner = thinner_than_asked(job_.given, job_.plc->bounds.diagonal());
+      ThreadLimit(job_.given.mesh.threads).run([&] {
+        thin_ = squares_in_thin_places(*job_.plc, thinner) > static_cast<double>(most());
+      });
+    }
+    return *thin_;
   }
 
   const MeshJob& job_;
   Fineness fineness_;
   bool exceeded_ = false;
-  std::size_t most_ = 0;  // 0: not known
+  std::size_t most_ = 0;      // 0: not known
+  std::optional<bool> thin_;  // the answer of may_be_thin
 };
 
 }  // namespace
@@ -107,8 +129,8 @@ void refine(MeshJob& job, Fineness fineness) {
   MeshResult& result = job.made.result =
       generate(*job.plc, options, counter.watched(job.execution()), job.neighbours,
                job.options.trace ? &job.made.trace : nullptr);
-  if (result.status == MeshStatus::complete ? counter.exceeds(result.statistics.vertices_inserted)
-                                            : counter.has_exceeded())
+  if (counter.has_exceeded() ||
+      (result.status != MeshStatus::cancelled && counter.exceeds(result.statistics.vertices_inserted)))
     throw FarTooFine{counter.most()};
   if (result.status == MeshStatus::cancelled && job.control.out_of_time()) job.control.stop();
   if (job.hit_bound())

@@ -9,10 +9,12 @@
 #include <new>
 #include <optional>
 #include <tuple>
+#include <utility>
 
 #include "check/findings.h"
 #include "check/guarantees.h"
 #include "collarmesh/plc_builder.h"
+#include "common/thread_limit.h"
 #include "pipeline/explosion.h"
 #include "pipeline/lost_parts.h"
 #include "pipeline/vertex_bound.h"
@@ -84,6 +86,11 @@ void Tries::mesh(const Plc& plc) {
 }
 
 void Tries::mesh_repaired(SoupPipelineResult& all) {
+  mesh_any_repaired(all);
+  maker_.move_to(all.plc);  // later stages need it, and what the options keep of it
+}
+
+void Tries::mesh_any_repaired(SoupPipelineResult& all) {
   const PipelineOptions& given = job_.given;
   PipelineResult& made = job_.made;
   build(given.repair, all);
@@ -221,19 +228,22 @@ bool Tries::overlay_thin_features(RepairOptions& repair, SoupPipelineResult& all
           require_kept(all, other);
           if (other.plc.regions.size() != all.plc.regions.size())
             throw PlcError("a region would be lost", {});
-          if (squares_in_thin_places(other.plc, thin) > static_cast<double>(most))
-            throw PlcError("thin features would be left", {});
+          double squares = 0;
+          ThreadLimit(job_.given.mesh.threads).run([&] {
+            squares = squares_in_thin_places(other.plc, thin);
+          });
+          if (squares > static_cast<double>(most)) throw PlcError("thin features would be left", {});
           maker_.give_up_constrained(other.plc);
           maker_.make(other.plc, job_.given.mesh.seed);
         }))
       continue;
-    repair = coarser;
+    const double before = std::exchange(repair, coarser).tolerance;
     all.plc = std::move(other.plc);
     all.repair = std::move(other.repair);
     job_.made.check.notes.push_back(fmt::format(
         "repaired with a tolerance of {:.3g}: with {:.3g}, features thinner than the feature size make more "
         "than {} vertices, far more than the sizes ask for; feature-size 0 keeps them",
-        coarser.tolerance, job_.given.repair.tolerance, most));
+        coarser.tolerance, before, most));
     return true;
   }
   return false;

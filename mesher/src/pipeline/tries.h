@@ -26,6 +26,7 @@ class Tries {
   void mesh(const Plc& plc);
 
  private:
+  void mesh_any_repaired(SoupPipelineResult& all);
   /// The outcome of an attempt at a mesh.
   enum class End {
     holds,     ///< every guarantee holds

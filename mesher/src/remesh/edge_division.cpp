@@ -240,7 +240,8 @@ bool EdgeDivision::divide_facing_at(Index tet) {
   return false;
 }
 
-/// Divides edges and improves the tets there. Keeps the result only if fewer tets miss their bounds then.
+/// Divides edges and improves the tets there. Keeps the result only if fewer tets miss their bounds then, or
+/// as many and the worst are better.
 bool EdgeDivision::try_to_divide(const std::vector<Division>& divisions) {
   ++trials_;
   before_.clear(), touched_.clear();

@@ -28,8 +28,8 @@ class EdgeDivision {
   /// Divides edges beside a vertex near them at the place that faces it, not in the middle.
   void divide_facing() { facing_ = true; }
   /// Divides opposite edges of a flat tet, as between the two sides of a thin wall, where they cross: at two
-  /// places that face each other. Does so for tets that miss their bounds, if fewer miss them then. Returns
-  /// the number of pairs.
+  /// places that face each other. Does so for tets that miss their bounds, if fewer miss them then, or as
+  /// many and the worst are better. Returns the number of pairs.
   std::size_t divide_crossing(const Execution& execution);
 
  private:

@@ -24,7 +24,7 @@ class AxisFlattener {
   AxisFlattener(Draft& draft, std::size_t axis, double tolerance, FlattenReport& report)
       : draft_(draft), axis_(axis), tolerance_(tolerance), report_(report) {}
 
-  void run(const std::vector<bool>& stays) {
+  void run(std::vector<bool> stays) {
     const std::vector<FlatFacet> facets = flat_facets();
     for (auto first = facets.begin(); first != facets.end();) {
       auto last = first;
@@ -64,13 +64,15 @@ class AxisFlattener {
     return thin;
   }
 
-  void move(std::span<const FlatFacet> facets, const std::vector<bool>& stays) {
+  // Points that have moved stay, so that none moves by more than the tolerance.
+  void move(std::span<const FlatFacet> facets, std::vector<bool>& stays) {
     const double plane = plane_of(facets);
     for (const FlatFacet& facet : facets)
       for (const Index p : draft_.triangles[facet.triangle]) {
         const double distance = std::fabs(at(p) - plane);
         if (distance == 0 || stays[p]) continue;
         draft_.points[p][axis_] = plane;
+        stays[p] = true;
         ++report_.moved_points;
         report_.largest_distance = std::max(report_.largest_distance, distance);
         if (report_.places.size() < most_places) report_.places.push_back(draft_.points[p]);

@@ -287,9 +287,11 @@ class Repairer {
     keep_better_places(valid);
   }
 
+  // Reports moves that are no rounding.
   void flatten() {
     const FlattenReport flattened = flatten_axis_planes(draft_, tolerance_);
-    add_places(report_.collapsed, flattened.moved_points, flattened.largest_distance, flattened.places);
+    if (flattened.largest_distance > grain * tolerance_)
+      add_places(report_.collapsed, flattened.moved_points, flattened.largest_distance, flattened.places);
   }
 
   /// Tries a step. If it takes too much work, restores the state before it.
@@ -632,6 +634,8 @@ RepairedPlc collapse_small_features(RepairedPlc complex, std::span<const Polygon
   }
   return complex;
 }
+
+void keep_feature_numbers(const Plc& before, Plc& after) { keep_numbers(before, after); }
 
 bool has_noise(const Plc& plc, const RepairOptions& options) {
   return options.mode != RepairMode::off && find_noise(plc, options.tolerance * plc.bounds.diagonal());
