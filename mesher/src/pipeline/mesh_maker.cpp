@@ -221,8 +221,9 @@ void MeshMaker::take_new_complex() {
 }
 
 void MeshMaker::move_to(const Plc& plc) {
-  job_.plc = &plc;
-  if (source_ != nullptr) source_->adapt(plc, job_.options);
+  if (std::exchange(job_.plc, &plc) == &plc) return;
+  if (source_ != nullptr && job_.options.exact)
+    source_->adapt(plc, job_.options);  // it refers to the complex
 }
 
 void MeshMaker::come_nearer(const Plc& plc, double share) { nearer_ = tolerance(plc, 1).scaled(share); }

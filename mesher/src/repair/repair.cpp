@@ -287,10 +287,11 @@ class Repairer {
     keep_better_places(valid);
   }
 
-  // Reports moves that are no rounding.
+  // Moves facets that nearly coincide onto one plane. Reports moves that are no rounding.
   void flatten() {
     const FlattenReport flattened = flatten_axis_planes(draft_, tolerance_);
-    if (flattened.largest_distance > grain * tolerance_)
+    constexpr double rounding = 1e-6;  // in tolerances
+    if (flattened.largest_distance > rounding * tolerance_)
       add_places(report_.collapsed, flattened.moved_points, flattened.largest_distance, flattened.places);
   }
 
