@@ -140,7 +140,7 @@ void ComplexInput::remember(const PlcOptions& options, const RepairOptions& repa
 Plc ComplexInput::build_anew(const PlcOptions& options, const RepairOptions& repair) {
   built_ = {};
   Plc plc = without_small_features(build_unnamed(options, repair), options, repair);
-  if (!built_.repaired.wrapped) keep_numbers(options, plc);
+  if (!built_.repaired.wrapped) keep_numbers(options, repair, plc);
   for (const Plc::Patch& patch : plc.patches) built_.patch_numbers.push_back(patch.tag);
   for (const Plc::Curve& curve : plc.curves) built_.curve_numbers.push_back(curve.tag);
   if (!built_.repaired.wrapped) add_replaced_faces(plc);
@@ -150,13 +150,14 @@ Plc ComplexInput::build_anew(const PlcOptions& options, const RepairOptions& rep
   return plc;
 }
 
-/// Gives features the numbers of the first complex with these options, to which names and sizes refer.
-void ComplexInput::keep_numbers(const PlcOptions& options, Plc& plc) {
+/// Gives features the numbers of the first complex with these options and target size, to which names and
+/// sizes refer.
+void ComplexInput::keep_numbers(const PlcOptions& options, const RepairOptions& repair, Plc& plc) {
   if (!plc.numbered_patches && !plc.numbered_curves) return;
-  if (first_ && all_of(first_->options) == all_of(options))
+  if (first_ && all_of(first_->options) == all_of(options) && first_->target_size == repair.target_size)
     keep_feature_numbers(first_->plc, plc);
   else
-    first_ = {options, plc};
+    first_ = {options, repair.target_size, plc};
 }
 
 /// Collapses features that are smaller than the feature size and have no name.

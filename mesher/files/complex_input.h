@@ -83,7 +83,7 @@ class ComplexInput {
  private:
   Plc build_anew(const PlcOptions& options, const RepairOptions& repair);
   void remember(const PlcOptions& options, const RepairOptions& repair, const Plc& plc);
-  void keep_numbers(const PlcOptions& options, Plc& plc);
+  void keep_numbers(const PlcOptions& options, const RepairOptions& repair, Plc& plc);
   void add_replaced_faces(Plc& plc) const;
   void name(Plc& plc) const;
   const brep::CadLabels* labels() const;
@@ -128,6 +128,7 @@ class ComplexInput {
   /// The first complex with features numbered by the program, without names.
   struct First {
     PlcOptions options;
+    std::optional<double> target_size;
     Plc plc;
   };
   std::optional<First> first_;
