@@ -14,7 +14,6 @@
 #include "collarmesh/repair.h"
 #include "facets/edges.h"
 #include "repair/arrangement.h"
-#include "repair/axis_planes.h"
 #include "repair/better_places.h"
 #include "repair/changes.h"
 #include "repair/holes.h"
@@ -23,6 +22,7 @@
 #include "repair/snapping.h"
 #include "repair/twins.h"
 #include "repair/winding_number.h"
+#include "support/repair_drafts.h"
 #include "support/repair_shapes.h"
 #include "support/sanitized.h"
 #include "support/shapes.h"
@@ -32,29 +32,6 @@ namespace {
 
 using namespace facets;
 using namespace testing::faulty;
-
-// Makes a draft of surfaces as this stage gets them; equal points are merged unless `torn`.
-Draft draft_of(std::span<const PolygonSoup> soups, bool torn = false) {
-  Draft draft;
-  for (Index s = 0; s < soups.size(); ++s) {
-    const PolygonSoup soup = triangulated(soups[s]);
-    const auto first = static_cast<Index>(draft.points.size());
-    draft.points.insert(draft.points.end(), soup.points.begin(), soup.points.end());
-    for (Index f = 0; f < soup.facet_count(); ++f) {
-      const auto c = soup.polygon(f);
-      draft.add_triangle({first + c[0], first + c[1], first + c[2]}, {soup.facet_tag(f), s, f, true});
-    }
-    draft.soup_names.push_back(fmt::format("soup {}", s));
-    draft.soup_is_complex.push_back(false);
-    draft.soup_gives_features.push_back(false);
-  }
-  draft.point_tags.assign(draft.points.size(), 0);
-  for (const Point& p : draft.points) draft.bounds.add(p);
-  draft.planar_tolerance = 1e-6 * draft.bounds.diagonal();
-  if (!torn) unify_equal_points(draft);
-  return draft;
-}
-Draft draft_of(const PolygonSoup& soup) { return draft_of({&soup, 1}); }
 
 double volume_of(const Draft& draft) {
   double six = 0;
@@ -847,64 +824,6 @@ TEST(KeepBoundaries, WallInsideStaysAndOutsideGoes) {
   EXPECT_GT(report.internal_facets, 0U);
   EXPECT_GT(report.dropped_sheets, 0U);
   EXPECT_NEAR(area_of(draft), 6.5, 1e-12);
-}
-
-// Two boxes with a gap of 1e-6 between them, which differs by noise of 1e-9 from corner to corner.
-std::array<PolygonSoup, 2> boxes_nearly_in_contact(std::size_t axis) {
-  constexpr double gap = 1e-6, noise = 1e-9;
-  Point below{2, 2, 2}, above{0, 0, 0}, end{3, 3, 3};
-  below[axis] = 1;
-  above[axis] = 1 + gap;
-  end[axis] = 2;
-  std::array<PolygonSoup, 2> boxes{testing::box({0, 0, 0}, below), testing::box(above, end)};
-  for (Index p = 0; p < boxes[1].points.size(); ++p)
-    if (boxes[1].points[p][axis] == 1 + gap) boxes[1].points[p][axis] += p * noise;
-  return boxes;
-}
-
-std::set<double> coordinates_near(const Draft& draft, std::size_t axis, double place) {
-  std::set<double> found;
-  for (const Point& p : draft.points)
-    if (std::fabs(p[axis] - place) < 0.1) found.insert(p[axis]);
-  return found;
-}
-
-TEST(AxisPlanes, FacetsThatNearlyCoincideComeOntoThePlaneOfMostOfThem) {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    Draft draft = draft_of(boxes_nearly_in_contact(axis));
-    const std::vector<Point> before = draft.points;
-    const FlattenReport report = flatten_axis_planes(draft, 1e-5);
-    EXPECT_EQ(coordinates_near(draft, axis, 1).size(), 1U) << axis;
-    EXPECT_EQ(report.moved_points, 4U) << axis;
-    double largest = 0;
-    for (Index p = 0; p < before.size(); ++p)
-      largest = std::max(largest, distance(before[p], draft.points[p]));
-    EXPECT_EQ(report.largest_distance, largest) << axis;
-    EXPECT_LE(largest, 1e-5) << axis;
-  }
-}
-
-TEST(AxisPlanes, FacetsFartherApartThanTheToleranceStay) {
-  Draft draft = draft_of(boxes_nearly_in_contact(2));
-  const std::vector<Point> before = draft.points;
-  const FlattenReport report = flatten_axis_planes(draft, 5e-7);
-  EXPECT_EQ(coordinates_near(draft, 2, 1).size(), 2U);  // the noise of the second box is gone
-  EXPECT_LE(report.largest_distance, 7e-9);
-}
-
-TEST(AxisPlanes, ThinPartsAndGivenVerticesStay) {
-  const PolygonSoup thin = testing::box({0, 0, 0}, {1, 1, 1e-6});
-  Draft plate = draft_of(thin);
-  EXPECT_EQ(flatten_axis_planes(plate, 1e-5).moved_points, 0U);
-  Draft draft = draft_of(boxes_nearly_in_contact(2));
-  for (Index p = 0; p < draft.points.size(); ++p) draft.loose_points.push_back(p);
-  EXPECT_EQ(flatten_axis_planes(draft, 1e-5).moved_points, 0U);
-}
-
-// A fine dome: its facets near the top are nearly perpendicular to the axis, but not flat.
-TEST(AxisPlanes, SlopesStay) {
-  Draft draft = draft_of(testing::icosphere(1, 40));
-  EXPECT_EQ(flatten_axis_planes(draft, 1e-3).moved_points, 0U);
 }
 
 }  // namespace

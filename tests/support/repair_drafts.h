@@ -1,0 +1,36 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <span>
+
+#include "facets/draft.h"
+#include "repair/arrangement.h"
+#include "support/repair_shapes.h"
+
+namespace collarmesh::testing::faulty {
+
+/// Makes a draft of surfaces as repair gets them; equal points are merged unless `torn`.
+inline facets::Draft draft_of(std::span<const PolygonSoup> soups, bool torn = false) {
+  facets::Draft draft;
+  for (Index s = 0; s < soups.size(); ++s) {
+    const PolygonSoup soup = triangulated(soups[s]);
+    const auto first = static_cast<Index>(draft.points.size());
+    draft.points.insert(draft.points.end(), soup.points.begin(), soup.points.end());
+    for (Index f = 0; f < soup.facet_count(); ++f) {
+      const auto c = soup.polygon(f);
+      draft.add_triangle({first + c[0], first + c[1], first + c[2]}, {soup.facet_tag(f), s, f, true});
+    }
+    draft.soup_names.push_back(fmt::format("soup {}", s));
+    draft.soup_is_complex.push_back(false);
+    draft.soup_gives_features.push_back(false);
+  }
+  draft.point_tags.assign(draft.points.size(), 0);
+  for (const Point& p : draft.points) draft.bounds.add(p);
+  draft.planar_tolerance = 1e-6 * draft.bounds.diagonal();
+  if (!torn) repairing::unify_equal_points(draft);
+  return draft;
+}
+inline facets::Draft draft_of(const PolygonSoup& soup) { return draft_of({&soup, 1}); }
+
+}  // namespace collarmesh::testing::faulty
