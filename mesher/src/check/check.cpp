@@ -167,16 +167,6 @@ void check_tet_mesh(const TetMesh& mesh, const TetMesh* with_layers, const Plc& 
   if (with_layers != nullptr && !report.cancelled) check_core(*with_layers, subject, report);
 }
 
-/// Returns whether a guarantee is about shapes of cells and distances, which other sizes change.
-bool is_of_shapes(const std::string& name) {
-  using namespace guarantee;
-  const std::array<std::string_view, 14> of_shapes{
-      radius_edge,    thin_angles,     collar_dihedral, interior_node, collar_centre,
-      collar_gap,     collar_disjoint, collar_cells,    region_volume, volume_kept,
-      thickness_kept, curve_distance,  patch_distance,  patch_area};
-  return std::find(of_shapes.begin(), of_shapes.end(), name) != of_shapes.end();
-}
-
 [[noreturn]] void refuse_mesh(const Finding& finding) {
   const std::string message = fmt::format(
       "The mesh does not cover the shape that it should follow: {} Name the input that it was made of, or "
@@ -212,8 +202,10 @@ TetMesh labelled(const TetMesh& mesh, const Plc& plc, const CheckOptions& option
   CheckReport report;
   Findings findings(report, 1);
   const auto refuse_if_any = [&] {
+    using guarantee::of_shapes;
     for (const Finding& finding : report.findings)
-      if (!is_of_shapes(finding.guarantee)) refuse_mesh(finding);
+      if (std::find(of_shapes.begin(), of_shapes.end(), finding.guarantee) == of_shapes.end())
+        refuse_mesh(finding);
   };
   if (!check_arrays(mesh, findings)) refuse_if_any();
   const Subject given = make_subject(mesh, plc, options);

@@ -1,6 +1,21 @@
 #pragma once
 
+#include <array>
+#include <string_view>
+
 /// The names of the guarantees, as in Finding::guarantee. They are stable, because scripts look for them.
+///
+/// To add a guarantee:
+/// 1. Give it a name here (guarantees of layers, periodic faces and split patches: layer_cells.h,
+/// layer_walls.h,
+///    periodic.h). Does a mesh of other sizes miss it although it follows the shape? Then list it in
+///    `of_shapes`.
+/// 2. If it concerns single tets or nodes, write a predicate into predicates.h and call it from tets.cpp or
+///    second_order.cpp; otherwise declare a check in subject.h and call it from `judge` in check.cpp. Either
+///    reports what it finds to Findings.
+/// 3. Under MPI nothing of this runs by itself: call the predicate from `Certification` in
+///    distributed/src/certify.cpp, which adds up over the ranks.
+/// 4. Break it on purpose in tests/fast/check_wrong_meshes_test.cpp, and describe it in doc/quality.md.
 namespace collarmesh::guarantee {
 
 // Guarantees of arrays and labels.
@@ -77,5 +92,11 @@ inline constexpr char patch_present[] = "patch_present";          ///< each patc
 inline constexpr char curve_present[] = "curve_present";          ///< each curve has edges
 inline constexpr char shell_orientation[] = "shell_orientation";  ///< faces of solids point outwards, those
                                                                   ///< of other surfaces are oriented alike
+
+/// Guarantees of the shapes of cells and of distances, which other sizes change.
+inline constexpr std::array<std::string_view, 14> of_shapes{
+    radius_edge,    thin_angles,     collar_dihedral, interior_node, collar_centre,
+    collar_gap,     collar_disjoint, collar_cells,    region_volume, volume_kept,
+    thickness_kept, curve_distance,  patch_distance,  patch_area};
 
 }  // namespace collarmesh::guarantee

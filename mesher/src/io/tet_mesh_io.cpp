@@ -15,6 +15,18 @@ namespace collarmesh::io {
 
 namespace {
 
+/// A format of meshes. A new one needs:
+/// - a writer and, if it is read, a reader, each in a file of this folder, declared in tet_mesh_formats.h.
+/// The
+///   writer uses FileWriter, so that the file appears complete or not at all;
+/// - a line in `tet_mesh_formats`;
+/// - a line in `meshes` in report/conversion_report.cpp, which says what the format has no place for;
+/// otherwise
+///   `convert` reports no losses;
+/// - if it writes side files: a line in files/file_groups.cpp, so that no output takes the place of an input;
+/// - tests: fast/io_round_trip_test.cpp takes formats that are read from the table, io/solver_formats_test.py
+///   asks other programs;
+/// - a row in doc/formats.md.
 struct TetMeshFormat {
   std::string_view extension;
   void (*write)(const std::string& path, const TetMesh& mesh);
