@@ -15,7 +15,7 @@
 ///    reports what it finds to Findings.
 /// 3. Under MPI nothing of this runs by itself: call the predicate from `Certification` in
 ///    distributed/src/certify.cpp, which adds up over the ranks.
-/// 4. Break it on purpose in tests/fast/check_wrong_meshes_test.cpp, and describe it in doc/quality.md.
+/// 4. Break it on purpose in tests/fast/check_wrong_meshes_test.cpp.
 namespace collarmesh::guarantee {
 
 // Guarantees of arrays and labels.

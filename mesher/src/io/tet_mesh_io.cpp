@@ -24,8 +24,8 @@ namespace {
 /// otherwise
 ///   `convert` reports no losses;
 /// - if it writes side files: a line in files/file_groups.cpp, so that no output takes the place of an input;
-/// - tests: fast/io_round_trip_test.cpp takes formats that are read from the table, io/solver_formats_test.py
-///   asks other programs;
+/// - tests: a line in fast/io_round_trip_test.cpp if it is read; otherwise other programs read it in
+///   io/solver_formats_test.py;
 /// - a row in doc/formats.md.
 struct TetMeshFormat {
   std::string_view extension;

@@ -1,0 +1,38 @@
+#!/usr/bin/env python3
+"""Quality and edge lengths of meshes as MMG's histograms give them, for comparison with published ones: the quality
+12 sqrt(3) 3 V / (sum of squared edge lengths)^(3/2) of a tetrahedron, 1 for a regular one, and lengths of edges over the
+size asked for. Prints a Markdown row for each file: MESH SIZE ..."""
+
+import itertools
+import sys
+
+import meshio
+import numpy as np
+
+ASKED = (0.71, 1.41)  # the range of MMG's lengths that count as reached
+
+
+def measures(path, size):
+    mesh = meshio.read(path)
+    tets = np.concatenate([cells.data for cells in mesh.cells if cells.type == "tetra"])
+    corners = mesh.points[tets]
+    volumes = np.linalg.det(corners[:, 1:] - corners[:, :1]) / 6
+    pairs = list(itertools.combinations(range(4), 2))
+    squares = sum(((corners[:, a] - corners[:, b]) ** 2).sum(1) for a, b in pairs)
+    quality = 72 * 3 ** 0.5 * volumes / squares ** 1.5
+    edges = np.unique(np.sort(np.concatenate([tets[:, pair] for pair in pairs]), axis=1), axis=0)
+    lengths = np.linalg.norm(mesh.points[edges[:, 0]] - mesh.points[edges[:, 1]], axis=1) / size
+    reached = (lengths > ASKED[0]) & (lengths < ASKED[1])
+    return [len(tets), f"{quality.mean():.3f}", f"{quality.min():.3f}", f"{100 * (quality > 0.5).mean():.2f}%",
+            f"{lengths.mean():.3f}", f"{lengths.min():.2f} to {lengths.max():.2f}", f"{100 * reached.mean():.1f}%"]
+
+
+def main():
+    print("| mesh | tets | mean quality | worst | above 0.5 | mean length | lengths | within 0.71 to 1.41 |")
+    print("| --- | --- | --- | --- | --- | --- | --- | --- |")
+    for path, size in zip(sys.argv[1::2], sys.argv[2::2]):
+        print("| " + " | ".join(map(str, [path, *measures(path, float(size))])) + " |")
+
+
+if __name__ == "__main__":
+    main()
