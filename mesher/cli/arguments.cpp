@@ -333,7 +333,7 @@ void check_output_of_surfaces(const MeshArguments& a) {
                                                       report::format_of(a.output, a.output_format)));
 }
 
-/// Rejects layers of prisms for which the output has no place, before anything is meshed.
+/// Rejects layers of prisms, before anything is meshed, if the output format cannot hold them.
 void check_output_of_layers(const MeshArguments& a) {
   const std::vector<std::string> formats = io::formats_with_layers(a.order);
   if (!a.layers.any() || a.layers.tets || !io::is_tet_mesh_format(a.output, a.output_format) ||

@@ -316,7 +316,8 @@ class Placement {
   }
 
   std::vector<Index> move(const std::vector<Index>& movers, const std::array<Vector, 3>& frame) {
-    // Facts: the shortest edge, and the box of the neighbours, its upper corner negated.
+    // The facts about a vertex: its shortest edge, then the box of its neighbours, with the upper corner
+    // negated.
     constexpr std::size_t facts = 7;
     std::vector<PetscReal> known(facts * movers.size(), INFINITY), before, after(places * movers.size());
     for (std::size_t i = 0; i < movers.size(); ++i) {

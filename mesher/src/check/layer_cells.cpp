@@ -318,8 +318,8 @@ void check_layer_cells(const TetMesh& mesh, CheckReport& report, std::size_t fin
 
 namespace {
 
-/// The bounds on the angles of tets beside layers. A node that layers pushed away counts as on the features
-/// of its wall.
+/// The bounds on the angles of tets beside layers. A node that layers pushed away counts as a node on its
+/// wall's features.
 class CoreAngles {
  public:
   CoreAngles(const TetMesh& mesh, const std::vector<Index>& walls, const Plc& plc, const Bounds& bounds)

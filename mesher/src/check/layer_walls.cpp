@@ -211,7 +211,8 @@ class WallCheck {
   }
   double area(Index face) const { return 0.5 * norm(normal(face)); }
 
-  /// Checks the cells above one triangle in one region: above one of its sides, or, inside of a region, both.
+  /// Checks the cells in one region above one triangle: above one of its sides or, if it lies inside the
+  /// region, above both.
   void check_stack(std::span<const WallSide> sides, std::span<const LayerCell> cells) {
     std::vector<unsigned> weights(sides[0].count + std::size_t{1}, 0);  // by layer
     std::array<unsigned, 2> first{};                                    // of the first layer, by side

@@ -11,8 +11,8 @@ namespace collarmesh::checks {
 namespace {
 
 constexpr double shape_slack = 1 + 1e-9;  // relative tolerance of the bounds on shape
-// Number of tets that a thread measures at once, and number of tets measured before findings and sums are
-// made of them (4 MB).
+// Number of tets that a thread measures at once, and number of tets measured before their findings and sums
+// are added (4 MB).
 constexpr std::size_t measured_at_once = 4096, in_a_batch = 1 << 17;
 
 struct CornersOfTet {

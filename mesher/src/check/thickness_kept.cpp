@@ -111,16 +111,16 @@ class ThicknessKept {
     sums.opposite = other;
   }
 
-  /// Returns the distance along a ray from where it enters the region through faces of one patch to where it
-  /// leaves the region through faces of another one, nearest to where the complex has them. NaN if it meets
-  /// none.
+  /// Returns the length of the part of a ray between entering the region through faces of one patch and
+  /// leaving it through faces of another one; if there are several such parts, that of the part nearest to
+  /// the complex's. NaN if there is none.
   double between(const Thickness::Ray& ray, double distance, Index patch, Index other, Index region,
                  Thickness::Crossings& crossings) const {
     const TetMesh& mesh = subject_.mesh;
     const Index root = hierarchy_.root();
     hierarchy_.crossings(ray.from - distance * ray.way, ray.from + 2 * distance * ray.way, {&root, 1},
                          crossings);
-    double entered = INFINITY, left = INFINITY;  // relative to the places in the complex
+    double entered = INFINITY, left = INFINITY;  // differences from the places in the complex
     for (const auto& [triangle, direction] : crossings) {
       const Index face = faces_.face[triangle], of = subject_.match.face_patch[face];
       const auto& regions = mesh.face_regions[face];

@@ -22,8 +22,8 @@ constexpr double gap_per_size = 4;
 // Radii are shrunk by a random share of up to this, so that spheres are in general position.
 constexpr double largest_shrinkage = 0.02;
 // Radii change along a curve by at most this share of the distance: a ball's radius is at most a third of a
-// distance, which changes by at most the way along the curve. Where flatness limits radii they change far
-// less, so that they are even along rims of constant curvature.
+// distance, which changes no faster than the position along the curve. Where flatness limits radii they
+// change far less, so that they are even along rims of constant curvature.
 constexpr double radius_slope = 1.0 / 3;
 constexpr double flat_radius_slope = 0.05;
 constexpr double sample_step = 0.5;  // distance of samples, in radii

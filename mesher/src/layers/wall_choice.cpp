@@ -116,8 +116,8 @@ WallChoice::WallChoice(const LayerOptions& options, const Plc& plc) : wall_of_(p
   put_on_all(options, plc);
 }
 
-/// Throws OptionError where layers would be too thin for the coordinates to tell their sides apart, however
-/// high all are together: at most as the shape.
+/// Throws OptionError if layers would be so thin that coordinates cannot tell their sides apart, even if all
+/// layers together were as high as the shape.
 void WallChoice::require_heights(const LayerOptions& options, const Plc& plc) const {
   constexpr double least_share_of_shape = 1e-10;
   Box box;

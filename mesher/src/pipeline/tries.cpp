@@ -87,7 +87,7 @@ void Tries::mesh(const Plc& plc) {
 
 void Tries::mesh_repaired(SoupPipelineResult& all) {
   mesh_any_repaired(all);
-  maker_.move_to(all.plc);  // later stages need it, and what the options keep of it
+  maker_.move_to(all.plc);  // later stages and the options need it
 }
 
 void Tries::mesh_any_repaired(SoupPipelineResult& all) {
@@ -109,7 +109,7 @@ void Tries::mesh_any_repaired(SoupPipelineResult& all) {
   if (end == End::holds) return;
   bool has_mesh = end == End::missed, built_last = true;
   std::optional<Point> place;
-  // If places far thinner than the sizes spoil the mesh, a change of these may help anywhere.
+  // If places far thinner than the sizes spoil the mesh, changes there may help anywhere.
   if (!made.check.findings.empty() && !maker_.was_far_too_fine()) place = made.check.findings.front().where;
   for (const RepairOptions& repair : repairs_after(end, all)) {
     SoupPipelineResult other;
@@ -155,8 +155,8 @@ void Tries::mesh_any_repaired(SoupPipelineResult& all) {
 }
 
 /// Repairs the input with a larger tolerance if the repaired complex has creases so sharp that refinement
-/// would hardly end, the larger one leaves none that are nearly as sharp, and nothing is lost. Sets the
-/// repair that is used, and returns a note of it.
+/// would hardly end, the larger tolerance leaves none nearly as sharp, and nothing is lost. Sets the repair
+/// that is used, and returns a note of it.
 std::string Tries::repair_sharp_creases(RepairOptions& repair, SoupPipelineResult& all) {
   constexpr double too_sharp = 0.1, blunter = 3;  // degrees, and a factor
   if (!all.repair.repaired || all.repair.wrapped) return {};
@@ -215,8 +215,8 @@ bool Tries::may_overlay() const {
 }
 
 /// Repairs the input with a larger tolerance, up to the feature size, so that opposite sides of thin walls
-/// and gaps become one. Returns whether that makes a mesh that keeps every guarantee and no part is lost;
-/// otherwise nothing has changed. `most`: the number of vertices that the sizes ask for.
+/// and gaps become one. Returns whether the mesh of that keeps every guarantee and loses no part; otherwise
+/// restores everything. `most`: the number of vertices that the sizes ask for.
 bool Tries::overlay_thin_features(RepairOptions& repair, SoupPipelineResult& all, std::size_t most) {
   const double diagonal = all.plc.bounds.diagonal(), size = smallest_size(job_.given.mesh, diagonal),
                thin = thinner_than_asked(job_.given, diagonal);
@@ -331,9 +331,9 @@ bool Tries::take_constrained(const Plc& plc) {
   });
 }
 
-/// Tries again with the opposite treatment of narrow places. Cells that were left there may keep large
-/// angles, so now their ratio is bounded if that takes not many times the vertices. If it was bounded before,
-/// they are left.
+/// Tries again with the opposite treatment of narrow places. If cells there were left unbounded, they may
+/// keep large angles, so now their ratio is bounded unless that takes many times the vertices. If they were
+/// bounded, they are left unbounded.
 void Tries::try_narrow_places_otherwise(const Plc& plc) {
   constexpr std::size_t times = 10, more = 100'000;
   if (!job_.given.coarsen || !missed(guarantee::thin_angles)) return;
