@@ -213,7 +213,7 @@ class GivenNames(ProgramTest):
         self.expect(2, self.box, "-o", self.out, "--name", "fixed=99", says=["patches.fixed", "99"])
         path = self.write("names.json", '{\n  "patches":\n    {"fixed" 1}\n}')
         self.expect(2, self.box, "-o", self.out, "--names", path,
-                    says=["names.json: names: line 3, column 14: this is no JSON"])
+                    says=["names.json: names: line 3, column 14: this is not JSON"])
         self.expect(2, self.box, "-o", self.out, "--names", path, "--name", "a=1", says=["line 3, column 14"])
 
 

@@ -117,6 +117,6 @@ def convert(
         _core.convert_surfaces(inputs(surfaces), target, named)
     else:
         if ghost_cells and partitions is None:
-            raise OptionError("ghost_cells: is of partitions; say how many with partitions")
+            raise OptionError("ghost_cells: needs partitions; say how many with partitions")
         made = mesh(*surfaces, input_format=input_format, partitions=partitions, **options)
         made.write(target, kind, ghost_cells=ghost_cells)

@@ -243,10 +243,11 @@ class LayerCheck {
     }
     const bool inside = cells == 2 && region_of(first[0]) == region_of(first[1]);
     if (lists > 1 || (lists == 0 && !inside)) {
-      findings_.add(
-          guarantee::layer_sides, where, {first->cell}, "The side of {} {} at {} is listed {} times; {}.",
-          name_of(first->kind), first->cell, At{where}, lists,
-          cells == 1 ? "no other cell has it, so it is a boundary or hangs" : "it has to be listed once");
+      findings_.add(guarantee::layer_sides, where, {first->cell},
+                    "The side of {} {} at {} is listed {} times; {}.", name_of(first->kind), first->cell,
+                    At{where}, lists,
+                    cells == 1 ? "no other cell has it, so it lies on a boundary or does not conform"
+                               : "it must be listed once");
       return;
     }
     if (lists == 1) check_regions(*cells_end, first, cells == 2 ? first + 1 : nullptr);

@@ -231,7 +231,7 @@ class WallCheck {
     }
     for (std::size_t layer = 2; layer < weights.size(); ++layer)
       if (weights[layer] != weights[1]) {
-        report(sides[0], "has other cells in one layer than in the first one");
+        report(sides[0], "has different cells in one layer and in the first one");
         return;
       }
     unsigned expected_bases = 0;

@@ -165,8 +165,8 @@ class Cutter {
 void require_tets_alone(const TetMesh& mesh, std::string_view what) {
   if (mesh.layers.prisms.empty() && mesh.layers.pyramids.empty()) return;
   throw OptionError(
-      fmt::format("{}: the mesh has {} prisms and {} pyramids, for which this is not made; make layers of "
-                  "tetrahedra",
+      fmt::format("{}: the mesh has {} prisms and {} pyramids, for which this is not supported; make layers "
+                  "of tetrahedra",
                   what, mesh.layers.prisms.size(), mesh.layers.pyramids.size()));
 }
 

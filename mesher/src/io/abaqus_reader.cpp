@@ -331,7 +331,7 @@ class AbaqusReader {
     }
     const auto before = static_cast<Index>(mesh_.layers.pyramids.size());
     const auto numbers = join_pyramids(pairs, mesh_);
-    if (!numbers) lines_.fail(fmt::format("the elements of {} are no halves of pyramids", abaqus_halves));
+    if (!numbers) lines_.fail(fmt::format("the elements of {} are not halves of pyramids", abaqus_halves));
     for (CellPlace& place : places_)
       if (place.kind == CellKind::tet) place.index = (*numbers)[place.index];
     for (Index k = 0; k < pairs.size(); ++k)

@@ -16,7 +16,7 @@ namespace collarmesh::pipeline {
 
 namespace {
 
-/// Returns whether a thin tet, or a tet in a collar, has a larger angle than allowed.
+/// Returns whether a thin tet or one of a collar has a larger angle than these may have.
 bool has_flat_tet(const TetMesh& mesh) {
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
     if (mesh.tet_thin[t] == 0 && mesh.tet_collar[t] == 0) continue;

@@ -199,7 +199,7 @@ std::optional<PipelineResult> MeshMaker::from_constrained(const Plc& plc, const 
       come_nearer(plc, share);
       make(plc, given.mesh.seed);
     }
-    made.check.notes.push_back(fmt::format("begun with constrained tetrahedra, as {}", why));
+    made.check.notes.push_back(fmt::format("begun with constrained tetrahedra, because {}", why));
     if (std::ranges::all_of(made.check.findings, is_about_shape)) found = std::move(made);
   } catch (const Hopeless&) {
     found.reset();

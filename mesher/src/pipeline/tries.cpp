@@ -126,10 +126,10 @@ void Tries::mesh_any_repaired(SoupPipelineResult& all) {
     all.plc = std::move(other.plc);
     all.repair = std::move(other.repair);
     has_mesh = true;
-    made.check.notes.push_back(all.repair.wrapped
-                                   ? fmt::format("wrapped, as of the complex before {}", why)
-                                   : fmt::format("repaired with a tolerance of {:.3g}, as with {:.3g} {}",
-                                                 repair.tolerance, given.repair.tolerance, why));
+    made.check.notes.push_back(
+        all.repair.wrapped ? fmt::format("wrapped, because for the complex before {}", why)
+                           : fmt::format("repaired with a tolerance of {:.3g}, because with {:.3g} {}",
+                                         repair.tolerance, given.repair.tolerance, why));
     if (made.guarantees_hold() || end == End::exploded) break;
   }
   if (has_mesh && made.guarantees_hold()) return;
@@ -177,7 +177,7 @@ std::string Tries::repair_sharp_creases(RepairOptions& repair, SoupPipelineResul
     all.plc = std::move(other.plc);
     all.repair = std::move(other.repair);
     return fmt::format(
-        "repaired with a tolerance of {:.3g}, as with {:.3g} features meet at {:.2g} degrees at {}",
+        "repaired with a tolerance of {:.3g}, because with {:.3g} features meet at {:.2g} degrees at {}",
         coarser.tolerance, job_.given.repair.tolerance, creases.front().angle,
         checks::At{creases.front().where});
   }
@@ -318,7 +318,8 @@ void Tries::try_seeds(const Plc& plc) {
     const std::string missed = made.missed();
     if (const double share = share_for_volumes(); share < 1) maker_.come_nearer(plc, share);
     if (find_better(true, [&] { maker_.make(plc, seed); }))
-      made.check.notes.push_back(fmt::format("made with seed {}, as with {} {}", seed, first, missed));
+      made.check.notes.push_back(
+          fmt::format("made with seed {}, because with seed {}: {}", seed, first, missed));
   }
   try_narrow_places_otherwise(plc);
 }
@@ -349,7 +350,7 @@ void Tries::try_narrow_places_otherwise(const Plc& plc) {
   }
   maker_.set_narrow_cells(were_left ? NarrowCells::bounded : NarrowCells::left);
   if (find_better(true, [&] { maker_.make(plc, job_.given.mesh.seed); }))
-    made.check.notes.push_back(fmt::format("made with {} narrow places, as otherwise {}",
+    made.check.notes.push_back(fmt::format("made with {} narrow places, because otherwise {}",
                                            were_left ? "a bounded ratio in" : "any ratio in", missed));
   job_.budget.set_most(before);
   maker_.set_narrow_cells(NarrowCells::bounded_if_cheap);
