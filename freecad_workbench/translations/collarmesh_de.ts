@@ -347,8 +347,8 @@
       <translation>Abbrechen</translation>
     </message>
     <message>
-      <source>Cancelled; the mesh is the one from before.</source>
-      <translation>Abgebrochen; das Netz ist das von vorher.</translation>
+      <source>Cancelled; the previous mesh is kept.</source>
+      <translation>Abgebrochen; das bisherige Netz bleibt.</translation>
     </message>
     <message>
       <source>Choose a size; how many elements it makes and how long that takes is estimated for this shape</source>
@@ -519,6 +519,10 @@
       <translation>Die erste Ordnung ist zu steif bei Biegung: Verschiebungen werden zu klein, Spannungen viel zu klein. Sie ist für einen ersten Blick, und für Löser, die sie verlangen.</translation>
     </message>
     <message>
+      <source>Found no browser to show the report; it is in {path}</source>
+      <translation>Kein Browser gefunden, der den Bericht zeigt; er liegt in {path}</translation>
+    </message>
+    <message>
       <source>FreeCAD's Gmsh cannot mesh triangle meshes.</source>
       <translation>Gmsh kann in FreeCAD keine Dreiecksnetze vernetzen.</translation>
     </message>
@@ -579,10 +583,6 @@
       <translation>Wie weit Flächen und Kanten der Elemente von gekrümmten Flächen abweichen dürfen; 0: ein Zehntel der Größe, höchstens 1/200 der Diagonale (zweite Ordnung: 1/550)</translation>
     </message>
     <message>
-      <source>How many threads the program may use; they change no result</source>
-      <translation>Wie viele Threads das Programm benutzen darf; am Ergebnis ändern sie nichts</translation>
-    </message>
-    <message>
       <source>How much time goes into removing flat elements</source>
       <translation>Wie viel Zeit ins Entfernen flacher Elemente geht</translation>
     </message>
@@ -621,6 +621,10 @@
     <message>
       <source>Largest distance from the shape</source>
       <translation>Größter Abstand von der Form</translation>
+    </message>
+    <message>
+      <source>Largest number of threads; the result does not depend on it</source>
+      <translation>Größte Anzahl der Threads; das Ergebnis hängt nicht davon ab</translation>
     </message>
     <message>
       <source>Layers keep the faces and the volumes of solids</source>
@@ -701,10 +705,6 @@
     <message>
       <source>No mesh is made; the list says why.</source>
       <translation>Es ist kein Netz entstanden; die Liste sagt, warum.</translation>
-    </message>
-    <message>
-      <source>No program shows pages; the report is {path}</source>
-      <translation>Kein Programm zeigt Seiten an; der Bericht ist {path}</translation>
     </message>
     <message>
       <source>No two solids touch, so there is nothing to keep apart.</source>
@@ -1415,8 +1415,8 @@
       <translation>{label} verweist auf {other}, vernetzt wird aber {part}; wählen Sie dessen Teilformen.</translation>
     </message>
     <message>
-      <source>{label}: Growth is {value}, but sizes grow by 0 or more.</source>
-      <translation>{label}: Growth ist {value}, aber Größen wachsen um 0 oder mehr.</translation>
+      <source>{label}: Growth is {value}, but must be 0 or more.</source>
+      <translation>{label}: Growth ist {value}, muss aber 0 oder mehr sein.</translation>
     </message>
     <message>
       <source>{label}: a size of {size:g} mm makes no sense, it has to be more than 0.</source>

@@ -334,8 +334,8 @@ class Sorter {
         "to get nodes on lines and points, give them as segments and points of a .poly file beside this one");
     tell(partly_, "outside of the closed solids in part, and left out there", "end edges at the faces");
     tell(meeting_,
-         "not part of any face and left out: inside a solid, but meeting a face or the middle of another "
-         "edge where OpenCASCADE's general fuse does not cut them",
+         "not part of any face and left out: inside a solid, where they meet a face or the middle of another "
+         "edge, and OpenCASCADE's general fuse does not cut them there",
          "end edges before faces, and cut them where others meet them");
     if (!renumbered_.empty())
       topology_.notes.push_back(fmt::format(

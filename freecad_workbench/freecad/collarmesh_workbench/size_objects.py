@@ -52,7 +52,7 @@ class Size(compatibility.WithProperties):
                     text.format(label=obj.Label, property=name, value=getattr(obj, name).UserString)
                 )
         if obj.Growth < 0:
-            text = translate("collarmesh", "{label}: Growth is {value}, but sizes grow by 0 or more.")
+            text = translate("collarmesh", "{label}: Growth is {value}, but must be 0 or more.")
             raise MesherError(text.format(label=obj.Label, value=f"{obj.Growth:g}"))
         return [{"size": obj.Size.Value, "growth": obj.Growth, **body} for body in self.bodies(obj)]
 

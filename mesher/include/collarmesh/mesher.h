@@ -114,7 +114,7 @@ struct WorkCounts {
   std::size_t looks = 0;           ///< inspections of such a point or ball for a new vertex or a candidate
   std::size_t gap_queries = 0;     ///< queries of the gap size, with collars created in the pass
   std::size_t gap_cells = 0;       ///< Voronoi cells that these queries explored
-  std::size_t gap_interviews = 0;  ///< pieces of features whose distance these queries computed
+  std::size_t gap_interviews = 0;  ///< pieces of features whose distance the queries of gap sizes computed
   std::size_t largest_degree = 0;  ///< largest number of neighbours of a new vertex
   std::size_t largest_cavity = 0;  ///< largest number of cells that one insertion destroyed
   /// The largest cavity except at vertices and curves of the complex where very many features meet.

@@ -167,7 +167,7 @@ void check_tet_mesh(const TetMesh& mesh, const TetMesh* with_layers, const Plc& 
   if (with_layers != nullptr && !report.cancelled) check_core(*with_layers, subject, report);
 }
 
-/// Returns whether a guarantee concerns shapes of cells or distances, which change with the sizes.
+/// Returns whether a guarantee is about shapes of cells and distances, which other sizes change.
 bool is_of_shapes(const std::string& name) {
   using namespace guarantee;
   const std::array<std::string_view, 14> of_shapes{

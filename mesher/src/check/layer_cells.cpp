@@ -254,7 +254,7 @@ class LayerCheck {
   }
 
   void check_regions(const CellSide& listed, const CellSide* one, const CellSide* other) {
-    std::array<Index, 2> wanted{};  // behind and in front of the corners as they are in CellSide
+    std::array<Index, 2> wanted{};  // behind and in front of the corners in their order in CellSide
     for (const CellSide* side : {one, other})
       if (side != nullptr) wanted[side->turned ? 1 : 0] = region_of(*side);
     if (listed.turned) std::swap(wanted[0], wanted[1]);
@@ -437,7 +437,8 @@ void check_core_angles(const TetMesh& mesh, const std::vector<Index>& walls, con
     findings.add(
         guarantee::core_angles, p[a], {t},
         "Tet {} beside the layers at {} has dihedral angles from {:.4g} to {:.4g} degrees and face angles "
-        "up to {:.4g}; allowed are {:.4g} to {} where circumradius / shortest edge, {:.4g}, is above {:.4g}.",
+        "up to {:.4g}; allowed are {:.4g} to {}, because circumradius / shortest edge is {:.4g}, above "
+        "{:.4g}.",
         t, At{p[a]}, quality.min_dihedral, quality.max_dihedral, largest_face_angle(p[a], p[b], p[c], p[d]),
         least, largest, quality.radius_edge, bounds.radius_edge);
   }

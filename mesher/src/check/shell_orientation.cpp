@@ -116,7 +116,8 @@ class MetSurfaces {
   bool is_orientable(Index patch) { return orientable_[surface_of(patch).first]; }
 
  private:
-  // Returns the first patch and whether the given one is turned against it. Halves the path.
+  // Returns the patch that represents the surface of this one (the root of the union-find tree), and whether
+  // this one is turned against it.
   std::pair<Index, bool> surface_of(Index patch) {
     bool turned = false;
     for (; parent_[patch] != patch; patch = parent_[patch]) {

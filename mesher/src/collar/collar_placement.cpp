@@ -104,8 +104,8 @@ void CollarPlacement::require_room(double radius, const Point& where) const {
   if (radius > 0 && !(options_.too_small && options_.too_small(where, radius))) return;
   const Point p = options_.outside ? options_.outside(where) : where;
   const std::string message = fmt::format(
-      "Features come so near to each other at {} that nothing fits between them: {:.3g}; move them apart, or "
-      "remove one.",
+      "Features at {} are only {:.3g} apart, too near to each other for elements between them; move them "
+      "apart, or remove one.",
       facets::text(p), radius / radius_per_gap);
   throw PlcError(message, {{PlcFault::Kind::intersection, message, {}, p}});
 }

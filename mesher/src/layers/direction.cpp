@@ -19,7 +19,7 @@ constexpr unsigned most_steps = 200;
 constexpr double direction_precision = 1e-6;
 // Walls with a smaller cosine to the best direction meet sharply.
 constexpr double narrow = 0.6;
-// A direction above means of normals must have at least this share of the best direction's least cosine.
+// The direction from means of normals is used if its least cosine exceeds this share of the best one's.
 constexpr double steep_enough = 0.85;
 // Planes, and lines, count as the same if the sine of their angle is smaller.
 constexpr double parallel = 1e-4;

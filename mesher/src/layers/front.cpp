@@ -135,7 +135,7 @@ void Front::find_sector(Index vertex, Index tet, std::vector<Index>& sector) {
     corners.insert(corners.end(), at.corners.begin(), at.corners.end());
     for (unsigned corner = 0; corner < 4; ++corner) {
       if (at.corners[corner] == vertex) continue;
-      // Layers on the other side keep the triangles there in place.
+      // Triangles with layers on the other side only must not move.
       if (is_bare(sector[i], corner)) nodes[node].blocked = true;
       if (is_wall(at.faces[corner])) continue;
       if (at.faces[corner] != none) faces.push_back(at.faces[corner]);
@@ -291,8 +291,7 @@ void Front::find_direction(Index node, std::span<const Index> sector_faces,
   }
   at.direction = found->direction;
   at.least_cosine = found->least_cosine;
-  // Triangles deviate from a curved wall to both sides, so the mean cosine, not the least, is that of the
-  // wall.
+  // Triangles deviate from a curved wall to both sides, so use the mean of their normals for each patch.
   at.cosine = 1;
   for (const PatchNormal& of : normals) at.cosine = std::min(at.cosine, dot(of.mean, at.direction));
 }

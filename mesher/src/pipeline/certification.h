@@ -10,7 +10,7 @@ namespace collarmesh::pipeline {
 bool is_about_shape(const Finding& finding);
 
 /// Returns the number of tets that miss the bounds on their shapes, plus, with a far larger weight, the
-/// number of sides of pairs without an image. Precondition: the map has the corners.
+/// number of nodes, edges and faces of periodic pairs that have no image.
 std::size_t count_misshapen(const MeshJob& job, const TetMesh& mesh);
 
 /// Checks the mesh against the bounds that the options ask for, and within the tolerance of its complex.

@@ -62,10 +62,10 @@ class VertexCounter {
   // Most parts without thin features have less than one vertex for each tet that is left after coarsening.
   static constexpr std::size_t few = 1500, by_tet = 1;
 
-  // Returns whether a refinement with these vertices can only end with too many. Must be false for every
-  // refinement whose end `exceeds` accepts, because the times of progress reports depend on the clock. While
-  // narrow cells are bounded, such a refinement may have twice the vertices and some more, and takes them
-  // back.
+  // Returns whether a refinement that has reached this number of vertices must end with too many. The moments
+  // of progress reports depend on the clock, so this must be false throughout a refinement that does not
+  // exceed the limit at its end. While it bounds narrow cells, such a refinement may have twice as many
+  // vertices and some more; it drops those if it begins again.
   bool will_exceed(std::size_t vertices) {
     constexpr std::size_t some_more = 5000;
     return fineness_ == Fineness::as_asked && vertices > few && vertices > 2 * most() + some_more &&

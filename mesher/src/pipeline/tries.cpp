@@ -158,7 +158,8 @@ void Tries::mesh_any_repaired(SoupPipelineResult& all) {
 /// would hardly end, the larger tolerance leaves none nearly as sharp, and nothing is lost. Sets the repair
 /// that is used, and returns a note of it.
 std::string Tries::repair_sharp_creases(RepairOptions& repair, SoupPipelineResult& all) {
-  constexpr double too_sharp = 0.1, blunter = 3;  // degrees, and a factor
+  // In degrees, and the factor by which a larger tolerance must enlarge the smallest angle.
+  constexpr double too_sharp = 0.1, blunter = 3;
   if (!all.repair.repaired || all.repair.wrapped) return {};
   const std::vector<Crease> creases = find_creases(all.plc, too_sharp);
   if (creases.empty()) return {};

@@ -30,7 +30,7 @@ class VertexBudget {
 
   /// Returns whether a refinement ended at a number of vertices, and not because time or memory ran out.
   bool ended_at_vertices(const MeshResult& result, bool out_of_time) const;
-  /// Returns whether the number at which the refinement ended was this one.
+  /// Returns whether a refinement ended at this budget's number of vertices.
   bool hit(const MeshResult& result, bool out_of_time) const;
 
  private:

@@ -27,7 +27,7 @@ class SurfaceEditor {
   struct Contraction {
     double longest = INFINITY;  ///< longest edge afterwards, relative to the target edge length
     double least_shape = 0;     ///< least shape afterwards, or the one before if that is less
-    bool better = false;        ///< the least shape must increase
+    bool better = false;        ///< whether the least shape must increase
   };
 
   /// Conditions for removing a vertex.
