@@ -229,12 +229,12 @@ TEST(CadModel, CutsEdgesInsideWhereTheyMeetOneAnother) {
                                6,
                                2,
                                {{2, 5, 5}, {7, 5, 5}},
-                               "Edge14 at (4.5, 5, 5) lies on Edge13 and has its number there"},
+                               "Edge14 at (4.5, 5, 5) lies on Edge13 and gets its number there"},
                               {line(gp_Pnt(2, 5, 5), gp_Pnt(8, 5, 5)),
                                6,
                                1,
                                {{2, 5, 5}, {8, 5, 5}},
-                               "Edge14 at (5, 5, 5) lies on Edge13 and has its number there"},
+                               "Edge14 at (5, 5, 5) lies on Edge13 and gets its number there"},
                               {point(5, 5, 5), 6, 2, {{5, 5, 5}}}};
   for (const Meeting& meeting : meetings) {
     CadModel model(compound({box(), first, meeting.other}), "part");

@@ -571,7 +571,7 @@ class Words(ProgramTest):
         self.expect(3, "chek", "-o", self.out, says=["format is not known"])
 
     def test_help_says_what_commands_do(self):
-        for command, words in (("check", "Certify a mesh"), ("info", "Say what"), ("convert", "Convert surfaces"),
+        for command, words in (("check", "Certify a mesh"), ("info", "Describe the input"), ("convert", "Convert surfaces"),
                                ("repair", "Write the facets")):
             self.assertIn(words, self.expect(0, command, "--help").stdout)
 
