@@ -64,7 +64,7 @@
       <translation>Jedem Körper eigene Knoten geben, wo Körper sich berühren, für Kontakt; sonst sind sie verklebt</translation>
     </message>
     <message>
-      <source>Give up after so many seconds; 0: never</source>
+      <source>Give up after this many seconds; 0: never</source>
       <translation>Nach so vielen Sekunden aufgeben; 0: nie</translation>
     </message>
     <message>
@@ -122,6 +122,10 @@
     <message>
       <source>Number of layers</source>
       <translation>Anzahl der Schichten</translation>
+    </message>
+    <message>
+      <source>Number of the mesh that the object has</source>
+      <translation>Welches seiner Netze das Objekt hat</translation>
     </message>
     <message>
       <source>Order of the elements</source>
@@ -184,12 +188,16 @@
       <translation>Das Objekt, dessen Form vernetzt wird</translation>
     </message>
     <message>
-      <source>The size holds up to this distance and grows beyond</source>
-      <translation>Die Größe gilt bis zu diesem Abstand und wächst jenseits davon</translation>
+      <source>The settings that the mesh was made with</source>
+      <translation>Mit welchen Einstellungen es gemacht ist</translation>
     </message>
     <message>
-      <source>What shape the mesh was made of</source>
+      <source>The shape that the mesh was made from</source>
       <translation>Aus welcher Form das Netz gemacht ist</translation>
+    </message>
+    <message>
+      <source>The size holds up to this distance and grows beyond</source>
+      <translation>Die Größe gilt bis zu diesem Abstand und wächst jenseits davon</translation>
     </message>
     <message>
       <source>What to do with triangles of the shape that intersect or leave holes. Automatic: repair them; None: refuse them; Wrap: where repair fails, mesh a closed surface around everything</source>
@@ -200,16 +208,8 @@
       <translation>Wo die Form repariert werden muss, sind kleinere Merkmale Rauschen, relativ zur Diagonale; 0: 1e-5</translation>
     </message>
     <message>
-      <source>Which of its meshes the object has</source>
-      <translation>Welches seiner Netze das Objekt hat</translation>
-    </message>
-    <message>
       <source>Width of the box along its y axis</source>
       <translation>Breite des Quaders entlang seiner y-Achse</translation>
-    </message>
-    <message>
-      <source>With what settings it was made</source>
-      <translation>Mit welchen Einstellungen es gemacht ist</translation>
     </message>
   </context>
   <context>
@@ -271,7 +271,7 @@
       <translation>Eine Zusage ist verfehlt</translation>
     </message>
     <message>
-      <source>A guarantee was missed when it was made</source>
+      <source>A guarantee was missed when the mesh was made</source>
       <translation>Eine Zusage war verfehlt, als es entstand</translation>
     </message>
     <message>
@@ -347,8 +347,8 @@
       <translation>Abbrechen</translation>
     </message>
     <message>
-      <source>Cancelled; the mesh is the one from before.</source>
-      <translation>Abgebrochen; das Netz ist das von vorher.</translation>
+      <source>Cancelled; the previous mesh is kept.</source>
+      <translation>Abgebrochen; das bisherige Netz bleibt.</translation>
     </message>
     <message>
       <source>Choose a size; how many elements it makes and how long that takes is estimated for this shape</source>
@@ -377,10 +377,6 @@
     <message>
       <source>Curved elements are not inverted</source>
       <translation>Gekrümmte Elemente sind nicht umgestülpt</translation>
-    </message>
-    <message>
-      <source>Curved faces get so many elements on a full circle; 0: any number</source>
-      <translation>Gekrümmte Flächen bekommen so viele Elemente auf einem vollen Kreis; 0: beliebig viele</translation>
     </message>
     <message>
       <source>Custom</source>
@@ -459,7 +455,7 @@
       <translation>Angestrebter Fehler, relativ zur Energienorm der Lösung</translation>
     </message>
     <message>
-      <source>Every guarantee held when it was made</source>
+      <source>Every guarantee held when the mesh was made</source>
       <translation>Alle Zusagen waren eingehalten, als es entstand</translation>
     </message>
     <message>
@@ -523,6 +519,10 @@
       <translation>Die erste Ordnung ist zu steif bei Biegung: Verschiebungen werden zu klein, Spannungen viel zu klein. Sie ist für einen ersten Blick, und für Löser, die sie verlangen.</translation>
     </message>
     <message>
+      <source>Found no browser to show the report; it is in {path}</source>
+      <translation>Kein Browser gefunden, der den Bericht zeigt; er liegt in {path}</translation>
+    </message>
+    <message>
       <source>FreeCAD's Gmsh cannot mesh triangle meshes.</source>
       <translation>Gmsh kann in FreeCAD keine Dreiecksnetze vernetzen.</translation>
     </message>
@@ -539,11 +539,11 @@
       <translation>Entweder eine Zahl von Elementen oder einen Fehler angeben, größer als 0.</translation>
     </message>
     <message>
-      <source>Give up after so many seconds; 0: never</source>
+      <source>Give up after this many seconds; 0: never</source>
       <translation>Nach so vielen Sekunden aufgeben; 0: nie</translation>
     </message>
     <message>
-      <source>Gmsh does not heed these sizes and layers: {names}</source>
+      <source>Gmsh ignores these sizes and layers: {names}</source>
       <translation>Gmsh beachtet diese Größen und Schichten nicht: {names}</translation>
     </message>
     <message>
@@ -583,10 +583,6 @@
       <translation>Wie weit Flächen und Kanten der Elemente von gekrümmten Flächen abweichen dürfen; 0: ein Zehntel der Größe, höchstens 1/200 der Diagonale (zweite Ordnung: 1/550)</translation>
     </message>
     <message>
-      <source>How many threads the program may use; they change no result</source>
-      <translation>Wie viele Threads das Programm benutzen darf; am Ergebnis ändern sie nichts</translation>
-    </message>
-    <message>
       <source>How much time goes into removing flat elements</source>
       <translation>Wie viel Zeit ins Entfernen flacher Elemente geht</translation>
     </message>
@@ -603,7 +599,7 @@
       <translation>Verbesserung neuer Netze</translation>
     </message>
     <message>
-      <source>In all layers of this mesh, for solvers that know nothing else</source>
+      <source>In all layers of this mesh, for solvers that accept only tetrahedra</source>
       <translation>In allen Schichten dieses Netzes, für Löser, die nichts anderes kennen</translation>
     </message>
     <message>
@@ -627,6 +623,10 @@
       <translation>Größter Abstand von der Form</translation>
     </message>
     <message>
+      <source>Largest number of threads; the result does not depend on it</source>
+      <translation>Größte Anzahl der Threads; das Ergebnis hängt nicht davon ab</translation>
+    </message>
+    <message>
       <source>Layers keep the faces and the volumes of solids</source>
       <translation>Schichten behalten die Flächen und die Volumen der Körper bei</translation>
     </message>
@@ -637,10 +637,6 @@
     <message>
       <source>Length</source>
       <translation>Länge</translation>
-    </message>
-    <message>
-      <source>Length that the edges of the elements are to have</source>
-      <translation>Länge, die die Kanten der Elemente haben sollen</translation>
     </message>
     <message>
       <source>Lines</source>
@@ -711,10 +707,6 @@
       <translation>Es ist kein Netz entstanden; die Liste sagt, warum.</translation>
     </message>
     <message>
-      <source>No program shows pages; the report is {path}</source>
-      <translation>Kein Programm zeigt Seiten an; der Bericht ist {path}</translation>
-    </message>
-    <message>
       <source>No two solids touch, so there is nothing to keep apart.</source>
       <translation>Keine zwei Körper berühren sich, es gibt also nichts getrennt zu lassen.</translation>
     </message>
@@ -725,6 +717,14 @@
     <message>
       <source>Nodes off their face ({count})</source>
       <translation>Knoten neben ihrer Fläche ({count})</translation>
+    </message>
+    <message>
+      <source>Number of elements across thin places of the shape; 0: any number</source>
+      <translation>Dünne Stellen der Form bekommen so viele Elemente quer hindurch; 0: beliebig viele</translation>
+    </message>
+    <message>
+      <source>Number of elements on a full circle of curved faces; 0: any number</source>
+      <translation>Gekrümmte Flächen bekommen so viele Elemente auf einem vollen Kreis; 0: beliebig viele</translation>
     </message>
     <message>
       <source>Number of elements to aim for</source>
@@ -831,7 +831,7 @@
       <translation>Lauf</translation>
     </message>
     <message>
-      <source>Second order: nodes amid edges, on the exact faces</source>
+      <source>Second order: mid-edge nodes, on the exact faces</source>
       <translation>Zweite Ordnung: Knoten mitten auf den Kanten, auf den exakten Flächen</translation>
     </message>
     <message>
@@ -923,6 +923,10 @@
       <translation>Mit collarmesh übernehmen</translation>
     </message>
     <message>
+      <source>Target length of the elements' edges</source>
+      <translation>Länge, die die Kanten der Elemente haben sollen</translation>
+    </message>
+    <message>
       <source>Tetrahedra</source>
       <translation>Tetraeder</translation>
     </message>
@@ -951,7 +955,7 @@
       <translation>Die Analyse von {label} hat kein Ergebnis mit Verschiebungen: erst lösen.</translation>
     </message>
     <message>
-      <source>The bound that the elements keep; at least 2 always ends</source>
+      <source>The bound that the elements keep; with 2 or more, meshing always ends</source>
       <translation>Die Schranke, die die Elemente einhalten; ab 2 endet der Lauf immer</translation>
     </message>
     <message>
@@ -987,7 +991,7 @@
       <translation>Das Netz ist fehlerfrei</translation>
     </message>
     <message>
-      <source>The mesher ended with exit code {code} and without a word.</source>
+      <source>The mesher ended with exit code {code} and without a message.</source>
       <translation>Der Vernetzer endete mit dem Exitcode {code} und ohne ein Wort.</translation>
     </message>
     <message>
@@ -1053,10 +1057,6 @@
     <message>
       <source>Thin elements have no small or large angle</source>
       <translation>Dünne Elemente haben keine kleinen oder großen Winkel</translation>
-    </message>
-    <message>
-      <source>Thin places of the shape get so many elements across; 0: any number</source>
-      <translation>Dünne Stellen der Form bekommen so viele Elemente quer hindurch; 0: beliebig viele</translation>
     </message>
     <message>
       <source>This mesh is out of date: the shape, a size or a setting has changed since it was made. Mesh it again.</source>
@@ -1415,8 +1415,8 @@
       <translation>{label} verweist auf {other}, vernetzt wird aber {part}; wählen Sie dessen Teilformen.</translation>
     </message>
     <message>
-      <source>{label}: Growth is {value}, but sizes grow by 0 or more.</source>
-      <translation>{label}: Growth ist {value}, aber Größen wachsen um 0 oder mehr.</translation>
+      <source>{label}: Growth is {value}, but must be 0 or more.</source>
+      <translation>{label}: Growth ist {value}, muss aber 0 oder mehr sein.</translation>
     </message>
     <message>
       <source>{label}: a size of {size:g} mm makes no sense, it has to be more than 0.</source>
@@ -1443,7 +1443,7 @@
       <translation>{label}: nur ein Dreiecksnetz braucht Flächen für Randbedingungen, und es muss zuerst vernetzt sein.</translation>
     </message>
     <message>
-      <source>{label}: the mesh has nothing of {name}: it lies inside another solid, or repair has taken it away; choose others.</source>
+      <source>{label}: the mesh has nothing of {name}: it lies inside another solid, or repair has removed it; choose others.</source>
       <translation>{label}: Das Netz hat nichts von {name}: Es liegt in einem anderen Körper, oder die Reparatur hat es entfernt; wählen Sie andere.</translation>
     </message>
     <message>

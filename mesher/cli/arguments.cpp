@@ -92,7 +92,7 @@ bool is_meshing_group(const std::string& group) {
 }
 
 void add_output_format(CLI::App& app, std::string& format, const std::string& when) {
-  app.add_option("--format", format, "Of the output, an extension such as vtu or msh2" + when)
+  app.add_option("--format", format, "Format of the output, an extension such as vtu or msh2" + when)
       ->transform(format_name(all_formats()))
       ->type_name("FORMAT")
       ->default_str("by extension");
@@ -120,7 +120,7 @@ void add_conversion_files(CLI::App& app, MeshArguments& a, const std::string& in
       ->required()
       ->type_name("FILE");
   add_output_format(app, a.output_format, "; needed for -");
-  app.add_option("--input-format", a.input_format, "Of the inputs; needed for -")
+  app.add_option("--input-format", a.input_format, "Format of the inputs, an extension; needed for -")
       ->transform(format_name(all_formats()))
       ->type_name("FORMAT")
       ->default_str("by extension");
@@ -130,7 +130,7 @@ CLI::App* add_convert_command(CLI::App& app, MeshArguments& a) {
   CLI::App* convert = app.add_subcommand(
       "convert",
       "Convert surfaces, complexes and meshes into each other; a surface into a mesh by meshing it");
-  add_conversion_files(*convert, a, "Surfaces and complexes, which become one, or one mesh");
+  add_conversion_files(*convert, a, "Surfaces and complexes, joined into one, or one mesh");
   add_options(*convert, Option::convert, a);
   return convert;
 }
@@ -138,16 +138,15 @@ CLI::App* add_convert_command(CLI::App& app, MeshArguments& a) {
 CLI::App* add_remesh_command(CLI::App& app, RemeshArguments& a) {
   CLI::App* remesh = app.add_subcommand(
       "remesh",
-      "Adapt a mesh to sizes, finer and coarser; its regions, surfaces, edges, names and numbers stay");
+      "Adapt a mesh to sizes, finer or coarser; keeps its regions, surfaces, edges, names and numbers");
   remesh->add_option("MESH", a.inputs, "The mesh: " + list(io::read_tet_mesh_formats()))
       ->required()
       ->expected(1)
       ->type_name("FILE");
   remesh
-      ->add_option(
-          "--against", a.against,
-          "The input that the mesh was made of, one or several files, which the result then follows: "
-          "on CAD shapes the exact faces")
+      ->add_option("--against", a.against,
+                   "The input that the mesh was made from, one or several files; the result follows it, on "
+                   "CAD shapes the exact faces")
       ->type_name("FILE");
   remesh->add_option("-o,--output", a.output, "The mesh to write: " + list(io::written_tet_mesh_formats()))
       ->type_name("FILE");
@@ -172,7 +171,7 @@ CLI::App* add_check_command(CLI::App& app, CheckArguments& a) {
 }
 
 CLI::App* add_info_command(CLI::App& app, InfoArguments& a) {
-  CLI::App* info = app.add_subcommand("info", "Say what the input is: features, regions, creases, angles");
+  CLI::App* info = app.add_subcommand("info", "Describe the input: features, regions, creases, angles");
   info->add_option("INPUT", a.inputs, "Files of one complex, or one mesh")->required()->type_name("FILE");
   info->add_flag("--json", a.json, "Print JSON");
   CLI::Option* const predict =
@@ -191,13 +190,11 @@ CLI::App* add_info_command(CLI::App& app, InfoArguments& a) {
 
 CLI::App* add_repair_command(CLI::App& app, RepairArguments& a) {
   CLI::App* repair = app.add_subcommand(
-      "repair", "Write the facets that would be meshed: repaired where they are no valid complex");
-  add_conversion_files(*repair, a, "Surfaces, complexes and CAD shapes, which become one");
+      "repair", "Write the facets that would be meshed: repaired if they do not form a valid complex");
+  add_conversion_files(*repair, a, "Surfaces, complexes and CAD shapes, joined into one");
   add_options(*repair, Option::repair, a);
-  repair->add_option("--report", a.reports, "Write what was repaired as JSON")
-      ->type_name("FILE")
-      ->expected(1);
-  repair->add_flag("--json", a.json, "Print what was repaired as JSON");
+  repair->add_option("--report", a.reports, "Write the repairs as JSON")->type_name("FILE")->expected(1);
+  repair->add_flag("--json", a.json, "Print the repairs as JSON");
   return repair;
 }
 
@@ -259,7 +256,7 @@ void check_partitions(const MeshArguments& a, bool from_mesh) {
                                                            report::format_of(a.output, a.output_format),
                                                            list(io::formats_with_partitions())));
   if (!a.cell_decomposition.empty() && !io::is_tet_mesh_format(a.output, a.output_format))
-    throw CLI::ValidationError("--cell-decomposition", "is of a mesh, but the output is a surface");
+    throw CLI::ValidationError("--cell-decomposition", "needs a mesh, but the output is a surface");
   if (!a.cell_decomposition.empty() && a.partitions == 0 && !from_mesh)
     throw CLI::ValidationError("--cell-decomposition", "is of partitions; say how many with --partitions");
   if (a.ghost_cells == GhostCells::off) return;
@@ -293,11 +290,12 @@ void check_mesh_arguments(const MeshArguments& a);
 void check_batch(const MeshArguments& a) {
   if (!a.output.empty()) throw CLI::ValidationError("--batch", "contradicts --output; use one of them");
   if (!a.cell_decomposition.empty())
-    throw CLI::ValidationError("--batch", "has one --cell-decomposition for several meshes; leave it out");
+    throw CLI::ValidationError("--batch",
+                               "makes several meshes, but there is one --cell-decomposition; leave it out");
   if (!a.trace_folder.empty())
-    throw CLI::ValidationError("--batch", "has one --trace for several meshes; leave it out");
+    throw CLI::ValidationError("--batch", "makes several meshes, but there is one --trace; leave it out");
   if (a.output_format == ".polymesh")
-    throw CLI::ValidationError("--format", "is of a folder for each mesh; mesh the parts one by one");
+    throw CLI::ValidationError("--format", "needs a folder for each mesh; mesh the parts one by one");
   for (const std::string& report : a.reports)
     if (report != "json" && report != "html")
       throw CLI::ValidationError("--report",
@@ -327,13 +325,13 @@ void check_output_of_surfaces(const MeshArguments& a) {
   if (a.triangle_elements != TriangleElements::shell &&
       report::format_of(a.output, a.output_format) != ".inp")
     throw CLI::ValidationError("--triangle-elements",
-                               fmt::format("'{}' does not tell elements apart; use .inp", a.output));
+                               fmt::format("'{}' cannot store types of elements; use .inp", a.output));
   if (is_surface && a.order == 2)
     throw CLI::ValidationError("--order", fmt::format("{} has no elements of second order; use --order 1",
                                                       report::format_of(a.output, a.output_format)));
 }
 
-/// Rejects layers of prisms for which the output has no place, before anything is meshed.
+/// Rejects layers of prisms, before anything is meshed, if the output format cannot hold them.
 void check_output_of_layers(const MeshArguments& a) {
   const std::vector<std::string> formats = io::formats_with_layers(a.order);
   if (!a.layers.any() || a.layers.tets || !io::is_tet_mesh_format(a.output, a.output_format) ||

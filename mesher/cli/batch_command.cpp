@@ -95,7 +95,7 @@ std::string words_of(ExitCode code) {
     case ExitCode::success: return "every guarantee holds";
     case ExitCode::guarantee_missed: return "a guarantee is missed";
     case ExitCode::unreadable: return "cannot be read";
-    case ExitCode::invalid_complex: return "no valid complex";
+    case ExitCode::invalid_complex: return "not a valid complex";
     case ExitCode::budget_hit: return "a budget was hit";
     case ExitCode::cancelled: return "cancelled";
     case ExitCode::usage: return "usage";

@@ -78,7 +78,7 @@ class InputSource : public ComplexSource {
 
   RepairedPlc build(const RepairOptions& repair, const Execution&) override {
     if (repair.wrap_at_once)
-      stages_.print("wrapped: no mesh of the complex keeps every guarantee within its vertices\n");
+      stages_.print("wrapped: no mesh of the complex keeps every guarantee within the limit on vertices\n");
     else if (repair.tolerance != arguments_.repair.tolerance)
       stages_.print(fmt::format(
           "trying --repair-tolerance {:.3g}: with the smaller tolerance, places far thinner than the sizes "
@@ -117,7 +117,7 @@ class InputSource : public ComplexSource {
     if (size_field_use_)
       for (const std::string& source : size_field_use_->without_effect())
         told.push_back(fmt::format(
-            "--size-field: no effect of {}: nowhere in the part is its size below the {:.6g} of --size.",
+            "--size-field: {} has no effect: nowhere in the part is its size below {:.6g}, that of --size.",
             source, size_field_use_->size()));
     return told;
   }

@@ -33,40 +33,39 @@ std::vector<std::string> option_warnings(const MeshArguments& a, const Plc& plc)
   const double diagonal = plc.bounds.diagonal();
   if (a.mesh.bounds.radius_edge < proved_radius_edge)
     warnings.push_back(
-        fmt::format("--radius-edge {}: refinement need not end below sqrt 2 = 1.414; it ends when a "
-                    "budget is spent, set one with --max-vertices or --time-limit.",
+        fmt::format("--radius-edge {}: below sqrt 2 = 1.414 refinement may not terminate; set a budget with "
+                    "--max-vertices or --time-limit.",
                     a.mesh.bounds.radius_edge));
   if (a.improve == 0 && a.min_dihedral > 0)
-    warnings.push_back(fmt::format("--min-dihedral {}: nothing is improved at --improve 0; leave that out.",
-                                   a.min_dihedral));
+    warnings.push_back(
+        fmt::format("--min-dihedral {}: no effect, because --improve 0 improves nothing; leave that out.",
+                    a.min_dihedral));
   if (a.mesh.bounds.collar_angle < (a.coarsen ? reached_coarsened : reached_collar_angle) &&
       !find_creases(plc, a.mesh.bounds.crease_angle).empty())
     warnings.push_back(
-        a.coarsen
-            ? fmt::format("--collar-angle {}: collars need not reach bounds below 120 degrees; then the "
-                          "certificate names the tetrahedra, and the exit code is 7.",
-                          a.mesh.bounds.collar_angle)
-            : fmt::format("--collar-angle {}: with --coarsen off collars need not reach bounds below 130 "
-                          "degrees; refinement then ends when a budget is spent, set one with "
-                          "--max-vertices or --time-limit.",
-                          a.mesh.bounds.collar_angle));
+        a.coarsen ? fmt::format("--collar-angle {}: collars may miss bounds below 120 degrees; the "
+                                "certificate then names the tetrahedra, and the exit code is 7.",
+                                a.mesh.bounds.collar_angle)
+                  : fmt::format(
+                        "--collar-angle {}: with --coarsen off, collars may miss bounds below 130 degrees, "
+                        "and refinement may not terminate; set a budget with --max-vertices or --time-limit.",
+                        a.mesh.bounds.collar_angle));
   if (a.coarsen && a.mesh.vertex_ratio > 0)
-    warnings.push_back(fmt::format(
-        "--vertex-ratio {}: the mesh that coarsening makes need not keep this bound; --coarsen off "
-        "leaves what refinement made, which improvement may still exceed.",
-        a.mesh.vertex_ratio));
+    warnings.push_back(
+        fmt::format("--vertex-ratio {}: a coarsened mesh may exceed this bound; use --coarsen off, after "
+                    "which only improvement may exceed it.",
+                    a.mesh.vertex_ratio));
   if (a.mesh.bounds.distance > 0 && a.mesh.bounds.distance < small_distance * diagonal &&
       is_smooth_anywhere(plc))
     warnings.push_back(
-        fmt::format("--distance {:.6g} is {:.2g} of the diagonal: on smooth faces and curves the "
-                    "number of elements grows with its inverse; a larger distance, or --feature-angle "
-                    "0 for the facets as they are, costs less.",
+        fmt::format("--distance {:.6g} is {:.2g} of the diagonal: on smooth faces and curves the number of "
+                    "elements grows with its inverse; a larger distance costs less, as does --feature-angle "
+                    "0, which keeps the facets as they are.",
                     a.mesh.bounds.distance, a.mesh.bounds.distance / diagonal));
   if (a.complex.planar_tolerance > large_planar_tolerance)
     warnings.push_back(
-        fmt::format("--planar-tolerance {}: facets that are not flat were merged into flat ones, up to "
-                    "{:.6g} from where they were, and the mesh follows the merged ones; a curved face "
-                    "stays one without it.",
+        fmt::format("--planar-tolerance {}: facets were merged into flat ones, up to {:.6g} away, and the "
+                    "mesh follows these; without this option, curved faces stay curved.",
                     a.complex.planar_tolerance, plc.largest_deviation));
   if (!(a.names.empty() && a.given_names.empty()) &&
       !report::keeps_names(report::format_of(a.output, a.output_format)))

@@ -31,7 +31,8 @@ std::string read_again(const std::string& path, const RepairArguments& a) {
     build_plc(soups, a.complex);
   } catch (const PlcError& error) {
     return fmt::format(
-        "warning: what this format keeps of it is no valid complex: {} Formats that keep more are .off, .obj "
+        "warning: the written file is not a valid complex, because the format does not keep all data: {} "
+        "Formats that keep more are .off, .obj "
         "and .ply (64 bits), and .poly (regions).\n",
         error.what());
   }

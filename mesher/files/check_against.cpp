@@ -83,9 +83,9 @@ void check_against_further(const TetMesh& mesh, ComplexInput& input, const RunOp
     report.notes.push_back(
         !repair.small_features.empty() && further.tolerance == options.repair.tolerance
             ? "features smaller than the feature size are collapsed in the mesh"
-        : repair.wrapped
-            ? "the mesh was made from a wrap (a closed surface around the input)"
-            : fmt::format("the mesh is one of a repair with --repair-tolerance {:.3g}", further.tolerance));
+        : repair.wrapped ? "the mesh was made from a wrap (a closed surface around the input)"
+                         : fmt::format("the mesh was made after a repair with --repair-tolerance {:.3g}",
+                                       further.tolerance));
     return;
   }
 }

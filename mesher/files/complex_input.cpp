@@ -133,7 +133,8 @@ void ComplexInput::remember(const PlcOptions& options, const RepairOptions& repa
   if (!built_.repaired.repaired || built_.repaired.cancelled || some_finer ||
       plc.triangles.size() > most_triangles)
     return;
-  if (known_.size() == most) known_.erase(known_.begin() + 1);  // tries come back to the first one
+  // Keep the first one, because later tries return to it.
+  if (known_.size() == most) known_.erase(known_.begin() + 1);
   known_.push_back({options, repair, finer_, plc, built_});
 }
 
@@ -168,7 +169,7 @@ Plc ComplexInput::without_small_features(Plc plc, const PlcOptions& options, con
   try {
     name(named);
   } catch (const OptionError&) {
-    return plc;  // names that do not fit are told when the complex gets them
+    return plc;  // names that do not fit are reported when the complex gets them
   }
   for (Index p = 0; p < plc.patches.size(); ++p)
     if (named.names.of(2).contains(named.patches[p].tag)) kept.kept_patches.push_back(plc.patches[p].tag);

@@ -25,8 +25,8 @@ std::vector<std::filesystem::path> files_read(const std::filesystem::path& path,
 /// Returns whether two paths name the same file, by any name or link.
 bool same_file(const std::filesystem::path& a, const std::filesystem::path& b);
 
-/// Returns a text on the input that an output would overwrite: "part.node, a file of the input part.poly";
-/// empty: none.
+/// Describes an input that an output would overwrite: "part.node, a file of the input part.poly"; empty:
+/// none.
 std::string overwritten(const std::vector<std::filesystem::path>& written,
                         const std::vector<std::string>& inputs, const std::string& input_format);
 

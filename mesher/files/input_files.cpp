@@ -98,7 +98,7 @@ TetMesh read_mesh_or_triangles(const std::string& path) {
   TetMesh mesh_of_triangles = io::read_mesh_cells(existing_file(path));
   if (!mesh_of_triangles.layers.quads.empty())
     throw ReadError(fmt::format(
-        "{}: has {} quadrangles, which are not judged without cells of volumes; save triangles alone", path,
+        "{}: has {} quadrangles, which cannot be checked without volume cells; save triangles alone", path,
         mesh_of_triangles.layers.quads.size()));
   return mesh_of_triangles;
 }

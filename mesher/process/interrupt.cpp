@@ -82,10 +82,9 @@ bool asked_to_stop() {
 std::string coarser_text() {
   const std::string stage = stage_reached().stage;
   if (stage == "start" || stage == "read")
-    return "or read less at once: the solids of a large assembly by files of their own";
+    return "or read less at once: save the solids of a large assembly as separate files";
   if (stage == "complex")
-    return "or try another --repair-tolerance, as facets that intersect in many places take the time, or "
-           "--repair wrap";
+    return "or, as many intersecting facets take the time, try another --repair-tolerance or --repair wrap";
   return "or --size for a coarser mesh; `collarmesh mesh` also has --repair wrap, which ignores detail much "
          "finer than the size";
 }

@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::string_view program = "collarmesh: ";  // prefix of messages
 
-/// A block that is freed when memory is used up, so that ending the program has some.
+/// A block that is freed when memory is used up, so that the program has some memory to end with.
 std::unique_ptr<char[]> reserve;
 
 [[noreturn]] void end(ExitCode code, std::string_view message) noexcept {

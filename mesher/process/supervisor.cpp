@@ -143,8 +143,8 @@ ExitCode reason_for(int status, bool out_of_time) {
     remove_dead_folder(&shared->folders[at]);
   if (out_of_time && shared->in_cad.load() && is_over(shared->cad_end, {}))
     return told(ExitCode::unreadable,
-                fmt::format("{}: OpenCASCADE has taken too long while {}; the file is probably damaged; for "
-                            "one that is not, say with --time-limit how long it may take",
+                fmt::format("{}: OpenCASCADE took too long while {}; the file is probably damaged; if it is "
+                            "not, allow more time with --time-limit",
                             shared->file.data(), shared->doing.data()));
   if (out_of_time) return told(ExitCode::budget_hit, "the time limit is reached; nothing was written");
   if (!WIFSIGNALED(status)) return static_cast<ExitCode>(WEXITSTATUS(status));
@@ -156,12 +156,10 @@ ExitCode reason_for(int status, bool out_of_time) {
   if (number == SIGXCPU)
     return told(ExitCode::budget_hit, "the system's limit of CPU time is reached; nothing was written");
   if (shared->in_cad.load())
-    return told(
-        ExitCode::unreadable,
-        fmt::format(
-            "{}: OpenCASCADE crashed while {} ({}); the file is damaged, or a shape in it is more than "
-            "OpenCASCADE can do; check and repair it in the program that it is from",
-            shared->file.data(), shared->doing.data(), name_of(number)));
+    return told(ExitCode::unreadable,
+                fmt::format("{}: OpenCASCADE crashed while {} ({}); the file is damaged, or its shape is too "
+                            "difficult for OpenCASCADE; check and repair it in the program that made it",
+                            shared->file.data(), shared->doing.data(), name_of(number)));
   return told(
       ExitCode::internal_error,
       fmt::format("internal error: {}; please report it with the input and the options", name_of(number)));

@@ -55,8 +55,8 @@ def remesh(
     # options of remesh
     progress: as in `collarmesh.mesh`.
 
-    Returns a `Mesh`; its `passed` says whether every guarantee holds. Raises `Error`; ComplexError for tetrahedra that
-    do not fit each other, or that do not cover `against`.
+    Returns a `Mesh`; its `passed` says whether every guarantee holds. Raises `Error`; ComplexError for a mesh that
+    is not conforming or does not cover `against`.
     """
     options = given(sized(locals()))
     shape = options.pop("against", None)
@@ -135,7 +135,7 @@ def repair(
     # options of repair
     input_format: Optional[str] = None,
 ) -> Tuple[List[Surface], List[str]]:
-    """Return the surfaces that would be meshed: repaired if they are no valid complex.
+    """Return the surfaces that would be meshed: repaired if they do not form a valid complex.
 
     surfaces, options: as in `collarmesh.mesh`.
     output: a file to which the surfaces are also written.

@@ -7,7 +7,7 @@
 
 namespace collarmesh::report {
 
-/// Counts of cells of boundary layers, each with a comma behind it; empty for a mesh without them.
+/// Returns the counts of cells of boundary layers, each followed by a comma; empty for a mesh without layers.
 inline std::string layers_text(std::size_t prisms, std::size_t pyramids) {
   return (prisms > 0 ? fmt::format("{} prisms, ", prisms) : "") +
          (pyramids > 0 ? fmt::format("{} pyramids, ", pyramids) : "");

@@ -174,7 +174,8 @@ std::string partitions_text(const PartitionMeasures& m) {
 std::string forced_text(const CheckReport& r) {
   if (r.forced_tets == 0) return {};
   return fmt::format(
-      "narrow places: {} tet{} with angles down to {:.2f} degrees, as edges are short there in the input\n",
+      "narrow places: {} tet{} with angles down to {:.2f} degrees, because the input forces edges to be "
+      "short there\n",
       r.forced_tets, r.forced_tets == 1 ? "" : "s", r.min_forced_dihedral);
 }
 

@@ -27,7 +27,8 @@ std::string place_regions(const std::vector<PolygonSoup>& soups, PlcOptions opti
            (missing > 0 ? fmt::format("{} regions or cavities are too thin for a point inside\n", missing)
                         : "");
   } catch (const PlcError& error) {
-    return fmt::format("no regions are named, because this is no valid complex: {}\n", error.what());
+    return fmt::format("no regions are named, because the facets do not form a valid complex: {}\n",
+                       error.what());
   }
 }
 

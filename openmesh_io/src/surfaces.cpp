@@ -23,7 +23,7 @@ void add_notes(const SurfaceReport& report, std::size_t number, std::vector<std:
 }
 
 void add_notes(const Plc::Cleanup& cleanup, std::vector<std::string>& notes) {
-  note(notes, "complex", cleanup.welded_points, "points became one with another");
+  note(notes, "complex", cleanup.welded_points, "points were merged with others");
   note(notes, "complex", cleanup.degenerate_triangles, "triangles have no area and were dropped");
   note(notes, "complex", cleanup.repeated_triangles, "triangles repeat another one and were dropped");
   note(notes, "complex", cleanup.shared_triangles, "triangles of two surfaces became an interface");

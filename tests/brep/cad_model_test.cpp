@@ -195,10 +195,10 @@ TEST(CadModel, TellsOfEdgesAndPointsOutsideOfSolids) {
   ASSERT_EQ(with_edge.notes().size(), 1U);
   expect_mentions(with_edge.notes()[0],
                   {"part", "Edge13 at (24, 5, 5)",
-                   "is no part of a face and left out: outside of the closed solids", ".poly"});
+                   "is not part of any face and left out: outside of the closed solids", ".poly"});
   ASSERT_EQ(with_both.notes().size(), 1U);
   expect_mentions(with_both.notes()[0],
-                  {"Edge13 at (24, 5, 5) and 1 more are no part of a face and left out: outside"});
+                  {"Edge13 at (24, 5, 5) and 1 more are not part of any face and left out: outside"});
 }
 
 double length_of(const PolygonSoup& soup) {
@@ -229,12 +229,12 @@ TEST(CadModel, CutsEdgesInsideWhereTheyMeetOneAnother) {
                                6,
                                2,
                                {{2, 5, 5}, {7, 5, 5}},
-                               "Edge14 at (4.5, 5, 5) lies on Edge13 and has its number there"},
+                               "Edge14 at (4.5, 5, 5) lies on Edge13 and gets its number there"},
                               {line(gp_Pnt(2, 5, 5), gp_Pnt(8, 5, 5)),
                                6,
                                1,
                                {{2, 5, 5}, {8, 5, 5}},
-                               "Edge14 at (5, 5, 5) lies on Edge13 and has its number there"},
+                               "Edge14 at (5, 5, 5) lies on Edge13 and gets its number there"},
                               {point(5, 5, 5), 6, 2, {{5, 5, 5}}}};
   for (const Meeting& meeting : meetings) {
     CadModel model(compound({box(), first, meeting.other}), "part");
@@ -304,7 +304,8 @@ TEST(CadModel, KeepsNumbersWhereEdgesMeetFaces) {
   EXPECT_EQ(numbers(after), numbers(before));
   for (const PolygonSoup::Segment& segment : after[2].segments) EXPECT_EQ(segment.tag, 25);
   EXPECT_NEAR(length_of(after[2]), 13, 1e-12);
-  expect_mentions(with.notes().at(0), {"Edge26 at (0.5, 0, -5) is no part of a face and left out: outside"});
+  expect_mentions(with.notes().at(0),
+                  {"Edge26 at (0.5, 0, -5) is not part of any face and left out: outside"});
 }
 
 // Also joins edges of a wire that are given separately.

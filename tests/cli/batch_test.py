@@ -46,7 +46,7 @@ class Batch(ProgramTest):
         run = self.run_program(open_box, "bad.off", self.box, "missing.off", "--batch", "made", "--repair", "none")
         self.assertEqual(run.returncode, 4, run.stderr)
         self.assertEqual({name: row[4] for name, row in self.table(run).items()},
-                         {str(open_box): "no valid complex", "bad.off": "cannot be read",
+                         {str(open_box): "not a valid complex", "bad.off": "cannot be read",
                           str(self.box): "every guarantee holds", "missing.off": "cannot be read"})
         self.assertEqual([path.name for path in (self.folder / "made").iterdir()], ["box.vtu"])
         self.assertIn("1 of 4 parts have a mesh", run.stdout)

@@ -303,7 +303,7 @@ class Partitions(ProgramTest):
         shutil.copy(self.folder / "a_0.vtu", self.folder / "a_1.vtu")
         run = self.run_program("info", "a.pvtu")
         self.assertEqual(run.returncode, 3)
-        self.assertRegex(run.stderr, r"a_1\.vtu: cell \d+ is in another place")
+        self.assertRegex(run.stderr, r"a_1\.vtu: cell \d+ occurs twice")
         listed = (self.folder / "a.pvtu").read_text()
         self.write("a.pvtu", listed.replace("a_1.vtu", "a_0.vtu"))
         run = self.run_program("info", "a.pvtu")

@@ -213,7 +213,7 @@ class GivenNames(ProgramTest):
         self.expect(2, self.box, "-o", self.out, "--name", "fixed=99", says=["patches.fixed", "99"])
         path = self.write("names.json", '{\n  "patches":\n    {"fixed" 1}\n}')
         self.expect(2, self.box, "-o", self.out, "--names", path,
-                    says=["names.json: names: line 3, column 14: this is no JSON"])
+                    says=["names.json: names: line 3, column 14: this is not JSON"])
         self.expect(2, self.box, "-o", self.out, "--names", path, "--name", "a=1", says=["line 3, column 14"])
 
 
@@ -571,7 +571,7 @@ class Words(ProgramTest):
         self.expect(3, "chek", "-o", self.out, says=["format is not known"])
 
     def test_help_says_what_commands_do(self):
-        for command, words in (("check", "Certify a mesh"), ("info", "Say what"), ("convert", "Convert surfaces"),
+        for command, words in (("check", "Certify a mesh"), ("info", "Describe the input"), ("convert", "Convert surfaces"),
                                ("repair", "Write the facets")):
             self.assertIn(words, self.expect(0, command, "--help").stdout)
 

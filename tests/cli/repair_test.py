@@ -150,7 +150,7 @@ class Creases(ProgramTest):
                 self.assertNotIn("every guarantee holds", self.expect(
                     7, "check", self.out, "--against", wedge, "--collar-angle", "100", writes=True).stdout)
         self.assertLessEqual(check["max_radius_edge"], 1.6)
-        self.assertIn("warning: --collar-angle 115: collars need not reach",
+        self.assertIn("warning: --collar-angle 115: collars may miss bounds",
                       self.run_program(wedge, "-o", self.out, "--collar-angle", "115").stderr)
         # Without a crease there is no collar.
         run = self.expect(0, self.box, "-o", self.out, "--collar-angle", "115", writes=True)

@@ -158,7 +158,7 @@ class Reports(ProgramTest):
         self.assertEqual(self.box.read_bytes(), before)
         pipe = self.folder / "pipe"
         os.mkfifo(pipe)
-        self.expect(8, self.box, "-o", self.out, "--report", pipe, says=["no regular file"])
+        self.expect(8, self.box, "-o", self.out, "--report", pipe, says=["not a regular file"])
         self.assertTrue(pipe.is_fifo(), "the report of the failure replaced it")
 
     def test_warnings_of_the_input(self):

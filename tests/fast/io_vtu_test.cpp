@@ -246,7 +246,7 @@ TEST(IoVtu, RefusesBadAppendedValues) {
   const std::string gigabyte("\0\0\0\x40\0\0\0\0", 8);
   expect_refused(std::string(packed).replace(start + 8, 8, gigabyte), "cannot hold 1073741824");
   const std::string base64 = ForeignFile({"binary"}).text();
-  expect_refused(replaced(base64, "eAAAAA", "e!AAAA"), "the values are no base64");
+  expect_refused(replaced(base64, "eAAAAA", "e!AAAA"), "the values are not base64");
 }
 
 /// A base64 run with padding one character too early is one byte too short.

@@ -148,7 +148,7 @@ TEST(Names, MistakesAreTold) {
   const Plc plc = plc_of(untagged(box()));
   for (const auto& [text, says] : std::vector<std::pair<std::string, std::string>>{
            {"[]", "object"},
-           {"{", "line 1, column 2: this is no JSON"},
+           {"{", "line 1, column 2: this is not JSON"},
            {R"({"faces": {}})", "faces"},
            {R"({"patches": {"a": 77}})", "77"},
            {R"({"patches": {"a": "b"}})", "patches.a"},

@@ -94,7 +94,7 @@ class Files(FaultsTest):
                     with self.subTest(name=name, at=at, lasts=bool(lasts)):
                         code, messages = self.run_with(name, kind="file", at=at, **lasts)
                         self.assertIn(code, (0, 8), messages)
-                        if lasts and "what was there before is in" in messages:
+                        if lasts and "the previous files could not be restored" in messages:
                             self.assert_kept(name, messages)
                         else:
                             self.assert_whole(name, code, messages)

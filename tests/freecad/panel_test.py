@@ -460,7 +460,7 @@ async def a_mesh_that_is_out_of_date_says_so():
     document.commitTransaction()
     for again in (False, True):
         await wait_until(lambda: child("out_of_date").isVisible(), "the words")
-        require("out of date" in said() and "held when it was made" in said() and "holds" not in said(), said())
+        require("out of date" in said() and "held when the mesh was made" in said() and "holds" not in said(), said())
         grey, _ = colours.of(colours.FAINT)
         require(grey in child("guarantees").text() and grey in child("guarantees_fold").styleSheet(), "it is grey")
         if again:

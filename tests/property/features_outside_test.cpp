@@ -27,7 +27,7 @@ void add_triangle(PolygonSoup& soup, const Point& a, const Point& b, const Point
 
 bool tells_of_outside(const Plc& plc) {
   return std::any_of(plc.warnings.begin(), plc.warnings.end(), [](const Plc::Warning& warning) {
-    return warning.message.find("outside of every region is in no mesh") != std::string::npos;
+    return warning.message.find("bounds no region and is not meshed") != std::string::npos;
   });
 }
 
@@ -112,7 +112,7 @@ TEST(FeaturesOutside, ThoseInsideStay) {
 
 bool tells_of(const CheckReport& report, const std::string& kind) {
   return std::any_of(report.warnings.begin(), report.warnings.end(), [&](const std::string& warning) {
-    return warning.find(kind + " outside of every region are in no mesh: ") == 0;
+    return warning.find(kind + " outside of every region are not meshed: ") == 0;
   });
 }
 
@@ -158,7 +158,7 @@ TEST(FeaturesOutside, PointsAreTold) {
   const Meshed meshed = mesh_of(soup, with_size(0.5));
   EXPECT_EQ(faults(meshed), "");
   ASSERT_TRUE(tells_of(meshed.report, "Vertices"));
-  EXPECT_NE(meshed.report.warnings[0].find("no mesh: 1, the first one"), std::string::npos)
+  EXPECT_NE(meshed.report.warnings[0].find("not meshed: 1, the first one"), std::string::npos)
       << meshed.report.warnings[0];
 }
 

@@ -469,8 +469,7 @@ TEST(Layers, RefuseWallsThatAreNone) {
   EXPECT_NE(error_of({"all:first=0.1,thickness=1"}).find("leave one out"), std::string::npos);
   EXPECT_NE(error_of({"all:count=3", "all:count=5"}).find("gets layers twice"), std::string::npos);
   EXPECT_NE(error_of({"all:region=1", "all:count=5"}, two).find("gets layers twice"), std::string::npos);
-  EXPECT_NE(error_of({"1,2,3,4,5,6", "all:count=5"}).find("'all:count=5' puts layers on no face"),
-            std::string::npos);
+  EXPECT_NE(error_of({"1,2,3,4,5,6", "all:count=5"}).find("'all:count=5' covers no face"), std::string::npos);
 }
 
 TEST(Layers, RefuseFirstLayersThinnerThanCoordinatesTell) {

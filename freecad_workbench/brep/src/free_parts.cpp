@@ -330,18 +330,17 @@ class Sorter {
 
   void tell() const {
     tell(
-        outside_, "no part of a face and left out: outside of the closed solids, or on their faces",
+        outside_, "not part of any face and left out: outside of the closed solids, or on their faces",
         "to get nodes on lines and points, give them as segments and points of a .poly file beside this one");
     tell(partly_, "outside of the closed solids in part, and left out there", "end edges at the faces");
     tell(meeting_,
-         "no part of a face and left out: inside a solid, but meeting a face or the middle of another "
-         "edge where OpenCASCADE's general fuse does not cut them",
+         "not part of any face and left out: inside a solid, where they meet a face or the middle of another "
+         "edge, and OpenCASCADE's general fuse does not cut them there",
          "end edges before faces, and cut them where others meet them");
     if (!renumbered_.empty())
-      topology_.notes.push_back(
-          fmt::format("{}: {} and has its number there{}", file_, renumbered_.front(),
-                      renumbered_.size() > 1 ? fmt::format("; so it is with {} more", renumbered_.size() - 1)
-                                             : std::string()));
+      topology_.notes.push_back(fmt::format(
+          "{}: {} and gets its number there{}", file_, renumbered_.front(),
+          renumbered_.size() > 1 ? fmt::format("; so do {} more", renumbered_.size() - 1) : std::string()));
   }
   void tell(const std::vector<std::string>& names, const char* what, const char* advice) const {
     if (names.empty()) return;

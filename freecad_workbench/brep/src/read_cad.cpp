@@ -59,7 +59,7 @@ TopoDS_Shape read_brep(const std::string& path) {
   }
   if (shape.IsNull())
     throw ReadError(
-        fmt::format("{}: this is no BREP file in text form, or it ends early; write it with FreeCAD or "
+        fmt::format("{}: this is not a BREP text file, or it is cut off; write it with FreeCAD or "
                     "OpenCASCADE{}",
                     path, said.text().empty() ? "" : fmt::format(" (OpenCASCADE: {})", said.text())));
   return shape;
@@ -69,13 +69,13 @@ TopoDS_Shape read_exchange(const std::string& path, const char* format, XSContro
   Interface_Static::SetCVal("xstep.cascade.unit", "MM");
   if (reader.ReadFile(path.c_str()) != IFSelect_RetDone)
     throw ReadError(
-        fmt::format("{}: this is no {} file, or it ends early; export the shape again", path, format));
+        fmt::format("{}: this is not {} data, or it is cut off; export the shape again", path, format));
   reader.TransferRoots();
   const TopoDS_Shape shape = reader.OneShape();
   if (shape.IsNull())
     throw ReadError(fmt::format(
-        "{}: the {} file holds no shape that can be read; export its solids or faces again, or as .brep",
-        path, format));
+        "{}: the {} file has no shape that can be read; export its solids or faces again, or as .brep", path,
+        format));
   return shape;
 }
 

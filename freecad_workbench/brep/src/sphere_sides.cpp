@@ -76,7 +76,7 @@ bool is_sphere_between_poles(const TopoDS_Face& face) {
   return poles == 2 && BRepAdaptor_Surface(face, false).GetType() == GeomAbs_Sphere;
 }
 
-/// Returns the same sphere with its seam amid the given part of the face's parameters.
+/// Returns the same sphere with its seam in the middle of the given part of the face's parameters.
 Handle(Geom_SphericalSurface) with_seam_amid(const TopoDS_Face& face, double from, double to) {
   gp_Sphere sphere = BRepAdaptor_Surface(face, false).Sphere();
   sphere.Rotate(gp_Ax1(sphere.Location(), sphere.Position().Direction()), 0.5 * (from + to));
@@ -86,7 +86,7 @@ Handle(Geom_SphericalSurface) with_seam_amid(const TopoDS_Face& face, double fro
 /// Returns the face on the other side of the outline, which uses its edges in the same directions; a null
 /// face if that fails.
 TopoDS_Face other_side(const TopoDS_Face& face) {
-  constexpr double slack = 1e-6;  // radians that both sides together may miss of a turn
+  constexpr double slack = 1e-6;  // radians by which both sides together may miss a full turn
   double from = 0, to = 0, low = 0, high = 0;
   BRepTools::UVBounds(face, from, to, low, high);
   BRep_Builder builder;
@@ -148,7 +148,7 @@ void refill(const TopoDS_Shape& shell, const std::vector<TopoDS_Face>& before,
   bare.Closed(closed);
 }
 
-/// Returns the faces of spheres between their poles that are turned against the file, unlike most others.
+/// Returns the faces of spheres through both poles that, unlike most others, are turned against the file.
 std::vector<std::size_t> turned_spheres(const TopoDS_Shape& shell, const Senses& senses) {
   const std::vector<TopoDS_Face> faces = faces_in_shell(shell);
   std::vector<std::size_t> turned, kept;

@@ -7,10 +7,10 @@
 namespace collarmesh::brep {
 
 /// Mends faces of spheres that OpenCASCADE's reader took for the other side of their outline. An outline
-/// through both poles divides a sphere into two parts. The file says by the direction of the outline which
-/// one the face is, but where the outline lies on the seam, the reader may place it a period away, and then
-/// turns the face to make it fit. Such a face has the other orientation than the file gives it, and the faces
-/// around it do not. Changes the shape in place.
+/// through both poles divides a sphere into two parts. In the file, the direction of the outline says which
+/// part the face is. If the outline lies on the seam, the reader may place it a period away and then turn the
+/// face to make it fit. Such a face gets the opposite of its orientation in the file; the faces around it do
+/// not. Changes the shape in place.
 void mend_sphere_sides(const STEPControl_Reader& reader, const TopoDS_Shape& shape);
 
 /// Gives a face of a shell, on a sphere and through both poles, the other side of its outline, and turns it

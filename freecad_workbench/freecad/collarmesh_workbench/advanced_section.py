@@ -40,9 +40,9 @@ def sections():
             Row("CharacteristicLengthMin", translate("collarmesh", "Smallest size"), "mm", no_limit,
                 tip=translate("collarmesh", "Never ask for smaller elements than this; 0: no limit")),
             Row("MeshSizeFromCurvature", translate("collarmesh", "Elements on a full circle"), zero=any_number,
-                tip=translate("collarmesh", "Curved faces get so many elements on a full circle; 0: any number")),
+                tip=translate("collarmesh", "Number of elements on a full circle of curved faces; 0: any number")),
             Row("ElementsAcrossGap", translate("collarmesh", "Elements across gaps"), zero=any_number,
-                tip=translate("collarmesh", "Thin places of the shape get so many elements across; 0: any number")),
+                tip=translate("collarmesh", "Number of elements across thin places of the shape; 0: any number")),
             Row("Gradation", translate("collarmesh", "Growth of the size"), zero=any_growth,
                 tip=translate("collarmesh", "Growth of the size by unit of length away from finer places; 0: any")),
         )),
@@ -80,13 +80,13 @@ def sections():
             Row("InteriorNode", translate("collarmesh", "A node inside of each element"),
                 tip=translate("collarmesh", "No element has all its corners on faces")),
             Row("RadiusEdgeRatio", translate("collarmesh", "Circumradius / shortest edge"),
-                tip=translate("collarmesh", "The bound that the elements keep; at least 2 always ends")),
+                tip=translate("collarmesh", "The bound that the elements keep; with 2 or more, meshing always ends")),
         )),
         (translate("collarmesh", "Run"), (
             Row("Seed", translate("collarmesh", "Seed"),
                 tip=translate("collarmesh", "Another number gives another mesh of the same quality")),
             Row("TimeLimit", translate("collarmesh", "Time limit in seconds"), zero=none,
-                tip=translate("collarmesh", "Give up after so many seconds; 0: never")),
+                tip=translate("collarmesh", "Give up after this many seconds; 0: never")),
         )),
     )
 

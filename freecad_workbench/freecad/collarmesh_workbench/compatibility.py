@@ -82,7 +82,7 @@ def is_plain_refinement(obj):
 
 def size_by_place(obj):
     """Converts a refinement by place of FreeCAD 1.1 to one of ours: returns (kind, size, size far away,
-    distance to there, properties); None for other objects."""
+    distance over which the size grows to that, properties); None for other objects."""
     kind = getattr(getattr(obj, "Proxy", None), "Type", "")
     if kind == "Fem::MeshDistance":
         between = obj.DistanceMaximum.Value - obj.DistanceMinimum.Value

@@ -178,7 +178,7 @@ class _ContactsOfKind:
 
     @functools.cached_property
     def _seams(self):
-        """Returns the numbers of edges that the mesh does not have."""
+        """Returns the numbers of seams and degenerate edges: the mesh has no such edges."""
         if self.kind == "Face":
             return set()
         seams = collections.defaultdict(list)

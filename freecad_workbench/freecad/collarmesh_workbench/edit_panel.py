@@ -11,7 +11,7 @@ class EditPanel:
     them."""
 
     def __init__(self, obj, title, name):
-        """`name`: that of the form, by which it is found."""
+        """`name`: the name of the form, by which it is found."""
         self.object = obj
         self.filling = False  # whether the fields are being filled, which is no change of the object
         if not obj.Document.HasPendingTransaction:

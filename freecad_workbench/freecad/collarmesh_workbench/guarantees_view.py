@@ -46,8 +46,8 @@ class GuaranteesView(QtGui.QWidget):
 
     def _heading(self, holds):
         if self._out_of_date:
-            return (translate("collarmesh", "Every guarantee held when it was made") if holds else
-                    translate("collarmesh", "A guarantee was missed when it was made"))
+            return (translate("collarmesh", "Every guarantee held when the mesh was made") if holds else
+                    translate("collarmesh", "A guarantee was missed when the mesh was made"))
         return (translate("collarmesh", "Every guarantee holds") if holds else
                 translate("collarmesh", "A guarantee is missed"))
 

@@ -10,7 +10,7 @@ TYPE = "Fem::CollarmeshLayers"
 PROPERTY = "MeshLayerList"  # property of a mesh object
 COUNT, GROWTH = 3, 1.2
 MOST_LAYERS, MOST_GROWTH = 1000, 10  # the program's bounds
-# Of the object: type, name, value at first, text.
+# The object's properties: type, name, first value, text.
 PROPERTIES = (
     ("App::PropertyLinkSubList", "References", None,
      doc("Faces that get layers; none: all outer faces. With a solid among them, only inside that solid")),

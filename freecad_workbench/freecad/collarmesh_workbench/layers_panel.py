@@ -84,7 +84,7 @@ class LayersPanel(EditPanel):
         self.tetrahedra = QtGui.QCheckBox(translate("collarmesh", "Tetrahedra in place of prisms"))
         self.tetrahedra.setObjectName("collarmesh_layers_tetrahedra")
         self.tetrahedra.setToolTip(
-            translate("collarmesh", "In all layers of this mesh, for solvers that know nothing else"))
+            translate("collarmesh", "In all layers of this mesh, for solvers that accept only tetrahedra"))
         self.tetrahedra.toggled.connect(self._tetrahedra_toggled)
         self.tetrahedra.setVisible(self.mesh is not None)
         layout.addWidget(self.tetrahedra)

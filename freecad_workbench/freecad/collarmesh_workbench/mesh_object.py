@@ -54,7 +54,7 @@ def start(obj, program="", settings=None):
 
 
 def prepare(obj, settings, state, sources=(), program="", adapts=False):
-    """Returns such a Job. `state`: what the object then records of what its mesh is made of; `sources`: the sizes by
+    """Returns such a Job. `state`: the State that the object then records for its mesh; `sources`: the sizes by
     place, with their labels; `adapts`: see Job. Raises MesherError."""
     part = mesh_properties.part_to_mesh(obj)
     size_check.check(settings, sources, part)

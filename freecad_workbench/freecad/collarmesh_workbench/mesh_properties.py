@@ -176,7 +176,7 @@ PROPERTIES = (
         RUN,
         doc("Another number gives another mesh of the same quality"),
     ),
-    ("App::PropertyFloat", "TimeLimit", "time_limit", RUN, doc("Give up after so many seconds; 0: never")),
+    ("App::PropertyFloat", "TimeLimit", "time_limit", RUN, doc("Give up after this many seconds; 0: never")),
 )
 ORDERS = ["1st", "2nd"]
 DIMENSIONS = ["From Shape", "1D", "2D", "3D"]  # the same as in Gmsh's object

@@ -27,7 +27,7 @@ def _key(obj):
 
 def add_properties(obj):
     if NUMBER not in obj.PropertiesList:
-        text = doc("Which of its meshes the object has")
+        text = doc("Number of the mesh that the object has")
         obj.addProperty("App::PropertyInteger", NUMBER, "Base", text, up_to_date.HIDDEN)
         setattr(obj, NUMBER, next(_numbers))
         _in_place[_key(obj)] = getattr(obj, NUMBER)

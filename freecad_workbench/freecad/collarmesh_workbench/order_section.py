@@ -18,7 +18,7 @@ class OrderSection(QtGui.QWidget):
         self.combo = QtGui.QComboBox()
         self.combo.setObjectName("collarmesh_ElementOrder")
         self.combo.addItems(["", ""])
-        self.combo.setToolTip(translate("collarmesh", "Second order: nodes amid edges, on the exact faces"))
+        self.combo.setToolTip(translate("collarmesh", "Second order: mid-edge nodes, on the exact faces"))
         self.note = QtGui.QLabel(translate(
             "collarmesh", "First order is too stiff for bending: displacements come out too small, and stresses far "
             "too small. It is for a first look, and for solvers that ask for it."))

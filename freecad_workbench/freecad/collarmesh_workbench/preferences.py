@@ -54,7 +54,7 @@ class Page:
         self.threads.setObjectName("collarmesh_preferences_threads")
         self.threads.setRange(0, 1024)
         self.threads.setSpecialValueText(translate("collarmesh", "as many as cores"))
-        self.threads.setToolTip(translate("collarmesh", "How many threads the program may use; they change no result"))
+        self.threads.setToolTip(translate("collarmesh", "Largest number of threads; the result does not depend on it"))
         self.improve = QtGui.QComboBox()
         self.improve.setObjectName("collarmesh_preferences_improve")
         self.improve.addItems(improve_levels())

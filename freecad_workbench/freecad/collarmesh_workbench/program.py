@@ -215,7 +215,7 @@ class Job:
         if exit_code in (0, GUARANTEE_MISSED) and os.path.exists(self.mesh):
             return
         said = "\n".join(self.messages).removeprefix("collarmesh: ")
-        nothing = translate("collarmesh", "The mesher ended with exit code {code} and without a word.")
+        nothing = translate("collarmesh", "The mesher ended with exit code {code} and without a message.")
         raise MesherError(self.explain(said) or nothing.format(code=exit_code))
 
     def report(self):

@@ -39,7 +39,7 @@ def is_possible(obj):
 
 @dataclasses.dataclass
 class Plan:
-    """What a result tells about the next mesh."""
+    """The next mesh, as a result suggests it."""
 
     label: str  # of the result
     solution: result_errors.Solution

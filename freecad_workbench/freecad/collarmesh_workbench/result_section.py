@@ -47,7 +47,7 @@ class ResultSection(QtGui.QWidget):
     def show_outcome(self, outcome):
         self.clear()
         if outcome.cancelled:
-            self.say(translate("collarmesh", "Cancelled; the mesh is the one from before."), colours.CARE)
+            self.say(translate("collarmesh", "Cancelled; the previous mesh is kept."), colours.CARE)
         elif outcome.report is None:
             self.say(translate("collarmesh", "No mesh is made; the list says why."), colours.BAD)
         else:

@@ -52,7 +52,7 @@ class Size(compatibility.WithProperties):
                     text.format(label=obj.Label, property=name, value=getattr(obj, name).UserString)
                 )
         if obj.Growth < 0:
-            text = translate("collarmesh", "{label}: Growth is {value}, but sizes grow by 0 or more.")
+            text = translate("collarmesh", "{label}: Growth is {value}, but must be 0 or more.")
             raise MesherError(text.format(label=obj.Label, value=f"{obj.Growth:g}"))
         return [{"size": obj.Size.Value, "growth": obj.Growth, **body} for body in self.bodies(obj)]
 
@@ -253,7 +253,7 @@ def with_labels(message, labels):
         return message.replace(match[0], label)
     text = translate(
         "collarmesh",
-        "{label}: the mesh has nothing of {name}: it lies inside another solid, or repair has taken it away; choose others.",
+        "{label}: the mesh has nothing of {name}: it lies inside another solid, or repair has removed it; choose others.",
     )
     kind = next(kind for kind, tags in Distance.TAGS.items() if tags == match[2])
     return text.format(label=label, name=f"{kind}{match[3]}")

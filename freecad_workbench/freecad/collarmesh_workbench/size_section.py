@@ -26,7 +26,7 @@ class SizeSection(QtGui.QWidget):
             size = self.presets[len(self.presets) // 2][1]
         self.field = QuantityField("mm", size, obj, POSITIVE)
         self.field.widget.setObjectName("collarmesh_CharacteristicLengthMax")
-        self.field.widget.setToolTip(translate("collarmesh", "Length that the edges of the elements are to have"))
+        self.field.widget.setToolTip(translate("collarmesh", "Target length of the elements' edges"))
         row = QtGui.QFormLayout()
         self.label = translate("collarmesh", "Size of the elements")
         row.addRow(self.label, self.field.widget)

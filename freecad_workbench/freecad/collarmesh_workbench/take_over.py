@@ -181,7 +181,7 @@ def keep_for_later(old, new):
             new.addProperty("App::PropertyLinkList", name, "Base", doc("Sizes and layers of collarmesh"), 4)
             setattr(new, name, objects)
             kept += [each.Label for each in objects]
-    return note_on(kept, translate("collarmesh", "Gmsh does not heed these sizes and layers: {names}"))
+    return note_on(kept, translate("collarmesh", "Gmsh ignores these sizes and layers: {names}"))
 
 
 def replace(old, new):

@@ -285,7 +285,7 @@ class MeshTaskPanel:
     def open_report(self):
         page = meshing_process.outcome_of(self.object).page
         if not QtGui.QDesktopServices.openUrl(QtCore.QUrl.fromLocalFile(page)):
-            text = translate("collarmesh", "No program shows pages; the report is {path}")
+            text = translate("collarmesh", "Found no browser to show the report; it is in {path}")
             self.result.say(text.format(path=page), colours.BAD)
 
     def show_constraint_faces(self):

@@ -29,8 +29,8 @@ class State:
 
 
 def add_properties(obj):
-    for kind, name, text in (("App::PropertyFloatList", SHAPE, doc("What shape the mesh was made of")),
-                             ("App::PropertyString", SETTINGS, doc("With what settings it was made"))):
+    for kind, name, text in (("App::PropertyFloatList", SHAPE, doc("The shape that the mesh was made from")),
+                             ("App::PropertyString", SETTINGS, doc("The settings that the mesh was made with"))):
         if name not in obj.PropertiesList:
             obj.addProperty(kind, name, "Base", text, HIDDEN)
 

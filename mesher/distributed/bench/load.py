@@ -1,4 +1,4 @@
-"""mpirun -n P python3 load.py MESH.h5: load a mesh of collarmesh-mpi and say what each rank has of it."""
+"""mpirun -n P python3 load.py MESH.h5: load a mesh of collarmesh-mpi and print each rank's part of it."""
 
 import sys
 

@@ -59,14 +59,13 @@ std::variant<DistributedArguments, process::ExitCode> parse(int argc, const char
          "-o,--output", arguments.mesh.output,
          "The mesh to write: .h5 (PETSc's DMPlex, with .xdmf beside it) or .pvtu (with a piece of each rank)")
       ->type_name("FILE");
-  app.add_option("--levels", arguments.levels,
-                 "How often every tetrahedron of the coarse mesh is cut into eight")
+  app.add_option("--levels", arguments.levels, "Number of times that every tetrahedron is cut into eight")
       ->check(cli::number_in(0, 12, "a number of levels from 0 to 12"))
       ->check(cli::whole_number())
       ->capture_default_str()
       ->type_name("N");
   app.add_option("--slack", arguments.slack,
-                 "Degrees that dihedral angles may be beyond those of the coarse mesh")
+                 "Degrees by which dihedral angles may exceed those of the coarse mesh")
       ->check(cli::number_in(0, 180, "an angle from 0 to 180 degrees"))
       ->capture_default_str()
       ->type_name("DEGREES");

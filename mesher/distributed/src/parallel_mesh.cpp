@@ -27,7 +27,7 @@ void require_labels(const TetMesh& mesh, const Plc& plc) {
   const auto require = [&](const char* what, Tag tag) {
     if (tag < 0 || tag > most)
       throw OptionError(fmt::format(
-          "the tag {} of a {} is no label of PETSc, which go from 0 to {}; renumber it", tag, what, most));
+          "the tag {} of a {} is out of range for PETSc's labels, 0 to {}; renumber it", tag, what, most));
   };
   for (const Plc::Region& region : plc.regions) require("region", region.tag);
   for (const Plc::Patch& patch : plc.patches) require("patch", patch.tag);

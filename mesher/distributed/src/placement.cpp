@@ -26,7 +26,7 @@ constexpr double longest_way = 2;
 constexpr double least_course = 0.5;
 // Largest violation of the bounds on angles that is acceptable as a last resort, degrees.
 constexpr double tolerated = 10;
-// Least score of a tet that may stay: 0 is the last resort, 1 is within the bounds.
+// Least score of a tet that may stay: 1 is within the bounds, 0 violates them by `tolerated`.
 constexpr double least_score = 0.2;
 // The score of a flat tet; inverted tets have lower scores.
 constexpr double flat_score = -100;
@@ -191,7 +191,7 @@ class Placement {
   double least(Index tet) const { return wanted_.least[mesh_->tet_collar[tet] != 0 ? 1 : 0]; }
   double most(Index tet) const { return wanted_.most[mesh_->tet_collar[tet] != 0 ? 1 : 0]; }
 
-  /// Returns 1 for a tet within the bounds on angles, 0 at the last resort.
+  /// Returns 1 for a tet within the bounds on angles, 0 for one that violates them by `tolerated`.
   double score(Index tet, const Corners& p) const {
     const double six = six_volume(p[0], p[1], p[2], p[3]);
     if (!(six > 0)) {
@@ -316,7 +316,8 @@ class Placement {
   }
 
   std::vector<Index> move(const std::vector<Index>& movers, const std::array<Vector, 3>& frame) {
-    // Facts: the shortest edge, and the box of the neighbours, its upper corner negated.
+    // The facts about a vertex: its shortest edge, then the box of its neighbours, with the upper corner
+    // negated.
     constexpr std::size_t facts = 7;
     std::vector<PetscReal> known(facts * movers.size(), INFINITY), before, after(places * movers.size());
     for (std::size_t i = 0; i < movers.size(); ++i) {

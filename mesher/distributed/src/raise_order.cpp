@@ -71,7 +71,7 @@ class Curving {
   }
   std::size_t edge_of(Index node) const { return node - mesh_.vertices; }
 
-  // Finds the displacements of the nodes; the owners do so for all ranks.
+  // Finds the displacements of the nodes that this rank owns.
   void find_ways() {
     ways_.assign(mesh_.ends.size(), {});
     back_.assign(mesh_.ends.size(), 0);

@@ -46,7 +46,8 @@ SharedPoints::SharedPoints(DM dm, PetscInt depth)
   owned_.assign(static_cast<std::size_t>(end - first_), true);
   const Ranks ranks(communicator_);
   if (ranks.count == 1) return;
-  // The steps: all points of the DMPlex, then those of this depth, then the shared ones.
+  // The steps narrow the points down: all points of the DMPlex, then those of this depth, then the shared
+  // ones.
   PetscSF all = nullptr;
   call(DMGetPointSF(dm, &all));
   PetscInt roots = 0, leaves = 0;

@@ -10,10 +10,10 @@ namespace collarmesh {
 /// The bounds that every stage keeps and that `check` judges by. Angles in degrees.
 struct Bounds {
   double radius_edge = 2;  ///< largest circumradius / shortest edge in regions, outside collars; at least 1
-  /// Smallest dihedral angle of thin tets, which may exceed that ratio; 0: no tet may exceed it. At a crease
-  /// sharper than this, half of the crease's angle is enough. Where the input forces edges to be short, as
-  /// across a thin wall, half of the angle that they leave is enough. Dihedral and face angles of thin tets
-  /// are at most 150.
+  /// Smallest dihedral angle of thin tets, the tets that exceed `radius_edge`; 0: no tet may exceed it. At a
+  /// crease sharper than this, half of the crease's angle is enough. Where the input forces edges to be
+  /// short, as across a thin wall, half of the angle that they leave is enough. Dihedral and face angles of
+  /// thin tets are at most 150.
   double thin_angle = 8;
   /// Allows thin tets only at creases and in narrow places; if false, anywhere. A place is narrow if two
   /// features without a common point, or two features that meet in a crease, are closer there than the
@@ -29,14 +29,14 @@ struct Bounds {
   /// the bounds on angles of thin tets, measured from 0 and 180 degrees, and of the width of narrow places. 0
   /// to 0.5.
   double reserve = 0;
-  /// Lowers the bound on the smallest angle of thin tets where the input forces edges to be short. A mesh
+  /// Lowers the bound on the smallest angle of thin tets where the input forces edges to be short. Every mesh
   /// made with false also keeps the bounds for true.
   bool lower_where_forced = true;
   /// Requires that no tet has all corners on boundaries, interfaces or patches inside regions. Where features
-  /// meet, at least two tets then share the angle, so each may have half of the angle asked of a single one.
+  /// meet, at least two tets then share the angle between them, so the bound on each is halved.
   bool interior_node = false;
 
-  /// Returns the number of tets that share the angle left by creases and forced edges.
+  /// Returns the least number of tets that share the angle at a crease or forced edge.
   double tets_across() const { return interior_node ? 2 : 1; }
 };
 

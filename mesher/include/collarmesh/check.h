@@ -44,14 +44,14 @@ struct TriangleMeasures {
 
 struct CheckReport {
   std::vector<Finding> findings;
-  std::size_t findings_total = 0;     ///< findings, including those not listed
-  std::vector<std::string> notes;     ///< sentences: differing labels, which made the check match features by
-                                      ///< position
-  std::vector<std::string> warnings;  ///< sentences: volumes and thin places that changed noticeably
+  std::size_t findings_total = 0;  ///< findings, including those not listed
+  /// Sentences about labels that differ from the complex's, so that features were matched by position.
+  std::vector<std::string> notes;
+  std::vector<std::string> warnings;  ///< sentences about volumes and thin places that changed noticeably
   // Measurements of the mesh:
   std::size_t tets = 0, points = 0, faces = 0, edges = 0, collar_tets = 0, thin_tets = 0;
-  double max_radius_edge = 0;       ///< largest ratio of tets that are neither thin nor in collars
-  double max_thin_radius_edge = 0;  ///< largest ratio of thin tets
+  double max_radius_edge = 0;  ///< largest radius-edge ratio of tets that are neither thin nor in collars
+  double max_thin_radius_edge = 0;  ///< largest radius-edge ratio of thin tets
   std::size_t forced_tets = 0;  ///< thin tets within their bounds only because the input forces short edges
   double min_forced_dihedral = 180;             ///< smallest dihedral angle of those tets
   double min_dihedral = 180, max_dihedral = 0;  ///< dihedral angles outside collars, degrees

@@ -33,7 +33,7 @@ struct PlcFault {
     degenerate_facet,
     non_planar_polygon,
     intersection,    ///< two features meet outside a common feature
-    not_orientable,  ///< a region is required, but its boundary is open
+    not_orientable,  ///< the facets cannot be oriented consistently
     open_boundary,   ///< a region was asked for and its boundary is open
     empty,           ///< nothing to mesh
     bad_point        ///< a coordinate is not finite or an index is out of range

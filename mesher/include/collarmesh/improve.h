@@ -33,8 +33,8 @@ struct ImproveReport {
   std::size_t remaining = 0;   ///< tets below the bound at the end
   std::size_t edge_removals = 0, boundary_flips = 0, moved_vertices = 0, contracted_edges = 0,
               inserted_vertices = 0;
-  /// Number of sequences of operations that first made tets worse and then better, and of single operations
-  /// that became possible by them; not counted above.
+  /// Number of detours: sequences of operations that made tets worse before they made them better, and single
+  /// operations that these made possible. Not counted above.
   std::size_t detours = 0;
   double seconds = 0;
   bool cancelled = false;  ///< the mesh is valid and partly improved

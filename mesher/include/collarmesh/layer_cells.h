@@ -8,7 +8,7 @@
 
 namespace collarmesh {
 
-/// Cells of boundary layers that are no tets, with the quadrangles at their sides. They conform to the tets
+/// Cells of boundary layers other than tets, with the quadrangles at their sides. They conform to the tets
 /// and triangles of a mesh, whose points they use. Arrays of a kind of cell have the same length.
 struct LayerCells {
   /// Corners a, b, c of the triangle at the wall or nearer to it, then those above them, d, e, f, on the side

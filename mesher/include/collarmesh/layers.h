@@ -25,8 +25,9 @@ struct WallLayers {
 };
 
 struct LayerOptions {
-  /// Each is "FACES" or "FACES:first=F,growth=G,count=N,region=R" or "FACES:thickness=T,...", FACES names or
-  /// numbers of patches with commas, or "all"; R is the only region that gets layers.
+  /// One text for each group of walls: "FACES", "FACES:first=F,growth=G,count=N,region=R" or
+  /// "FACES:thickness=T,...". FACES are names or numbers of patches with commas between them, or "all"; only
+  /// region R gets layers.
   std::vector<std::string> walls = {};
   bool tets = false;  ///< divide the prisms and pyramids into tets
 
@@ -38,15 +39,15 @@ struct LayersReport {
   /// A place where layers are lower than asked for.
   struct Reduction {
     std::string why;        ///< the reason
-    std::size_t nodes = 0;  ///< nodes on the wall with it
+    std::size_t nodes = 0;  ///< nodes of the wall that this reason concerns
     double smallest = 1;    ///< smallest share of the height that is left
-    Point where;            ///< the place of it
+    Point where;            ///< the node with that share
   };
   struct Patch {
     Tag tag = 0;
     std::string name;
-    double area = 0;     ///< of the wall, absolute
-    double covered = 0;  ///< of that, beside cells of all layers, absolute
+    double area = 0;     ///< area of the wall, absolute
+    double covered = 0;  ///< part of that area that all layers cover, absolute
     double asked = 0;    ///< height of all layers, absolute
     double mean = 0;     ///< mean height reached, by area
     /// Histogram over the wall's area: entry i is the area where layers reach 0.1 i to 0.1 (i + 1) of the
@@ -56,25 +57,25 @@ struct LayersReport {
   std::vector<Patch> patches;
   std::vector<Reduction> reductions;
   std::size_t prisms = 0, pyramids = 0, tets = 0;  ///< cells in the layers
-  /// By corner of the mesh: the node of the wall below it, or itself on a wall; none elsewhere.
+  /// For each corner node in the layers, the wall's node below it (on a wall: itself); none elsewhere.
   std::vector<Index> walls;
   double largest_step = 1;  ///< largest ratio of the heights of neighbours that have layers
   double seconds = 0;
   bool cancelled = false;
 
-  /// Returns the share of the walls' area beside cells of all layers, 0 to 1.
+  /// Returns the share of the walls' area that all layers cover, 0 to 1.
   double coverage() const;
 };
 
-/// Reads the walls that the options name. Throws OptionError for text that is none.
+/// Reads the walls that the options name. Throws OptionError for text that cannot be read.
 std::vector<WallLayers> read_walls(const LayerOptions& options);
 
 /// Throws OptionError, with the known names, if a wall does not exist or two texts name one wall.
 void require_known_walls(const LayerOptions& options, const Plc& plc);
 
-/// Puts layers of prisms on walls: inside boundaries, on both sides of interfaces or one, on both of facets
-/// inside regions. The tets there are pushed inwards and improved; the triangles and edges of the
-/// walls stay. Nodes that also lie on other patches slide along these.
+/// Puts layers of prisms on walls: on the inner side of boundaries, on one or both sides of interfaces, and
+/// on both sides of facets inside regions. The tets there are pushed inwards and improved; the triangles and
+/// edges of the walls stay. Nodes that also lie on other patches slide along these.
 ///
 /// Layers are lower where there is little room: in gaps, where prisms would fold, and where tets would miss
 /// their bounds (`improvement.bounds`). Heights of neighbours differ by at most a factor of 2. They are 0

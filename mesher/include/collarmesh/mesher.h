@@ -54,9 +54,9 @@ struct MeshOptions {
   /// Increase of the target edge length per unit of distance from a finer patch, curve or region; 0:
   /// unlimited.
   double gradation = 0;
-  SizeField size_field = {};       ///< target edge length at a point; may be empty
-  double elements_per_circle = 0;  ///< number of target edge lengths on a full circle with the curvature of
-                                   ///< smooth patches and curves; 0: no effect
+  SizeField size_field = {};  ///< target edge length at a point; may be empty
+  /// Number of elements per full circle, by the curvature of smooth patches and curves; 0: no effect.
+  double elements_per_circle = 0;
   /// Minimum number of edges per full circle on smooth curves that turn by half a circle or more, so that
   /// small holes stay round. It does not change target edge lengths; 0: none.
   double edges_per_hole = 7;
@@ -114,14 +114,15 @@ struct WorkCounts {
   std::size_t looks = 0;           ///< inspections of such a point or ball for a new vertex or a candidate
   std::size_t gap_queries = 0;     ///< queries of the gap size, with collars created in the pass
   std::size_t gap_cells = 0;       ///< Voronoi cells that these queries explored
-  std::size_t gap_interviews = 0;  ///< pieces of features whose distance these queries computed
+  std::size_t gap_interviews = 0;  ///< pieces of features whose distance the queries of gap sizes computed
   std::size_t largest_degree = 0;  ///< largest number of neighbours of a new vertex
   std::size_t largest_cavity = 0;  ///< largest number of cells that one insertion destroyed
   /// The largest cavity except at vertices and curves of the complex where very many features meet.
   std::size_t largest_cavity_outside_hubs = 0;
-  double peak_cells_per_vertex = 0;  ///< largest ratio in the whole triangulation, at any time
-  std::size_t before_quality = 0;    ///< vertices inserted for other reasons while a skinny cell waited
-  std::size_t ripped_out = 0;        ///< vertices in collars that are not in the result (paper, Procedure 5)
+  /// Largest number of cells per vertex in the whole triangulation, at any time.
+  double peak_cells_per_vertex = 0;
+  std::size_t before_quality = 0;  ///< vertices inserted for other reasons while a skinny cell waited
+  std::size_t ripped_out = 0;      ///< vertices in collars that are not in the result (paper, Procedure 5)
   /// Extremes of R_v / r_v (paper, section 1.2), the largest circumradius at a vertex over half of its
   /// shortest edge, over vertices whose cells all lie in regions and outside collars; 0 if there is no such
   /// vertex.

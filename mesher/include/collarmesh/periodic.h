@@ -46,10 +46,10 @@ struct PeriodicReport {
 /// other within this distance. The message names the patch, the largest distance and its place.
 void require_periodic_patches(const PeriodicOptions& options, const Plc& plc, double distance);
 
-/// Gives the second group of each pair the nodes, edges and triangles of the first, moved. The tets beside
-/// them may have poor shapes. Sets `mesh.periodic`, except for its nodes. Preconditions: patches of these
-/// groups are planar and have a region on one side only. Throws OptionError as `require_periodic_patches`
-/// does.
+/// Gives the second group of each pair the images of the first group's nodes, edges and triangles. The tets
+/// beside them may have poor shapes. Sets `mesh.periodic`, except for its nodes. Preconditions: patches of
+/// these groups are planar and have a region on one side only. Throws OptionError as
+/// `require_periodic_patches` does.
 PeriodicReport make_periodic(TetMesh& mesh, const Plc& plc, const PeriodicOptions& options, double distance);
 
 }  // namespace collarmesh

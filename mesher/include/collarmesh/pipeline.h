@@ -40,7 +40,7 @@ enum class Start {
 
 struct PipelineOptions {
   PlcOptions complex = {};    ///< how a complex is built from facets
-  RepairOptions repair = {};  ///< how facets that are no complex are repaired
+  RepairOptions repair = {};  ///< how facets that do not form a complex are repaired
   MeshOptions mesh = {};      ///< sizes, bounds and budgets; the time limit holds for all stages together
   Start start = Start::automatic;
   bool coarsen = true;      ///< remove tets that the sizes do not need
@@ -115,8 +115,8 @@ class ComplexSource {
 /// budgets, with up to twice as many vertices as the first try took; if that fails, from its constrained
 /// tetrahedra (`Start`). `check.notes` lists the attempts. `execution.progress` is also called at the
 /// beginning of each stage (`ProgressReport::begins`); its fraction covers all stages. If cancelled or out of
-/// time, the result has that status and no mesh. Throws PlcError for facets that are no
-/// complex and cannot be repaired, OptionError for options in conflict and for sizes of unknown tags.
+/// time, the result has that status and no mesh. Throws PlcError for facets that cannot be repaired to form a
+/// complex, OptionError for conflicting options and for sizes of unknown tags.
 SoupPipelineResult run_pipeline(ComplexSource& source, const PipelineOptions& options = {},
                                 const Execution& execution = {});
 

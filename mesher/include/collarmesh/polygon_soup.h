@@ -44,7 +44,8 @@ class PolygonSoup {
   std::vector<Tag> point_tags;  ///< one per point, or empty
   std::vector<Segment> segments;
   std::vector<Index> vertices;  ///< points that are features by themselves
-  /// Whether the features are given: the vertices, segments, borders of tags and folds above 90 degrees.
+  /// Whether the soup gives its features: vertices, segments, borders of tags and folds above 90 degrees.
+  /// Angles then add none.
   bool given_features = false;
   std::vector<RegionPoint> region_points;  ///< .poly: region_points and hole_points decide which space of
                                            ///< their file is solid
@@ -54,7 +55,7 @@ class PolygonSoup {
   std::vector<FacetHole> facet_holes;
   TagNames tag_names;  ///< names of the file for its tags
   std::optional<Tag>
-      region_tag;  ///< tag of the regions that this surface is the first to bound; by default their number
+      region_tag;  ///< tag of regions that this surface is the first to bound; by default their number
 
   /// Begins a facet; the polygons added next belong to it.
   void begin_facet(Tag tag = 0) { facets_.push_back({polygon_count(), tag}); }

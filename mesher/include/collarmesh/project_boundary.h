@@ -13,8 +13,9 @@ namespace collarmesh {
 struct ProjectOptions {
   Bounds bounds = {};  ///< bounds that no tet breaks; vertices farther than `distance` from their feature
                        ///< stay where they are
-  double tolerance = 1e-9;  ///< absolute; a vertex that stays nearer than this to its feature is no exception
-  unsigned threads = 0;     ///< maximum number; 0: all cores
+  /// Absolute; a vertex that stays nearer than this to its feature is not listed as an exception.
+  double tolerance = 1e-9;
+  unsigned threads = 0;  ///< maximum number; 0: all cores
 };
 
 struct ProjectReport {

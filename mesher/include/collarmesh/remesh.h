@@ -30,19 +30,19 @@ using AdaptOptions = std::function<void(const Plc&, PipelineOptions&)>;
 /// may make tets worse for a while; improvement after each round must restore the bounds on angles, and the
 /// certificate tells where it could not. The result is certified against the complex. For a mesh of second
 /// order, its corners are remeshed, and mid-edge nodes are made anew if `options.order` is 2. Only the
-/// options of sizes, bounds, improvement, order, partitions and budgets count; exact geometry does not, as
-/// its features are those of another complex. Without a size and a field the lengths stay as they are. Same
-/// mesh and options: same result, with any number of threads. Throws PlcError for a mesh whose tets do not
-/// fit each other, OptionError for sizes of tags that the mesh does not have. Cost: near linear in the tets
+/// options of sizes, bounds, improvement, order, partitions and budgets count; exact geometry is ignored,
+/// because its features are those of another complex. Without a size and a field the lengths stay as they
+/// are. Same mesh and options: same result, with any number of threads. Throws PlcError for a mesh that is
+/// not conforming, OptionError for sizes of tags that the mesh does not have. Cost: near linear in the tets
 /// of the mesh and of the result.
 RemeshResult remesh(const TetMesh& mesh, const PipelineOptions& options = {}, const AdaptOptions& adapt = {},
                     const Execution& execution = {});
 
 /// Does the same, but the result follows the complex that the mesh was made of, and is certified against it:
-/// where nodes are inserted, where they move, and how far faces may be off depends on `complex` and not on
-/// the triangles of the mesh. If `options.exact` is the geometry behind the complex (`adapt` may set it),
-/// nodes are moved onto it. The mesh has a vertex at each vertex of the complex, and faces and edges that
-/// cover its patches and curves. Throws PlcError with the place where it does not.
+/// `complex`, not the triangles of the mesh, determines where nodes are inserted, where they move, and how
+/// far faces may be off. If `options.exact` is the geometry behind the complex (`adapt` may set it), nodes
+/// are moved onto it. The mesh has a vertex at each vertex of the complex, and faces and edges that cover its
+/// patches and curves. Throws PlcError with the place where it does not.
 RemeshResult remesh(const TetMesh& mesh, const Plc& complex, const PipelineOptions& options = {},
                     const AdaptOptions& adapt = {}, const Execution& execution = {});
 

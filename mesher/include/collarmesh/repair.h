@@ -11,13 +11,14 @@
 #include "collarmesh/polygon_soup.h"
 #include "collarmesh/progress.h"
 
-/// Repairs facets that are no valid complex: stitches borders that nearly meet, collapses features below a
-/// tolerance, cuts facets that intersect or cover each other, removes facets inside solids, and fills holes.
+/// Repairs facets that do not form a valid complex: stitches borders that nearly meet, collapses features
+/// below a tolerance, cuts facets that intersect or cover each other, removes facets inside solids, and fills
+/// holes.
 namespace collarmesh {
 
 enum class RepairMode {
-  automatic,  ///< repair facets that are no valid complex
-  off,        ///< facets that are no valid complex are an error
+  automatic,  ///< repair facets that do not form a valid complex
+  off,        ///< report such facets as an error
   wrap        ///< like `automatic`; if that makes no solid, or none that can be meshed, wraps a closed
               ///< surface around everything
 };
@@ -43,7 +44,7 @@ struct RepairOptions {
 /// The number of changes of one kind, and some of their places.
 struct RepairPlaces {
   std::size_t count = 0;
-  double size = 0;           ///< the largest distance, the total area or the volume, as the field says
+  double size = 0;           ///< largest distance, total area or volume, as the comment on the field says
   std::vector<Point> where;  ///< at most 100
 };
 
@@ -56,7 +57,7 @@ struct FilledHole {
   Point where;            ///< the mean of the points around it
 };
 
-/// A feature that was collapsed, as it was smaller than the feature size.
+/// A feature that was collapsed because it was smaller than the feature size.
 struct SmallFeature {
   enum class Kind {
     curve,  ///< size: its length
@@ -78,20 +79,20 @@ struct RepairReport {
   std::size_t dropped_polygons = 0;  ///< polygons without an area
   RepairPlaces repeated;             ///< duplicate triangles, dropped
   RepairPlaces turned;               ///< components turned inside out
-  RepairPlaces stitched;             ///< points of borders; size: largest distance
+  RepairPlaces stitched;             ///< border points that were joined; size: largest distance
   RepairPlaces collapsed;        ///< points, edges and triangles below the tolerance; size: largest distance
   RepairPlaces cut;              ///< pairs of facets that intersected
   RepairPlaces kept;             ///< places left unrepaired because creases there would become sharper
   RepairPlaces flakes;           ///< closed parts thinner than the tolerance, dropped; size: volume
-  std::size_t second_sides = 0;  ///< triangles dropped from surfaces that were double everywhere
-  RepairPlaces merged;           ///< triangles inside solids, removed; size: area
+  std::size_t second_sides = 0;  ///< triangles dropped where a surface was doubled everywhere
+  RepairPlaces merged;           ///< triangles inside solids, which were removed; size: area
   RepairPlaces dropped;          ///< triangles of open sheets outside of all solids, removed
   RepairPlaces thin_chambers;    ///< thin regions between facets that nearly coincide, now part of their
                                  ///< neighbours; size: volume
   RepairPlaces vanished;         ///< regions of valid input, as thin as the tolerance, that are gone; size:
                                  ///< volume
-  RepairPlaces united;  ///< number of other regions of valid input that are gone; places: in the remaining
-                        ///< ones
+  /// Number of other lost regions of valid input; places: in the regions that took their space.
+  RepairPlaces united;
   std::vector<FilledHole> filled;
   double feature_size = 0;                   ///< size below which features were collapsed, absolute
   std::vector<SmallFeature> small_features;  ///< the features that were collapsed
@@ -155,9 +156,10 @@ RepairedPlc collapse_small_features(RepairedPlc complex, std::span<const Polygon
                                     const PlcOptions& options = {}, const RepairOptions& repair_options = {},
                                     const Execution& execution = {});
 
-/// Gives the patches and curves of a complex that was repaired otherwise the numbers that they have in
-/// `before`, where untagged facets and edges were numbered; new ones get numbers after these. Without that, a
-/// number given by the user would mean another feature. Cost: O(n log n).
+/// Renumbers the patches and curves of a complex that was repaired otherwise: those that `before` has get
+/// their numbers there, new ones the numbers after these. `before` is the complex in which untagged facets
+/// and edges were numbered. Otherwise a number given by the user would mean another feature. Cost: O(n log
+/// n).
 void keep_feature_numbers(const Plc& before, Plc& after);
 
 /// Builds the complex, after `repair` if there are faults or noise, with a tolerance that grows while that

@@ -12,8 +12,8 @@
 namespace collarmesh {
 
 struct SecondOrderOptions {
-  ExactGeometry exact = {};     ///< without it, or where it returns no point, the complex's own polyline or
-                                ///< triangles are used
+  /// The exact geometry; where it returns no point, or is empty, the complex's polylines and triangles count.
+  ExactGeometry exact = {};
   double least_jacobian = 0.1;  ///< lower bound on the Jacobian everywhere in a curved tet, relative to that
                                 ///< of the straight tet; 0: just positive
   /// The bounds of the mesh. Tets that cannot be curved are replaced by others, which may be thin; with a

@@ -16,7 +16,8 @@ enum class GroupNames {
   cad       ///< Solid1, Face7, Edge3: the sub-shapes of a CAD shape
 };
 
-/// How triangles without tets are written in formats of solvers with several kinds of plane elements.
+/// The element type for triangles of a mesh without tets, in solver formats that have several kinds of plane
+/// elements.
 enum class TriangleElements {
   shell,         ///< S3, S6
   plane_stress,  ///< CPS3, CPS6: in the plane z = 0
@@ -66,7 +67,7 @@ struct TetMesh {
   std::vector<std::array<Index, 3>> face_mid_nodes;
   std::vector<Index> edge_mid_nodes;
 
-  LayerCells layers;  ///< cells of boundary layers that are no tets
+  LayerCells layers;  ///< cells of boundary layers other than tets
 
   GroupNames group_names = GroupNames::complex;
   TagNames names;  ///< names to write for the tags

@@ -13,7 +13,7 @@ namespace collarmesh {
 enum class BallReason : std::uint8_t {
   unknown,
   subsegment,          ///< protects a piece of a curve that must not be split
-  up_front,            ///< a collar ball, placed before the first vertex like all others of its run
+  up_front,            ///< a collar ball, placed before the first vertex, as are all others of this run
   vertex_inserted,     ///< a collar ball: its crease vertex was inserted
   vertex_isolated,     ///< a collar ball: the cell of its crease vertex meets no other feature
   curve_isolated,      ///< a collar ball: the cells along its crease curve meet no other feature

@@ -10,9 +10,9 @@ Options have the names of the command line with `_` for `-`. Lengths are absolut
 degrees. Options that are left out, or None, have the command line's default.
 
 Errors: every fault of the input raises a subclass of `Error`. OptionError: options that are out of range or contradict
-each other, arrays of the wrong shape or kind. ReadError and WriteError: files. ComplexError: surfaces that are no valid
-complex and cannot be repaired. BudgetError: vertices, memory or time are spent. CancelledError: `progress` cancelled.
-Ctrl-C raises KeyboardInterrupt within a second, in every stage.
+each other, arrays of the wrong shape or kind. ReadError and WriteError: files. ComplexError: surfaces that cannot be
+repaired to form a valid complex. BudgetError: vertices, memory or time are spent. CancelledError: `progress`
+cancelled. Ctrl-C raises KeyboardInterrupt within a second, in every stage.
 """
 
 import os
@@ -117,6 +117,6 @@ def convert(
         _core.convert_surfaces(inputs(surfaces), target, named)
     else:
         if ghost_cells and partitions is None:
-            raise OptionError("ghost_cells: is of partitions; say how many with partitions")
+            raise OptionError("ghost_cells: needs partitions; say how many with partitions")
         made = mesh(*surfaces, input_format=input_format, partitions=partitions, **options)
         made.write(target, kind, ghost_cells=ghost_cells)

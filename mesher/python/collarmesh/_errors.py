@@ -120,8 +120,8 @@ def sizes_from_errors(
         return numpy.clip((goal / known) ** (1 / power), finest, coarsest)
 
     def excess(goal: float) -> float:
-        """Returns the excess of tetrahedra, or the lack of error. It falls as each tetrahedron may have more
-        error."""
+        """Returns the number of tetrahedra above `elements`, or the total error below `error`. Falls as the error
+        per tetrahedron grows."""
         factor = factors(goal)
         if elements is not None:
             return float((factor**-3.0).sum() - elements)

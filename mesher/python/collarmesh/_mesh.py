@@ -58,7 +58,7 @@ _MESHIO_CELLS = {
         "quads": "quad8"},
 }
 _VTK_CELLS = {1: {"tets": 10, "prisms": 13, "pyramids": 14}, 2: {"tets": 24, "prisms": 26, "pyramids": 27}}
-# The first triangle of VTK's wedges turns its normal away from the second one.
+# In VTK's wedges, the normal of the first triangle points away from the second one.
 _VTK_WEDGE = [0, 2, 1, 3, 5, 4, 8, 7, 6, 11, 10, 9, 12, 14, 13]
 
 
@@ -145,11 +145,12 @@ class Mesh:
     prisms: (p, 6), of boundary layers: corners a, b, c of the triangle at the wall or nearer to it, then those above
         them; pyramids: (q, 5), corners of the base, counterclockwise as seen from the apex, then the apex.
     prism_region, prism_tag, pyramid_region, pyramid_tag: as for tetrahedra. prism_layer, pyramid_layer: numbers of
-        layers, from 1 at the wall; 0: not known. tet_layer: (m,), those of tetrahedra, 0 in none; (0,) if all are.
+        layers, from 1 at the wall; 0: not known. tet_layer: (m,), numbers of layers of tetrahedra, 0 in no layer;
+        (0,) if none is in a layer.
     quads: (s, 4), quadrangles on boundaries, interfaces and internal facets, with quad_regions (s, 2), quad_tag and
         quad_patch as for faces.
-    prism_mid_nodes (p, 9): amid ab, bc, ca, de, ef, fd, ad, be, cf; pyramid_mid_nodes (q, 8): ab, bc, cd, da, ae, be,
-        ce, de; quad_mid_nodes (s, 4): ab, bc, cd, da.
+    prism_mid_nodes (p, 9): mid-edge nodes of ab, bc, ca, de, ef, fd, ad, be, cf; pyramid_mid_nodes (q, 8): of ab, bc,
+        cd, da, ae, be, ce, de; quad_mid_nodes (s, 4): of ab, bc, cd, da.
     names: names of tags by dimension, {2: {3: "inlet"}} for patch 3; 1 curves, 3 regions. Solids of STEP files have
         the names of their products.
     colours: colours of tags, likewise, of a mesh made from a STEP file: {2: {3: "#ff0000"}}.
@@ -482,8 +483,8 @@ class Mesh:
         """Return a dolfinx mesh of the same order, and its tags: (mesh, cell_tags, facet_tags), from `tet_tag` and
         `face_tag`.
 
-        comm: of mpi4py, COMM_WORLD by default. The first rank's mesh is divided among all; that of the others is not
-        looked at. Raises ImportError without dolfinx, OptionError for a mesh with prisms or pyramids.
+        comm: of mpi4py, COMM_WORLD by default. The first rank's mesh is divided among all; the meshes of other ranks
+        are ignored. Raises ImportError without dolfinx, OptionError for a mesh with prisms or pyramids.
         """
         from ._dolfinx import mesh_and_tags
 

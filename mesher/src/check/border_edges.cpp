@@ -30,7 +30,7 @@ std::vector<Side> sides_of(const TetMesh& mesh) {
   return sides;
 }
 
-/// The bent curves between patches of the same tags, by their segments.
+/// The segments of bent curves whose patches have the same tags; finds the nearest curve.
 class CurvesOfTags {
  public:
   void add(const Plc& plc, Index curve) {

@@ -100,7 +100,7 @@ void find_collar_cells(Subject& subject, Findings& findings) {
   subject.coarsened = is_coarsened(mesh, creases);
   for (Index t = 0; t < mesh.tets.size(); ++t) {
     if (marked && mesh.tet_collar[t] == 0 && !subject.coarsened) continue;
-    if (subject.has_layers() && mesh.layers.tet_layer[t] > 0) continue;  // layers are no collars
+    if (subject.has_layers() && mesh.layers.tet_layer[t] > 0) continue;  // tets in layers belong to no collar
     subject.collar[t] =
         subject.coarsened ? creases.kind_of_touching(mesh.tets[t]) : creases.kind_in_balls(mesh.tets[t]);
     if (marked && subject.collar[t] != mesh.tet_collar[t])

@@ -215,11 +215,12 @@ void check_watertight(const Subject& subject, Findings& findings) {
     if (sum == 0) continue;
     const auto& [a, b] = edges[i].ends;
     const Point where = subject.midpoint(edges[i].ends);
-    findings.add(guarantee::watertight, where, {a, b, edges[i].region},
-                 "The faces around region {} do not close at the edge of points {} and {} at {}: it is "
-                 "passed {} time{} "
-                 "more often one way than the other; a face is missing, doubled or turned there.",
-                 edges[i].region, a, b, At{where}, std::abs(sum), std::abs(sum) == 1 ? "" : "s");
+    findings.add(
+        guarantee::watertight, where, {a, b, edges[i].region},
+        "The faces around region {} do not close at the edge of points {} and {} at {}: they run "
+        "along it {} time{} more often in one direction than in the other; a face is missing, doubled or "
+        "turned there.",
+        edges[i].region, a, b, At{where}, std::abs(sum), std::abs(sum) == 1 ? "" : "s");
   }
 }
 

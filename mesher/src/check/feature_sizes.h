@@ -17,7 +17,7 @@ double area_of_face(const TetMesh& mesh, Index face);
 /// in.
 ShapeMeasures feature_sizes(const Subject& subject);
 
-/// An area, and by how much that of the mesh may differ from it.
+/// An area, and the allowed difference of the mesh's area from it.
 struct AllowedArea {
   double area, allowed;
 };

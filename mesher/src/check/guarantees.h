@@ -31,11 +31,11 @@ inline constexpr char vertex_feature[] = "vertex_feature";  ///< a vertex lies o
 inline constexpr char positive_volume[] = "positive_volume";  ///< positive by exact arithmetic
 inline constexpr char distinct_tets[] = "distinct_tets";
 inline constexpr char conforming[] = "conforming";    ///< a face has at most two tets, on its two sides
-inline constexpr char radius_edge[] = "radius_edge";  ///< of tets that are neither thin nor in collars
+inline constexpr char radius_edge[] = "radius_edge";  ///< bound on tets that are neither thin nor in collars
 inline constexpr char thin_angles[] = "thin_angles";  ///< angles of tets that exceed the radius-edge bound
 inline constexpr char collar_dihedral[] = "collar_dihedral";  ///< dihedral angles in collars
-inline constexpr char interior_node[] = "interior_node";  ///< a corner that is on no face, if each tet has to
-                                                          ///< have one
+/// Each tet that has to have one has a corner on no face.
+inline constexpr char interior_node[] = "interior_node";
 
 // Guarantees of the balls of the collars, if the mesh has them.
 inline constexpr char collar_centre[] = "collar_centre";  ///< a ball's centre is where its point is
@@ -48,12 +48,12 @@ inline constexpr char collar_cells[] = "collar_cells";  ///< stars have the cent
 
 // Guarantees of the regions.
 inline constexpr char listed_faces[] =
-    "listed_faces";  ///< faces hold the boundary and the interfaces, once each
-inline constexpr char face_regions[] = "face_regions";    ///< a face's regions are those of its tets
-inline constexpr char watertight[] = "watertight";        ///< the faces around a region form a closed surface
-inline constexpr char region_volume[] = "region_volume";  ///< the mesh's volume is that of the complex
-inline constexpr char volume_kept[] = "volume_kept";      ///< the volume is close enough to the input's for
-                                                          ///< results to be trusted
+    "listed_faces";  ///< boundary and interface triangles are listed as faces, once each
+inline constexpr char face_regions[] = "face_regions";  ///< a face's regions are those of the tets beside it
+inline constexpr char watertight[] = "watertight";      ///< the faces around a region form a closed surface
+inline constexpr char region_volume[] = "region_volume";    ///< the mesh's volume is that of the complex
+inline constexpr char volume_kept[] = "volume_kept";        ///< the volume is close enough to the input's for
+                                                            ///< results to be trusted
 inline constexpr char thickness_kept[] = "thickness_kept";  ///< thin places of large regions are still there
 
 // Guarantees of the complex's vertices and curves.

@@ -243,17 +243,18 @@ class LayerCheck {
     }
     const bool inside = cells == 2 && region_of(first[0]) == region_of(first[1]);
     if (lists > 1 || (lists == 0 && !inside)) {
-      findings_.add(
-          guarantee::layer_sides, where, {first->cell}, "The side of {} {} at {} is listed {} times; {}.",
-          name_of(first->kind), first->cell, At{where}, lists,
-          cells == 1 ? "no other cell has it, so it is a boundary or hangs" : "it has to be listed once");
+      findings_.add(guarantee::layer_sides, where, {first->cell},
+                    "The side of {} {} at {} is listed {} times; {}.", name_of(first->kind), first->cell,
+                    At{where}, lists,
+                    cells == 1 ? "no other cell has it, so it lies on a boundary or does not conform"
+                               : "it must be listed once");
       return;
     }
     if (lists == 1) check_regions(*cells_end, first, cells == 2 ? first + 1 : nullptr);
   }
 
   void check_regions(const CellSide& listed, const CellSide* one, const CellSide* other) {
-    std::array<Index, 2> wanted{};  // behind and in front of the corners as they are in CellSide
+    std::array<Index, 2> wanted{};  // behind and in front of the corners in their order in CellSide
     for (const CellSide* side : {one, other})
       if (side != nullptr) wanted[side->turned ? 1 : 0] = region_of(*side);
     if (listed.turned) std::swap(wanted[0], wanted[1]);
@@ -318,8 +319,8 @@ void check_layer_cells(const TetMesh& mesh, CheckReport& report, std::size_t fin
 
 namespace {
 
-/// The bounds on the angles of tets beside layers. A node that layers pushed away counts as on the features
-/// of its wall.
+/// The bounds on the angles of tets beside layers. A node that layers pushed away counts as a node on its
+/// wall's features.
 class CoreAngles {
  public:
   CoreAngles(const TetMesh& mesh, const std::vector<Index>& walls, const Plc& plc, const Bounds& bounds)
@@ -436,7 +437,8 @@ void check_core_angles(const TetMesh& mesh, const std::vector<Index>& walls, con
     findings.add(
         guarantee::core_angles, p[a], {t},
         "Tet {} beside the layers at {} has dihedral angles from {:.4g} to {:.4g} degrees and face angles "
-        "up to {:.4g}; allowed are {:.4g} to {} where circumradius / shortest edge, {:.4g}, is above {:.4g}.",
+        "up to {:.4g}; allowed are {:.4g} to {}, because circumradius / shortest edge is {:.4g}, above "
+        "{:.4g}.",
         t, At{p[a]}, quality.min_dihedral, quality.max_dihedral, largest_face_angle(p[a], p[b], p[c], p[d]),
         least, largest, quality.radius_edge, bounds.radius_edge);
   }

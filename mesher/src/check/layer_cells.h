@@ -14,15 +14,16 @@ inline constexpr char layer_arrays[] = "layer_arrays";  ///< equal lengths, indi
 inline constexpr char layer_jacobian[] = "layer_jacobian";
 inline constexpr char layer_conforming[] = "layer_conforming";  ///< cells meet in whole sides
 inline constexpr char layer_sides[] = "layer_sides";  ///< boundaries and interfaces are listed, once each
-inline constexpr char layer_mid_nodes[] = "layer_mid_nodes";  ///< one to an edge, in all cells at it
-inline constexpr char layer_volume[] = "layer_volume";        ///< regions have the volumes of before
-inline constexpr char core_angles[] = "core_angles";          ///< of the tets beside the layers
+/// Each edge has one, shared by all cells at the edge.
+inline constexpr char layer_mid_nodes[] = "layer_mid_nodes";
+inline constexpr char layer_volume[] = "layer_volume";  ///< regions keep their volumes
+inline constexpr char core_angles[] = "core_angles";    ///< angles of the tets beside the layers
 
 }  // namespace collarmesh::guarantee
 
 namespace collarmesh::checks {
 
-/// The least dihedral angle of tets beside layers, in degrees, where the bounds have none.
+/// The least dihedral angle of tets beside layers, in degrees, if the bounds give none.
 inline constexpr double least_core_angle = 8;
 
 /// Checks the cells of boundary layers together with the tets, by the mesh alone: arrays; positive Jacobians;
@@ -34,15 +35,15 @@ void check_layer_cells(const TetMesh& mesh, CheckReport& report, std::size_t fin
 /// Returns the volumes of regions, by index, of straight tets, prisms and pyramids.
 std::map<Index, double> volumes_with_layers(const TetMesh& mesh);
 
-/// Checks that regions have these volumes within rounding and what is allowed for each, absolute; regions
-/// that are not listed are allowed nothing. Adds findings.
+/// Checks that regions keep these volumes, within rounding plus the absolute difference allowed for each; 0
+/// for regions that are not listed. Adds findings.
 void check_layer_volumes(const std::map<Index, double>& before, const TetMesh& mesh,
                          const std::map<Index, double>& allowed, CheckReport& report);
 
-/// Checks the tets beside the layers as without layers: circumradius / shortest edge is within its bound, or
-/// the dihedral angles are bounded from below as those of thin tets, and dihedral and face angles by 150
-/// degrees from above. The angles and the sizes of the mesh become those of the report. `walls`:
-/// by point, the one of the wall below it; none. Adds findings.
+/// Checks the tets beside the layers as in a mesh without layers: circumradius / shortest edge is within its
+/// bound, or the dihedral angles are bounded from below as those of thin tets, and dihedral and face angles
+/// by 150 degrees from above. Writes the mesh's angles and sizes to the report. `walls`: for each point, the
+/// wall's point below it, or none. Adds findings.
 void check_core_angles(const TetMesh& mesh, const std::vector<Index>& walls, const Plc& plc,
                        const Bounds& bounds, CheckReport& report);
 

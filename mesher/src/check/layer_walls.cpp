@@ -211,7 +211,8 @@ class WallCheck {
   }
   double area(Index face) const { return 0.5 * norm(normal(face)); }
 
-  /// Checks the cells above one triangle in one region: above one of its sides, or, inside of a region, both.
+  /// Checks the cells in one region above one triangle: above one of its sides or, if it lies inside the
+  /// region, above both.
   void check_stack(std::span<const WallSide> sides, std::span<const LayerCell> cells) {
     std::vector<unsigned> weights(sides[0].count + std::size_t{1}, 0);  // by layer
     std::array<unsigned, 2> first{};                                    // of the first layer, by side
@@ -230,7 +231,7 @@ class WallCheck {
     }
     for (std::size_t layer = 2; layer < weights.size(); ++layer)
       if (weights[layer] != weights[1]) {
-        report(sides[0], "has other cells in one layer than in the first one");
+        report(sides[0], "has different cells in one layer and in the first one");
         return;
       }
     unsigned expected_bases = 0;

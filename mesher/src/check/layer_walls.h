@@ -13,8 +13,8 @@
 
 namespace collarmesh::guarantee {
 
-/// Walls have the triangles and edges of before; cells of layers lie on walls, in as many layers as asked;
-/// the report's coverage is that of the cells.
+/// Walls keep their triangles and edges; cells of layers lie on walls, in as many layers as asked for; the
+/// reported coverage is that of the cells.
 inline constexpr char layer_walls[] = "layer_walls";
 
 }  // namespace collarmesh::guarantee
@@ -24,7 +24,8 @@ namespace collarmesh::checks {
 /// The numbers of layers that are asked for, by patch and the region on that side of it.
 using AskedWalls = std::map<std::pair<Index, Index>, unsigned>;
 
-/// The triangles of walls, and the edges of curves that are sides of these, by the places of their corners.
+/// The triangles of walls, and the curve edges that are sides of these triangles, by the places of their
+/// corners.
 struct WallGeometry {
   struct Triangle {
     std::array<Point, 3> corners;  ///< the first one is the lowest
@@ -45,15 +46,14 @@ struct WallGeometry {
 
   std::vector<Triangle> triangles;  ///< sorted
   std::vector<Edge> edges;          ///< sorted
-  std::vector<MidNode> mid_nodes;   ///< sorted by their ends; several may be one; none in first order
+  std::vector<MidNode> mid_nodes;   ///< sorted by their ends, with duplicates; empty in first order
 };
 
 /// Checks layers against the walls that were asked for and against the mesh before them: the triangles and
-/// edges of walls are the same, and in second order their nodes, but for those that are listed as
-/// straightened; each cell of a layer lies above one triangle of a wall; above each triangle
-/// there are prisms in all layers, or the tets of prisms, or pyramids and tets that leave it uncovered, or
-/// nothing; area and covered area of each patch are those that `layers` reports. Adds findings. Cost: O(n log
-/// n).
+/// edges of walls are the same, and so are their mid-edge nodes, except those listed as straightened; each
+/// cell of a layer lies above one triangle of a wall; above each triangle there are prisms in all layers, or
+/// the tets of prisms, or pyramids and tets that leave it uncovered, or nothing; area and covered area of
+/// each patch are those that `layers` reports. Adds findings. Cost: O(n log n).
 void check_layer_walls(const AskedWalls& walls, const WallGeometry& before, const TetMesh& mesh,
                        const LayersReport& layers, CheckReport& report,
                        std::span<const SecondOrderReport::Straightened> straightened = {});

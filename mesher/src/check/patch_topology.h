@@ -12,8 +12,8 @@ struct PatchEdge {
   std::array<Index, 2> ends;  ///< its ends, sorted
   Index place;                ///< index of the face in the patch's list of faces
   Index face;
-  bool ascending;  ///< the edge runs from the smaller to the larger point when the face is turned as its
-                   ///< patch
+  /// The edge runs from the smaller to the larger point if the face is oriented like its patch.
+  bool ascending;
 
   friend bool operator<(const PatchEdge& a, const PatchEdge& b) {
     const auto i = edge_key(a.ends[0], a.ends[1]), j = edge_key(b.ends[0], b.ends[1]);
@@ -46,7 +46,7 @@ class CurveUses {
   Grouping edges_by_curve_;
 };
 
-/// Returns whether the face is turned against its patch: its regions are the patch's in reverse.
+/// Returns whether the face is oriented against its patch: its regions are the patch's in reverse.
 inline bool reversed(const Subject& subject, Index face) {
   const auto& given = subject.mesh.face_regions[face];
   const auto& own = subject.plc.patches[subject.match.face_patch[face]].regions;

@@ -403,10 +403,10 @@ class Placement {
 
   // Makes edges of the edges of tets between consecutive points on a curve.
   void make_edges() {
-    report_.notes.emplace_back(
-        mesh_.edges.empty() ? "The mesh lists no edges: those on curves were found by position."
-                            : "The tags of the edges do not tell the input's curves: those on curves were "
-                              "found by position.");
+    report_.notes.emplace_back(mesh_.edges.empty()
+                                   ? "The mesh lists no edges: those on curves were found by position."
+                                   : "The tags of the edges are none of the input's: those on curves were "
+                                     "found by position.");
     mesh_.edges.clear();
     mesh_.edge_mid_nodes.clear();
     mesh_.edge_curve.clear();

@@ -21,7 +21,7 @@ void check_jacobian(const Named& tet, const CurvedTet& nodes, Tag tag, Findings&
   findings.add(
       guarantee::positive_jacobian, centre, {tet.id},
       "{} of tag {} at {} is of second order and its Jacobian determinant is not positive everywhere "
-      "in it; a solver cannot use it: put its mid-side nodes nearer to the middles of its edges.",
+      "in it; a solver cannot use it: put its mid-edge nodes nearer to the middles of its edges.",
       tet, tag, At{centre});
 }
 

@@ -55,7 +55,7 @@ void check_not_corners(const Subject& subject, Findings& findings) {
       if (is_corner[node])
         findings.add(
             guarantee::mid_nodes, subject.point(node), {t, node},
-            "Point {} at {} is a mid-side node of tet {} and a corner of a tet; give the edge a node "
+            "Point {} at {} is a mid-edge node of tet {} and a corner of a tet; give the edge a node "
             "of its own.",
             node, At{subject.point(node)}, t);
 }

@@ -59,13 +59,13 @@ struct PatchMeeting {
   }
 };
 
-/// Returns the meetings of patches that bound no region, one for each pair and relation. Edges of more
-/// triangles are no meetings.
+/// Returns the meetings of patches that bound no region, one for each pair and value of `agree`. Edges of
+/// more than two triangles do not count.
 std::vector<PatchMeeting> meetings_of(const Subject& subject, const Plc& plc) {
   struct Side {
     std::uint64_t edge;
     Index patch;
-    std::array<Index, 2> run;  // its ends as its triangle passes them
+    std::array<Index, 2> run;  // its ends, in the direction of its triangle
     bool operator<(const Side& other) const { return edge < other.edge; }
   };
   std::vector<Side> sides;
@@ -116,7 +116,8 @@ class MetSurfaces {
   bool is_orientable(Index patch) { return orientable_[surface_of(patch).first]; }
 
  private:
-  // Returns the first patch and whether the given one is turned against it. Halves the path.
+  // Returns the patch that represents the surface of this one (the root of the union-find tree), and whether
+  // this one is turned against it.
   std::pair<Index, bool> surface_of(Index patch) {
     bool turned = false;
     for (; parent_[patch] != patch; patch = parent_[patch]) {

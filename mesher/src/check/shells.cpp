@@ -151,7 +151,7 @@ void check_triangle_jacobians(const Subject& subject, Findings& findings) {
     const Point where = subject.centroid(mesh.faces[f]);
     findings.add(guarantee::positive_jacobian, where, {f},
                  "Triangle {} of tag {} at {} is of second order and folds: its Jacobian is not positive "
-                 "everywhere; put its mid-side nodes nearer to the middles of its edges.",
+                 "everywhere; put its mid-edge nodes nearer to the middles of its edges.",
                  f, mesh.face_tag[f], At{where});
   }
 }

@@ -97,7 +97,7 @@ class SplitCheck {
     for (Index v = 0; v < shared_.size(); ++v)
       if (shared_[v] && in_tet[v] && !on_side[v])
         findings_.add(guarantee::split_nodes, at(v), {v},
-                      "Node {} at {} has others at its place, but no triangle of a split patch.", v,
+                      "Node {} at {} coincides with another node but is on no triangle of a split patch.", v,
                       At{at(v)});
   }
 
@@ -107,11 +107,10 @@ class SplitCheck {
       if (is_side(f)) faces[placed(mesh_.faces[f])].push_back(f);
     for (const auto& [place, pair] : faces) {
       if (pair.size() != 2 || !are_opposite(pair[0], pair[1]))
-        findings_.add(
-            guarantee::split_pairs, at(place[0]), {pair[0]},
-            "Face {} of a split patch at {} has not exactly one face of the other side at its place, "
-            "turned against it.",
-            pair[0], At{at(place[0])});
+        findings_.add(guarantee::split_pairs, at(place[0]), {pair[0]},
+                      "Face {} of a split patch at {} does not coincide with exactly one face of the other "
+                      "side, turned against it.",
+                      pair[0], At{at(place[0])});
     }
     for (std::size_t k = 1; k < sides_.size(); ++k) {
       const PlacedSide &a = sides_[k - 1], &b = sides_[k];
@@ -175,7 +174,7 @@ class SplitCheck {
       if (const auto i = static_cast<Index>(k - 1), j = static_cast<Index>(k);
           all[i].node == all[j].node && touching.same(i, j) && !together.same(i, j))
         findings_.add(guarantee::split_sectors, at(all[i].node), {all[i].node, all[i].tet, all[j].tet},
-                      "Node {} at {} holds tets {} and {} together, between which patches are split.",
+                      "Node {} at {} joins tets {} and {}, although patches between them are split.",
                       all[i].node, At{at(all[i].node)}, all[i].tet, all[j].tet);
   }
 

@@ -43,7 +43,7 @@ struct Subject {
   std::vector<std::uint8_t> collar;  ///< by tet, as TetMesh::tet_collar: cells that the complex's creases
                                      ///< allow as collars
   bool coarsened = false;            ///< cells of collars keep the bounds of other tets and may be thin, too
-  /// The first tet that is a part of a prism or pyramid, which are judged as a whole elsewhere.
+  /// The first tet that is part of a prism or pyramid; these cells are judged elsewhere, as a whole.
   Index first_part = none;
 
   /// Returns whether the mesh has layers; the angles of its tets are then judged elsewhere.

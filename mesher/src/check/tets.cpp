@@ -11,8 +11,8 @@ namespace collarmesh::checks {
 namespace {
 
 constexpr double shape_slack = 1 + 1e-9;  // relative tolerance of the bounds on shape
-// Number of tets that a thread measures at once, and number of tets measured before findings and sums are
-// made of them (4 MB).
+// Number of tets that a thread measures at once, and number of tets measured before their findings and sums
+// are added (4 MB).
 constexpr std::size_t measured_at_once = 4096, in_a_batch = 1 << 17;
 
 struct CornersOfTet {
@@ -52,12 +52,11 @@ void check_shape(Index tet, const CornersOfTet& p, const TetQuality& quality, co
     }
     const double face_angle = largest_face_angle(p.a, p.b, p.c, p.d);
     if (!thin.has_place(tet))
-      findings.add(
-          guarantee::radius_edge, p.centre(), {tet},
-          "Tet {} at {} has circumradius / shortest edge {:.9g}, allowed is {:.9g} but in narrow places and "
-          "at "
-          "creases; let it be thin anywhere by leaving out that bound, or make the size smaller there.",
-          tet, At{p.centre()}, quality.radius_edge, options.bounds.radius_edge);
+      findings.add(guarantee::radius_edge, p.centre(), {tet},
+                   "Tet {} at {} has circumradius / shortest edge {:.9g}, allowed is {:.9g} except in narrow "
+                   "places and at creases; leave out that bound, which lets tets be thin anywhere, or make "
+                   "the size smaller there.",
+                   tet, At{p.centre()}, quality.radius_edge, options.bounds.radius_edge);
     if (thin.are_bounded(quality, face_angle, tet)) {
       if (!thin.is_forced(quality, tet)) return;
       ++report.forced_tets;
@@ -66,7 +65,8 @@ void check_shape(Index tet, const CornersOfTet& p, const TetQuality& quality, co
     }
     findings.add(
         guarantee::thin_angles, p.centre(), {tet},
-        "Tet {} at {} has circumradius / shortest edge {:.6g} and is no thin one: its dihedral angles are "
+        "Tet {} at {} has circumradius / shortest edge {:.6g} and does not count as thin: its dihedral "
+        "angles are "
         "from {:.6g} to {:.6g} degrees, those of its faces at most {:.6g}, allowed are {:.6g} to {:.6g}; "
         "check with the angle that the mesh was made with.",
         tet, At{p.centre()}, quality.radius_edge, quality.min_dihedral, quality.max_dihedral, face_angle,

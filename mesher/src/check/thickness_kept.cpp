@@ -111,9 +111,9 @@ class ThicknessKept {
     sums.opposite = other;
   }
 
-  /// Returns the distance along a ray from where it enters the region through faces of one patch to where it
-  /// leaves the region through faces of another one, nearest to where the complex has them. NaN if it meets
-  /// none.
+  /// Returns the length of the part of a ray between entering the region through faces of one patch and
+  /// leaving it through faces of another one; if there are several such parts, that of the part nearest to
+  /// the complex's. NaN if there is none.
   double between(const Thickness::Ray& ray, double distance, Index patch, Index other, Index region,
                  Thickness::Crossings& crossings) const {
     const TetMesh& mesh = subject_.mesh;

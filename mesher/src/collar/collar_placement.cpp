@@ -22,8 +22,8 @@ constexpr double gap_per_size = 4;
 // Radii are shrunk by a random share of up to this, so that spheres are in general position.
 constexpr double largest_shrinkage = 0.02;
 // Radii change along a curve by at most this share of the distance: a ball's radius is at most a third of a
-// distance, which changes by at most the way along the curve. Where flatness limits radii they change far
-// less, so that they are even along rims of constant curvature.
+// distance, which changes no faster than the position along the curve. Where flatness limits radii they
+// change far less, so that they are even along rims of constant curvature.
 constexpr double radius_slope = 1.0 / 3;
 constexpr double flat_radius_slope = 0.05;
 constexpr double sample_step = 0.5;  // distance of samples, in radii
@@ -104,8 +104,8 @@ void CollarPlacement::require_room(double radius, const Point& where) const {
   if (radius > 0 && !(options_.too_small && options_.too_small(where, radius))) return;
   const Point p = options_.outside ? options_.outside(where) : where;
   const std::string message = fmt::format(
-      "Features come so near to each other at {} that nothing fits between them: {:.3g}; move them apart, or "
-      "remove one.",
+      "Features at {} are only {:.3g} apart, too near to each other for elements between them; move them "
+      "apart, or remove one.",
       facets::text(p), radius / radius_per_gap);
   throw PlcError(message, {{PlcFault::Kind::intersection, message, {}, p}});
 }

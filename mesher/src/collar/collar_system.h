@@ -137,8 +137,9 @@ class CollarSystem {
   // While balls are added, there is a tree over creases and a tree for the balls of each; then there is one
   // over all balls.
   Hierarchy<OfCreases> creases_;
-  std::vector<Index> leaves_;    // in `creases_`, by vertex, then by curve; none without a crease
-  std::vector<Index> root_of_;   // of the tree over a crease's balls, by the leaf's item; none without balls
+  std::vector<Index> leaves_;  // leaf in `creases_`, by vertex, then by curve; none if it is no crease
+  // Root of the tree over a crease's balls, by the leaf's item; none without balls.
+  std::vector<Index> root_of_;
   Hierarchy<CentredBox> trees_;  // over balls
   Index indexed_ = 0;            // number of balls in trees
 

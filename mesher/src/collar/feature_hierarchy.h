@@ -70,7 +70,7 @@ class FeatureHierarchy {
   std::vector<Index> first_element_;  // by feature
   std::vector<Index> roots_;          // by feature
   Hierarchy<Box> trees_;              // over the elements of each feature, and over features
-  Index root_ = none;                 // of the tree over features
+  Index root_ = none;                 // root of the tree over features
 };
 
 template <class Leaf>

@@ -12,8 +12,8 @@ namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double infinite = std::numeric_limits<double>::infinity();
-// A place on a curve in several planes is moved to one plane after the other, in at most this many rounds;
-// the planes hardly differ, or meet in the curve.
+// Limit on rounds in which a place on a curve of several planes is moved to one plane after the other. Few
+// are enough: the planes nearly coincide, or meet in the curve.
 constexpr int most_turns = 20;
 // Points are pulled back to this share of the tolerance, so that rounding cannot leave them outside.
 constexpr double inside = 0.99;

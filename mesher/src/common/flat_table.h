@@ -21,7 +21,7 @@ std::uint64_t hash_of(const Numbers& numbers) {
   for (const auto number : numbers) hash = mixed(hash + split_mix_step + static_cast<std::uint64_t>(number));
   return hash;
 }
-/// Returns a hash of a point, the same for equal points, although 0 and -0 are equal.
+/// Returns a hash of a point. Equal points have equal hashes, even if one has -0 in place of 0.
 inline std::uint64_t hash_of(const Point& p) {
   const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x + 0.0); };
   return hash_of(std::array{bits(p.x), bits(p.y), bits(p.z)});

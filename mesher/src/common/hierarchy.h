@@ -38,9 +38,9 @@ class Hierarchy {
   Index end(Index leaf) const { return nodes_[leaf].first + nodes_[leaf].count; }
 
   /// Adds a tree over the items from `first` on, at least one, whose root is the next node. Leaves have at
-  /// most `leaf_size` items. `split(first, count)` returns how many of these items are left of the others,
-  /// which may reorder them. `leaf(first, count)` returns bounds of items, and `join(bounds, bounds)` those
-  /// of two sets of items; both are converted to `Bounds`. Returns the bounds of all items.
+  /// most `leaf_size` items. `split(first, count)` returns how many of these items go to the left child; it
+  /// may reorder them. `leaf(first, count)` returns bounds of items, and `join(bounds, bounds)` those of two
+  /// sets of items; both are converted to `Bounds`. Returns the bounds of all items.
   template <class Split, class Leaf, class Join>
   auto add(Index first, Index count, Index leaf_size, const Split& split, const Leaf& leaf, const Join& join)
       -> std::invoke_result_t<const Leaf&, Index, Index> {
@@ -59,7 +59,7 @@ class Hierarchy {
     return all;
   }
 
-  /// Replaces the item of each leaf from a node on by `item(that)`. Precondition: leaves have one item.
+  /// Replaces the item i of each leaf, from a node on, by `item(i)`. Precondition: leaves have one item.
   template <class Item>
   void renumber(const Item& item, Index from = 0) {
     for (Index node = from; node < node_count(); ++node)
@@ -67,8 +67,8 @@ class Hierarchy {
   }
 
   /// Visits the items of leaves below a node. `narrow(bounds, state)` returns the state for the nodes below
-  /// one; they are left out if it is 0 or false. `visit(item, state)` may return true to end the search.
-  /// Returns whether it ended so.
+  /// one; if it is 0 or false, these are skipped. `visit(item, state)` may return true to end the search.
+  /// Returns whether a visit ended it.
   template <ChildOrder order = ChildOrder::left_first, class State, class Narrow, class Visit>
   bool descend(Index start, State state, const Narrow& narrow, const Visit& visit) const {
     struct Waiting {
@@ -99,7 +99,7 @@ class Hierarchy {
     return false;
   }
 
-  /// Visits the items of leaves below a node in nodes whose bounds `meets` accepts.
+  /// Visits the items of leaves below a node; skips nodes whose bounds `meets` rejects.
   template <ChildOrder order = ChildOrder::left_first, class Meets, class Visit>
   bool descend(Index start, const Meets& meets, const Visit& visit) const {
     return descend<order>(
@@ -159,7 +159,7 @@ inline auto spatial_splits(std::span<const SpatialKey> keys) {
 }
 
 /// Returns a function for Hierarchy::add that halves items along the longest side of the box of their
-/// centres, and reorders them to that end.
+/// centres, by reordering them.
 template <class Item, class CentreOf>
 auto median_splits(std::span<Item> items, const CentreOf& centre_of) {
   return [items, &centre_of](Index first, Index count) {

@@ -32,7 +32,8 @@ inline double least_along_edge(const std::array<double, 3>& b) {
   return (b[0] * b[2] - b[1] * b[1]) / bend;
 }
 
-/// Returns the least Jacobian of a linear prism in all of its points; twice its volume if it is constant.
+/// Returns the least Jacobian of a linear prism over all of its points; twice the volume if the Jacobian is
+/// constant.
 inline double least_jacobian(const PrismCorners& p) {
   double least = INFINITY;
   for (unsigned corner = 0; corner < 3; ++corner)
@@ -48,8 +49,8 @@ inline double volume_of(const PrismCorners& p) {
   return sum / 18;
 }
 
-/// Returns the Jacobians of a linear pyramid at the corners of its base, where the least one of all points
-/// is; three times its volume if they are equal.
+/// Returns the Jacobians of a linear pyramid at the corners of its base, one of which is the least of all its
+/// points; three times its volume if they are equal.
 inline std::array<double, 4> jacobians_at_base(const PyramidCorners& p) {
   std::array<double, 4> found{};
   for (unsigned i = 0; i < 4; ++i) found[i] = six_volume(p[i], p[(i + 1) % 4], p[(i + 3) % 4], p[4]);
@@ -71,7 +72,7 @@ inline double volume_of(const PyramidCorners& p) {
 /// Returns the least Jacobian of a prism of second order at its corners, at the middles of its edges that
 /// rise, and at the integration points of degree five. `mid` as in LayerCells.
 double least_jacobian_at_points(const PrismCorners& corners, const std::array<Point, 9>& mid);
-/// Returns the same of a pyramid of second order, without its apex.
+/// Returns the least Jacobian of a pyramid of second order at the same kinds of points, except its apex.
 double least_jacobian_at_points(const PyramidCorners& corners, const std::array<Point, 8>& mid);
 
 }  // namespace collarmesh

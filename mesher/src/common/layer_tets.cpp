@@ -19,7 +19,7 @@ namespace {
 
 using Quadrangle = std::array<Index, 4>;
 
-/// The mid-edge nodes by their edge, and those of the diagonals, which are made when they are asked for.
+/// The mid-edge nodes by their edge. Nodes of diagonals are made on demand.
 class MidNodes {
  public:
   explicit MidNodes(TetMesh& mesh) : mesh_(mesh) {}
@@ -44,7 +44,7 @@ class MidNodes {
     mesh_.points.push_back(middle);
     if (!mesh_.features.empty()) mesh_.features.push_back({});
   }
-  /// A listed quadrangle's node lies on its patch.
+  /// Moves the node of a listed quadrangle onto its patch.
   void place_diagonal(const Quadrangle& q, Index patch) {
     if (!mesh_.features.empty()) mesh_.features[find(q[0], q[2])] = {2, patch};
   }
@@ -165,8 +165,8 @@ class Cutter {
 void require_tets_alone(const TetMesh& mesh, std::string_view what) {
   if (mesh.layers.prisms.empty() && mesh.layers.pyramids.empty()) return;
   throw OptionError(
-      fmt::format("{}: the mesh has {} prisms and {} pyramids, for which this is not made; make layers of "
-                  "tetrahedra",
+      fmt::format("{}: the mesh has {} prisms and {} pyramids, for which this is not supported; make layers "
+                  "of tetrahedra",
                   what, mesh.layers.prisms.size(), mesh.layers.pyramids.size()));
 }
 
@@ -205,7 +205,7 @@ class WallSearch {
     walls_.assign(below_.size(), none);
     for (Index v = 0; v < below_.size(); ++v) {
       Index wall = below_[v];
-      // Edges rise towards the core; a mesh whose edges go round in circles has no wall there.
+      // The limit on steps ends cycles of edges in an invalid mesh, which lead to no wall.
       for (std::size_t steps = 0; wall != none && below_[wall] != none && steps <= below_.size(); ++steps)
         wall = below_[wall];
       walls_[v] = wall;

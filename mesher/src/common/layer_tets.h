@@ -8,18 +8,18 @@
 namespace collarmesh {
 
 /// Returns the mesh with its prisms and pyramids cut into tets, which follow its own tets, and its
-/// quadrangles into triangles, by the diagonals through the smallest of their points, so that all fit. In
-/// second order each diagonal has a node, where the quadrangle's nodes place its middle. `layers` keeps only
-/// `tet_layer`, which no tet of a prism or pyramid has at 0. Precondition: the arrays of the layers fit.
-/// Cost: O(n log n) in the quadrangles' sides.
+/// quadrangles into triangles, along the diagonals through their smallest points, so that neighbours fit. In
+/// second order each diagonal gets a node, where the quadrangle's nodes place its middle. `layers` keeps only
+/// `tet_layer`, which is above 0 for all tets of prisms and pyramids. Precondition: the arrays of the layers
+/// fit. Cost: O(n log n) in the quadrangles' sides.
 TetMesh tets_of_layers(const TetMesh& mesh);
 
 /// Throws OptionError if the mesh has prisms or pyramids. `what`: begins the message.
 void require_tets_alone(const TetMesh& mesh, std::string_view what);
 
-/// Returns for each point the one at the wall from which the edges of cells of layers rise to it; none for
-/// others. These edges lead from the first three corners of a prism to the others, from the first two of a
-/// pyramid to the next two, from the first of a tet to the last. Cells that do not lie above one listed
+/// Returns for each point in layers the wall's point below it, found along the rising edges of cells; none
+/// for others. These edges lead from the first three corners of a prism to the others, from the first two of
+/// a pyramid to the next two, from the first of a tet to the last. Cells that do not lie above one listed
 /// triangle do not count. Cost: O(n log n).
 std::vector<Index> walls_below(const TetMesh& mesh);
 

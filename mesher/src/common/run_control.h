@@ -29,11 +29,10 @@ class RunControl {
   /// Reports the progress of the only stage as that of the whole run.
   void begin_only_stage() { to_ = 1; }
 
-  /// Runs a stage that ends early without telling so if its progress function returns false. Throws Ended in
-  /// that case.
+  /// Runs a stage that does not report whether its progress function ended it early. Throws Ended if it did.
   void watch(const std::function<void(const Execution&)>& stage);
 
-  /// Throws Ended if the run is cancelled or out of time, or a stage was asked to end.
+  /// Throws Ended if the run is cancelled or out of time, or if `asked`.
   void stop_if_asked(bool asked = false);
   /// Writes the reason into the result and throws Ended.
   [[noreturn]] void stop();

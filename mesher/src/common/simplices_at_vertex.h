@@ -74,7 +74,7 @@ class EdgesAtVertex {
   static constexpr std::size_t least_slots = 64;
 
   std::vector<Index> ends_;
-  std::vector<Index> table_;  // numbers of ends by hash
+  std::vector<Index> table_;  // hash table of the numbers of ends
 };
 
 /// The edges from a vertex to vertices with larger numbers, and whether the tets at it fit together.
@@ -238,7 +238,7 @@ class TrianglesAtVertex {
 
   std::vector<Linked> uses_;
   std::vector<Listed> lists_;
-  std::vector<Index> table_;  // numbers of lists by hash
+  std::vector<Index> table_;  // hash table of the numbers of lists
   std::vector<TriangleUse> together_;
 };
 

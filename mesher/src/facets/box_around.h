@@ -7,7 +7,7 @@
 
 namespace collarmesh::facets {
 
-/// Returns the soups, followed by the box around them that the options ask for. In a soup of points alone,
+/// Returns the soups, followed by a box around them if the options ask for one. In a soup of points alone,
 /// the points become features.
 std::vector<PolygonSoup> with_box(std::span<const PolygonSoup> soups, const PlcOptions& options);
 

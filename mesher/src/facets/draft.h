@@ -23,7 +23,7 @@ struct Origin {
   Tag tag = 0;
   Index soup = 0;
   Index facet = 0;
-  bool oriented = true;  ///< whether its orientation tells on which side its soup's solid is
+  bool oriented = true;  ///< whether the orientation shows on which side the solid of its soup is
 };
 
 /// An edge that the input gives as a segment.

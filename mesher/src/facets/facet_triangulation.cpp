@@ -149,8 +149,8 @@ class FacetTriangulator {
     if (bent_->where.size() < most_places) bent_->where.push_back(where);
   }
 
-  // Makes a fan of triangles from the first corner of each loop, whatever its shape: the fan uses the same
-  // edges as the facets around it.
+  // Makes a fan of triangles from the first corner of each loop, whatever its shape, so that it has the edges
+  // of the facets around it.
   void fan(const Facet& facet) {
     for (const auto& loop : facet.loops)
       for (std::size_t i = 1; i + 1 < loop.size(); ++i) {

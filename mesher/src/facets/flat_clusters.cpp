@@ -11,10 +11,10 @@ namespace {
 
 // A triangle is a needle if its height is below this many planar tolerances.
 constexpr double needle_height = 10;
-// Below a height of this many tolerances, a triangle may belong to a plane that its own normal does not fit.
+// A triangle lower than this many tolerances may belong to a plane that does not match its own normal.
 constexpr double foldable_height = 2;
-// Tolerance of a triangle's plane, relative to the triangle's height, if that is less than the planar
-// tolerance: even a body smaller than the tolerance has sides.
+// Tolerance of a triangle's plane, relative to its height, if that is less than the planar tolerance. So even
+// a body smaller than the tolerance has sides.
 constexpr double share_of_height = 0.1;
 
 double longest_side(const Draft& draft, Index t) {
@@ -64,7 +64,7 @@ class ClusterFinder {
  private:
   bool precedes(Index a, Index b) const { return areas_[a] != areas_[b] ? areas_[a] > areas_[b] : a < b; }
 
-  // Visits the sides of neighbours across edges of exactly two triangles.
+  // Visits the neighbours of a triangle across edges of exactly two triangles, as sides.
   template <class Visit>
   void for_each_neighbour(Index t, const Visit& visit) const {
     for (unsigned i = 0; i < 3; ++i) {
@@ -96,7 +96,7 @@ class ClusterFinder {
   }
 
   // Returns whether a given feature separates two neighbours. A needle along the feature lies in the planes
-  // of both faces, but only its own face's normal is right for it.
+  // of both faces, but must get the normal of its own face.
   bool divided(Index s, Index t) const {
     if (border_ == ClusterBorder::none) return false;
     const Origin &a = draft_.origins[s], &b = draft_.origins[t];

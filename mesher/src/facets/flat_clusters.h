@@ -15,9 +15,9 @@ struct FlatClusters {
   std::vector<Vector> normal;  ///< by triangle: its unit normal; for needles, that of the seed
 };
 
-/// Places where clusters end in addition to leaving their plane.
+/// Edges where clusters end although their neighbours lie in the same plane.
 enum class ClusterBorder {
-  none,           ///< no other places
+  none,           ///< no such edges
   given_features  ///< between facets of different tags in soups that give their features
 };
 

@@ -108,7 +108,7 @@ LineCaster::Meeting LineCaster::meet(Index triangle, const Point& p, const Point
 }
 
 Vector generic_direction(std::size_t attempt) {
-  // Steps by the golden ratio and by the square root of two distribute directions over the sphere.
+  // Steps by the golden ratio and by the square root of two spread the directions over the sphere.
   const double n = static_cast<double>(attempt) + 0.2718281828;
   const double z = 1 - 2 * std::fmod(0.6180339887498949 * n, 1.0);
   const double turn = 6.283185307179586 * std::fmod(0.4142135623730951 * n, 1.0);

@@ -17,15 +17,15 @@ struct Simplex {
   std::span<const Index> corners() const { return {points.data(), size}; }
 };
 
-/// The simplices of a draft and their boxes: its triangles, numbered as there, then segments that are no side
-/// of a triangle, then its loose points.
+/// The simplices of a draft and their boxes: its triangles, numbered as there, then its segments that are not
+/// sides of triangles, then its loose points.
 class Simplices {
  public:
   Simplices(const Draft& draft, const EdgeTable& edges);
 
   std::span<const Simplex> list() const { return list_; }
-  /// Returns the tree of their boxes. The triangles of one facet are a group, as they come from one
-  /// triangulation; every other simplex is a group of its own.
+  /// Returns the tree of their boxes. The triangles of one facet form a group, because they come from one
+  /// triangulation and need no test against each other; every other simplex is a group of its own.
   const BoxTree& boxes() const { return boxes_; }
   /// Returns a tree to find pairs with: the same items, possibly along other axes.
   const BoxTree& boxes_for_pairs() const { return turned_ ? *turned_ : boxes_; }

@@ -19,8 +19,8 @@ struct PointMap {
 bool is_complex(const PolygonSoup& soup);
 
 /// Puts the used points of all soups into the draft. Merges points closer than `distance` (relative to the
-/// diagonal of all); chains of close points merge, too. A merged point has the place of its first point. Sets
-/// the bounds and the draft's deviation. Points that are not finite and corners out of range become faults.
+/// diagonal of all); chains of close points merge, too. Merged points get the place of the first of them.
+/// Sets the draft's bounds and deviation. Points that are not finite and corners out of range become faults.
 /// Cost: O(n log n) unless many points lie within `distance` of one plane.
 PointMap weld_points(std::span<const PolygonSoup> soups, double distance, Draft& draft, Faults& faults);
 

@@ -42,8 +42,8 @@ void write_contacts(FileWriter& out, const Interfaces& interfaces, const NamesBy
         << names.at(sides.plus) << ", " << names.at(sides.minus) << '\n';
 }
 
-/// Abaqus has cohesive elements of first order only: those of second order are cut into four, as their
-/// mid-edge nodes divide their triangles.
+/// Cuts cohesive elements of second order into four, along their mid-edge nodes, because Abaqus has only
+/// elements of first order.
 std::vector<std::array<Index, 6>> straight_prisms(const Interfaces& interfaces, std::size_t i) {
   const auto& [a, b, c, p, q, r] = interfaces.prisms[i];
   if (interfaces.prism_mid_nodes.empty()) return {interfaces.prisms[i]};

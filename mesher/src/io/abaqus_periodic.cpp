@@ -39,7 +39,7 @@ struct Shares {
   Matrix root = identity;
   std::map<std::size_t, Matrix> references;  ///< by pair
 
-  /// Returns the shares of a node's image, or, backwards, of the node of an image.
+  /// Returns the shares of a node's image or, if `backwards`, those of the node with this image.
   Shares moved(const Matrix& rows, std::size_t pair, bool backwards) const {
     const Matrix by = backwards ? transposed(rows) : rows;
     Shares result{product(by, root), {}};
@@ -63,7 +63,7 @@ class Equations {
   }
 
   void write() {
-    std::vector<Index> starts;  // first nodes of chains: those that are no images
+    std::vector<Index> starts;  // first nodes of chains: nodes that are no images of others
     for (const bool are_images : {false, true})
       for (const auto& each : steps_)
         if (images_.contains(each.first) == are_images) starts.push_back(each.first);

@@ -152,7 +152,7 @@ const ElementType* find_type(std::string_view name) {
   return best;
 }
 
-/// An element set; `named_apart`: defined by an *ELSET, not just by its *ELEMENT.
+/// An element set; `named_apart`: defined by an *ELSET, not only by the *ELEMENT that lists its elements.
 struct Set {
   std::string name, written;
   std::vector<std::int64_t> members;
@@ -331,7 +331,7 @@ class AbaqusReader {
     }
     const auto before = static_cast<Index>(mesh_.layers.pyramids.size());
     const auto numbers = join_pyramids(pairs, mesh_);
-    if (!numbers) lines_.fail(fmt::format("the elements of {} are no halves of pyramids", abaqus_halves));
+    if (!numbers) lines_.fail(fmt::format("the elements of {} are not halves of pyramids", abaqus_halves));
     for (CellPlace& place : places_)
       if (place.kind == CellKind::tet) place.index = (*numbers)[place.index];
     for (Index k = 0; k < pairs.size(); ++k)
@@ -519,8 +519,8 @@ class AbaqusReader {
     }
   }
 
-  /// Returns which of our cell's sides S1 and so on are; nothing for a face without area, and for the second
-  /// part of a base.
+  /// Returns our cell's side for S1 and so on; nothing for a face without area, and for the second part of a
+  /// base.
   static std::optional<std::size_t> side_of(const CellPlace& place, unsigned number) {
     if (place.half) return side_of_pyramid(*place.half, number);
     const auto numbers = abaqus_faces(place.kind);

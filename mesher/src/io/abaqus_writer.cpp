@@ -126,7 +126,7 @@ void write_elements_of(FileWriter& out, const TetMesh& mesh, const HalvedPyramid
   });
 }
 
-/// Writes the set of the halves of pyramids, and how the nodes amid their bases follow others.
+/// Writes the set of the halves of pyramids, and the equations for the nodes in the middle of their bases.
 void write_halves(FileWriter& out, const TetMesh& mesh, const HalvedPyramids& halved) {
   if (!halved.any()) return;
   out << "*ELSET, ELSET=" << capital_word(abaqus_halves) << '\n';

@@ -43,7 +43,7 @@ void write_nblock(FileWriter& out, const TetMesh& mesh) {
   out << "N,R5.3,LOC,       -1,\n";
 }
 
-/// Elements of a kind of cells: Ansys has prisms and pyramids as hexahedra of which nodes are one.
+/// Ansys' elements for a kind of cells. Prisms and pyramids are hexahedra with coinciding nodes.
 struct AnsysType {
   CellKind kind;
   int number;                           ///< by ET

@@ -41,8 +41,8 @@ class CellNodes {
     for (std::size_t k = 0; k < count_; ++k) result.nodes_[order[k]] = nodes_[k];
     return result;
   }
-  /// Returns the cell whose node order[k] is listed[k]. The order may name a node several times, as that of a
-  /// pyramid does that a format has as a hexahedron; nothing if those differ.
+  /// Returns the cell whose node order[k] is listed[k]. The order may name a node several times, as for a
+  /// pyramid that a format has as a hexahedron; returns nothing if these entries of `listed` differ.
   static std::optional<CellNodes> gathered(std::span<const Index> listed,
                                            std::span<const std::uint8_t> order) {
     CellNodes result;
@@ -105,7 +105,8 @@ constexpr NodesOf nodes_of(CellKind kind) {
   return of_kind[static_cast<std::size_t>(kind)];
 }
 
-/// Returns the tags of the cells of a kind; of a const mesh const ones, as in the following functions.
+/// Returns the tags of the cells of a kind. The result is const if the mesh is, as in the following
+/// functions.
 template <class Mesh>
 auto& tags_of(Mesh& mesh, CellKind kind) {
   switch (kind) {

@@ -132,7 +132,7 @@ void number_regions(TetMesh& mesh) {
   for (const CellKind kind : surface_kinds) regions_beside(mesh, kind).clear();
 }
 
-/// Returns whether regions are numbered from 1; every format has 9 digits for them.
+/// Returns whether the numbers of regions are from 1 to 999 999 999, for which every format has room.
 bool has_region_numbers(const TetMesh& mesh) {
   constexpr Index largest = 999'999'999;
   return !mesh.tet_region.empty() &&
@@ -159,7 +159,7 @@ void find_face_regions(TetMesh& mesh, CellKind kind) {
     }
 }
 
-/// Fills in numbers of layers; a mesh whose tets are in none has no array of theirs.
+/// Fills in the numbers of layers. If no tet is in a layer, the tets' array stays empty.
 void complete_layers(TetMesh& mesh) {
   LayerCells& layers = mesh.layers;
   layers.prism_layer.resize(layers.prisms.size(), 0);

@@ -23,7 +23,7 @@ std::string capital_word(std::string text);
 std::string word_name(const TetMesh& mesh, std::size_t dimension, Tag tag);
 std::string capital_name(const TetMesh& mesh, std::size_t dimension, Tag tag);
 
-/// Returns the tag that a name of ours stands for, in any case.
+/// Returns the tag that a name of ours stands for, in upper or lower case.
 std::optional<Tag> tag_of_group_name(std::size_t dimension, std::string_view name);
 
 /// Returns whether the name differs from that of kind and tag, "patch_7". Names of CAD shapes do.

@@ -72,7 +72,7 @@ std::vector<PolygonSoup::RegionPoint> points_in_regions(const TetMesh& mesh) {
 
 TetMesh read_mesh_cells(const std::string& path, std::string_view format) {
   const MeshFormat* found = find_mesh_format(path, format);
-  if (found == nullptr) throw ReadError(fmt::format("{}: is no file of a mesh with triangles", path));
+  if (found == nullptr) throw ReadError(fmt::format("{}: is not a mesh file that can have triangles", path));
   return found->read(path);
 }
 

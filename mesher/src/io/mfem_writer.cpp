@@ -78,7 +78,7 @@ void write_names(FileWriter& out, const TetMesh& mesh, const std::map<Tag, std::
     out << fmt::format("# boundary attribute {}: {}\n", attribute, group_name(mesh, 2, tag));
 }
 
-/// A cell of an attribute.
+/// A cell and the attribute it gets.
 struct Attributed {
   CellKind kind;
   Index cell;

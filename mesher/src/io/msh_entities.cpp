@@ -128,7 +128,8 @@ void assign_cells(const TetMesh& mesh, Tables& tables, MshEntities& result) {
   }
 }
 
-/// Places nodes by the last cell at them; those of a kind `from` a place on.
+/// Assigns nodes to the entity of the last cell that has them. Of each cell of a kind, its nodes from number
+/// `from` on.
 void place_nodes(const TetMesh& mesh, CellKind kind, std::size_t from, MshEntities& result) {
   const auto dimension = static_cast<std::uint8_t>(shape_of(kind).dimension);
   for (std::size_t i = 0; i < count_of(mesh, kind); ++i) {
@@ -152,7 +153,7 @@ void place_corners_of_tets(const TetMesh& mesh, MshEntities& result) {
   });
 }
 
-/// Places points by the features of vertices where known, otherwise by the cells around.
+/// Assigns points to entities: by the features of vertices where known, otherwise by the cells around.
 void place_points(const TetMesh& mesh, Tables& tables, MshEntities& result) {
   if (mesh.tets.empty()) tables[3].find(1);
   result.of_point.resize(mesh.points.size());

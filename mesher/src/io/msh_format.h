@@ -12,7 +12,7 @@ namespace collarmesh::io {
 
 constexpr int gmsh_point = 15;
 
-/// A type of elements, and our node at each place.
+/// A type of elements of Gmsh, and our node at each place.
 struct GmshType {
   int number;
   CellKind kind;

@@ -98,7 +98,7 @@ class PairLinks {
   const MshEntities& entities_;
   const TetMesh::PeriodicFaces& pair_;
   std::unordered_map<Index, Index> image_of_;
-  std::set<std::array<Index, 2>> sides_;  // of triangles of the first group
+  std::set<std::array<Index, 2>> sides_;  // sides of triangles of the first group
   std::map<std::tuple<std::size_t, Index, Index>, std::map<Index, Index>> nodes_;  // by entity and master
 };
 

@@ -96,7 +96,7 @@ void sort_by_number(std::vector<Item>& items) {
 template <class Values>
 void sort_nodes(Values& values, Contents& contents) {
   std::vector<Node>& nodes = contents.nodes;
-  // Cells know their nodes by position.
+  // Cells refer to nodes by their positions, which sorting changes.
   for (const std::vector<Cell>& cells : contents.cells)
     if (!cells.empty()) values.fail("the nodes come after elements; save all nodes first");
   sort_by_number(nodes);

@@ -101,7 +101,7 @@ void join_cells(const std::vector<NamedPiece>& pieces, VtkPiece& whole) {
   });
   for (std::size_t i = 1; i < places.size(); ++i)
     if (places[i].number == places[i - 1].number)
-      throw ReadError(fmt::format("{}: cell {} is in another place, too, and in none of them a ghost",
+      throw ReadError(fmt::format("{}: cell {} occurs twice, and neither is marked as a ghost",
                                   pieces[places[i].piece].path, places[i].number));
   for (const Place& place : places) {
     const auto& [path, piece, point_of] = pieces[place.piece];

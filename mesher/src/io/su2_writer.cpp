@@ -27,7 +27,8 @@ constexpr int number_of(CellKind kind) {
   }
 }
 
-/// Returns the nodes in VTK's order: the first triangle of a prism turns its normal away from the second one.
+/// Returns the nodes in VTK's order, in which the normal of a prism's first triangle points away from the
+/// second one.
 CellNodes vtk_nodes(const TetMesh& mesh, CellKind kind, std::size_t cell) {
   const CellNodes nodes = nodes_of(kind)(mesh, cell);
   return kind == CellKind::prism ? turned(kind, nodes) : nodes;

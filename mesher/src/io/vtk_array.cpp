@@ -60,7 +60,7 @@ class Stored {
     if (count > left()) fail(count, left());
     if (!base64_) return std::string(text_.substr(0, count));
     std::optional<std::string> bytes = base64_decode(text_.substr(0, base64_size(count)));
-    if (!bytes) throw VtkArrayError{"the values are no base64"};
+    if (!bytes) throw VtkArrayError{"the values are not base64"};
     bytes->resize(std::min<std::size_t>(bytes->size(), count));
     return *std::move(bytes);
   }

@@ -24,7 +24,7 @@ struct VtkStorage {
   VtkCompression compression = VtkCompression::none;
 };
 
-/// zlib never packs better than 1 to this, LZ4 not even to a quarter of it.
+/// Largest compression ratio of zlib. That of LZ4 is less than a quarter of it.
 constexpr std::uint64_t vtk_largest_ratio = 1032;
 
 /// A fault of stored values, to which the caller adds the file and the place.

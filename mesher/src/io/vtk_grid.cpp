@@ -35,7 +35,8 @@ constexpr std::array<VtkKind, cell_kinds> vtk_kinds{{{CellKind::tet, {10, 24}},
                                                      {CellKind::quadrangle, {9, 23}},
                                                      {CellKind::edge, {3, 21}}}};
 
-/// Our node at each place of VTK's wedges, whose first triangle turns its normal away from the second one.
+/// Our node at each place of VTK's wedges, in which the normal of the first triangle points away from the
+/// second one.
 constexpr std::array<std::uint8_t, 15> wedge_order{0, 2, 1, 3, 5, 4, 8, 7, 6, 11, 10, 9, 12, 14, 13};
 
 std::span<const std::uint8_t> vtk_order(CellKind kind, std::size_t nodes) {
@@ -232,7 +233,7 @@ class GridMaker {
 /// The cells of one piece by kind, as positions in its arrays.
 using CellKinds = std::array<std::vector<std::size_t>, cell_kinds>;
 
-/// The kind of cells that a VTK cell type is read as.
+/// The kind of cells as which a VTK cell type is read.
 struct ReadType {
   std::size_t nodes = 1;
   std::optional<CellKind> kind;  ///< nothing: a point, which is skipped

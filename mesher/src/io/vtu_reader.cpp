@@ -56,7 +56,7 @@ class VtuFile {
   std::size_t number(const pugi::xml_node& node, const char* attribute) const {
     std::size_t value = 0;
     if (!parse(node.attribute(attribute).value(), value) || value >= none)
-      fail(node, fmt::format("expected {}, a number of things, found {}", attribute,
+      fail(node, fmt::format("expected {}, a count, found {}", attribute,
                              in_quotes(node.attribute(attribute).value())));
     return value;
   }
@@ -164,7 +164,7 @@ class VtuFile {
                               : format == "appended" ? appended_bytes(array, first_byte)
                                                      : unknown_format(array, format);
     if (bytes.size() % vtk_size(type) != 0)
-      fail_byte(first_byte, array, fmt::format("{} bytes are no whole number of values", bytes.size()));
+      fail_byte(first_byte, array, fmt::format("{} bytes are not a whole number of values", bytes.size()));
     return convert_vtk_values<T>(bytes, type, storage_.order);
   }
 

@@ -141,7 +141,7 @@ void write_section(FileWriter& out, const Section& section, std::size_t& offset)
 }  // namespace
 
 void write_vtu(const std::string& path, const TetMesh& mesh) {
-  // Counting the available threads limits TBB to them.
+  // The first call of usable_threads limits TBB to the threads that the system allows.
   if (tbb::this_task_arena::max_concurrency() > 1) static_cast<void>(usable_threads());
   VtkGrid grid = make_vtk_grid(mesh);
   const std::vector<VtkArray> boundary =

@@ -1,5 +1,5 @@
-// Pushes the front into the tets: its nodes move in fractions, nodes near it follow, and the engine of
-// improvement makes the tets good again. Where it cannot, heights are lowered.
+// Pushes the front into the tets: its nodes move by fractions, nodes near it follow, and the engine of
+// improvement restores the tets. Where it cannot, heights are lowered.
 #include "layers/core.h"
 
 #include <algorithm>
@@ -19,22 +19,22 @@ using improvement::Workpiece;
 namespace {
 
 constexpr unsigned rings_moved = 5, sweeps = 12;
-// Moves are halved so often, then left out, where tets would become flat.
+// A move that would make tets flat is halved at most this many times, then left out.
 constexpr unsigned most_halvings = 6;
-// A move leaves a tet at least this share of its quality, unless it stays above the second number.
+// A move must leave each tet this share of its quality, or at least the quality `good_quality`.
 constexpr double quality_left = 0.2, good_quality = 0.15;
-// While the front moves, tets are improved up to this factor above the bound on angles, at last as far as
-// asked.
+// While the front moves, tets are improved to angles above the bound by this factor; at the end, as far as
+// the options ask.
 constexpr double above_bound = 1.05;
-// So many poor tets are improved by slow means, too.
+// Slow means of improvement are used if at most this many tets are poor.
 constexpr std::size_t most_of_few = 20;
 constexpr unsigned most_advances = 6, most_rounds = 4, most_fittings = 40;
-constexpr unsigned most_rings = 64;  // of tets around poor ones in which the front is sought
-constexpr double fitting = 0.85;     // by this factor heights are lowered to fit tets
+constexpr unsigned most_rings = 64;  // rings around poor tets in which the front is searched for
+constexpr double fitting = 0.85;     // factor by which heights are lowered to fit tets
 // Heights count as reached within this share.
 constexpr double precision = 1e-9;
 constexpr std::size_t at_once = 4096;
-// Larger than the ratio of any tet, and smaller.
+// Radius-edge ratios above and below those of all tets.
 constexpr double any_ratio = 1e12, no_ratio = 0;
 
 }  // namespace
@@ -77,7 +77,7 @@ bool Core::push(Heights& heights, const std::vector<std::uint8_t>& levels) {
   fit_tets(heights, levels);
   const double enough = above_bound * options_.bounds.thin_angle;
   double share = 0.7;
-  bool few = false;  // poor tets are left
+  bool few = false;  // few poor tets are left
   std::vector<Index> poor;
   for (unsigned round = 0; round < most_rounds; ++round) {
     go(heights, enough, few);
@@ -113,15 +113,15 @@ bool Core::push(Heights& heights, const std::vector<std::uint8_t>& levels) {
   return false;
 }
 
-/// Lowers heights until tets that only move, without any change of their connections, keep a share of their
-/// bounds. The engine does the rest.
+/// Lowers heights until tets keep a share of their bounds when only their nodes move. The engine of
+/// improvement does the rest.
 void Core::fit_tets(Heights& heights, const std::vector<std::uint8_t>& levels) {
   constexpr std::array<double, strictest + 1> shares{0.4, 1.0};
   const std::vector<Index> near = vertices_near_front(rings_moved);
   find_around(near);
   const auto& complex = piece_->complex;
   std::vector<Index> tets;
-  std::vector<double> least;  // margin that each is to keep
+  std::vector<double> least;  // margin that each tet must keep
   for (Index t = 0; t < complex.size(); ++t) {
     double wanted = 0;
     for (const Index v : complex[t].corners)
@@ -163,7 +163,7 @@ double Core::margin(const improvement::Corners& p, Index tet) const {
   return blunt < 0 ? -1 : std::sqrt(std::min(sharp, blunt));
 }
 
-/// Moves the front step by step, with improvements in between, as long as it comes forward.
+/// Moves the front step by step, and improves tets in between, as long as it advances.
 void Core::go(const Heights& heights, double enough, bool thoroughly) {
   std::size_t left = heights.size() + 1;
   for (unsigned k = 0; k < most_advances; ++k) {
@@ -176,7 +176,7 @@ void Core::go(const Heights& heights, double enough, bool thoroughly) {
   }
 }
 
-/// Returns the number of poor tets up to which it pays to lower heights in place.
+/// Returns the largest number of poor tets for which lowering heights in place pays.
 std::size_t Core::most_left(const Heights& heights) const {
   constexpr std::size_t few_nodes = 20, nodes_per_tet = 40;
   return few_nodes + heights.size() / nodes_per_tet;
@@ -187,7 +187,7 @@ bool Core::is_reached(Index node, const Heights& heights) const {
          std::fabs(reached_[node] - heights[node]) <= precision * heights.asked(node);
 }
 
-/// Moves all vertices as far as tets stay good enough. Returns whether the front is where it is to be.
+/// Moves all vertices as far as tets stay good enough. Returns whether the front has reached its heights.
 bool Core::advance(const Heights& heights) {
   const std::vector<Index> near = vertices_near_front(rings_moved);
   find_around(near);
@@ -237,7 +237,7 @@ std::vector<Vector> Core::moves_towards(const Heights& heights, const std::vecto
   return moves;
 }
 
-/// Finds the vertices around each that is free to follow the front, once for each tet with both.
+/// Finds the neighbours of each vertex that may follow the front; lists a neighbour once for each common tet.
 void Core::find_around(const std::vector<Index>& near) {
   const auto& complex = piece_->complex;
   std::vector<Index> slot(mesh_.points.size(), none);
@@ -261,7 +261,7 @@ void Core::find_around(const std::vector<Index>& near) {
   });
 }
 
-/// Lets the vertices near the front follow it: each moves as the mean of those around.
+/// Moves the vertices near the front along with it: each by the mean of its neighbours' moves.
 void Core::spread(std::vector<Vector>& moves, const std::vector<Index>& near) const {
   std::vector<Vector> next(near.size());
   for (unsigned sweep = 0; sweep < sweeps; ++sweep) {
@@ -280,7 +280,7 @@ void Core::spread(std::vector<Vector>& moves, const std::vector<Index>& near) co
   }
 }
 
-/// Keeps a vertex on its planar patch; those on curved ones stay.
+/// Keeps a vertex on its planar patch; vertices on curved patches do not move.
 void Core::constrain(Index vertex, Vector& move) const {
   const auto& [dimension, feature] = mesh_.features[vertex];
   if (dimension == 3) return;
@@ -304,7 +304,8 @@ std::vector<double> Core::shares_of(const std::vector<Vector>& moves, const std:
       moved.push_back(t);
   std::vector<std::uint8_t> spoilt(moved.size(), 0);
   std::vector<double> before(moved.size());
-  std::vector<bool> changed(mesh_.points.size(), true);  // in the last pass: other tets are as they were
+  // In the last pass; tets without such vertices need no second look.
+  std::vector<bool> changed(mesh_.points.size(), true);
   for (unsigned pass = 0;; ++pass) {
     parallel_for_ranges(moved.size(), at_once, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
@@ -333,9 +334,9 @@ std::vector<double> Core::shares_of(const std::vector<Vector>& moves, const std:
   }
 }
 
-/// Improves tets below this angle: first by tets within their bounds alone, then those that are poor by any
-/// better ones. A better tet may miss its bound where a worse one does not: at a crease, or at a forced edge.
-/// `thoroughly`: by slow means, too.
+/// Improves tets below this angle: first only by tets within their bounds, then poor tets by any better ones.
+/// At a crease or forced edge, a better tet may miss its bound where a worse one keeps it. `thoroughly`: also
+/// by slow means.
 void Core::improve_tets(double angle, bool thoroughly) {
   piece_->leave({});
   improve_by(angle, thoroughly, no_ratio);
@@ -348,7 +349,7 @@ void Core::improve_tets(double angle, bool thoroughly) {
   improve_by(angle, thoroughly, any_ratio);
 }
 
-/// `ratio`: tets beyond it have to keep their bounds on angles.
+/// `ratio`: tets above this radius-edge ratio must keep their bounds on angles.
 void Core::improve_by(double angle, bool thoroughly, double ratio) {
   ImproveOptions options = options_;
   options.min_dihedral = std::min(angle, options.min_dihedral);
@@ -359,8 +360,8 @@ void Core::improve_by(double angle, bool thoroughly, double ratio) {
   cancelled_ = cancelled_ || improve(*piece_, options, execution_, thoroughly).cancelled;
 }
 
-/// Returns the tets beyond the bounds on angles, without those that were so from the start and are what they
-/// were: the mesh was certified with them.
+/// Returns the tets beyond the bounds on angles, except unchanged ones that were so from the start: the mesh
+/// was certified with them.
 std::vector<Index> Core::poor_tets() const {
   const auto& complex = piece_->complex;
   std::vector<std::uint8_t> poor(complex.size(), 0);
@@ -385,7 +386,7 @@ bool Core::is_as_given(Index tet) const {
          });
 }
 
-/// Marks the vertices of tets at most so many rings from these.
+/// Marks the vertices of all tets within this many rings of the given ones.
 std::vector<std::uint8_t> Core::vertices_near(const std::vector<Index>& tets, unsigned rings) const {
   const auto& complex = piece_->complex;
   std::vector<std::uint8_t> near(mesh_.points.size(), 0);
@@ -404,7 +405,7 @@ std::vector<std::uint8_t> Core::vertices_near(const std::vector<Index>& tets, un
   return near;
 }
 
-/// Returns the nodes of the front that have copies, in tets at most so many rings from these.
+/// Returns the nodes of the front that have copies in tets within this many rings of the given ones.
 std::vector<Index> Core::nodes_near(const std::vector<Index>& tets, unsigned rings) const {
   const std::vector<std::uint8_t> near = vertices_near(tets, rings);
   std::vector<Index> nodes;
@@ -413,7 +414,8 @@ std::vector<Index> Core::nodes_near(const std::vector<Index>& tets, unsigned rin
   return nodes;
 }
 
-/// Lowers the front at these tets; where they have none of its nodes, in the next ring that has.
+/// Lowers the front at these tets or, if they have none of its nodes, in the nearest ring around them that
+/// has.
 bool Core::lower_at(const std::vector<Index>& tets, double share, Heights& heights) const {
   for (unsigned rings = 0; rings < 4; ++rings) {
     bool any = false;

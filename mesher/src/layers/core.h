@@ -14,20 +14,19 @@
 
 namespace collarmesh::layering {
 
-/// The tets that layers leave: the mesh, whose nodes at the front have copies that move away from the wall.
+/// The tets outside the layers. Nodes at the front have copies, which move away from the wall.
 class Core {
  public:
   /// Keeps all by reference, but copies the mesh.
   Core(const TetMesh& mesh, const Plc& plc, const Front& front, const Heights& heights,
        const ImproveOptions& improvement, const Execution& execution);
 
-  /// Moves the copies to these heights, as far as tets stay positive, and improves the tets; where that
-  /// does not suffice, lowers the heights. Returns false if it fails: then `failed()` are the nodes that had
-  /// better have no layers.
-  /// `levels`: by node of the front, how strictly its height is limited at first by the tets there, as long
-  /// as they are what they were.
+  /// Moves the copies to these heights, as far as tets stay positive, and improves the tets; where that does
+  /// not suffice, lowers the heights. Returns false if that fails; `failed()` are then the nodes that should
+  /// get no layers.
+  /// `levels`: by node of the front, how strictly the tets there limit its height at first.
   bool push(Heights& heights, const std::vector<std::uint8_t>& levels);
-  /// From this level on tets stay within their bounds without any improvement.
+  /// From this level on, the limit keeps tets within their bounds without any improvement.
   static constexpr std::uint8_t strictest = 1;
   const std::vector<Index>& failed() const { return failed_; }
   bool cancelled() const { return cancelled_; }
@@ -72,7 +71,7 @@ class Core {
   std::unique_ptr<improvement::Workpiece> piece_;
   std::unique_ptr<improvement::ThinShape> thin_;
   std::vector<std::array<Index, 4>> poor_at_first_;  // sorted corners
-  Lists around_;  // by vertex near the front: those around it; none for fixed ones
+  Lists around_;  // by vertex near the front: its neighbours; empty for fixed vertices
   std::vector<Index> failed_;
   bool cancelled_ = false;
 };

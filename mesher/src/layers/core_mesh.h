@@ -9,18 +9,18 @@
 
 namespace collarmesh::layering {
 
-/// The mesh of the core before anything moves: a copy of the mesh in which the nodes of the front that are to
-/// move have copies of their own, at the same places. The faces of walls become those of the front.
+/// The mesh of the core before anything moves: a copy of the mesh with a duplicate, at the same place, of
+/// each node of the front that will move. The faces of walls become those of the front.
 class CoreMesh {
  public:
   CoreMesh(const TetMesh& given, const Front& front, const Heights& heights);
 
   TetMesh mesh;
   std::vector<Index> vertex_of;  ///< by node of the front: its copy, or the node itself if it does not move
-  std::vector<Index> node_of;    ///< by vertex: the node of the front whose copy it is; none
+  std::vector<Index> node_of;    ///< by vertex: the node of the front whose copy it is, or none
 
  private:
-  /// A face of the front, or a wall's on the side that does not move.
+  /// A face of the front, or a face of a wall on a side that does not move.
   struct NewFace {
     std::array<Index, 3> corners;
     Index region;

@@ -1,5 +1,5 @@
-// Second order of meshes with layers: the core first, then the cells of layers, whose edges are between those
-// of the wall and those of the core.
+// Gives meshes with layers second order: first the core, then the cells of layers, whose edges interpolate
+// between those of the wall and those of the core.
 #include "layers/curving.h"
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::array<EdgePlaces, 3> triangle_edges{{{0, 1}, {1, 2}, {2, 0}}};
 
-// Bulges shrink by this factor, so often at most, where cells fold; then they are left out.
+// Where cells fold, bulges shrink by this factor, at most a fixed number of times, and are then left out.
 constexpr double shrinking = 0.5;
 constexpr unsigned most_shrinkings = 5;
 
@@ -44,7 +44,7 @@ class Curving {
  private:
   using Edge = std::array<Index, 2>;
   using Shares =
-      std::unordered_map<std::uint64_t, double>;  // of bulges that are left, by edge key of the wall
+      std::unordered_map<std::uint64_t, double>;  // remaining shares of bulges, by edge key of the wall
 
   bool in_core(Index tet) const { return mesh_.layers.tet_layer[tet] == 0; }
 
@@ -103,10 +103,10 @@ class Curving {
     return true;
   }
 
-  /// Lists the sides that the core has in common with layers as faces of no patch: nodes inside regions move
-  /// where curved tets need that, those on faces without a patch stay in the middle of their edges, as the
-  /// cells of layers need. `sides`: sorted, those of all tets of the core. Call it before other faces are
-  /// listed, which decide on the edges that they share.
+  /// Lists the sides that the core shares with layers as faces of no patch: nodes inside regions may move for
+  /// curved tets, but nodes on such faces stay in the middle of their edges, as the cells of layers need.
+  /// `sides`: those of all tets of the core, sorted. Call it before other faces are listed, because these
+  /// decide on the edges that they share.
   void keep_front_straight(const std::vector<std::array<Index, 3>>& sides, TetMesh& core) const {
     std::vector<std::array<Index, 3>> listed;
     for (const auto& face : mesh_.faces) listed.push_back(sorted(face));
@@ -157,8 +157,8 @@ class Curving {
     note_patches(layers.quad_mid_nodes, layers.quad_patch);
   }
 
-  /// Finds the edges of walls between two nodes without layers, which the core has: it left them straight
-  /// below triangles of the front, and elsewhere may place their nodes otherwise than before.
+  /// Finds the wall edges of the core between two nodes without layers. The core left them straight below
+  /// triangles of the front; elsewhere it may have placed their nodes differently than before.
   void find_wall_nodes_of_core() {
     for (std::size_t f = 0; f < mesh_.faces.size(); ++f)
       for (unsigned k = 0; k < 3; ++k) {
@@ -198,7 +198,8 @@ class Curving {
           mesh_.features[node] = {2, patches[f]};
   }
 
-  /// Places the nodes of layers: straight, and with the bulges of wall and core in proportion.
+  /// Places the nodes of layers: in the middle of the straight edge, plus the bulges of wall and core in
+  /// proportion.
   void place_nodes() {
     for (const auto& [node, a, b, is_new] : wall_nodes_)
       mesh_.points[node] = 0.5 * (mesh_.points[a] + mesh_.points[b]) + bulge_between(a, b);
@@ -226,8 +227,8 @@ class Curving {
     return found == shares.end() ? 1 : found->second;
   }
 
-  /// Places the nodes of layers, and shrinks bulges at the cells that fold as long as there are any. Returns
-  /// the edges of walls at those that still fold.
+  /// Places the nodes of layers, and shrinks the bulges of cells that fold until none folds. Returns the wall
+  /// edges of cells that still fold.
   std::vector<Edge> straighten_while_folded(Shares& left) {
     for (unsigned pass = 0;; ++pass) {
       place_nodes();
@@ -307,13 +308,13 @@ class Curving {
   const Execution& execution_;
   std::vector<std::array<Index, 6>> core_nodes_;
   std::unordered_map<std::uint64_t, Index> nodes_;  // by edge key
-  Shares left_above_, left_on_walls_;               // of edges above walls, and on these
-  std::vector<Edge> ends_;                          // of the edges whose nodes are those of layers
+  Shares left_above_, left_on_walls_;               // for edges above walls, and for edges on them
+  std::vector<Edge> ends_;                          // the edges of the layers' nodes
   struct WallNode {
-    Index node, a, b;  // between these ends
-    bool is_new;       // the core knew no feature of it
+    Index node, a, b;  // the node, and the ends of its edge
+    bool is_new;       // the core had no feature for it
   };
-  std::vector<WallNode> wall_nodes_;  // of walls, but nodes of the core
+  std::vector<WallNode> wall_nodes_;  // nodes on walls that belong to the core
   std::vector<Index> tets_at_wall_;   // tets of the core with such nodes
   Index first_node_ = 0, first_of_layers_ = 0;
   CurvedLayers made_;

@@ -10,17 +10,17 @@
 
 namespace collarmesh::layering {
 
-/// The ways from the middles of a mesh's edges to their nodes of second order.
+/// The bulges of a mesh's edges: the vectors from their middles to their mid-edge nodes.
 class Bulges {
  public:
   Bulges() = default;
-  /// Finds those of the listed faces and edges of a mesh of second order.
+  /// Finds the bulges of the listed faces and edges of a mesh of second order.
   explicit Bulges(const TetMesh& mesh);
 
   bool empty() const { return bulges_.empty(); }
-  /// Returns that of the edge between two points; none where it is straight or not known.
+  /// Returns the bulge of the edge between two points; zero if it is straight or not known.
   Vector operator()(Index a, Index b) const;
-  /// Returns whether there was an edge between two points.
+  /// Returns whether the edge between two points is known.
   bool knows(Index a, Index b) const;
 
  private:
@@ -30,13 +30,13 @@ class Bulges {
 /// Turns a mesh of second order into one of first order.
 void straighten(TetMesh& mesh);
 
-/// Where the points of a mesh with layers lie: the point of the wall below them, and the height relative to
+/// The places of the points of a mesh with layers: the point of the wall below, and the height relative to
 /// all layers there.
 struct PlacesInLayers {
-  std::vector<Index> wall;      ///< itself on walls; none elsewhere
-  std::vector<Index> given;     ///< the same, with the number that it had in the mesh without layers
+  std::vector<Index> wall;      ///< the point of the wall below; itself on walls; none elsewhere
+  std::vector<Index> given;     ///< the same point by its number in the mesh without layers
   std::vector<double> share;    ///< from 0 on walls to 1 beside the core
-  std::vector<bool> is_raised;  ///< by point of a wall: there are layers above it
+  std::vector<bool> is_raised;  ///< by point of a wall: whether there are layers above it
 };
 
 struct CurvedLayers {
@@ -47,8 +47,8 @@ struct CurvedLayers {
 
 /// Gives a mesh with layers nodes of second order. Edges of walls keep their bulges, which fade towards the
 /// core. The core gets its nodes as any mesh does, but keeps its tets. Where cells would fold, edges above
-/// the walls get straighter. `may_move_walls`: where that is not enough, those of walls do, too, and the
-/// report lists them; otherwise these cells stay folded.
+/// the walls get straighter. `may_move_walls`: if that is not enough, edges of walls get straighter, too, and
+/// the report lists their nodes; otherwise such cells stay folded.
 CurvedLayers curve(TetMesh& mesh, const Plc& plc, const Bulges& bulges, const PlacesInLayers& places,
                    const SecondOrderOptions& options, const Execution& execution, bool may_move_walls);
 

@@ -1,10 +1,11 @@
-// The direction of the largest smallest cosine is that of the point of the convex hull of the normals that is
-// nearest to the origin (Aubry and Loehner, On the most normal normal, 2008). The method of Frank and Wolfe
-// finds it, in the variant that moves weight from the normal that is farthest along to the one that is least.
+// Finds the direction whose smallest cosine to the normals of walls is largest: that of the point of the
+// normals' convex hull that is nearest to the origin (Aubry and Loehner, On the most normal normal, 2008).
+// Uses the method of Frank and Wolfe, in its variant that moves weight from the normal with the largest
+// cosine to the one with the smallest.
 //
-// Where walls meet sharply, Gilbert's algorithm is used, which adds weight only. After its steps it is still
-// nearer to the mean of the normals, and there layers become higher and cover more than with the steepest
-// direction: measured on the parts of mesher/bench/README.md.
+// Where walls meet sharply, uses Gilbert's algorithm, which only adds weight. After as many steps its result
+// is still nearer to the mean of the normals. There, layers become higher and cover more with it than with
+// the steepest direction.
 #include "layers/direction.h"
 
 #include <algorithm>
@@ -18,9 +19,9 @@ constexpr unsigned most_steps = 200;
 constexpr double direction_precision = 1e-6;
 // Walls with a smaller cosine to the best direction meet sharply.
 constexpr double narrow = 0.6;
-// A direction above means of normals has at least this share of the best one's least cosine.
+// The direction from means of normals is used if its least cosine exceeds this share of the best one's.
 constexpr double steep_enough = 0.85;
-// Planes and lines at a smaller sine of their angle are taken for the same.
+// Planes, and lines, count as the same if the sine of their angle is smaller.
 constexpr double parallel = 1e-4;
 // Lines may leave planes by this sine, because the normals of curved patches are means over triangles.
 constexpr double nearly_parallel = 0.02;

@@ -8,23 +8,23 @@
 namespace collarmesh::layering {
 
 struct Direction {
-  Vector direction;     ///< unit
-  double least_cosine;  ///< between it and the normals of walls; positive
+  Vector direction;     ///< unit vector
+  double least_cosine;  ///< of the angles between it and the normals of walls; positive
 };
 
 /// Finds the direction that is as steep as possible above all walls at a node, within the planes and along
 /// the lines on which the node has to stay.
 class DirectionSearch {
  public:
-  /// Unit vectors; the normal points away from the wall.
+  /// Adds the normal of a wall: a unit vector that points away from the wall.
   void add_wall(const Vector& normal) { walls_.push_back(normal); }
-  /// Adds the mean of the normals of walls that approximate one curved wall. The direction is that as steep
-  /// as possible above these, if there are any, unless it is much flatter above one of the walls.
+  /// Adds the mean of the normals of walls that approximate one curved wall. If there are means, the
+  /// direction is as steep as possible above them, unless it is then much flatter above a single wall.
   void add_mean(const Vector& normal) { means_.push_back(normal); }
   void stay_in_plane(const Vector& normal) { planes_.push_back(normal); }
   void stay_on_line(const Vector& way) { lines_.push_back(way); }
 
-  /// Returns the direction; nothing if there is none from which all walls are seen.
+  /// Returns the direction; nothing if no direction points away from all walls.
   std::optional<Direction> best() const;
 
  private:

@@ -14,7 +14,7 @@ namespace collarmesh::layering {
 
 namespace {
 
-// Tets around an edge that are followed at most; more are no part of a valid mesh.
+// Limit on the tets followed around an edge; valid meshes have fewer.
 constexpr unsigned most_around = 10'000;
 
 /// Returns whether two triangles of the same corners are oriented alike.
@@ -35,7 +35,7 @@ std::vector<Index> within_rings(const Lists& neighbours, std::vector<Index> node
   sort_and_drop_repeated(nodes);
   std::vector<bool> found(neighbours.size(), false);
   for (const Index n : nodes) found[n] = true;
-  std::size_t first = 0;  // of the last ring
+  std::size_t first = 0;  // index of the last ring's first node
   for (unsigned ring = 0; ring < rings; ++ring) {
     const std::size_t last = nodes.size();
     for (; first < last; ++first)
@@ -111,7 +111,7 @@ bool Front::is_bare(Index tet, unsigned corner) const {
   return is_wall(complex_[tet].faces[corner]) && side_of_[4 * std::size_t{tet} + corner] == none;
 }
 
-/// Each sector of tets at a node of the wall that has a side of the wall gets a node of the front.
+/// Makes a node of the front for each sector of tets at a wall's node that has a side of the wall.
 void Front::find_nodes() {
   edges_at_ = CellsAtVertices(mesh_.edges, mesh_.points.size());
   node_at.assign(4 * std::size_t{complex_.size()}, none);
@@ -135,7 +135,7 @@ void Front::find_sector(Index vertex, Index tet, std::vector<Index>& sector) {
     corners.insert(corners.end(), at.corners.begin(), at.corners.end());
     for (unsigned corner = 0; corner < 4; ++corner) {
       if (at.corners[corner] == vertex) continue;
-      // The other side's layers keep the triangles there.
+      // Triangles with layers on the other side only must not move.
       if (is_bare(sector[i], corner)) nodes[node].blocked = true;
       if (is_wall(at.faces[corner])) continue;
       if (at.faces[corner] != none) faces.push_back(at.faces[corner]);
@@ -239,7 +239,7 @@ void Front::find_directions() {
     std::vector<Index> faces;
     for (const Index s : sides_at[n]) faces.push_back(sides[s].face);
     std::sort(faces.begin(), faces.end());
-    // A facet that ends at the node is seen from both sides.
+    // A facet that ends at the node is met from both sides.
     if (std::adjacent_find(faces.begin(), faces.end()) != faces.end()) nodes[n].blocked = true;
     if (!nodes[n].blocked) find_direction(n, faces_at_[n], edges_of[n]);
   }
@@ -291,7 +291,7 @@ void Front::find_direction(Index node, std::span<const Index> sector_faces,
   }
   at.direction = found->direction;
   at.least_cosine = found->least_cosine;
-  // Triangles deviate from curved walls to both sides, so that their means, not the least, are the walls'.
+  // Triangles deviate from a curved wall to both sides, so use the mean of their normals for each patch.
   at.cosine = 1;
   for (const PatchNormal& of : normals) at.cosine = std::min(at.cosine, dot(of.mean, at.direction));
 }

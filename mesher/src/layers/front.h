@@ -12,9 +12,9 @@
 
 namespace collarmesh::layering {
 
-/// Numbers in groups one after the other.
+/// Groups of numbers, stored one after the other.
 struct Lists {
-  std::vector<Index> first{0};  // the first entry of each group, and the number of all
+  std::vector<Index> first{0};  // the first entry of each group, then the number of all entries
   std::vector<Index> entries;
 
   std::size_t size() const { return first.size() - 1; }
@@ -24,10 +24,10 @@ struct Lists {
   void end_group() { first.push_back(static_cast<Index>(entries.size())); }
 };
 
-/// Returns these nodes and those at most so many steps away from one, sorted. `neighbours`: by node.
+/// Returns, sorted, the nodes at most `rings` steps away from one of these. `neighbours`: by node.
 std::vector<Index> within_rings(const Lists& neighbours, std::vector<Index> nodes, unsigned rings);
 
-/// The side of a wall's triangle on which there are to be layers.
+/// A side of a wall's triangle that gets layers.
 struct WallSide {
   Index face = none;             ///< triangle of the mesh
   Index tet = none;              ///< tet on this side
@@ -35,25 +35,26 @@ struct WallSide {
   std::array<Index, 3> nodes;    ///< the front's nodes at these corners
   Index patch = none, region = none;
 
-  /// Where the layers on the edge from corner i to corner i + 1 go on: at another side, at a face without
-  /// layers, or nowhere.
+  /// The continuation of the layers across the edge from corner i to corner i + 1: at another side, at a face
+  /// without layers, or none.
   struct Edge {
-    Index beyond = none;    ///< the other side; none: there is a face without layers, or nothing
-    Index across = none;    ///< the face of the mesh that the layers on the edge meet: at their end, or
-                            ///< between regions; none: there is none
+    Index beyond = none;  ///< the other side; none: there is a face without layers, or nothing
+    /// The face of the mesh that the layers meet at the edge, at their end or between regions; none: no face.
+    Index across = none;
     bool outwards = false;  ///< that face is oriented away from the tets on this side
     bool blocked = false;   ///< no layers are possible
   };
   std::array<Edge, 3> edges;
 };
 
-/// A node of the mesh as seen by the layers of one sector of the tets around it: between walls.
+/// A node of the mesh in one sector of the tets around it. Sectors lie between walls.
 struct FrontNode {
   Index vertex = none;
   Vector direction{};  ///< unit; into the sector
-  double cosine = 0;   ///< between the direction and the normals of the wall's sides: the mean over those
-                       ///< of a patch, by their angles; the least of all patches
-  double least_cosine = 0;  ///< the least one of all sides
+  /// Least over all patches of the mean cosine, weighted by angles, between the direction and the normals of
+  /// a patch's sides.
+  double cosine = 0;
+  double least_cosine = 0;  ///< the least cosine of all sides
   bool blocked = false;     ///< there can be no layer
   /// The features without layers along which the node slides.
   TetMesh::VertexFeature slides_on = {};
@@ -66,14 +67,14 @@ class Front {
   Front(const improvement::TetComplex& complex, const Plc& plc, const WallChoice& walls);
 
   std::vector<WallSide> sides;
-  /// Sides of walls on which no layers are asked for, behind those on which there are: without nodes, edges.
+  /// Sides of walls that get no layers while the other side does; they have no nodes and no edges.
   std::vector<WallSide> bare_sides;
   std::vector<FrontNode> nodes;
   Lists sides_at;              ///< by node: sides with it
-  Lists neighbours;            ///< by node: the others of its sides
-  Lists edges_of;              ///< by node: edges of curves in its sector that are no edges of walls
+  Lists neighbours;            ///< by node: the other nodes of its sides
+  Lists edges_of;              ///< by node: edges of curves in its sector that are not edges of walls
   std::vector<bool> on_wall;   ///< by vertex of the mesh: whether it is a corner of a wall's triangle
-  std::vector<Index> node_at;  ///< four by tet: the front's node at each corner; none
+  std::vector<Index> node_at;  ///< four per tet: the front's node at each corner, or none
 
   /// Returns the front's node of a sector: that at a corner of a tet.
   Index node_of(Index tet, unsigned corner) const { return node_at[4 * std::size_t{tet} + corner]; }
@@ -112,8 +113,8 @@ class Front {
   const WallChoice& walls_;
   CellsAtVertices edges_at_;
   std::vector<std::uint64_t> wall_edges_;  // keys, sorted
-  std::vector<Index> side_of_;             // four by tet: index of the wall's side opposite each corner; none
-  Lists faces_at_;                         // by node: faces without layers in its sector
+  std::vector<Index> side_of_;  // four per tet: index of the wall's side opposite each corner, or none
+  Lists faces_at_;              // by node: faces without layers in its sector
 };
 
 }  // namespace collarmesh::layering

@@ -13,19 +13,19 @@ namespace collarmesh::layering {
 
 namespace {
 
-// First heights without a given one, relative to the edges of the wall.
+// Height of the first layer if none is given, relative to the edges of the wall.
 constexpr double share_of_edges = 0.1;
-// Directions that are flatter above a wall than this cosine get no layers; below the second one the node does
-// not move farther to make the height up.
+// Cosines between a direction and a wall's normal: below `flattest` there are no layers; below `flat` the
+// node does not move farther to reach the full height.
 constexpr double flattest = 0.1, flat = 0.4;
 // Shares of the gap that a stack may take where there is a stack on the other side, and where there is none.
 constexpr double of_shared_gap = 0.3, of_gap = 0.5;
 // The least Jacobian in a stack, relative to the largest one.
 constexpr double least_jacobian_share = 0.15;
 constexpr double largest_step_of_neighbours = 2, rounding = 1e-9;
-// Lower stacks than this share of what is asked, or of what gaps have room for, are left out.
+// Stacks lower than this share of the height asked for, or of the room in gaps, are left out.
 constexpr double least_share = 0.01;
-// The part of the layers' height above which edges of the wall may not bulge.
+// Edges of the wall may bulge to at most this share of the layers' height.
 constexpr double most_bulging = 0.4;
 constexpr double lowering = 0.8;
 constexpr unsigned most_lowerings = 24;
@@ -51,7 +51,7 @@ std::string text_of(Cause cause) {
     case Cause::ends: return "layers end there, at faces without layers or at facets inside";
     case Cause::direction:
       return "the faces there meet so sharply that no steep direction leads away from all";
-    case Cause::patch: return "a curved face without layers would be left";
+    case Cause::patch: return "nodes would leave a curved face without layers";
     case Cause::gap: return "the gap to the opposite face is narrow";
     case Cause::fold: return "cells would fold, at a sharp edge or a curved wall";
     case Cause::core: return "tetrahedra beside the layers would miss their bounds";

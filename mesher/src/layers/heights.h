@@ -11,7 +11,7 @@
 
 namespace collarmesh::layering {
 
-/// Why layers are lower than asked for.
+/// The reason why layers are lower than asked for.
 enum class Cause : std::uint8_t { none, ends, direction, patch, gap, fold, core, step, count };
 std::string text_of(Cause cause);
 
@@ -26,7 +26,7 @@ class Heights {
   double operator[](Index node) const { return length_[node]; }
   /// Returns the distance that is asked for.
   double asked(Index node) const { return asked_[node]; }
-  /// Returns the height of all layers above the wall that is asked for, and that is reached.
+  /// Return the height of all layers above the wall: the one asked for, and the one reached.
   double asked_height(Index node) const { return asked_height_[node]; }
   double height(Index node) const;
   Cause cause(Index node) const { return cause_[node]; }
@@ -37,7 +37,7 @@ class Heights {
   Point place(Index node, double distance) const;
   Point place(Index node) const { return place(node, length_[node]); }
 
-  /// Takes the distances of others at the same front.
+  /// Copies the distances of other heights of the same front.
   void take(const Heights& others) {
     length_ = others.length_;
     cause_ = others.cause_;
@@ -67,7 +67,7 @@ class Heights {
   const Plc& plc_;
   const WallChoice& walls_;
   std::vector<double> length_, asked_, asked_height_;
-  std::vector<double> possible_;  // the distance asked for, or that for which gaps have room
+  std::vector<double> possible_;  // the distance asked for, or less where gaps have less room
   std::vector<Cause> cause_;
   std::vector<const WallLayers*> walls_at_;
 };

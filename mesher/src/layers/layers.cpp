@@ -21,13 +21,13 @@ namespace collarmesh {
 namespace layering {
 namespace {
 
-// So often the layers are made again without those at places where it failed; the last tries leave them out
-// in ever wider rings around these.
+// Layers are made again at most this many times, without those at places where the last try failed. The last
+// tries also leave them out in ever wider rings around these places.
 constexpr unsigned most_tries = 9, last_levels = 4;
-// Where it fails with heights that hardly change the tets, this share of them is tried, then none.
+// If a try fails with heights that hardly change the tets, this share of them is tried, then none.
 constexpr double further_share = 0.25;
-// So often layers are left out where curved cells fold, in ever wider rings; then edges of walls get
-// straighter.
+// Number of times that layers are left out where curved cells fold, in ever wider rings. After that, edges of
+// walls get straighter.
 constexpr unsigned most_refoldings = 2;
 
 class LayerMaker {
@@ -56,7 +56,7 @@ class LayerMaker {
  private:
   enum class Outcome { taken, folded, cancelled };
 
-  /// Makes a mesh one of first order. Returns whether it was one of second order.
+  /// Gives a mesh first order. Returns whether it had second order.
   static bool straightened(TetMesh& mesh) {
     if (mesh.order() == 1) return false;
     straighten(mesh);
@@ -100,7 +100,7 @@ class LayerMaker {
     return take(heights, Core(mesh_, plc_, front_, heights, improvement_, execution_), true);
   }
 
-  /// Leaves layers out at nodes where curved cells fold, and so many steps around.
+  /// Leaves layers out at nodes where curved cells fold, and within this many steps of them.
   void leave_out_folded(Heights& heights, unsigned rings) {
     std::vector<Index> nodes;
     for (Index n = 0; n < front_.nodes.size(); ++n)
@@ -109,7 +109,8 @@ class LayerMaker {
     heights.settle();
   }
 
-  /// Makes the mesh of layers with these heights. `at_last`: whatever curved cells need.
+  /// Makes the mesh with layers of these heights. `at_last`: accepts folded cells, after straightening edges
+  /// of walls.
   Outcome take(const Heights& heights, const Core& core, bool at_last) {
     Stack stack(mesh_, front_, heights, core, options_.tets);
     TetMesh made = stack.build();

@@ -4,8 +4,8 @@
 
 namespace collarmesh::layering {
 
-/// Makes layers as `make_layers` does. In second order, `made` gets a report of the nodes of the whole mesh;
-/// of the nodes on walls that were straight before, it lists none.
+/// Makes layers as `make_layers` does. In second order, `made` gets a report of the nodes of the whole mesh,
+/// which lists no node that was straightened before.
 LayersReport make(TetMesh& mesh, const Plc& plc, const LayerOptions& options,
                   const ImproveOptions& improvement, const SecondOrderOptions& second_order,
                   const Execution& execution, SecondOrderReport& made);

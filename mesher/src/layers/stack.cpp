@@ -80,7 +80,7 @@ void Stack::number_nodes() {
   }
 }
 
-/// Returns the node on top of so many layers.
+/// Returns the node on top of this many layers.
 Index Stack::node(Index of, unsigned layer) const {
   if (layer == 0 || !is_raised(of)) return front_.nodes[of].vertex;
   return layer == heights_.layers(of).count ? core_.vertex_of(of) : first_inner_[of] + layer - 1;
@@ -100,7 +100,7 @@ void Stack::take_core() {
   mesh_.layers.tet_layer.assign(mesh_.tets.size(), 0);
 }
 
-/// The faces and edges of walls are those of before; others are those of the core.
+/// Takes the faces and edges of walls from the mesh before, all others from the core.
 void Stack::take_walls() {
   const auto take_face = [&](const TetMesh& from, std::size_t f, const std::array<Index, 3>& corners) {
     mesh_.faces.push_back(corners);
@@ -128,13 +128,12 @@ void Stack::take_walls() {
     if (const auto& [a, b] = core.edges[e]; a != none) take_edge(core, e, {merged_[a], merged_[b]});
 }
 
-/// Fills the layers on a side: with prisms, with pyramids where one node is not raised, with tets where two
-/// are not.
+/// Fills the layers on a side with prisms; with pyramids if one node is not raised; with tets if two are not.
 void Stack::fill(const WallSide& side) {
   const auto raised = static_cast<unsigned>(
       std::count_if(side.nodes.begin(), side.nodes.end(), [&](Index n) { return is_raised(n); }));
   if (raised == 0) return;
-  unsigned first = 0;  // the raised one of one, the low one of two
+  unsigned first = 0;  // the raised node if there is one, the low node if two are raised
   while (is_raised(side.nodes[first]) != (raised == 1)) {
     if (raised == 3) break;
     ++first;
@@ -170,7 +169,7 @@ void Stack::add_prism(const std::array<Index, 6>& corners, const WallSide& side,
   mesh_.layers.prism_layer.push_back(static_cast<std::uint16_t>(layer));
 }
 
-/// The base is divided by a diagonal that begins at its first corner, or at the second.
+/// Adds a pyramid, or two tets that divide its base by the diagonal from its first corner or from its second.
 void Stack::add_pyramid(const std::array<Index, 5>& corners, bool from_first, const WallSide& side,
                         unsigned layer) {
   if (!tets_) {
@@ -245,7 +244,7 @@ void Stack::add_face(const std::array<Index, 3>& corners, Index like, Index from
   mesh_.face_tag.push_back(given_.face_tag[like]);
 }
 
-/// Curves that end at a wall go on through the layers.
+/// Extends curves that end at a wall through the layers.
 void Stack::extend_curves() {
   for (Index n = 0; n < front_.nodes.size(); ++n) {
     if (!is_raised(n)) continue;

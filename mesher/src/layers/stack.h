@@ -15,7 +15,7 @@ class Stack {
   Stack(const TetMesh& given, const Front& front, const Heights& heights, const Core& core, bool tets);
 
   TetMesh build();
-  /// Where the points of that mesh lie.
+  /// Returns the places of that mesh's points.
   const PlacesInLayers& places() const { return places_; }
 
  private:
@@ -46,7 +46,7 @@ class Stack {
   bool tets_;
   TetMesh mesh_;
   std::vector<Index> first_inner_;  // by node of the front: its node above the first layer; none
-  std::vector<Index> merged_;       // by vertex of the core: the vertex that it is in the mesh
+  std::vector<Index> merged_;       // by vertex of the core: its number in the mesh
   PlacesInLayers places_;
   std::vector<Tag> tag_of_region_;
 };

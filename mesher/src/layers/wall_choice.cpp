@@ -68,14 +68,16 @@ void set(ReadWall& read, const std::string& setting, const std::string& text) {
   if (!value) refuse(text, fmt::format("gives {} no number", key));
   if (key == "growth") {
     if (*value < 1 || *value > largest_growth)
-      refuse(text, fmt::format("has a growth of {}; it is a number from 1 to {}", *value, largest_growth));
+      refuse(text,
+             fmt::format("has a growth of {}; it must be a number from 1 to {}", *value, largest_growth));
     wall.growth = *value;
   } else if (key == "count") {
     if (*value < 1 || *value > most_layers || *value != std::floor(*value))
-      refuse(text, fmt::format("has a count of {}; it is a whole number from 1 to {}", *value, most_layers));
+      refuse(text,
+             fmt::format("has a count of {}; it must be a whole number from 1 to {}", *value, most_layers));
     wall.count = static_cast<unsigned>(*value);
   } else {
-    if (!(*value > 0)) refuse(text, fmt::format("has a {} of {}; it is a positive length", key, *value));
+    if (!(*value > 0)) refuse(text, fmt::format("has a {} of {}; it must be a positive length", key, *value));
     (key == "first" ? wall.first : wall.thickness) = *value;
   }
 }
@@ -116,8 +118,8 @@ WallChoice::WallChoice(const LayerOptions& options, const Plc& plc) : wall_of_(p
   put_on_all(options, plc);
 }
 
-/// Throws OptionError where layers would be too thin for the coordinates to tell their sides apart, however
-/// high all are together: at most as the shape.
+/// Throws OptionError if layers would be so thin that coordinates cannot tell their sides apart, even if all
+/// layers together were as high as the shape.
 void WallChoice::require_heights(const LayerOptions& options, const Plc& plc) const {
   constexpr double least_share_of_shape = 1e-10;
   Box box;
@@ -203,7 +205,8 @@ void WallChoice::put_on_all(const LayerOptions& options, const Plc& plc) {
       any = true;
     }
     if (!any)
-      refuse(options.walls[w], "puts layers on no face: others name all boundaries, or there are none");
+      refuse(options.walls[w],
+             "covers no face: the other layers take all boundaries, or there is no boundary");
   }
 }
 

@@ -38,7 +38,7 @@ class WallChoice {
 
   std::vector<WallLayers> walls_;
   std::vector<std::string> only_in_;      // by wall: the region that the text names; empty: none
-  std::vector<std::set<Index>> regions_;  // by wall: the regions that get its layers, if it names one
+  std::vector<std::set<Index>> regions_;  // by wall: the regions that get its layers; empty: any
   std::vector<Index> wall_of_;            // by patch: index of its layers; none
 };
 

@@ -176,7 +176,7 @@ std::vector<Option> quality_options() {
        .details =
            "if it is given, tetrahedra may be thin only at creases and in narrow places, where parts of "
            "the shape that do not touch, or meet in a crease, are nearer than the longest edge / RHO; "
-           "else anywhere; below sqrt 2 refinement need not end",
+           "else anywhere; below sqrt 2 refinement may not terminate",
        .commands = judging},
       {.name = "vertex-ratio TAU",
        .place = in_mesh<&MeshOptions::vertex_ratio>,
@@ -295,8 +295,8 @@ std::vector<Option> element_options() {
        .commands = Option::mesh},
       {.name = "interior-node",
        .place = in_bounds<&Bounds::interior_node>,
-       .help = "Leave no tetrahedron with all corners on boundaries, interfaces or internal patches; "
-               "insert nodes where there are such",
+       .help = "Insert nodes so that no tetrahedron has all corners on boundaries, interfaces or internal "
+               "patches",
        .details = "see [Interior nodes](embedded.md#a-node-inside-of-each-tetrahedron)",
        .commands = refining | Option::check}};
 }
@@ -310,7 +310,7 @@ std::vector<Option> split_options() {
        .details = "see [Cracks](embedded.md#open-the-crack)"},
       {.name = "keep-apart",
        .place = at<&RunOptions::split, &SplitOptions::keep_apart>,
-       .help = "Do the same with all patches between two regions"},
+       .help = "Split all patches between two regions in the same way"},
       {.name = "interaction",
        .words = {"free", "tie", "contact"},
        .place = choice_at<&RunOptions::split, &SplitOptions::interaction>,

@@ -81,9 +81,9 @@ std::vector<GraphIndex> best_by_scotch(ScotchPartition by_scotch, const DualGrap
   std::size_t least = std::numeric_limits<std::size_t>::max();
   for (int seed = 1; seed <= (tets < small ? 4 : 1); ++seed) {
     if (!by_scotch(graph, partitions, imbalance, seed, partition_of.data()))
-      throw OptionError(fmt::format(
-          "Scotch cannot make {} partitions of {} tets; its memory may be spent, or ask for fewer",
-          partitions, tets));
+      throw OptionError(
+          fmt::format("Scotch cannot make {} partitions of {} tets; ask for fewer, or allow more memory",
+                      partitions, tets));
     if (const std::size_t cut = cut_of(graph, partition_of); cut < least) {
       least = cut;
       best = partition_of;

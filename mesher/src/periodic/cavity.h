@@ -13,11 +13,11 @@ using improvement::TetComplex;
 /// of the mesh are replaced, too: by cones of that apex, or by a floor of given faces.
 struct Cavity {
   struct Side {
-    std::array<Index, 3> corners;  ///< with an apex inside the cavity, {apex, corners} is a positive tet
+    std::array<Index, 3> corners;  ///< positive tet {apex, corners} if the apex is inside the cavity
     Index like;                    ///< the tet whose region the new tet gets
   };
   struct Rim {
-    std::array<Index, 2> ends;  ///< make a new face with the apex behind them
+    std::array<Index, 2> ends;  ///< corners of a new face; the apex follows them
     Index like;                 ///< the face whose patch the new face gets
   };
   std::vector<Index> tets;
@@ -45,7 +45,7 @@ class CavityEditor {
   Cavity around_edge(Index a, Index b) const;
   Cavity around_face(Index face) const;
 
-  /// Returns the quality of the worst tet that the cavity has with this apex; negative if it is below
+  /// Returns the quality of the worst tet if the cavity is filled with this apex; negative if it is below
   /// `least_quality`. `vertex` is the apex, or none if it is new; sides that contain it do not count.
   double worst(const Cavity& cavity, const Point& apex, Index vertex) const;
 

@@ -96,8 +96,8 @@ struct Surface {
     }
     return places;
   }
-  /// Returns the nodes inside a patch; with target edge lengths, by vertex, without nodes that are far nearer
-  /// to others than these ask for.
+  /// Returns the nodes inside a patch. `targets`: target edge lengths by vertex; if there are any, leaves out
+  /// nodes that are far nearer to others than these.
   std::vector<SpacedPlace> spaced_inside(const TetMesh& mesh, Index patch,
                                          const std::vector<double>& targets) const {
     if (!targets.empty()) return sparse_nodes(mesh, faces[patch], targets);

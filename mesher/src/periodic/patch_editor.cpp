@@ -13,8 +13,8 @@ namespace collarmesh::periodicity {
 
 namespace {
 
-constexpr double near_in_patch = 0.25;  // a node this near to a place is moved there; share of the edges at
-                                        // the node
+// A node this near to a place is moved there; relative to the edges at the node.
+constexpr double near_in_patch = 0.25;
 constexpr double good_patch_removal = 0.3;    // quality that a removal must leave; otherwise the node is kept
                                               // and inserted on the other side
 constexpr double good_enough_in_patch = 0.1;  // quality that a move or a removal must leave if there may be

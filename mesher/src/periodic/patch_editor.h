@@ -25,7 +25,7 @@ class PatchEditor {
   /// Keeps a reference to the editor. `faces` are the patch's faces in the mesh. Cost: linear in these faces.
   PatchEditor(CavityEditor& editor, const Plc& plc, Index patch, std::span<const Index> faces);
 
-  /// Gives the interior of the patch nodes at exactly these places. Moves nodes that are near a place,
+  /// Gives the interior of the patch nodes at exactly these places: moves nodes that are near a place,
   /// inserts new nodes, and removes the rest if that leaves good tets. Returns the node at each place.
   std::vector<Index> put_nodes(std::span<const Point> places);
   /// Returns the places of the nodes that could not be removed.
@@ -71,8 +71,8 @@ class PatchEditor {
   Vector normal_;    // normal, pointing out of the region
   Point viewpoint_;  // a point outside, from which sides are judged
   std::unordered_map<std::uint64_t, std::array<Index, 2>> faces_at_;  // by edge
-  std::unordered_map<Index, bool> stays_;                             // nodes inside the patch
-  Index last_ = none;                                                 // the face that was made or found last
+  std::unordered_map<Index, bool> stays_;  // nodes inside the patch, and whether each stays
+  Index last_ = none;                      // the face that was made or found last
   PatchChange change_;
 };
 

@@ -22,9 +22,9 @@ namespace collarmesh::periodicity {
 /// both sides. The vertices at the new cuts do not move.
 class Recut {
  public:
-  /// Which tets are moved: those much nearer to the first (or second) group than to the other one, or all
-  /// that are nearer to the first. The cuts then lie elsewhere. Cuts of two pairs may meet the faces of a
-  /// third pair at the same places for two of these choices, but not for all three.
+  /// The tets that are moved: those much nearer to the first (or second) group than to the other one, or all
+  /// that are nearer to the first. The choice determines where the cuts lie. Cuts of two pairs may meet the
+  /// faces of a third pair at the same places for two of these choices, but not for all three.
   enum class Moved { beside_first, beside_second, first_half };
 
   /// Keeps all by reference except `moved`. Preconditions: the mesh is of first order, and its map contains

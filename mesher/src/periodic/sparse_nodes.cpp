@@ -9,7 +9,7 @@ namespace collarmesh::periodicity {
 
 namespace {
 
-constexpr double growth = 0.5;           // of lengths by the distance from the border
+constexpr double growth = 0.5;           // growth of lengths with the distance from the border
 constexpr double least_distance = 0.15;  // distance that two nodes keep, relative to the length there
 
 class PatchNodes {
@@ -84,7 +84,7 @@ class PatchNodes {
     }
   }
 
-  // Covers the nodes that are too near to this one and joined to it by such nodes.
+  // Covers the nodes that are too near to this one and connected to it through such nodes.
   void cover(Index i) {
     covered_[i] = true;
     std::vector<Index> stack{i}, seen{i};
@@ -105,7 +105,7 @@ class PatchNodes {
   const TetMesh& mesh_;
   std::unordered_map<Index, Index> numbers_;    // by node of the mesh
   std::vector<Index> nodes_;                    // of the mesh
-  std::vector<std::vector<Index>> neighbours_;  // here and below: by number
+  std::vector<std::vector<Index>> neighbours_;  // this and the following: by number in `nodes_`
   std::vector<double> lengths_;
   std::vector<bool> covered_;
 };

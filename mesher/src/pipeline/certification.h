@@ -9,8 +9,8 @@ namespace collarmesh::pipeline {
 /// Returns whether a finding says that a tet misses the bounds on its shape.
 bool is_about_shape(const Finding& finding);
 
-/// Returns the number of tets that miss the bounds on their shapes, plus that of sides of pairs without an
-/// image, with a far larger weight. Precondition: the map has the corners.
+/// Returns the number of tets that miss the bounds on their shapes, plus, with a far larger weight, the
+/// number of nodes, edges and faces of periodic pairs that have no image.
 std::size_t count_misshapen(const MeshJob& job, const TetMesh& mesh);
 
 /// Checks the mesh against the bounds that the options ask for, and within the tolerance of its complex.

@@ -62,13 +62,13 @@ void settle(MeshJob& job, Hope hope) {
   PipelineResult& made = job.made;
   std::size_t least = count_misshapen(job, made.result.mesh);
   if (hope == Hope::good && tets_per_poor * least > made.result.mesh.tets.size()) throw Hopeless();
-  if (least == 0 && hope == Hope::any) {  // the last means of improvement have not been used yet
+  if (least == 0 && hope == Hope::any) {  // there are still means of improvement to try
     TetMesh mesh = made.result.mesh;
     coarsen_and_improve(job, mesh, {}, true);
     if (count_misshapen(job, mesh) == 0) made.result.mesh = std::move(mesh);
     return;
   }
-  // Vertices that face each other help more tets in less time than detours do.
+  // Vertices that face each other fix more tets in less time than detours do.
   bool thoroughly = false;
   for (unsigned round = 0; round < most_rounds && least > 0; ++round) {
     TetMesh mesh = made.result.mesh;

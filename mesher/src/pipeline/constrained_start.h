@@ -6,7 +6,7 @@ namespace collarmesh::pipeline {
 
 /// Thrown if constrained tetrahedra keep poor shapes and there are other ways to make a mesh.
 struct Hopeless {};
-/// The mesh asked of a start from constrained tetrahedra: any, or one that probably keeps every guarantee.
+/// The mesh wanted from constrained tetrahedra: any, or only one that probably keeps every guarantee.
 enum class Hope { any, good };
 
 /// Returns whether the options permit a start from constrained tetrahedra where refinement takes too many
@@ -21,8 +21,8 @@ void tetrahedralize(MeshJob& job);
 /// bounds. With Hope::good, throws Hopeless if many tets miss them.
 void settle(MeshJob& job, Hope hope);
 
-/// Gives flat tets of a refined and coarsened mesh vertices that face each other if they miss their bounds
-/// and fewer tets do so then.
+/// Mends flat tets of a refined and coarsened mesh that miss their bounds, by vertices that face each other.
+/// Keeps the result if fewer tets miss them.
 void mend_flat_tets(MeshJob& job);
 
 }  // namespace collarmesh::pipeline

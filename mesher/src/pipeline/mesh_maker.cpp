@@ -25,7 +25,7 @@ namespace collarmesh::pipeline {
 
 namespace {
 
-/// Returns whether all that is missed may be kept with a smaller surface distance.
+/// Returns whether all missed guarantees may hold with a smaller surface distance.
 bool misses_volumes_only(const CheckReport& check) {
   return !check.findings.empty() && std::ranges::all_of(check.findings, [](const Finding& f) {
     return f.guarantee == guarantee::volume_kept || f.guarantee == guarantee::thickness_kept;
@@ -81,7 +81,7 @@ void MeshMaker::set_up(const Plc& plc, std::uint64_t seed) {
 }
 
 /// Returns whether a refinement probably makes many times the elements that are needed. Cylinders that nearly
-/// touch look the same and need few, so `refines_with_few_vertices` decides.
+/// touch look the same but need few elements, so `refines_with_few_vertices` decides.
 bool MeshMaker::may_be_better_constrained() const {
   if (job_.start != Start::automatic || !may_start_constrained(job_.given) ||
       !may_take_constrained(*job_.plc))
@@ -90,9 +90,8 @@ bool MeshMaker::may_be_better_constrained() const {
   return has_thin_shells(*job_.plc, *job_.options.mesh.bounds.tolerance, size);
 }
 
-/// Refines until there are so many vertices that it has taken about as long as constrained tetrahedra would.
-/// Returns whether the refinement ended before. Only this answer is of use: the bound also changes the order
-/// of insertions.
+/// Refines with a limit on vertices, beyond which constrained tetrahedra would be faster. Returns whether the
+/// refinement ended within it. The mesh is not used, because the limit changes the order of insertions.
 bool MeshMaker::refines_with_few_vertices() {
   constexpr std::size_t few = 15'000;
   const std::size_t most = job_.refined_with.max_vertices;
@@ -134,7 +133,7 @@ void MeshMaker::make_anyhow(const Plc& plc, const std::string& why) {
 }
 
 /// Meshes a complex by refinement; if that hits the bound on vertices, from constrained tetrahedra. `why` is
-/// the reason that a note gives for these.
+/// the reason that a note gives for the latter.
 void MeshMaker::make_or_take_constrained(const Plc& plc, const std::string& why) {
   try {
     return make(plc, job_.given.mesh.seed);
@@ -200,7 +199,7 @@ std::optional<PipelineResult> MeshMaker::from_constrained(const Plc& plc, const 
       come_nearer(plc, share);
       make(plc, given.mesh.seed);
     }
-    made.check.notes.push_back(fmt::format("begun with constrained tetrahedra, as {}", why));
+    made.check.notes.push_back(fmt::format("begun with constrained tetrahedra, because {}", why));
     if (std::ranges::all_of(made.check.findings, is_about_shape)) found = std::move(made);
   } catch (const Hopeless&) {
     found.reset();

@@ -22,7 +22,7 @@ class MeshMaker {
 
   /// Forgets everything about the previous complex.
   void take_new_complex();
-  /// Takes note that the complex of the kept mesh, the one that the source built last, is here now.
+  /// Sets the complex of the kept mesh, the last one that the source built; it now lies here.
   void move_to(const Plc& plc);
 
   /// Takes a complex through all stages. Throws Ended, PlcError and, with Fineness::as_asked, FarTooFine.
@@ -40,8 +40,8 @@ class MeshMaker {
   /// many tets miss these. The job keeps its mesh.
   std::optional<PipelineResult> from_constrained(const Plc& plc, const std::string& why, Hope hope);
 
-  /// Uses a mesh made from the constrained tetrahedra if it keeps every guarantee and, if asked for, lengths.
-  /// Returns whether it does. Tries each complex once only.
+  /// Uses a mesh made from the constrained tetrahedra if it keeps every guarantee and, if `lengths` asks for
+  /// it, the target lengths. Returns whether it does. Tries each complex only once.
   bool take_constrained(const Plc& plc, const std::string& why, Lengths lengths = Lengths::any);
 
   /// Does not try the constrained tetrahedra of this complex unless all else fails.
@@ -54,7 +54,7 @@ class MeshMaker {
   /// Returns whether another seed may change the kept mesh. Constrained tetrahedra do not depend on it.
   bool depends_on_seed() const { return !is_constrained_ && job_.start != Start::constrained; }
 
-  /// Multiplies the surface tolerance of first order by this share for further meshes of this complex.
+  /// Multiplies the surface tolerance of first order by this share in further meshes of this complex.
   void come_nearer(const Plc& plc, double share);
 
   void set_narrow_cells(NarrowCells cells) { narrow_cells_ = cells; }

@@ -111,7 +111,7 @@ class Namer {
       for (const Index member : members) tag = std::min(tag, features_[member].tag);
       chosen_.push_back({name, tag, std::move(members)});
     }
-    for (const Chosen& each : chosen_) {  // the text refers to the numbers before this change
+    for (const Chosen& each : chosen_) {  // the text has the numbers before this change
       for (const Index member : each.members) features_[member].tag = each.tag;
       plc_.names.set(dimension_, each.tag, each.name);
     }

@@ -26,8 +26,9 @@ constexpr double reserve_for_layers = 0.2;
 // reach smaller bounds.
 constexpr double reached_collar_angle = 130;
 
-/// Compares the number of vertices of a refinement with what its sizes ask for. That, and whether features
-/// thinner than the feature size may cause more, is found only for refinements that insert many.
+/// Compares the number of vertices of a refinement with the number that its sizes ask for. The costly parts
+/// of the answer, that number and whether thin features may cause more, are computed only if a refinement
+/// inserts many.
 class VertexCounter {
  public:
   VertexCounter(const MeshJob& job, Fineness fineness) : job_(job), fineness_(fineness) {}
@@ -61,9 +62,10 @@ class VertexCounter {
   // Most parts without thin features have less than one vertex for each tet that is left after coarsening.
   static constexpr std::size_t few = 1500, by_tet = 1;
 
-  // Returns whether a refinement with these vertices can only end with too many. When progress is reported
-  // depends on the clock, so this must not be true for any refinement whose end `exceeds` would accept: these
-  // may have twice the vertices and some more, while they bound narrow cells, and take that back.
+  // Returns whether a refinement that has reached this number of vertices must end with too many. The moments
+  // of progress reports depend on the clock, so this must be false throughout a refinement that does not
+  // exceed the limit at its end. While it bounds narrow cells, such a refinement may have twice as many
+  // vertices and some more; it drops those if it begins again.
   bool will_exceed(std::size_t vertices) {
     constexpr std::size_t some_more = 5000;
     return fineness_ == Fineness::as_asked && vertices > few && vertices > 2 * most() + some_more &&

@@ -11,7 +11,7 @@ namespace collarmesh::pipeline {
 void reshape(MeshJob& job);
 
 /// Coarsens and improves a mesh of the complex, with the bounds of the job. Fixed vertices stay where they
-/// are. `thoroughly`: also by means that are slow where many tets stay poor.
+/// are. `thoroughly`: also by means that are slow if many tets stay poor.
 void coarsen_and_improve(MeshJob& job, TetMesh& mesh, const std::vector<Index>& fixed,
                          bool thoroughly = true);
 

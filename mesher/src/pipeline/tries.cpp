@@ -87,7 +87,7 @@ void Tries::mesh(const Plc& plc) {
 
 void Tries::mesh_repaired(SoupPipelineResult& all) {
   mesh_any_repaired(all);
-  maker_.move_to(all.plc);  // later stages need it, and what the options keep of it
+  maker_.move_to(all.plc);  // later stages and the options need it
 }
 
 void Tries::mesh_any_repaired(SoupPipelineResult& all) {
@@ -109,7 +109,7 @@ void Tries::mesh_any_repaired(SoupPipelineResult& all) {
   if (end == End::holds) return;
   bool has_mesh = end == End::missed, built_last = true;
   std::optional<Point> place;
-  // If places far thinner than the sizes spoil the mesh, a change of these may help anywhere.
+  // If places far thinner than the sizes spoil the mesh, changes there may help anywhere.
   if (!made.check.findings.empty() && !maker_.was_far_too_fine()) place = made.check.findings.front().where;
   for (const RepairOptions& repair : repairs_after(end, all)) {
     SoupPipelineResult other;
@@ -126,10 +126,10 @@ void Tries::mesh_any_repaired(SoupPipelineResult& all) {
     all.plc = std::move(other.plc);
     all.repair = std::move(other.repair);
     has_mesh = true;
-    made.check.notes.push_back(all.repair.wrapped
-                                   ? fmt::format("wrapped, as of the complex before {}", why)
-                                   : fmt::format("repaired with a tolerance of {:.3g}, as with {:.3g} {}",
-                                                 repair.tolerance, given.repair.tolerance, why));
+    made.check.notes.push_back(
+        all.repair.wrapped ? fmt::format("wrapped, because for the complex before {}", why)
+                           : fmt::format("repaired with a tolerance of {:.3g}, because with {:.3g} {}",
+                                         repair.tolerance, given.repair.tolerance, why));
     if (made.guarantees_hold() || end == End::exploded) break;
   }
   if (has_mesh && made.guarantees_hold()) return;
@@ -155,10 +155,11 @@ void Tries::mesh_any_repaired(SoupPipelineResult& all) {
 }
 
 /// Repairs the input with a larger tolerance if the repaired complex has creases so sharp that refinement
-/// would hardly end, the larger one leaves none that are nearly as sharp, and nothing is lost. Sets the
-/// repair that is used, and returns a note of it.
+/// would hardly end, the larger tolerance leaves none nearly as sharp, and nothing is lost. Sets the repair
+/// that is used, and returns a note of it.
 std::string Tries::repair_sharp_creases(RepairOptions& repair, SoupPipelineResult& all) {
-  constexpr double too_sharp = 0.1, blunter = 3;  // degrees, and a factor
+  // In degrees, and the factor by which a larger tolerance must enlarge the smallest angle.
+  constexpr double too_sharp = 0.1, blunter = 3;
   if (!all.repair.repaired || all.repair.wrapped) return {};
   const std::vector<Crease> creases = find_creases(all.plc, too_sharp);
   if (creases.empty()) return {};
@@ -177,7 +178,7 @@ std::string Tries::repair_sharp_creases(RepairOptions& repair, SoupPipelineResul
     all.plc = std::move(other.plc);
     all.repair = std::move(other.repair);
     return fmt::format(
-        "repaired with a tolerance of {:.3g}, as with {:.3g} features meet at {:.2g} degrees at {}",
+        "repaired with a tolerance of {:.3g}, because with {:.3g} features meet at {:.2g} degrees at {}",
         coarser.tolerance, job_.given.repair.tolerance, creases.front().angle,
         checks::At{creases.front().where});
   }
@@ -215,8 +216,8 @@ bool Tries::may_overlay() const {
 }
 
 /// Repairs the input with a larger tolerance, up to the feature size, so that opposite sides of thin walls
-/// and gaps become one. Returns whether that makes a mesh that keeps every guarantee and no part is lost;
-/// otherwise nothing has changed. `most`: the number of vertices that the sizes ask for.
+/// and gaps become one. Returns whether the mesh of that keeps every guarantee and loses no part; otherwise
+/// restores everything. `most`: the number of vertices that the sizes ask for.
 bool Tries::overlay_thin_features(RepairOptions& repair, SoupPipelineResult& all, std::size_t most) {
   const double diagonal = all.plc.bounds.diagonal(), size = smallest_size(job_.given.mesh, diagonal),
                thin = thinner_than_asked(job_.given, diagonal);
@@ -318,7 +319,8 @@ void Tries::try_seeds(const Plc& plc) {
     const std::string missed = made.missed();
     if (const double share = share_for_volumes(); share < 1) maker_.come_nearer(plc, share);
     if (find_better(true, [&] { maker_.make(plc, seed); }))
-      made.check.notes.push_back(fmt::format("made with seed {}, as with {} {}", seed, first, missed));
+      made.check.notes.push_back(
+          fmt::format("made with seed {}, because with seed {}: {}", seed, first, missed));
   }
   try_narrow_places_otherwise(plc);
 }
@@ -331,9 +333,9 @@ bool Tries::take_constrained(const Plc& plc) {
   });
 }
 
-/// Tries again with the opposite treatment of narrow places. Cells that were left there may keep large
-/// angles, so now their ratio is bounded if that takes not many times the vertices. If it was bounded before,
-/// they are left.
+/// Tries again with the opposite treatment of narrow places. If cells there were left unbounded, they may
+/// keep large angles, so now their ratio is bounded unless that takes many times the vertices. If they were
+/// bounded, they are left unbounded.
 void Tries::try_narrow_places_otherwise(const Plc& plc) {
   constexpr std::size_t times = 10, more = 100'000;
   if (!job_.given.coarsen || !missed(guarantee::thin_angles)) return;
@@ -349,7 +351,7 @@ void Tries::try_narrow_places_otherwise(const Plc& plc) {
   }
   maker_.set_narrow_cells(were_left ? NarrowCells::bounded : NarrowCells::left);
   if (find_better(true, [&] { maker_.make(plc, job_.given.mesh.seed); }))
-    made.check.notes.push_back(fmt::format("made with {} narrow places, as otherwise {}",
+    made.check.notes.push_back(fmt::format("made with {} narrow places, because otherwise {}",
                                            were_left ? "a bounded ratio in" : "any ratio in", missed));
   job_.budget.set_most(before);
   maker_.set_narrow_cells(NarrowCells::bounded_if_cheap);

@@ -59,7 +59,7 @@ class Tries {
   MeshJob& job_;
   ComplexSource* source_;
   MeshMaker maker_;
-  std::size_t most_asked_for_ = 0;  // number of vertices that a refinement that is too fine exceeded
+  std::size_t most_asked_for_ = 0;  // number of vertices above which a refinement counted as too fine
 };
 
 }  // namespace collarmesh::pipeline

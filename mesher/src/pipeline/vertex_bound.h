@@ -14,9 +14,8 @@ namespace collarmesh {
 /// lengths everywhere and in regions, else near linear.
 std::size_t most_vertices_expected(const Plc& plc, const PipelineOptions& options);
 
-/// Returns an upper limit on the number of vertices that refinement needs on rods and other bodies far
-/// thinner than the size whose chords are shorter than they are thick; at most a million. Thinner walls take
-/// more.
+/// Returns an upper limit, at most a million, on the number of vertices that refinement needs on rods and
+/// other bodies that are far thinner than the size but thicker than their chords. Thinner walls take more.
 std::size_t most_vertices_on_rods(const Plc& plc, const MeshOptions& options);
 
 /// Returns the smallest target edge length that is given as a number, absolute.

@@ -13,10 +13,10 @@ void VertexBudget::bound(Ways ways) {
   is_known_ = false;
 }
 
-// Finds the budget of vertices for a complex. If the options give one, it counts unless the computed one is
-// smaller; when no other ways are left, it always counts.
+// Finds the budget of vertices for a complex. A budget that the options give counts unless the computed one
+// is smaller; if no other ways are left, it always counts.
 void VertexBudget::find(const Plc& plc, const PipelineOptions& options) {
-  // Bodies far thinner than the size really need many vertices. Making this many takes ten seconds.
+  // Bodies far thinner than the size really need many vertices.
   constexpr std::size_t times_without_other_ways = 2, least_without_other_ways = 300'000;
   if (is_known_) return;
   const std::size_t given = given_.mesh.max_vertices;

@@ -17,8 +17,8 @@ class VertexBudget {
   /// Keeps a reference to the options.
   explicit VertexBudget(const PipelineOptions& given) : given_(given) {}
 
-  /// Bounds the number of vertices of the following refinements: less tightly if no other ways are left. The
-  /// number is computed when it is needed.
+  /// Bounds the number of vertices of further refinements, less tightly if no other ways are left. The bound
+  /// is computed when it is needed.
   void bound(Ways ways);
 
   /// Computes the number for a complex with these options, unless it is known.
@@ -30,7 +30,7 @@ class VertexBudget {
 
   /// Returns whether a refinement ended at a number of vertices, and not because time or memory ran out.
   bool ended_at_vertices(const MeshResult& result, bool out_of_time) const;
-  /// Returns whether that number was this one.
+  /// Returns whether a refinement ended at this budget's number of vertices.
   bool hit(const MeshResult& result, bool out_of_time) const;
 
  private:

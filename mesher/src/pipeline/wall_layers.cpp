@@ -41,10 +41,10 @@ Areas areas_of(const TetMesh& mesh) {
   return areas;
 }
 
-/// Returns by how much layers may change the volume of each region. Walls keep their triangles, so only
-/// other patches count, along which nodes slide: before and after, their triangles are within their
-/// tolerance of the surface, so that at most twice that times the area lies between. Planar patches are as
-/// flat as the complex was built.
+/// Returns how much layers may change the volume of each region. Walls keep their triangles, so only patches
+/// along which nodes slide count. Their triangles are within the tolerance of the surface before and after,
+/// so the volume in between is at most twice the tolerance times the area. Planar patches are as flat as the
+/// complex was built.
 std::map<Index, double> volume_allowances(const MeshJob& job, const Areas& areas,
                                           const SurfaceTolerance& tolerance) {
   std::set<Tag> walls;
@@ -61,7 +61,7 @@ std::map<Index, double> volume_allowances(const MeshJob& job, const Areas& areas
   return allowed;
 }
 
-/// Lists the nodes of walls that were straightened before there were layers, with their numbers of now.
+/// Lists the nodes of walls that were straightened before there were layers, with their present numbers.
 void keep_straightened(const checks::WallGeometry& before, const checks::WallGeometry& now,
                        const SecondOrderReport& given, SecondOrderReport& made) {
   if (before.mid_nodes.size() != now.mid_nodes.size()) return;  // the walls differ, which the check reports
@@ -94,7 +94,7 @@ std::string warning_of(const LayersReport& layers) {
   return text + "; use a smaller first height or thickness, a smaller count or a smaller size";
 }
 
-/// Checks all guarantees again. Keeps what the stages before noted.
+/// Checks all guarantees again. Keeps the notes of earlier stages.
 void certify_with_layers(MeshJob& job) {
   job.control.begin("check layers", 0.94, 0.96);
   CheckReport& made = job.made.check;

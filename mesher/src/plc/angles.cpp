@@ -50,8 +50,8 @@ double smallest_angle_along(const Arc& a, double a0, const Arc& b, double b0, do
   return best;
 }
 
-// Returns the smallest angle between rays that are `apart` (radians) along the fan. Moves two positions along
-// the fan, from one sector border to the next.
+// Returns the smallest angle between rays whose distance along the fan is `apart` (radians). Moves a pair of
+// such rays along the fan, from one sector border to the next.
 double smallest_angle_apart(const std::vector<Arc>& arcs, double apart, bool closed) {
   const double total = arcs.back().from + arcs.back().length;
   const double last = closed ? total : total - apart;

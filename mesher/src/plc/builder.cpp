@@ -65,12 +65,11 @@ void report_nothing_solid(const Draft& draft, std::span<const PolygonSoup> soups
   for (Index s = 0; s < soups.size(); ++s)
     if (!soups[s].hole_points.empty()) {
       const Point& hole = soups[s].hole_points.front();
-      faults.add(
-          PlcFault::Kind::empty,
-          fmt::format("The facets enclose no region, as hole points empty what they enclose, the first one "
-                      "{} of {}; remove it to mesh what is around it.",
-                      text(hole), draft.soup_names[s]),
-          {}, hole);
+      faults.add(PlcFault::Kind::empty,
+                 fmt::format("The facets enclose no region, because hole points empty what they enclose, the "
+                             "first one {} of {}; remove it to mesh the space around it.",
+                             text(hole), draft.soup_names[s]),
+                 {}, hole);
       return;
     }
   const Point at = draft.points.empty() ? Point{} : draft.points.front();
@@ -180,8 +179,8 @@ void warn_of_patches_outside(Plc& plc) {
     }
   }
   if (count == 0) return;
-  plc.warnings.push_back({fmt::format("The surface outside of every region is in no mesh: an area of {:.3g}, "
-                                      "triangles: {}, the first one "
+  plc.warnings.push_back({fmt::format("Part of the surface bounds no region and is not meshed: an area of "
+                                      "{:.3g}, triangles: {}, the first one "
                                       "at {} on a patch with tag {}. Close the surface there, or remove it.",
                                       area, count, text(first), tag),
                           first});

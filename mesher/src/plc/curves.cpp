@@ -213,8 +213,8 @@ class CurveFinder {
       for (const Index p : chain.points)
         largest = std::fmax(largest,
                             distance_to_segment(draft_.points[p], draft_.points[first], draft_.points[last]));
-      // If folds cut a given curve into pieces of two points, a piece does not show whether the curve is
-      // straight.
+      // If folds cut a given curve into pieces of two points, such a piece does not show whether the whole
+      // curve is straight.
       const bool cut_off = segments_[chain.segment].given && (is_fold_[first] || is_fold_[last]);
       curve.straight = chain.points.size() == 2 ? !cut_off : largest <= draft_.planar_tolerance;
       if (curve.straight) draft_.largest_deviation = std::max(draft_.largest_deviation, largest);

@@ -4,9 +4,9 @@
 
 namespace collarmesh::plc {
 
-/// Gives flat pieces of two soups with the same border the same triangles, as where two solids touch that
-/// were triangulated separately. The later piece gets the triangles of the first; its interior points that
-/// are no corners of the first are dropped. Precondition: the triangles of each soup are oriented.
+/// Where separately triangulated solids touch, gives flat pieces of two soups with the same border the same
+/// triangles. The later piece gets the triangles of the first; its interior points that the first does not
+/// have are dropped. Precondition: the triangles of each soup are oriented.
 void unify_interfaces(facets::Draft& draft);
 
 }  // namespace collarmesh::plc

@@ -8,9 +8,9 @@
 
 namespace collarmesh::plc {
 
-/// Returns warnings of bodies in the soups that the complex made of them does not have: sets of connected
-/// facets that welding within `distance` (absolute) or a repair has removed completely. Bodies without an
-/// extent do not count. Cost: that of sorting the points.
+/// Returns warnings of lost bodies: sets of connected facets in the soups that welding within `distance`
+/// (absolute) or repair removed completely from the complex. Bodies without an extent do not count. Cost:
+/// that of sorting the points.
 std::vector<Plc::Warning> lost_bodies(std::span<const PolygonSoup> soups, const Plc& plc, double distance);
 
 /// Regions whose volume no region of a repaired complex has (within 2%), with a point of each.

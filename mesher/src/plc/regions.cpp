@@ -186,7 +186,7 @@ class RegionFinder {
   }
 
   // Finds the owner of each chamber: the soup with the largest part of its shell, the first one among equals.
-  // So a file that encloses a chamber wins against neighbours that share only some of its facets.
+  // So a chamber belongs to the file that encloses it, not to neighbours that share some of its facets.
   void find_owners() {
     constexpr double clearly_more = 1 + 1e-9;
     double area = 0;
@@ -275,8 +275,8 @@ class RegionFinder {
   }
 
   // Returns whether a chamber is a region. A cavity that touches the surface around it lies in front of that
-  // surface's facets everywhere. A chamber that also has facets to the outside is a body turned inside out,
-  // as a single body may be.
+  // surface's facets everywhere. A chamber that also has facets to the outside is not a cavity but a body
+  // whose facets are turned inside out.
   static bool is_region(const Chamber& chamber, bool inside_region) {
     const bool filled = chamber.claiming_surface != none && chamber.claiming_surface != chamber.hole_soup;
     if (chamber.hole_soup != none) return filled;
@@ -332,11 +332,11 @@ class RegionFinder {
       }
       const PlacedPoint*& before = last[r];
       if (before != nullptr && (before->point.tag != p.point.tag || before->point.size != p.point.size))
-        warn(p.point.point,
-             fmt::format(
-                 "{} lies in the same region as {}; that one has no effect: remove one of them, or close "
-                 "the facets that should part them.",
-                 description(p), description(*before)));
+        warn(
+            p.point.point,
+            fmt::format("{} lies in the same region as {}, which has no effect: remove one of them, or close "
+                        "the facets that should part them.",
+                        description(p), description(*before)));
       before = &p;
       result.list[r].tag = p.point.tag;
       result.list[r].size = p.point.size;

@@ -37,7 +37,8 @@ void require_valid(const PipelineOptions& options, std::span<const double> sizes
   if (sizes.empty()) validate({options});
   for (const double size : sizes) {
     if (!(size >= 0) || !std::isfinite(size))
-      throw OptionError(fmt::format("a size of {} cannot be predicted; 0 stands for the default", size));
+      throw OptionError(
+          fmt::format("the size to predict is {}, but must be positive, or 0 for the default", size));
     validate({with_size(options, size)});
   }
 }

@@ -13,8 +13,8 @@
 
 namespace collarmesh::prediction {
 
-/// The properties of a complex that predictions of any size use: its curvature, its widths and the distances
-/// of its features.
+/// The properties of a complex that predictions for all sizes share: its curvature, its widths and the
+/// distances of its features.
 class Shape {
  public:
   /// Keeps the complex by reference. Cost: near linear.

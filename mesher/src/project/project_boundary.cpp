@@ -67,7 +67,7 @@ class BoundaryProjection {
   // Largest distances from the exact geometry, relative to the tolerance: of edges and triangles between
   // vertices, and of vertices.
   static constexpr double largest_sag = 0.5, most_off = 0.75;
-  // Limit of a vertex's move, relative to its shortest edge: a longer move would take it through other tets.
+  // Limit of a vertex's move, relative to its shortest edge: a longer move would pass through other tets.
   // (The faces of a CAD file may be farther from their edges than features are from each other.)
   static constexpr double longest_way = 2;
   static constexpr int retries = 2;

@@ -11,8 +11,8 @@ namespace collarmesh::projection {
 
 namespace {
 
-// Sweeps end unless the penalty falls to the share `worthwhile` within `idle_sweeps`; there are at most
-// `sweeps`.
+// Sweeps go on as long as the penalty falls to the share `worthwhile` within `idle_sweeps`, at most `sweeps`
+// times.
 constexpr unsigned sweeps = 50, idle_sweeps = 3;
 constexpr double worthwhile = 0.9;
 // Vertices move by steps that start with this share of their shortest edge and are halved this many times.
@@ -21,7 +21,7 @@ constexpr unsigned halvings = 5;
 // Least gain of a move.
 constexpr double least_gain = 1e-3;
 // Tets get room until they are as good as before the move, or until the smallest sine of their dihedral
-// angles reaches this.
+// angles reaches this value.
 constexpr double good_shape = 0.2;
 // Least cosine between an edge of a curve and its initial direction.
 constexpr double least_course = 0.5;

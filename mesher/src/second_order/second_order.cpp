@@ -33,7 +33,8 @@ constexpr double farthest = 0.5;
 // between the edges.
 constexpr double least_turn = 0.15;
 
-// Nodes move back by this factor; below this share of the full distance they go to the middle of their edge.
+// Nodes move back by `step_factor`; below `least_share` of the full distance they go to the middle of their
+// edge.
 constexpr double step_factor = 0.8, least_share = 0.1, forward_precision = 0.04;
 constexpr unsigned steps_per_try = 3;  // after this many steps, nodes inside regions may find room again
 

@@ -22,8 +22,8 @@ class Untangling {
   /// Keeps all by reference. Precondition: the mesh has its nodes.
   Untangling(TetMesh& mesh, const MeshEdges& edges, const Plc& plc, double least_jacobian);
 
-  /// Makes a tet valid, and no tet invalid. Returns the number of moved nodes; 0: it was not possible, and
-  /// all nodes are at their old places.
+  /// Makes a tet valid without making another one invalid. Returns the number of moved nodes; 0 if that was
+  /// not possible, and then all nodes are at their old places.
   std::size_t untangle(Index tet) { return untangle_within(tet, false); }
   /// Makes a tet valid by moving nodes in a wider neighbourhood, at several times the cost. Gives up after
   /// many failures.

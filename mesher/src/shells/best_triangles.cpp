@@ -15,7 +15,7 @@ constexpr double impossible = -1;
 
 /// The best triangles on one side of a diagonal.
 struct Part {
-  double least = INFINITY;  // least shape
+  double least = INFINITY;  // the least shape of these triangles
   unsigned apex = 0;        // third corner of the triangle at the diagonal
 };
 

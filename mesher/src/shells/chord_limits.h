@@ -10,7 +10,7 @@
 namespace collarmesh::shells {
 
 /// The allowed distances of chords from the points of a complex: the tolerance or, where curves are near each
-/// other, so much less that their chords do not cross.
+/// other, a smaller distance, so that their chords do not cross.
 class ChordLimits {
  public:
   /// Measures the distances between curves in the triangles of `complex`, whose vertex i is the point

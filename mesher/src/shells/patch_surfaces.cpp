@@ -104,7 +104,7 @@ PatchSurfaces::Foot PatchSurfaces::nearest(Index patch, const Point& p) const {
 double PatchSurfaces::agreement(const Corners& t, Index patch) const { return fit(t, patch).agreement; }
 
 PatchSurfaces::Fit PatchSurfaces::fit(const Corners& t, Index patch, double enough) const {
-  constexpr double certain = 0.8;  // with this agreement a place near enough is accepted
+  constexpr double certain = 0.8;  // agreement above which a place that is near enough is accepted
   const Vector area = area_vector(t);
   const double size = norm(area);
   const auto agreement = [&](const Vector& normal) { return size > 0 ? dot(area, normal) / size : -1; };

@@ -292,7 +292,8 @@ bool ShapeRepair::refine(Index triangle) {
 std::size_t ShapeRepair::run(std::size_t most_vertices) {
   constexpr unsigned most_passes = 40, contracting_passes = 3, first_passes = 12;
   const double wanted = least_angle + margin;
-  constexpr double refined = 180;  // stands for more than mere improvement
+  // The shape noted for a triangle that was refined, above every shape wanted.
+  constexpr double refined = 180;
   std::size_t limit = complex_.vertices.size() + most_vertices, fewest = complex_.triangles.size();
   std::vector<Index> poor_ones;
   Index first = 0;
@@ -306,7 +307,7 @@ std::size_t ShapeRepair::run(std::size_t most_vertices) {
     if (pass > first_passes && poor_ones.size() > fewest + fewest / 4 + 20) limit = 0;
     for (const Index t : poor_ones) {
       if (!poor(t, wanted) || tried(t, refined)) continue;
-      // Moves alone do not make a triangle good that is far from good.
+      // Moves alone cannot repair a triangle that is far from good.
       const bool near = editor_.shape(t) > 0.5 * wanted;
       // After some passes edges are no longer contracted, so that new vertices stay.
       if (improve_connections(t, wanted, pass < contracting_passes) || (near && move_corners(t)) ||

@@ -30,9 +30,9 @@ class SharpCorners {
     unsigned end;  // 0: the beginning of the curve, 1: its end
   };
   struct Corner {
-    Index vertex;                // of the input
-    std::vector<End> ends;       // of the curves of its sharp angles
-    std::vector<Index> patches;  // with these angles
+    Index vertex;                // the vertex of the input
+    std::vector<End> ends;       // the ends of curves that form its sharp angles
+    std::vector<Index> patches;  // the patches with these angles
   };
   Corner find(const SurfaceComplex& complex, Index vertex) const;
   double tip_length(const Plc& plc, const CurvePaths& paths, const SurfaceSizes& sizes,

@@ -27,7 +27,7 @@ class SurfaceEditor {
   struct Contraction {
     double longest = INFINITY;  ///< longest edge afterwards, relative to the target edge length
     double least_shape = 0;     ///< least shape afterwards, or the one before if that is less
-    bool better = false;        ///< the least shape must increase
+    bool better = false;        ///< whether the least shape must increase
   };
 
   /// Conditions for removing a vertex.
@@ -60,15 +60,16 @@ class SurfaceEditor {
     Index vertex = none;
     std::vector<SurfaceComplex::Triangle> triangles;
     std::vector<SurfaceComplex::Edge> edges;
-    Index first_triangle = 0, first_edge = 0;  ///< numbers from which on all are new
+    Index first_triangle = 0, first_edge = 0;  ///< all triangles and edges with larger numbers are new
     struct Neighbour {
       Index vertex;
       Point point;
       double least_shape;
     };
     std::vector<Neighbour> neighbours;
-    std::vector<std::pair<Index, Index>> changes;                 ///< of the neighbours and of theirs
-    std::vector<std::pair<Index, std::array<double, 2>>> places;  ///< of the neighbours' edges on curves
+    std::vector<std::pair<Index, Index>> changes;  ///< changes of the neighbours and of their neighbours
+    /// Places on curves of the edges at the neighbours.
+    std::vector<std::pair<Index, std::array<double, 2>>> places;
   };
   Surroundings surroundings(Index vertex) const;
   /// Undoes the removal of a vertex and the moves of its neighbours since then. Precondition: nothing else
@@ -140,9 +141,9 @@ class SurfaceEditor {
   double sag_across(const std::array<Index, 2>& two) const;
   void merge_edges(Index middle);
   void replace_vertex(Index vertex, std::span<const Created> created);
-  /// What is left of a patch's triangles around a vertex when it is removed: their other corners in order. At
-  /// an interior vertex the first one follows upon the last; at a vertex of a curve they are its neighbours
-  /// on the curve.
+  /// The hole in a patch's triangles around a vertex that is removed: their other corners in order. At an
+  /// interior vertex the polygon is closed; at a vertex of a curve it begins and ends with the neighbours on
+  /// the curve.
   struct Hole {
     Index patch;
     std::vector<Index> border;

@@ -124,7 +124,7 @@ void SurfaceMesher::divide_curves(const SharpCorners& corners) {
     if (!edges[curve].empty()) divide_curve_at(curve, edges[curve], corners.tips(curve), limits);
 }
 
-/// Removes the vertices of curves at which these are not divided.
+/// Removes curve vertices at which the curve is no longer divided.
 void SurfaceMesher::contract_on_curves() {
   constexpr unsigned rounds = 3;
   const SurfaceEditor::Contraction rule{.longest = INFINITY, .least_shape = 0};
@@ -207,7 +207,7 @@ void SurfaceMesher::flip_all() {
     for (const Index v : changed) {
       waiting[v] = false;
       for (const Index n : complex_.neighbours(v)) {
-        if (waiting[n]) continue;  // n will look at this edge
+        if (waiting[n]) continue;  // this edge is looked at when it is the turn of n
         const auto two = complex_.two_triangles_at(v, n);
         if (!two) continue;
         const Index c = complex_.triangles[(*two)[0]].third(v, n),

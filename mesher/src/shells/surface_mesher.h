@@ -65,8 +65,8 @@ class SurfaceMesher {
   ShapeRepair repair_;
   std::vector<Point> middles_;   // middles of the edges of mesh()
   std::vector<Index> point_of_;  // by vertex: the point of the complex that it was made from
-  std::vector<Index> flipped_;   // by vertex: its number of changes, plus 1, when no edge there had to be
-                                 // flipped
+  std::vector<Index> flipped_;   // by vertex: its number of changes, plus 1, when its edges were last found
+                                 // to need no flip; 0: not yet
   std::vector<bool> kept_;       // by vertex on a curve: whether the curve is divided there
 };
 

@@ -48,7 +48,7 @@ double VertexRemoval::least_shape_beside(Index vertex) const {
   return least_angle + planar_margin;
 }
 
-/// Returns whether all shapes around the former neighbours of a vertex are as good as they have to be or were
+/// Returns whether all shapes around the former neighbours of a vertex are good enough, or no worse than
 /// before, and all edges there short enough.
 bool VertexRemoval::acceptable(const SurfaceEditor::Surroundings& before, double least_shape) const {
   for (const auto& n : before.neighbours) {

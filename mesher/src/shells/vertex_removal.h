@@ -8,8 +8,8 @@
 
 namespace collarmesh::shells {
 
-/// Removes vertices that neither sizes, distances nor angles need: those that edge lengths which grow slowly
-/// away from short curves and narrow places have left.
+/// Removes vertices that neither sizes, distances nor angles need. Such vertices remain where edge lengths
+/// grow only slowly away from short curves and narrow places.
 class VertexRemoval {
  public:
   /// Keeps all by reference.

@@ -203,11 +203,11 @@ SizeField size_field_from_json(const std::string& text, const Plc& plc,
     json = Json::parse(text, [](int depth, Json::parse_event_t, const Json&) {
       if (depth > deepest)
         throw ReadError(
-            fmt::format("size field: it is nested deeper than {} levels; this is no size field", deepest));
+            fmt::format("size field: it is nested deeper than {} levels; this is not a size field", deepest));
       return true;
     });
   } catch (const Json::parse_error& error) {
-    throw OptionError(fmt::format("size field: {}: this is no JSON", place_in(text, error.byte)));
+    throw OptionError(fmt::format("size field: {}: this is not JSON", place_in(text, error.byte)));
   } catch (const Json::out_of_range&) {
     throw OptionError(
         "size field: a number is larger than any double; leave it out where no size is asked for");

@@ -29,7 +29,7 @@ class MedReader {
  public:
   explicit MedReader(const std::string& path)
       : path_(path), file_(MEDfileOpen(path.c_str(), MED_ACC_RDONLY)) {
-    if (file_ < 0) fail("is no MED file of a version that can be read");
+    if (file_ < 0) fail("is not a MED file, or not of a version that can be read");
   }
   ~MedReader() {
     if (file_ >= 0) MEDfileClose(file_);

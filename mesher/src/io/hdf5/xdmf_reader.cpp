@@ -107,7 +107,7 @@ class Grid {
     const pugi::xml_node geometry = grid_.child("Geometry");
     if (type_of(geometry, "GeometryType") != "xyz") fail(path_, "expected a Geometry of the type XYZ");
     std::vector<double> values = read<double>(geometry.child("DataItem"));
-    if (values.size() % 3 != 0) fail(path_, "the coordinates are no multiple of three");
+    if (values.size() % 3 != 0) fail(path_, "the number of coordinates is not a multiple of three");
     return values;
   }
 
@@ -115,7 +115,8 @@ class Grid {
   void append(VtkPiece& piece) const {
     const auto nodes = read<std::int64_t>(grid_.child("Topology").child("DataItem"));
     if (nodes.size() % kind_->nodes != 0)
-      fail(path_, fmt::format("{} nodes are no whole number of cells of {}", nodes.size(), kind_->nodes));
+      fail(path_,
+           fmt::format("{} nodes are not a whole number of cells of {} nodes", nodes.size(), kind_->nodes));
     const std::size_t before = piece.types.size(), count = nodes.size() / kind_->nodes;
     piece.connectivity.insert(piece.connectivity.end(), nodes.begin(), nodes.end());
     const std::int64_t first = piece.ends.empty() ? 0 : piece.ends.back();
