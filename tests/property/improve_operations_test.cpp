@@ -110,7 +110,7 @@ std::vector<Operation> all_operations() {
            {1, 2, 3}},
           {"edge removal anyhow",
            [](Workbench& on, Index tet, unsigned i, unsigned j, Change& change) {
-             on.operations.remove_edge_anyhow(tet, i, j, least, change);
+             on.operations.remove_edge(tet, i, j, change, least);
            },
            Change::Kind::edge_removal,
            {3},
@@ -124,7 +124,7 @@ std::vector<Operation> all_operations() {
            true},
           {"contraction anyhow",
            [=](Workbench& on, Index tet, unsigned i, unsigned j, Change& change) {
-             on.operations.contract_edge_anyhow(corner(on, tet, i), corner(on, tet, j), least, change);
+             on.operations.contract_edge(corner(on, tet, i), corner(on, tet, j), change, least);
            },
            Change::Kind::contraction,
            {1, 2, 3},
@@ -262,7 +262,7 @@ TEST_F(ImproveOperations, ContractionsOnFeaturesKeepTheLinkCondition) {
       const bool holds = link_condition(tets, vertex, onto) && link_condition(faces, vertex, onto);
       forbidden += holds ? 0 : 1;
       Change change;
-      operations.contract_edge_anyhow(vertex, onto, 0, change);
+      operations.contract_edge(vertex, onto, change, 0);
       if (change.kind == Change::Kind::none) continue;
       ++proposed;
       EXPECT_TRUE(holds) << vertex << " onto " << onto;
@@ -336,7 +336,7 @@ TEST(ContractionsOnFeatures, EachPartOfTheLinkConditionForbidsSome) {
     Workpiece workpiece(mesh, plc, SurfaceTolerance(distance));
     Operations operations(workpiece, rule);
     Change change;
-    operations.contract_edge_anyhow(0, 1, 0, change);
+    operations.contract_edge(0, 1, change, 0);
     EXPECT_EQ(change.kind, allowed ? Change::Kind::contraction : Change::Kind::none);
   }
 }

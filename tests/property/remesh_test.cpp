@@ -420,14 +420,14 @@ TEST(DividedEdges, AreUndone) {
       }
       return divided;
     };
-    workpiece.begin_trial();
+    improvement::Trial once(workpiece);
     const auto first = divide_all();
-    workpiece.undo();
+    once.undo();
     EXPECT_EQ(given.mesh.points, before.points);
     EXPECT_EQ(given.mesh.edges, before.edges);
-    workpiece.begin_trial();
+    improvement::Trial again(workpiece);
     EXPECT_EQ(divide_all(), first);
-    workpiece.undo();
+    again.undo();
     workpiece.complex.store();
     expect_same(given.mesh, before);
     for (const unsigned dimension : {1U, 2U, 3U})

@@ -14,8 +14,10 @@
 #include "coarsen/proposals.h"
 #include "coarsen/target_sizes.h"
 #include "collarmesh/error.h"
+#include "common/cell_shapes.h"
 #include "common/found_in_ranges.h"
 #include "common/parallel_for.h"
+#include "common/sorted.h"
 #include "common/tet_sides.h"
 #include "common/thread_limit.h"
 
@@ -223,17 +225,16 @@ class Coarsening {
     const auto& v = complex()[tet].corners;
     const auto p = complex().corners(tet);
     const std::array<double, 4> size{sizes_[v[0]], sizes_[v[1]], sizes_[v[2]], sizes_[v[3]]};
-    for (unsigned i = 0; i < 4; ++i)
-      for (unsigned j = i + 1; j < 4; ++j) {
-        const double twice_target = size[i] + size[j];
-        if (squared_distance(p[i], p[j]) >
-            0.25 * surely * square(contracted_below) * twice_target * twice_target)
-          continue;
-        const double length = squared_relative_length(v[i], v[j]);
-        if (!is_short(length)) continue;
-        if (is_asked(v[i], length)) ends.push_back({length, v[i]});
-        if (is_asked(v[j], length)) ends.push_back({length, v[j]});
-      }
+    for (const auto& [i, j] : cell_shapes::corner_pairs) {
+      const double twice_target = size[i] + size[j];
+      if (squared_distance(p[i], p[j]) >
+          0.25 * surely * square(contracted_below) * twice_target * twice_target)
+        continue;
+      const double length = squared_relative_length(v[i], v[j]);
+      if (!is_short(length)) continue;
+      for (const Index end : {v[i], v[j]})
+        if (is_asked(end, length)) ends.push_back({length, end});
+    }
   }
 
   // Returns whether a vertex with an edge of this squared relative length is tried.
@@ -318,16 +319,16 @@ class Coarsening {
   }
 
   bool contract_and_repair(Change change, double floor) {
-    workpiece_.begin_trial();
+    improvement::Trial trial(workpiece_);
     forget_touched();
     examined_.clear();
     const std::size_t before = tets_;
     rule_.set_mode(Mode::trial);
-    apply_on_trial(std::move(change));
-    for (unsigned step = 0;; ++step) {
+    for (unsigned step = 0; change.kind != Change::Kind::none; ++step) {
+      apply_on_trial(std::move(change));
       const auto [count, worst] = tets_to_mend(floor);
       if (count == 0) {
-        workpiece_.keep();
+        trial.keep();
         settle();
         ++report_.contracted_edges;
         ++report_.repaired;
@@ -336,11 +337,9 @@ class Coarsening {
       if (step + count > most_repairs + 1) break;
       examined_.insert(examined_.end(), complex()[worst].corners.begin(), complex()[worst].corners.end());
       change = proposer_.improvement_of(worst, Mode::trial);
-      if (change.kind == Change::Kind::none) break;
-      apply_on_trial(std::move(change));
     }
     look_at_touched();
-    workpiece_.undo();
+    trial.undo();
     tets_ = before;
     look_at_examined();
     return false;
@@ -499,11 +498,6 @@ class Coarsening {
     if (std::any_of(vertices.begin(), vertices.end(), [&](Index v) { return complex().pinched(v); }))
       return std::nullopt;
     return vertices;
-  }
-
-  static void sort_uniquely(std::vector<Index>& items) {
-    std::sort(items.begin(), items.end());
-    items.erase(std::unique(items.begin(), items.end()), items.end());
   }
 
   const std::vector<Index>& apply(Change change) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "coarsen/proposals.h"
+#include "common/sorted.h"
 
 namespace collarmesh::coarsening {
 
@@ -17,8 +18,7 @@ class FailedRepairs {
  public:
   /// Notes that all collapses of a vertex have failed now, and the vertices at whose tets they looked.
   void note(Index vertex, std::vector<Index> looked_at, std::uint32_t now) {
-    std::sort(looked_at.begin(), looked_at.end());
-    looked_at.erase(std::unique(looked_at.begin(), looked_at.end()), looked_at.end());
+    sort_uniquely(looked_at);
     failures_.insert_or_assign(vertex, Failure{now, std::move(looked_at)});
   }
 

@@ -14,24 +14,6 @@ namespace {
 // A collapse may be repaired if it makes no tet worse than this.
 constexpr double repairable = 0.15;
 
-// Returns the edges of a tet, longest first: removing the longest edges of a sliver helps most.
-std::array<std::array<unsigned, 2>, 6> longest_first(const improvement::Corners& p) {
-  struct Edge {
-    double squared_length;
-    std::array<unsigned, 2> ends;
-  };
-  std::array<Edge, 6> edges;
-  unsigned count = 0;
-  for (unsigned i = 0; i < 4; ++i)
-    for (unsigned j = i + 1; j < 4; ++j) edges[count++] = {squared_distance(p[i], p[j]), {i, j}};
-  std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
-    return a.squared_length != b.squared_length ? a.squared_length > b.squared_length : a.ends < b.ends;
-  });
-  std::array<std::array<unsigned, 2>, 6> sorted;
-  std::transform(edges.begin(), edges.end(), sorted.begin(), [](const Edge& e) { return e.ends; });
-  return sorted;
-}
-
 }  // namespace
 
 Proposer::Proposer(const improvement::Workpiece& workpiece, const improvement::ThinShape& thin,
@@ -77,7 +59,7 @@ Change Proposer::improvement_of(Index tet, Mode mode) {
   rule_.set_mode(mode);
   const auto corners = complex()[tet].corners;
   Change change;
-  for (const auto& [i, j] : longest_first(complex().corners(tet))) {
+  for (const auto& [i, j] : improvement::longest_first(complex().corners(tet), squared_distance)) {
     operations_.remove_edge(tet, i, j, change);
     if (change.quality >= improved_below) break;
   }

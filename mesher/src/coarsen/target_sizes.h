@@ -14,4 +14,8 @@ namespace collarmesh::coarsening {
 /// allows. Cost: near linear.
 std::vector<double> target_sizes(const TetMesh& mesh, const Plc& plc, const MeshOptions& options);
 
+/// Reduces sizes at the vertices of a mesh where they grow along an edge by more than this share of its length.
+/// Cost: n log n.
+void grade_sizes(const TetMesh& mesh, double growth, std::vector<double>& sizes);
+
 }  // namespace collarmesh::coarsening

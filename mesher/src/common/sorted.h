@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <utility>
 
 #include "collarmesh/geometry.h"
@@ -19,6 +20,14 @@ std::array<Index, corner_count> sorted(std::array<Index, corner_count> corners) 
     for (std::size_t i = last; i > 0 && corners[i] < corners[i - 1]; --i)
       std::swap(corners[i], corners[i - 1]);
   return corners;
+}
+
+/// Sorts a list by a key and leaves only one item of each key.
+template <class Items, class Key = std::identity>
+void sort_uniquely(Items& items, const Key& key = {}) {
+  std::ranges::sort(items, {}, key);
+  const auto repeated = std::ranges::unique(items, {}, key);
+  items.erase(repeated.begin(), repeated.end());
 }
 
 }  // namespace collarmesh

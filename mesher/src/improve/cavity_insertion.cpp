@@ -41,11 +41,7 @@ void Operations::grow_and_insert(std::vector<Index> cavity, double least, Change
   }
   if (quality <= std::max(least, change.quality)) return;
   cone_ = std::move(best);
-  change = {};
-  change.kind = Change::Kind::insertion;
-  change.quality = quality;
-  change.place = place;
-  fill(Change::inserted, change);
+  fill_insertion(place, quality, {}, change);
 }
 
 // Finds the cone of a cavity. Returns false if a vertex, a curve or a face of the mesh lies inside.

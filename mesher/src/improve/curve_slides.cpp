@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/round_curves.h"
+#include "common/segments.h"
 #include "location/triangle_hierarchy.h"
 
 namespace collarmesh::improvement {
@@ -55,15 +56,9 @@ void CurveSlides::find_all_places() const {
 void CurveSlides::find_places(Index curve, std::vector<Index>& vertices,
                               const std::array<Index, 2>& ends) const {
   const auto& lengths = paths_.lengths(curve);
-  std::vector<std::array<Index, 3>> segments;
-  for (std::size_t i = 0; i + 1 < lengths.size(); ++i) {
-    const auto [a, b] = paths_.segment_ends(curve, i);
-    segments.push_back({a, b, b});
-  }
-  const TriangleHierarchy hierarchy(plc_.points, std::move(segments));
+  const TriangleHierarchy hierarchy(plc_.points, flat_triangles_of(plc_.curves[curve]));
   for (const Index v : vertices) {
-    Index at = 0;
-    hierarchy.squared_distance_to(mesh_.points[v], INFINITY, &at);
+    const Index at = hierarchy.nearest(mesh_.points[v]);
     const double step = distance(mesh_.points[v], hierarchy.corners(at)[0]);
     places_[v].parameter = std::min(lengths[at] + step, lengths[at + 1]);
   }
@@ -112,11 +107,11 @@ bool CurveSlides::may_skip(Index vertex) const {
 
 void CurveSlides::skipped(Index vertex) {
   const auto [before, after] = places_[vertex].neighbours;
-  old_spare_edges_.note(spare_edges_, mesh_.features[vertex].feature);
+  old_spare_edges_.note(mesh_.features[vertex].feature);
   --spare_edges_[mesh_.features[vertex].feature];
   const auto join = [&](Index end, unsigned side, Index neighbour) {
     if (mesh_.features[end].dimension != 1) return;
-    old_places_.note(places_, end);
+    old_places_.note(end);
     places_[end].neighbours[side] = neighbour;
   };
   join(before, 1, after);
@@ -156,14 +151,14 @@ bool CurveSlides::edge_is_near(Index curve, Index a, Index b) const {
 
 void CurveSlides::divided(Index vertex, const Middle& middle) {
   const Index curve = mesh_.features[vertex].feature;
-  old_spare_edges_.note(spare_edges_, curve);
+  old_spare_edges_.note(curve);
   ++spare_edges_[curve];
   places_.resize(std::max<std::size_t>(places_.size(), vertex + 1));
   places_[vertex] = {middle.parameter, middle.ends};
   for (unsigned side = 0; side < 2; ++side) {
     const Index end = middle.ends[side];
     if (mesh_.features[end].dimension != 1) continue;
-    old_places_.note(places_, end);
+    old_places_.note(end);
     places_[end].neighbours[1 - side] = vertex;
   }
 }

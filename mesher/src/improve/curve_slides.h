@@ -29,7 +29,7 @@ class CurveSlides {
   bool fits(Index vertex, double way) const;
   /// Records that the vertex slid by this arc length.
   void moved(Index vertex, double way) {
-    old_places_.note(places_, vertex);
+    old_places_.note(vertex);
     places_[vertex].parameter += way;
   }
   /// Returns the mesh vertices before and after the vertex. Precondition: it is movable.
@@ -59,9 +59,9 @@ class CurveSlides {
     std::call_once(prepared_, [this] { find_all_places(); });
   }
   /// Begins a trial: later moves and skips can be undone until `keep`.
-  void begin_trial() { old_places_.begin(places_.size()), old_spare_edges_.begin(spare_edges_.size()); }
-  void keep() { old_places_.end(), old_spare_edges_.end(); }
-  void undo() { old_places_.undo(places_), old_spare_edges_.undo(spare_edges_); }
+  void begin_trial() { old_places_.begin(), old_spare_edges_.begin(); }
+  void keep() { old_places_.keep(), old_spare_edges_.keep(); }
+  void undo() { old_places_.undo(), old_spare_edges_.undo(); }
 
  private:
   struct Place {
@@ -88,8 +88,8 @@ class CurveSlides {
   mutable std::once_flag prepared_;
   mutable std::vector<Place> places_;        // by vertex that existed then; computed on first use
   std::vector<std::ptrdiff_t> spare_edges_;  // by curve: the number of edges above its minimum
-  UndoLog<Place> old_places_;
-  UndoLog<std::ptrdiff_t> old_spare_edges_;
+  UndoLog<std::vector<Place>> old_places_{places_};
+  UndoLog<std::vector<std::ptrdiff_t>> old_spare_edges_{spare_edges_};
 };
 
 }  // namespace collarmesh::improvement

@@ -40,7 +40,7 @@ class Detours {
   };
   /// The result of a trial.
   struct Result {
-    bool better = false;
+    bool better = false, taken = false;
     bool more_thin = false;  ///< more tets are thin than before the trial
     double worst = 0;        ///< smallest quality of the changed tets, at most the wanted quality
   };
@@ -58,14 +58,12 @@ class Detours {
   void note_changes(std::vector<Index>& tets);
   std::vector<Index> places(Index tet, Effort effort) const;
   Change first_step(const FirstStep& step);
-  Result attempt(const FirstStep& step);
+  Result attempt(const FirstStep& step, const std::function<bool(const Result&)>& is_taken);
   bool is_worth_it(const Result& result, Effort effort) const;
-  void begin_trial();
-  void apply(Change change);
-  void improve_changed();
-  Result result() const;
-  void see_before(Index tet);
-  void set_changed(Index tet);
+  void apply(Trial& trial, Change change);
+  void improve_changed(Trial& trial);
+  Result result(const Trial& trial) const;
+  void take(Trial& trial);
   const TetComplex& complex() const { return workpiece_.complex; }
 
   Workpiece& workpiece_;
@@ -78,12 +76,10 @@ class Detours {
   std::vector<std::uint32_t> last_detour_at_;  // by vertex: the last detour that changed a tet there
   std::array<Asked, 3> asked_;                 // by Effort
 
+  std::vector<Index> changed_;                 // tets that the last detour changed; some are removed
+
   // State of the current trial.
-  std::uint32_t trial_ = 0;
-  std::vector<std::uint32_t> last_trial_of_;  // by tet: the last trial that changed it
-  std::vector<Index> changed_;                // changed tets; some have been removed since
-  std::vector<double> before_;                // qualities of the changed tets before the trial, at most the
-                                              // wanted one
+  std::vector<double> before_;  // qualities of the changed tets before the trial, at most the wanted one
   std::size_t thin_before_ = 0;
   std::vector<Index> to_improve_;
 };

@@ -1,6 +1,7 @@
 // Operations that replace the tets around an edge.
 #include <algorithm>
 
+#include "common/cell_shapes.h"
 #include "improve/operations.h"
 #include "improve/shape.h"
 
@@ -72,18 +73,12 @@ bool Operations::flat(Index a, Index b, Index c, Index d) const {
   return std::fabs(six_volume(p[a], p[b], p[c], p[d])) <= flat_volume * longest * std::sqrt(longest);
 }
 
-void Operations::remove_edge(Index tet, unsigned i, unsigned j, Change& change) {
-  remove_edge_above(tet, i, j, std::nullopt, change);
+void Operations::remove_best_edge(Index tet, Change& change) {
+  for (const auto& [i, j] : cell_shapes::corner_pairs) remove_edge(tet, i, j, change);
 }
 
-void Operations::remove_edge_anyhow(Index tet, unsigned i, unsigned j, double least, Change& change) {
-  remove_edge_above(tet, i, j, least, change);
-}
-
-// Removes an edge if all new tets are better than `least` or, without `least`, better than the worst tet at
-// the edge and than `change`.
-void Operations::remove_edge_above(Index tet, unsigned i, unsigned j, std::optional<double> least,
-                                   Change& change) {
+void Operations::remove_edge(Index tet, unsigned i, unsigned j, Change& change,
+                             std::optional<double> anyhow_above) {
   const Index a = complex_[tet].corners[i], b = complex_[tet].corners[j];
   if (complex_.on_curve(a, b)) return;
   complex_.ring(tet, a, b, ring_);
@@ -92,7 +87,7 @@ void Operations::remove_edge_above(Index tet, unsigned i, unsigned j, std::optio
   // Finds the link vertices at which faces that must be preserved leave the edge.
   std::vector<std::pair<std::size_t, Index>> kept;
   // A quality above this tet's is above that of the worst tet at the edge.
-  const bool known = least || (change.kind != Change::Kind::none && change.quality >= quality(tet));
+  const bool known = anyhow_above || (change.kind != Change::Kind::none && change.quality >= quality(tet));
   double worst = known ? -INFINITY : INFINITY;
   for (std::size_t k = 0; k < n; ++k) {
     const auto& t = complex_[ring_.tets[k]];
@@ -108,7 +103,7 @@ void Operations::remove_edge_above(Index tet, unsigned i, unsigned j, std::optio
         kept.emplace_back(at, t.faces[corner]);
     }
   }
-  const double above = least.value_or(std::max(worst, change.quality));
+  const double above = anyhow_above.value_or(std::max(worst, change.quality));
   Change made;
   std::vector<Polygon> polygons;
   std::vector<Index> like;

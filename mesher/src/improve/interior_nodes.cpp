@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "common/cell_shapes.h"
 #include "improve/operations.h"
 #include "improve/replace_tets.h"
 
@@ -51,13 +52,11 @@ Change change_for(Operations& operations, const TetComplex& complex, Index tet) 
   constexpr double good = 1;
   const std::array<Index, 4> corners = complex[tet].corners;
   Change change;
-  for (unsigned i = 0; i < 4; ++i)
-    for (unsigned j = i + 1; j < 4; ++j) operations.remove_edge(tet, i, j, change);
+  operations.remove_best_edge(tet, change);
   if (change.kind != Change::Kind::none && change.quality >= good) return change;
-  for (unsigned i = 0; i < 4; ++i)
-    for (unsigned j = i + 1; j < 4; ++j)
-      if (!complex.on_faces(corners[i], corners[j]))
-        operations.split_edge(corners[i], corners[j], CellBounds::forbidden, change);
+  for (const auto& [i, j] : cell_shapes::corner_pairs)
+    if (!complex.on_faces(corners[i], corners[j]))
+      operations.split_edge(corners[i], corners[j], CellBounds::forbidden, change);
   if (change.kind != Change::Kind::none && change.quality >= good) return change;
   operations.insert_in_cavity(tet, CellBounds::forbidden, change);
   return change;

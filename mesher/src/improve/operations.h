@@ -28,10 +28,11 @@ class Operations {
 
   /// Removes the edge between two corners of a tet by retriangulating its ring as well as possible. An edge
   /// inside a patch is removed together with its two triangles there; a sliver that has both triangles is
-  /// given to the region on the other side.
-  void remove_edge(Index tet, unsigned i, unsigned j, Change& change);
-  /// Removes an edge even if the tets at it are better now. All new tets must be better than `least`.
-  void remove_edge_anyhow(Index tet, unsigned i, unsigned j, double least, Change& change);
+  /// given to the region on the other side. `anyhow_above`: if set, the tets at the edge may be better now, but
+  /// all new tets must be better than this.
+  void remove_edge(Index tet, unsigned i, unsigned j, Change& change, std::optional<double> anyhow_above = {});
+  /// Removes the edge of a tet whose removal leaves the best tets.
+  void remove_best_edge(Index tet, Change& change);
   /// Removes an edge of a tet and another edge beside it by filling the space of all tets at both edges
   /// again. Helps where removing a single edge leaves inverted tets, as between two prisms of a thin wall.
   void reconnect(Index tet, Change& change);
@@ -51,14 +52,14 @@ class Operations {
   /// Inserts a vertex at this share of the length of an edge, inside a region or in a patch, or in the middle
   /// of an edge on a curve, with any number of tets there, if all new tets are better than `least`.
   void divide_edge(Index a, Index b, double share, double least, Change& change);
+  /// Lengths of the edges that a collapse makes: at most that of the longest edge of the cavity, or any.
+  enum class Lengths { no_longer, any };
   /// Collapses an edge: moves a vertex along it, within the vertex's feature, onto the other end, so that the
-  /// tets at the edge vanish. No edge becomes longer than the longest one of the cavity.
-  void contract_edge(Index vertex, Index onto, Change& change);
-  /// Collapses an edge, even if edges become longer than those before.
-  void contract_edge_to_any_length(Index vertex, Index onto, Change& change);
-
-  /// Collapses an edge even if the tets around are better now. All new tets must be better than `least`.
-  void contract_edge_anyhow(Index vertex, Index onto, double least, Change& change);
+  /// tets at the edge vanish. `anyhow_above`: as for `remove_edge`.
+  void contract_edge(Index vertex, Index onto, Change& change, std::optional<double> anyhow_above = {},
+                     Lengths lengths = Lengths::no_longer);
+  /// Collapses the edge of a tet whose collapse leaves the best tets.
+  void contract_best_edge(Index tet, Change& change, Lengths lengths = Lengths::no_longer);
 
   /// Begins queries about collapses of edges at this vertex, whose star is given. Returns false if the vertex
   /// has to stay.
@@ -110,7 +111,6 @@ class Operations {
   double new_quality(const std::array<Index, 4>& corners, double above) const;
 
   // Edge removal:
-  void remove_edge_above(Index tet, unsigned i, unsigned j, std::optional<double> least, Change& change);
   double triangulate(Index a, Index b, const Polygon& polygon, bool closed, double above);
   bool edges_allowed(Index vertex, const Point& from, const Point& to) const;
   void collect(Index a, Index b, const Polygon& polygon, std::size_t i, std::size_t j, Index like,
@@ -120,8 +120,7 @@ class Operations {
   bool may_lose(Index tet, Index a, Index b) const;
 
   // Reconnection:
-  std::optional<std::vector<std::array<Index, 3>>> hull_of(std::span<const Index> cavity) const;
-  void refill(const std::vector<Index>& cavity, Change& change) const;
+  void refill(const std::vector<Index>& cavity, Change& change);
 
   // Cones:
   bool find_cone_of_vertex(Index vertex);
@@ -154,19 +153,24 @@ class Operations {
   std::pair<double, double> best_way(Index vertex, double best);
   std::vector<Point> facing_places(Index vertex, const Freedom& where);
   void fill_move(Index vertex, const Point& place, double quality, Change& change);
-  void contract_edge_above(Index vertex, Index onto, std::optional<double> least, bool any_length,
-                           Change& change);
   bool may_contract(Index vertex, Index onto);
   bool keeps_topology(Index vertex, Index onto);
   bool keeps_lengths(Index vertex, Index onto) const;
   void fill(Index apex, Change& change) const;
+  void fill_insertion(const Point& place, double quality, const TetMesh::VertexFeature& feature,
+                      Change& change) const;
+  void fill_contraction(Index vertex, Index onto, double quality, Change& change) const;
 
   bool untouchable(const TetComplex::Tet& tet) const {
     return (tet.collar && !rule_.dissolves_collars()) || workpiece_.leaves(tet);
   }
   double quality(Index tet) const { return rule_.quality(complex_.corners(tet), complex_[tet].corners); }
 
+  Index patch_of_cone() const { return cone_.faces.empty() ? none : mesh_.face_patch[cone_.faces[0]]; }
   static Index inserted_in(Index patch) { return patch == none ? none : inserted_on_surface; }
+  static TetMesh::VertexFeature inside(Index patch) {
+    return patch == none ? TetMesh::VertexFeature{} : TetMesh::VertexFeature{2, patch};
+  }
   bool is_there(Index vertex) const { return vertex < mesh_.points.size(); }
 
   /// Returns whether the triangle belongs to a patch whose faces stay as they are.

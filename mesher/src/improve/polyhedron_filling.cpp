@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "common/sorted.h"
+#include "common/tet_sides.h"
+
 namespace collarmesh::improvement {
 
 namespace {
@@ -25,8 +28,7 @@ class Filling {
       front_.push_back(begun_with_smallest(t));
       vertices_.insert(vertices_.end(), t.begin(), t.end());
     }
-    std::sort(vertices_.begin(), vertices_.end());
-    vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
+    sort_uniquely(vertices_);
   }
 
   std::vector<Tet> best() {
@@ -63,7 +65,7 @@ class Filling {
   // Moves the front past a tet. Returns false if a triangle would be in the front twice.
   bool advance(const Tet& tet) {
     for (unsigned corner = 0; corner < 4; ++corner) {
-      const Triangle below = begun_with_smallest(face_below(tet, corner));
+      const Triangle below = begun_with_smallest(turned(side_corners(tet, corner)));
       if (const auto at = std::find(front_.begin(), front_.end(), below); at != front_.end()) {
         front_.erase(at);
         continue;

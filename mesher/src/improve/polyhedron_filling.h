@@ -23,10 +23,4 @@ using FillingQuality = std::function<double(const std::array<Index, 4>&, double)
 std::vector<std::array<Index, 4>> fill_polyhedron(std::span<const std::array<Index, 3>> hull, double above,
                                                   const FillingQuality& quality, std::size_t most_steps);
 
-/// Returns the face opposite a corner, oriented so that it makes a positive tet with that corner.
-inline std::array<Index, 3> face_below(const std::array<Index, 4>& tet, unsigned corner) {
-  constexpr std::array<std::array<unsigned, 3>, 4> others{{{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}}};
-  return {tet[others[corner][0]], tet[others[corner][1]], tet[others[corner][2]]};
-}
-
 }  // namespace collarmesh::improvement

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/cell_shapes.h"
 #include "common/sorted.h"
 #include "improve/operations.h"
 
@@ -49,8 +50,7 @@ class Replacing {
     const std::array<Index, 4> corners = complex()[tet].corners;
     if (unwanted.edge[0] != none && split(unwanted.edge)) return true;
     Change removal;
-    for (unsigned i = 0; i < 4; ++i)
-      for (unsigned j = i + 1; j < 4; ++j) operations_.remove_edge(tet, i, j, removal);
+    operations_.remove_best_edge(tet, removal);
     if (is_as_good_as(least_, removal)) return mended(std::move(removal));
     const auto edges = edges_to_split(corners);
     return std::any_of(edges.begin(), edges.end(), [this](const auto& edge) { return split(edge); }) ||
@@ -73,9 +73,8 @@ class Replacing {
   // Returns the edges to split, longest first.
   std::vector<std::array<Index, 2>> edges_to_split(const std::array<Index, 4>& corners) const {
     std::vector<std::array<Index, 2>> edges;
-    for (unsigned i = 0; i < 4; ++i)
-      for (unsigned j = i + 1; j < 4; ++j)
-        if (on_no_smooth_patch(corners[i], corners[j])) edges.push_back({corners[i], corners[j]});
+    for (const auto& [i, j] : cell_shapes::corner_pairs)
+      if (on_no_smooth_patch(corners[i], corners[j])) edges.push_back({corners[i], corners[j]});
     const auto& points = complex().mesh().points;
     std::sort(edges.begin(), edges.end(), [&](const auto& a, const auto& b) {
       return squared_distance(points[a[0]], points[a[1]]) > squared_distance(points[b[0]], points[b[1]]);
@@ -85,26 +84,19 @@ class Replacing {
 
   // Makes a change and repairs the tets that it leaves too poor; undoes all if that fails.
   bool mended(Change change) {
-    workpiece_.begin_trial();
+    Trial trial(workpiece_);
     touched_.clear();
-    apply(std::move(change));
-    for (unsigned step = 0;; ++step) {
+    for (unsigned step = 0; change.kind != Change::Kind::none; ++step) {
+      const std::vector<Index>& changed = workpiece_.apply(std::move(change));
+      touched_.insert(touched_.end(), changed.begin(), changed.end());
       const Index worst = tet_to_mend();
       if (worst == none) {
-        workpiece_.keep();
+        trial.keep();
         return true;
       }
       change = step < most_repairs ? improvement_of(worst) : Change{};
-      if (change.kind == Change::Kind::none) break;
-      apply(std::move(change));
     }
-    workpiece_.undo();
     return false;
-  }
-
-  void apply(Change change) {
-    const std::vector<Index>& changed = workpiece_.apply(std::move(change));
-    touched_.insert(touched_.end(), changed.begin(), changed.end());
   }
 
   Index tet_to_mend() const {
@@ -123,8 +115,7 @@ class Replacing {
   Change improvement_of(Index tet) {
     const auto corners = complex()[tet].corners;
     Change change;
-    for (unsigned i = 0; i < 4; ++i)
-      for (unsigned j = i + 1; j < 4; ++j) operations_.remove_edge(tet, i, j, change);
+    operations_.remove_best_edge(tet, change);
     for (unsigned i = 0; i < 4 && change.kind == Change::Kind::none; ++i)
       if (complex().mesh().features[corners[i]].dimension == 3) operations_.move_vertex(corners[i], change);
     return change;

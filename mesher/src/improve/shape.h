@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "collarmesh/geometry.h"
+#include "common/cell_shapes.h"
 
 namespace collarmesh::improvement {
 
@@ -54,6 +56,20 @@ inline Circumsphere circumsphere(const Corners& p) {
                cd = squared_distance(p[2], p[3]);
   return {squared_norm(centre), std::min({uu, vv, ww, bc, bd, cd}), std::max({uu, vv, ww, bc, bd, cd}),
           std::fabs(det)};
+}
+
+/// Returns the edges of a tet, longest first: removing the longest edges of a sliver helps most. `length`:
+/// measures two points.
+template <class Length>
+std::array<EdgePlaces, 6> longest_first(const Corners& p, const Length& length) {
+  std::array<std::pair<double, EdgePlaces>, 6> by_length;
+  std::ranges::transform(cell_shapes::corner_pairs, by_length.begin(), [&](const EdgePlaces& edge) {
+    return std::pair(-length(p[edge[0]], p[edge[1]]), edge);
+  });
+  std::ranges::sort(by_length);
+  std::array<EdgePlaces, 6> edges;
+  std::ranges::transform(by_length, edges.begin(), [](const auto& edge) { return edge.second; });
+  return edges;
 }
 
 }  // namespace collarmesh::improvement

@@ -260,15 +260,14 @@ void SmoothSurfaces::prepare() const {
 
 void SmoothSurfaces::begin_trial() {
   on_trial_ = true;
-  old_first_samples_.begin(first_sample_.size());
+  old_first_samples_.begin();
   old_links_.clear();
 }
 
 void SmoothSurfaces::undo() {
   on_trial_ = false;
-  old_first_samples_.undo(first_sample_);
-  for (auto link = old_links_.rbegin(); link != old_links_.rend(); ++link)
-    surfaces_[link->patch].next_sample[link->sample] = link->next;
+  old_first_samples_.undo();
+  for (auto link = old_links_.rbegin(); link != old_links_.rend(); ++link) *link->first = link->second;
 }
 
 void SmoothSurfaces::take_samples(std::span<const Index> faces) {
@@ -278,8 +277,7 @@ void SmoothSurfaces::take_samples(std::span<const Index> faces) {
     const Index patch = mesh_.face_patch[face];
     for (Index s = first_sample_[face]; s != none; s = surfaces_[patch].next_sample[s])
       moving_.push_back({patch, s});
-    old_first_samples_.note(first_sample_, face);
-    first_sample_[face] = none;
+    old_first_samples_.set(face, none);
   }
 }
 
@@ -309,10 +307,9 @@ void SmoothSurfaces::give_samples(std::span<const Index> faces) {
       }
     }
     assert(nearest != none);  // some created face is on the same patch as the faces that had the samples
-    if (on_trial_) old_links_.push_back({patch, s, of.next_sample[s]});
-    old_first_samples_.note(first_sample_, nearest);
+    if (on_trial_) old_links_.emplace_back(&of.next_sample[s], of.next_sample[s]);
     of.next_sample[s] = first_sample_[nearest];
-    first_sample_[nearest] = s;
+    old_first_samples_.set(nearest, s);
   }
 }
 

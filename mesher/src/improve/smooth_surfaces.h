@@ -74,7 +74,7 @@ class SmoothSurfaces {
   void prepare() const;
   /// Begins a trial: later changes can be undone until `keep`.
   void begin_trial();
-  void keep() { old_first_samples_.end(), on_trial_ = false; }
+  void keep() { old_first_samples_.keep(), on_trial_ = false; }
   void undo();
 
  private:
@@ -120,11 +120,8 @@ class SmoothSurfaces {
   std::vector<std::array<Index, 2>> moving_;  // patch and sample of points that no face has yet
   double accepted_ratio_ = 0;
   bool on_trial_ = false;
-  UndoLog<Index> old_first_samples_;
-  struct Link {
-    Index patch, sample, next;
-  };
-  std::vector<Link> old_links_;
+  UndoLog<std::vector<Index>> old_first_samples_{first_sample_};
+  std::vector<std::pair<Index*, Index>> old_links_;  // entries of next_sample and what they were
 };
 
 }  // namespace collarmesh::improvement

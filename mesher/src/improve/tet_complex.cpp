@@ -245,13 +245,13 @@ std::span<const Index> TetComplex::replace(const Replacement& replacement) {
   for (const Index t : old) {
     for (const Index v : tets_[t].corners) {
       if (vertex_tet_[v] == none) continue;
-      set_vertex_tet(v, none);
+      old_vertex_tets_.set(v, none);
       cavity_vertices_.push_back(v);
     }
-    old_tets_.note(tets_, t);
+    old_tets_.note(t);
     tets_[t].alive = false;
     ++tets_[t].generation;
-    free_steps_.push(free_, t);
+    free_.push_back(t);
   }
   created_.clear();
   for (std::size_t i = 0; i < created.size(); ++i) {
@@ -262,16 +262,15 @@ std::span<const Index> TetComplex::replace(const Replacement& replacement) {
       origin_.push_back(none);
       stamps_.push_back(0);
     } else {
-      t = free_steps_.pop(free_);
+      t = old_free_.pop();
     }
-    old_tets_.note(tets_, t);
-    old_origins_.note(origin_, t);
+    old_tets_.note(t);
     Tet& tet = tets_[t];
     tet = {corners, {none, none, none, none}, {none, none, none, none}, tags_[i].first, tet.generation, true,
            false};
-    origin_[t] = tags_[i].second;
+    old_origins_.set(t, tags_[i].second);
     created_.push_back(t);
-    for (const Index v : corners) set_vertex_tet(v, t);
+    for (const Index v : corners) old_vertex_tets_.set(v, t);
     for (unsigned corner = 0; corner < 4; ++corner) {
       const auto key = sorted(side_corners(corners, corner));
       const auto open =
@@ -291,7 +290,7 @@ std::span<const Index> TetComplex::replace(const Replacement& replacement) {
   for (const OpenFace& open : open_) {
     if (open.tet == none) continue;
     set_neighbour(open.tet, open.corner, none);
-    for (const Index v : open.key) set_vertex_tet(v, open.tet);
+    for (const Index v : open.key) old_vertex_tets_.set(v, open.tet);
   }
   for (const Index v : cavity_vertices_)
     if (vertex_tet_[v] == none) lost_vertices_.push_back(v);
@@ -306,10 +305,9 @@ void TetComplex::make_faces(const Replacement& replacement) {
     face_tags_.push_back(
         {mesh_.face_patch[face.like], mesh_.face_tag[face.like], mesh_.face_regions[face.like]});
   for (const Index face : replacement.old_faces) {
-    if (on_trial_) old_faces_.emplace_back(face, face_record(face));
-    mesh_.faces[face] = lost_face;
-    mesh_.face_patch[face] = none;
-    free_face_steps_.push(free_faces_, face);
+    old_faces_.set(face, lost_face);
+    old_patches_.set(face, none);
+    free_faces_.push_back(face);
   }
   for (std::size_t i = 0; i < replacement.created_faces.size(); ++i) {
     Index face = static_cast<Index>(mesh_.faces.size());
@@ -319,11 +317,12 @@ void TetComplex::make_faces(const Replacement& replacement) {
       mesh_.face_tag.push_back(0);
       mesh_.face_regions.push_back({});
     } else {
-      face = free_face_steps_.pop(free_faces_);
+      face = old_free_faces_.pop();
     }
-    if (on_trial_) old_faces_.emplace_back(face, face_record(face));
-    set_face_record(face, {replacement.created_faces[i].corners, face_tags_[i].patch, face_tags_[i].tag,
-                           face_tags_[i].regions});
+    old_faces_.set(face, replacement.created_faces[i].corners);
+    old_patches_.set(face, face_tags_[i].patch);
+    old_face_tags_.set(face, face_tags_[i].tag);
+    old_face_regions_.set(face, face_tags_[i].regions);
     set_face(mesh_.faces[face], face);
     created_faces_.push_back(face);
   }
@@ -343,133 +342,59 @@ void TetComplex::set_face(const std::array<Index, 3>& corners, Index face) {
   }
 }
 
+void TetComplex::forget_curve_edge(std::size_t edge) {
+  curve_edges_.erase(edge_key(mesh_.edges[edge][0], mesh_.edges[edge][1]));
+}
+
+void TetComplex::set_curve_edge(Index edge, const std::array<Index, 2>& ends) {
+  forget_curve_edge(edge);
+  old_edges_.set(edge, ends);
+  if (ends != lost_edge) curve_edges_.emplace(edge_key(ends[0], ends[1]), edge);
+}
+
 void TetComplex::join_curve_edges(Index before, Index vertex, Index after) {
-  const auto first = curve_edges_.find(edge_key(before, vertex)),
-             second = curve_edges_.find(edge_key(vertex, after));
-  const Index kept = first->second, gone = second->second;
-  if (on_trial_)
-    old_edges_.push_back({true, first->first, second->first, edge_key(before, after), kept, gone,
-                          mesh_.edges[kept], mesh_.edges[gone]});
-  // The kept edge keeps its direction.
-  for (Index& end : mesh_.edges[kept])
-    if (end == vertex) end = after;
-  mesh_.edges[gone] = lost_edge;
-  curve_edges_.erase(edge_key(before, vertex));
-  curve_edges_.erase(edge_key(vertex, after));
-  curve_edges_.emplace(edge_key(before, after), kept);
+  const Index kept = curve_edge(before, vertex), gone = curve_edge(vertex, after);
+  std::array<Index, 2> ends = mesh_.edges[kept];  // the kept edge keeps its direction
+  std::replace(ends.begin(), ends.end(), vertex, after);
+  set_curve_edge(gone, lost_edge);
+  set_curve_edge(kept, ends);
 }
 
 void TetComplex::divide_curve_edge(Index before, Index vertex, Index after) {
-  const std::uint64_t whole = edge_key(before, after);
-  const Index kept = curve_edges_.at(whole), added = static_cast<Index>(mesh_.edges.size());
-  const std::array<Index, 2> ends = mesh_.edges[kept];
-  if (on_trial_)
-    old_edges_.push_back(
-        {false, edge_key(before, vertex), edge_key(vertex, after), whole, kept, added, ends, {}});
-  // Both new edges keep the old edge's direction.
-  mesh_.edges[kept] = {ends[0], vertex};
-  mesh_.edges.push_back({vertex, ends[1]});
+  const Index kept = curve_edge(before, after), added = static_cast<Index>(mesh_.edges.size());
+  const auto [first, last] = mesh_.edges[kept];  // both new edges keep its direction
+  mesh_.edges.push_back(lost_edge);
   mesh_.edge_curve.push_back(Index{mesh_.edge_curve[kept]});
   mesh_.edge_tag.push_back(Tag{mesh_.edge_tag[kept]});
-  curve_edges_.erase(whole);
-  curve_edges_.emplace(edge_key(ends[0], vertex), kept);
-  curve_edges_.emplace(edge_key(vertex, ends[1]), added);
+  set_curve_edge(kept, {first, vertex});
+  set_curve_edge(added, {vertex, last});
 }
 
 void TetComplex::set_neighbour(Index tet, unsigned corner, Index neighbour) {
-  old_tets_.note(tets_, tet);
+  old_tets_.note(tet);
   tets_[tet].neighbours[corner] = neighbour;
 }
 
 void TetComplex::set_face_of_tet(Index tet, unsigned corner, Index face) {
-  old_tets_.note(tets_, tet);
+  old_tets_.note(tet);
   tets_[tet].faces[corner] = face;
 }
 
-void TetComplex::set_vertex_tet(Index vertex, Index tet) {
-  old_vertex_tets_.note(vertex_tet_, vertex);
-  vertex_tet_[vertex] = tet;
-}
-
-void TetComplex::move_vertex(Index vertex, const Point& p) {
-  old_points_.note(mesh_.points, vertex);
-  mesh_.points[vertex] = p;
-}
-
-TetComplex::FaceRecord TetComplex::face_record(Index face) const {
-  return {mesh_.faces[face], mesh_.face_patch[face], mesh_.face_tag[face], mesh_.face_regions[face]};
-}
-
-void TetComplex::set_face_record(Index face, const FaceRecord& record) {
-  mesh_.faces[face] = record.corners;
-  mesh_.face_patch[face] = record.patch;
-  mesh_.face_tag[face] = record.tag;
-  mesh_.face_regions[face] = record.regions;
-}
-
 void TetComplex::begin_trial() {
-  on_trial_ = true;
-  old_tets_.begin(tets_.size());
-  old_origins_.begin(origin_.size());
-  old_vertex_tets_.begin(vertex_tet_.size());
-  old_lost_vertices_.begin(lost_vertices_.size());
-  old_points_.begin(mesh_.points.size());
-  free_steps_.begin();
-  free_face_steps_.begin();
-  old_faces_.clear();
-  face_count_ = mesh_.faces.size();
-  edge_count_ = mesh_.edges.size();
-  old_edges_.clear();
+  std::apply([](auto&... log) { (log.begin(), ...); }, logs());
 }
 
 void TetComplex::keep() {
-  on_trial_ = false;
-  old_tets_.end();
-  old_origins_.end();
-  old_vertex_tets_.end();
-  old_lost_vertices_.end();
-  old_points_.end();
-  free_steps_.end();
-  free_face_steps_.end();
+  std::apply([](auto&... log) { (log.keep(), ...); }, logs());
 }
 
 void TetComplex::undo() {
-  on_trial_ = false;
-  old_tets_.undo(tets_);
-  old_origins_.undo(origin_);
-  stamps_.resize(tets_.size());
-  old_vertex_tets_.undo(vertex_tet_);
-  old_lost_vertices_.undo(lost_vertices_);
-  old_points_.undo(mesh_.points);
-  mesh_.features.resize(mesh_.points.size());
-  free_steps_.undo(free_);
-  free_face_steps_.undo(free_faces_);
-  for (auto old = old_faces_.rbegin(); old != old_faces_.rend(); ++old)
-    set_face_record(old->first, old->second);
-  mesh_.faces.resize(face_count_);
-  mesh_.face_patch.resize(face_count_);
-  mesh_.face_tag.resize(face_count_);
-  mesh_.face_regions.resize(face_count_);
-  undo_curve_edges();
-}
-
-void TetComplex::undo_curve_edges() {
-  for (auto edges = old_edges_.rbegin(); edges != old_edges_.rend(); ++edges) {
-    mesh_.edges[edges->kept] = edges->kept_ends;
-    if (edges->joined) {
-      curve_edges_.erase(edges->whole);
-      curve_edges_.emplace(edges->first, edges->kept);
-      curve_edges_.emplace(edges->second, edges->other);
-      mesh_.edges[edges->other] = edges->other_ends;
-    } else {
-      curve_edges_.erase(edges->first);
-      curve_edges_.erase(edges->second);
-      curve_edges_.emplace(edges->whole, edges->kept);
-    }
-  }
-  mesh_.edges.resize(edge_count_);
-  mesh_.edge_curve.resize(edge_count_);
-  mesh_.edge_tag.resize(edge_count_);
+  for (const auto& [edge, ends] : old_edges_.noted()) forget_curve_edge(edge);
+  for (std::size_t edge = old_edges_.size_before(); edge < mesh_.edges.size(); ++edge) forget_curve_edge(edge);
+  std::apply([](auto&... log) { (log.undo(), ...); }, logs());
+  for (const auto& [edge, ends] : old_edges_.noted())
+    if (const auto& [a, b] = mesh_.edges[edge]; a != none)
+      curve_edges_.emplace(edge_key(a, b), static_cast<Index>(edge));
 }
 
 void TetComplex::forget_balls() {
@@ -477,7 +402,7 @@ void TetComplex::forget_balls() {
   for (Tet& tet : tets_) tet.collar = false;
 }
 
-void TetComplex::store() {
+void TetComplex::write(TetMesh& mesh) const {
   const auto alive = found_in_ranges<Index>(tets_.size(), [&](std::size_t t, std::vector<Index>& found) {
     if (tets_[t].alive) found.push_back(static_cast<Index>(t));
   });
@@ -492,61 +417,51 @@ void TetComplex::store() {
       const Index t = alive[i];
       stored.tets[i] = tets_[t].corners;
       stored.tet_region[i] = tets_[t].region;
-      stored.tet_tag[i] = mesh_.tet_tag[origin_[t]];
+      stored.tet_tag[i] = mesh.tet_tag[origin_[t]];
       const bool collar = tets_[t].collar;
-      stored.tet_collar[i] = collar ? mesh_.tet_collar[origin_[t]] : std::uint8_t{0};
-      stored.tet_crease[i] = collar ? mesh_.tet_crease[origin_[t]] : Tag{0};
+      stored.tet_collar[i] = collar ? mesh.tet_collar[origin_[t]] : std::uint8_t{0};
+      stored.tet_crease[i] = collar ? mesh.tet_crease[origin_[t]] : Tag{0};
     }
   });
-  mesh_.tets = std::move(stored.tets);
-  mesh_.tet_region = std::move(stored.tet_region);
-  mesh_.tet_tag = std::move(stored.tet_tag);
-  mesh_.tet_collar = std::move(stored.tet_collar);
-  mesh_.tet_crease = std::move(stored.tet_crease);
-  mesh_.tet_thin.assign(mesh_.tet_thin.empty() ? 0 : mesh_.tets.size(), 0);
-  drop_lost_faces_and_edges();
-  drop_lost_vertices();
+  mesh.tets = std::move(stored.tets);
+  mesh.tet_region = std::move(stored.tet_region);
+  mesh.tet_tag = std::move(stored.tet_tag);
+  mesh.tet_collar = std::move(stored.tet_collar);
+  mesh.tet_crease = std::move(stored.tet_crease);
+  mesh.tet_thin.assign(mesh.tet_thin.empty() ? 0 : mesh.tets.size(), 0);
+  drop(lost_face, mesh.faces, mesh.face_patch, mesh.face_tag, mesh.face_regions);
+  drop(lost_edge, mesh.edges, mesh.edge_curve, mesh.edge_tag);
+  drop_lost_vertices(mesh);
 }
 
-TetMesh TetComplex::stored() const {
-  TetMesh copy = mesh_;
-  TetComplex(copy, *this).store();
-  return copy;
-}
-
-void TetComplex::drop_lost_faces_and_edges() {
-  drop(lost_face, mesh_.faces, mesh_.face_patch, mesh_.face_tag, mesh_.face_regions);
-  drop(lost_edge, mesh_.edges, mesh_.edge_curve, mesh_.edge_tag);
-}
-
-void TetComplex::drop_lost_vertices() {
+void TetComplex::drop_lost_vertices(TetMesh& mesh) const {
   if (lost_vertices_.empty()) return;
-  std::sort(lost_vertices_.begin(), lost_vertices_.end());
-  std::vector<Index> number(mesh_.points.size());
+  std::vector<Index> all_lost = lost_vertices_;
+  std::sort(all_lost.begin(), all_lost.end());
+  std::vector<Index> number(mesh.points.size());
   Index kept = 0;
-  auto lost = lost_vertices_.begin();
-  for (Index v = 0; v < mesh_.points.size(); ++v) {
-    if (lost != lost_vertices_.end() && *lost == v) {
+  auto lost = all_lost.begin();
+  for (Index v = 0; v < mesh.points.size(); ++v) {
+    if (lost != all_lost.end() && *lost == v) {
       ++lost;
       continue;
     }
-    mesh_.points[kept] = mesh_.points[v];
-    mesh_.features[kept] = mesh_.features[v];
+    mesh.points[kept] = mesh.points[v];
+    mesh.features[kept] = mesh.features[v];
     number[v] = kept++;
   }
-  mesh_.points.resize(kept);
-  mesh_.features.resize(kept);
+  mesh.points.resize(kept);
+  mesh.features.resize(kept);
   const auto renumber = [&](auto& cells) {
     parallel_for_ranges(cells.size(), stored_at_once, [&](std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i)
         for (Index& point : cells[i]) point = number[point];
     });
   };
-  renumber(mesh_.tets);
-  renumber(mesh_.faces);
-  renumber(mesh_.edges);
-  for (TetMesh::CollarBall& ball : mesh_.collar_balls) ball.point = number[ball.point];
-  lost_vertices_.clear();
+  renumber(mesh.tets);
+  renumber(mesh.faces);
+  renumber(mesh.edges);
+  for (TetMesh::CollarBall& ball : mesh.collar_balls) ball.point = number[ball.point];
 }
 
 }  // namespace collarmesh::improvement

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <tuple>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
@@ -104,35 +105,20 @@ class TetComplex {
   void forget_balls();
 
   /// Writes the tets back to the mesh, leaving out removed vertices and faces.
-  void store();
+  void store() { write(mesh_); }
   /// Returns the mesh that `store` would write, and leaves the mesh as it is.
-  TetMesh stored() const;
+  TetMesh stored() const {
+    TetMesh copy = mesh_;
+    write(copy);
+    return copy;
+  }
 
  private:
-  /// Makes a complex on a copy of the mesh of another complex. It can only be stored.
-  TetComplex(TetMesh& copy, const TetComplex& of)
-      : mesh_(copy), tets_(of.tets_), origin_(of.origin_), lost_vertices_(of.lost_vertices_) {}
-
   struct OpenFace {
     std::array<Index, 3> key;  // sorted
     Index tet;
     unsigned corner;
     Index face;
-  };
-
-  /// The data of a mesh face.
-  struct FaceRecord {
-    std::array<Index, 3> corners;
-    Index patch;
-    Tag tag;
-    std::array<Index, 2> regions;
-  };
-  // Two edges on a curve and the edge that replaces them, or the reverse.
-  struct CurveEdges {
-    bool joined;
-    std::uint64_t first, second, whole;  // edge keys
-    Index kept, other;                   // edges of the mesh
-    std::array<Index, 2> kept_ends, other_ends;
   };
 
   void link(bool some_are_known);
@@ -141,12 +127,10 @@ class TetComplex {
   void set_face(const std::array<Index, 3>& corners, Index face);
   void set_neighbour(Index tet, unsigned corner, Index neighbour);
   void set_face_of_tet(Index tet, unsigned corner, Index face);
-  void set_vertex_tet(Index vertex, Index tet);
-  FaceRecord face_record(Index face) const;
-  void set_face_record(Index face, const FaceRecord& record);
-  void undo_curve_edges();
-  void drop_lost_faces_and_edges();
-  void drop_lost_vertices();
+  void set_curve_edge(Index edge, const std::array<Index, 2>& ends);
+  void forget_curve_edge(std::size_t edge);
+  void write(TetMesh& mesh) const;
+  void drop_lost_vertices(TetMesh& mesh) const;
   unsigned corner_across(Index tet, const std::array<Index, 3>& sorted_face) const;
 
   TetMesh& mesh_;
@@ -171,14 +155,21 @@ class TetComplex {
   std::vector<OpenFace> open_;
 
   // The state before a trial.
-  bool on_trial_ = false;
-  UndoLog<Tet, LargeVector<Tet>> old_tets_;
-  UndoLog<Index> old_origins_, old_vertex_tets_, old_lost_vertices_;
-  UndoLog<Point> old_points_;
-  UndoStack<Index> free_steps_, free_face_steps_;
-  std::vector<std::pair<Index, FaceRecord>> old_faces_;
-  std::size_t face_count_ = 0, edge_count_ = 0;
-  std::vector<CurveEdges> old_edges_;
+  UndoLog<LargeVector<Tet>> old_tets_{tets_};
+  UndoLog<std::vector<Index>> old_origins_{origin_}, old_vertex_tets_{vertex_tet_},
+      old_lost_vertices_{lost_vertices_}, old_free_{free_}, old_free_faces_{free_faces_},
+      old_patches_{mesh_.face_patch}, old_curves_{mesh_.edge_curve};
+  UndoLog<std::vector<std::uint32_t>> old_stamps_{stamps_};
+  UndoLog<std::vector<Point>> old_points_{mesh_.points};
+  UndoLog<std::vector<TetMesh::VertexFeature>> old_features_{mesh_.features};
+  UndoLog<std::vector<std::array<Index, 3>>> old_faces_{mesh_.faces};
+  UndoLog<std::vector<std::array<Index, 2>>> old_face_regions_{mesh_.face_regions}, old_edges_{mesh_.edges};
+  UndoLog<std::vector<Tag>> old_face_tags_{mesh_.face_tag}, old_edge_tags_{mesh_.edge_tag};
+  auto logs() {
+    return std::tie(old_tets_, old_origins_, old_vertex_tets_, old_lost_vertices_, old_free_, old_free_faces_,
+                    old_patches_, old_curves_, old_stamps_, old_points_, old_features_, old_faces_,
+                    old_face_regions_, old_edges_, old_face_tags_, old_edge_tags_);
+  }
 };
 
 }  // namespace collarmesh::improvement

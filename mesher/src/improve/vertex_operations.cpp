@@ -5,6 +5,7 @@
 
 #include "common/contains.h"
 #include "common/index_set.h"
+#include "common/sorted.h"
 #include "improve/operations.h"
 #include "improve/shape.h"
 
@@ -216,6 +217,26 @@ void Operations::fill(Index apex, Change& change) const {
       created_faces.push_back({{apex, a, b}, cone_.rim_face[i]});
 }
 
+// Proposes a vertex at a place in the current cone.
+void Operations::fill_insertion(const Point& place, double quality, const TetMesh::VertexFeature& feature,
+                                Change& change) const {
+  change = {};
+  change.kind = Change::Kind::insertion;
+  change.quality = quality;
+  change.place = place;
+  change.feature = feature;
+  fill(Change::inserted, change);
+}
+
+// Proposes the collapse of the vertex of the current cone onto another one.
+void Operations::fill_contraction(Index vertex, Index onto, double quality, Change& change) const {
+  change = {};
+  change.kind = Change::Kind::contraction;
+  change.quality = quality;
+  change.vertex = vertex;
+  fill(onto, change);
+}
+
 Operations::Freedom Operations::on_patch(Index patch, const Point& p) {
   const Plc::Patch& of = plc_.patches[patch];
   const Vector n = of.planar ? of.normal : surfaces_.nearest(patch, p).normal;
@@ -361,8 +382,7 @@ std::vector<Point> Operations::facing_places(Index vertex, const Freedom& where)
   const Point& p = mesh_.points[vertex];
   std::vector<Index> others;
   for (const auto& face : cone_.hull) others.insert(others.end(), face.begin(), face.end());
-  std::sort(others.begin(), others.end());
-  others.erase(std::unique(others.begin(), others.end()), others.end());
+  sort_uniquely(others);
   Vector longest{0, 0, 0};
   for (const Index v : others)
     if (const Vector way = mesh_.points[v] - p; squared_norm(way) > squared_norm(longest)) longest = way;
@@ -386,36 +406,25 @@ void Operations::split_edge_anyhow(Index a, Index b, double least, Change& chang
 }
 
 void Operations::insert_in_cone(Index a, Index b, double least, Change& change) {
-  const Index patch = cone_.faces.empty() ? none : mesh_.face_patch[cone_.faces[0]];
+  const Index patch = patch_of_cone();
   const Point middle = 0.5 * (mesh_.points[a] + mesh_.points[b]);
   const Freedom where = patch == none ? everywhere : on_patch(patch, middle);
   const auto [place, quality] =
       best_place(back_on_feature(middle, mesh_.points[a], where), inserted_in(patch), where, -1);
-  if (quality <= least) return;
-  change = {};
-  change.kind = Change::Kind::insertion;
-  change.quality = quality;
-  change.place = place;
-  if (patch != none) change.feature = {2, patch};
-  fill(Change::inserted, change);
+  if (quality > least) fill_insertion(place, quality, inside(patch), change);
 }
 
 void Operations::divide_edge(Index a, Index b, double share, double least, Change& change) {
   if (!find_whole_ring(a, b) || !make_cone_of_edge(a, b)) return;
   if (complex_.on_curve(a, b)) return divide_curve_edge(a, b, least, change);
   if (!faces_are_of_one_patch()) return;
-  const Index patch = cone_.faces.empty() ? none : mesh_.face_patch[cone_.faces[0]];
+  const Index patch = patch_of_cone();
   const Freedom where = patch == none ? everywhere : Freedom{{}, 0, patch};
   const Point on_edge = (1 - share) * mesh_.points[a] + share * mesh_.points[b];
   const Point place = back_on_feature(on_edge, mesh_.points[a], where);
   const double quality = quality_around(place, inserted_in(patch), least);
   if (quality < 0 || !surfaces_allow(place, none)) return insert_in_cone(a, b, least, change);
-  change = {};
-  change.kind = Change::Kind::insertion;
-  change.quality = quality;
-  change.place = place;
-  if (patch != none) change.feature = {2, patch};
-  fill(Change::inserted, change);
+  fill_insertion(place, quality, inside(patch), change);
 }
 
 // Finds the tets at an edge. Returns false if they do not form one ring, as where bodies touch.
@@ -437,45 +446,28 @@ void Operations::divide_curve_edge(Index a, Index b, double least, Change& chang
   const Point place = curves_.place(curve, *middle);
   const double quality = quality_around(place, cone_.faces.empty() ? none : inserted_on_surface, least);
   if (quality < 0 || !surfaces_allow(place, none)) return;
-  change = {};
-  change.kind = Change::Kind::insertion;
-  change.quality = quality;
-  change.place = place;
-  change.feature = {1, curve};
+  fill_insertion(place, quality, {1, curve}, change);
   change.middle = *middle;
-  fill(Change::inserted, change);
 }
 
-void Operations::contract_edge(Index vertex, Index onto, Change& change) {
-  contract_edge_above(vertex, onto, std::nullopt, false, change);
-}
-
-void Operations::contract_edge_to_any_length(Index vertex, Index onto, Change& change) {
-  contract_edge_above(vertex, onto, std::nullopt, true, change);
-}
-
-void Operations::contract_edge_anyhow(Index vertex, Index onto, double least, Change& change) {
-  contract_edge_above(vertex, onto, least, false, change);
-}
-
-// Collapses an edge if all new tets are better than `least` or, without `least`, better than the worst tet at
-// the vertex and than `change`.
-void Operations::contract_edge_above(Index vertex, Index onto, std::optional<double> least, bool any_length,
-                                     Change& change) {
+void Operations::contract_edge(Index vertex, Index onto, Change& change, std::optional<double> anyhow_above,
+                               Lengths lengths) {
   if (mesh_.features[vertex].dimension == 0) return;
   if (!find_cone_of_vertex(vertex) || !may_contract(vertex, onto)) return;
-  if ((!any_length && !keeps_lengths(vertex, onto)) || !keeps_topology(vertex, onto)) return;
+  if ((lengths != Lengths::any && !keeps_lengths(vertex, onto)) || !keeps_topology(vertex, onto)) return;
   worst_at_vertex(vertex);
   const Point& place = mesh_.points[onto];
-  const double above = least.value_or(std::max(cone_.worst, change.quality));
+  const double above = anyhow_above.value_or(std::max(cone_.worst, change.quality));
   const double quality = quality_around(place, onto, above);
   if (quality < 0 || !surfaces_allow(place, onto)) return;
-  change = {};
-  change.kind = Change::Kind::contraction;
-  change.quality = quality;
-  change.vertex = vertex;
+  fill_contraction(vertex, onto, quality, change);
   if (mesh_.features[vertex].dimension < 3) change.read = star_;  // the star of the other end
-  fill(onto, change);
+}
+
+void Operations::contract_best_edge(Index tet, Change& change, Lengths lengths) {
+  for (const Index v : complex_[tet].corners)
+    for (const Index w : complex_[tet].corners)
+      if (v != w) contract_edge(v, w, change, {}, lengths);
 }
 
 bool Operations::begin_contractions(Index vertex, std::span<const Index> star) {
@@ -494,11 +486,7 @@ void Operations::contract_onto(Index onto, double least, double enough, Change& 
   if (quality < 0 || (quality < enough && quality < worst_at_vertex(vertex_)) ||
       !keeps_topology(vertex_, onto) || !surfaces_allow(place, onto))
     return;
-  change = {};
-  change.kind = Change::Kind::contraction;
-  change.quality = quality;
-  change.vertex = vertex_;
-  fill(onto, change);
+  fill_contraction(vertex_, onto, quality, change);
 }
 
 // Returns whether the edge to `onto` lies in the vertex's feature.

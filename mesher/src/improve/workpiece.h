@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "collarmesh/plc.h"
+#include "common/index_set.h"
 #include "improve/curve_slides.h"
 #include "improve/smooth_surfaces.h"
 #include "improve/tet_complex.h"
@@ -87,10 +88,6 @@ class Workpiece {
 
   /// Builds the data that is otherwise built on first use; call it before the first trial.
   void prepare() { surfaces.prepare(), curves.prepare(); }
-  /// Begins a trial: all later changes can be undone as a whole until `keep`.
-  void begin_trial() { complex.begin_trial(), surfaces.begin_trial(), curves.begin_trial(); }
-  void keep() { complex.keep(), surfaces.keep(), curves.keep(); }
-  void undo() { complex.undo(), surfaces.undo(), curves.undo(); }
 
   TetComplex complex;
   SmoothSurfaces surfaces;
@@ -103,6 +100,55 @@ class Workpiece {
 
   std::vector<bool> kept_;          // by patch: whether its triangles stay; empty: none stays
   std::vector<bool> fixed_, left_;  // by vertex; empty or shorter: false
+  std::vector<Index> changed_;
+};
+
+/// Changes of a mesh that are undone as a whole at the end unless they are kept. Precondition: the workpiece
+/// is prepared and has no other trial.
+class Trial {
+ public:
+  /// Keeps the workpiece by reference.
+  explicit Trial(Workpiece& on) : on_(on) {
+    on.complex.begin_trial(), on.surfaces.begin_trial(), on.curves.begin_trial();
+  }
+  ~Trial() { undo(); }
+  Trial(const Trial&) = delete;
+  Trial& operator=(const Trial&) = delete;
+
+  /// Applies a change. Before it does, calls `see(tet)` for each tet that the change removes or moves and that
+  /// has not changed in the trial yet. Returns the new and the changed tets, valid until the next call.
+  template <class See>
+  const std::vector<Index>& apply(Change change, const See& see) {
+    std::vector<Index> old = change.replacement.old;
+    if (change.kind == Change::Kind::move) on_.complex.star(change.vertex, old);
+    for (const Index t : old)
+      if (note(t)) see(t);
+    const std::vector<Index>& changed = on_.apply(std::move(change));
+    for (const Index t : changed) note(t);
+    return changed;
+  }
+  /// Returns the tets of all these changes; some have been removed since.
+  const std::vector<Index>& changed() const { return changed_; }
+
+  void keep() {
+    on_.complex.keep(), on_.surfaces.keep(), on_.curves.keep();
+    open_ = false;
+  }
+  void undo() {
+    if (open_) on_.complex.undo(), on_.surfaces.undo(), on_.curves.undo();
+    open_ = false;
+  }
+
+ private:
+  bool note(Index tet) {
+    const bool is_new = known_.insert(tet);
+    if (is_new) changed_.push_back(tet);
+    return is_new;
+  }
+
+  Workpiece& on_;
+  bool open_ = true;
+  IndexSet known_;
   std::vector<Index> changed_;
 };
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/cell_shapes.h"
+#include "common/sorted.h"
 #include "delaunay/predicates.h"
 #include "improve/shape.h"
 
@@ -118,8 +120,8 @@ double Relaxation::score(Index tet, const Corners& p) const {
   const double six = six_volume(p[0], p[1], p[2], p[3]);
   if (six <= 0) {
     double longest = 0;
-    for (unsigned i = 0; i < 4; ++i)
-      for (unsigned j = i + 1; j < 4; ++j) longest = std::max(longest, squared_distance(p[i], p[j]));
+    for (const auto& [i, j] : cell_shapes::corner_pairs)
+      longest = std::max(longest, squared_distance(p[i], p[j]));
     return longest > 0 ? six / (longest * std::sqrt(longest)) : -1;
   }
   if (!in_ball(tet) && bounds_.thin != nullptr && bounds_.thin->is_thin_by_force(p, mesh_.tets[tet]) &&
@@ -238,10 +240,6 @@ bool Relaxation::improve(Index vertex) {
 }
 
 std::vector<Index> Relaxation::relax(std::vector<Index> tets) {
-  const auto sort_out = [](std::vector<Index>& list) {
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-  };
   double missing = INFINITY;  // sum over all tets
   unsigned idle = 0;          // sweeps since the sum last fell much
   for (unsigned sweep = 0; sweep < sweeps && idle < idle_sweeps; ++sweep) {
@@ -260,7 +258,7 @@ std::vector<Index> Relaxation::relax(std::vector<Index> tets) {
     } else {
       ++idle;
     }
-    sort_out(vertices);
+    sort_uniquely(vertices);
     bool moved = false;
     for (const Index v : vertices) {
       if (in_vain(v)) continue;
@@ -271,7 +269,7 @@ std::vector<Index> Relaxation::relax(std::vector<Index> tets) {
       moved = true;
       tets.insert(tets.end(), tets_at_[v].begin(), tets_at_[v].end());
     }
-    sort_out(tets);
+    sort_uniquely(tets);
     if (!moved) break;
   }
   tets.erase(std::remove_if(tets.begin(), tets.end(), [&](Index t) { return good(t); }), tets.end());

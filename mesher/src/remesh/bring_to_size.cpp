@@ -1,14 +1,11 @@
 #include "remesh/bring_to_size.h"
 
 #include <algorithm>
-#include <cstdint>
-#include <functional>
-#include <queue>
 #include <utility>
 #include <vector>
 
 #include "coarsen/target_sizes.h"
-#include "common/edge_key.h"
+#include "common/cell_shapes.h"
 #include "common/thread_limit.h"
 #include "improve/workpiece.h"
 #include "remesh/edge_division.h"
@@ -36,53 +33,6 @@ constexpr double of_shortest = 1.5, growth = 1;
 
 // Graded sizes are used only if they multiply the number of tets by at most `most_times`, plus `some`.
 constexpr double most_times = 2, some = 2000, tets_per_cube = 8;
-
-/// The edges of a mesh, by vertex.
-class EdgeGraph {
- public:
-  explicit EdgeGraph(const TetMesh& mesh) : joined_(mesh.points.size()) {
-    std::vector<std::uint64_t> keys;
-    keys.reserve(6 * mesh.tets.size());
-    for (const auto& tet : mesh.tets)
-      for (unsigned i = 0; i < 4; ++i)
-        for (unsigned j = i + 1; j < 4; ++j) keys.push_back(edge_key(tet[i], tet[j]));
-    std::ranges::sort(keys);
-    keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
-    for (const std::uint64_t key : keys) {
-      const auto a = static_cast<Index>(key >> 32U), b = static_cast<Index>(key);
-      joined_[a].push_back(b);
-      joined_[b].push_back(a);
-    }
-  }
-
-  template <class Visit>
-  void visit(const Visit& visit) const {
-    for (Index a = 0; a < joined_.size(); ++a)
-      for (const Index b : joined_[a])
-        if (a < b) visit(a, b);
-  }
-
-  /// Reduces sizes where they grow along an edge by more than this share of its length.
-  void grade(const std::vector<Point>& points, double share, std::vector<double>& sizes) const {
-    using Next = std::pair<double, Index>;
-    std::priority_queue<Next, std::vector<Next>, std::greater<>> queue;
-    for (Index v = 0; v < sizes.size(); ++v) queue.emplace(sizes[v], v);
-    while (!queue.empty()) {
-      const auto [size, v] = queue.top();
-      queue.pop();
-      if (size > sizes[v]) continue;
-      for (const Index w : joined_[v]) {
-        const double most = size + share * distance(points[v], points[w]);
-        if (most >= sizes[w]) continue;
-        sizes[w] = most;
-        queue.emplace(most, w);
-      }
-    }
-  }
-
- private:
-  std::vector<std::vector<Index>> joined_;
-};
 
 class Bringing {
  public:
@@ -145,12 +95,12 @@ class Bringing {
   /// edges, so they will stay, and tets between short and long edges have poor shapes.
   std::vector<double> sizes_beside_short_edges() const {
     std::vector<double> graded = sizes();
-    const EdgeGraph edges(mesh_);
-    edges.visit([&](Index a, Index b) {
-      const double most = of_shortest * distance(mesh_.points[a], mesh_.points[b]);
-      graded[a] = std::min(graded[a], most), graded[b] = std::min(graded[b], most);
-    });
-    edges.grade(mesh_.points, growth, graded);
+    for (const auto& tet : mesh_.tets)
+      for (const auto& [i, j] : cell_shapes::corner_pairs) {
+        const double most = of_shortest * distance(mesh_.points[tet[i]], mesh_.points[tet[j]]);
+        for (const Index v : {tet[i], tet[j]}) graded[v] = std::min(graded[v], most);
+      }
+    coarsening::grade_sizes(mesh_, growth, graded);
     return graded;
   }
 
@@ -187,9 +137,8 @@ class Bringing {
     for (const auto& tet : mesh_.tets) {
       const double mean = 0.25 * (size[tet[0]] + size[tet[1]] + size[tet[2]] + size[tet[3]]);
       double pieces = 1;  // number of pieces of the tet's extent
-      for (unsigned i = 0; i < 4; ++i)
-        for (unsigned j = i + 1; j < 4; ++j)
-          pieces = std::max(pieces, distance(mesh_.points[tet[i]], mesh_.points[tet[j]]) / mean);
+      for (const auto& [i, j] : cell_shapes::corner_pairs)
+        pieces = std::max(pieces, distance(mesh_.points[tet[i]], mesh_.points[tet[j]]) / mean);
       const auto& p = mesh_.points;
       const double volume = six_volume(p[tet[0]], p[tet[1]], p[tet[2]], p[tet[3]]) / 6;
       sum += std::max(pieces, tets_per_cube * volume / (mean * mean * mean));

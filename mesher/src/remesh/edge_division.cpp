@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <tuple>
 #include <utility>
 
+#include "common/cell_shapes.h"
 #include "common/contains.h"
 #include "common/found_in_ranges.h"
+#include "common/sorted.h"
 #include "common/tet_sides.h"
 #include "remesh/orientations.h"
 
@@ -111,26 +114,19 @@ std::vector<EdgeDivision::LongEdge> EdgeDivision::long_edges(double longest) con
       found_in_ranges<LongEdge>(complex().size(), [&](std::size_t i, std::vector<LongEdge>& found) {
         const auto& tet = complex()[static_cast<Index>(i)];
         if (!tet.alive) return;
-        for (unsigned k = 0; k < 4; ++k)
-          for (unsigned l = k + 1; l < 4; ++l) {
-            const Index a = std::min(tet.corners[k], tet.corners[l]),
-                        b = std::max(tet.corners[k], tet.corners[l]);
-            if (const double relative = ratio(a, b); all || relative > longest)
-              found.push_back({relative, a, b});
-          }
+        for (const auto& [k, l] : cell_shapes::corner_pairs) {
+          const auto [a, b] = sorted(tet.corners[k], tet.corners[l]);
+          if (const double relative = ratio(a, b); all || relative > longest)
+            found.push_back({relative, a, b});
+        }
       });
-  std::sort(edges.begin(), edges.end(),
-            [](const LongEdge& x, const LongEdge& y) { return x.a != y.a ? x.a < y.a : x.b < y.b; });
-  edges.erase(std::unique(edges.begin(), edges.end(),
-                          [](const LongEdge& x, const LongEdge& y) { return x.a == y.a && x.b == y.b; }),
-              edges.end());
+  sort_uniquely(edges, [](const LongEdge& edge) { return std::pair(edge.a, edge.b); });
   if (all) {
     for (LongEdge& edge : edges)
       if (edge.ratio <= longest) edge.ratio = ratio_by_field(edge);
     std::erase_if(edges, [longest](const LongEdge& edge) { return edge.ratio <= longest; });
   }
-  std::stable_sort(edges.begin(), edges.end(),
-                   [](const LongEdge& x, const LongEdge& y) { return x.ratio > y.ratio; });
+  std::ranges::stable_sort(edges, std::greater<>(), &LongEdge::ratio);
   return edges;
 }
 
@@ -169,18 +165,13 @@ std::vector<EdgeDivision::LongEdge> EdgeDivision::distant_edges() const {
             add_edges_of_face(side_corners(tet.corners, corner), patch, found);
         }
       });
-  const auto key = [](const EdgeOfPatch& e) { return std::tuple(e.a, e.b, e.patch); };
-  std::ranges::sort(candidates, {}, key);
-  candidates.erase(std::unique(candidates.begin(), candidates.end(),
-                               [&](const EdgeOfPatch& x, const EdgeOfPatch& y) { return key(x) == key(y); }),
-                   candidates.end());
+  sort_uniquely(candidates, [](const EdgeOfPatch& e) { return std::tuple(e.a, e.b, e.patch); });
   std::vector<LongEdge> edges =
       found_in_ranges<LongEdge>(candidates.size(), [&](std::size_t i, std::vector<LongEdge>& found) {
         const EdgeOfPatch& e = candidates[i];
         if (!is_near(e)) found.push_back({ratio(e.a, e.b), e.a, e.b});
       });
-  std::stable_sort(edges.begin(), edges.end(),
-                   [](const LongEdge& x, const LongEdge& y) { return x.ratio > y.ratio; });
+  std::ranges::stable_sort(edges, std::greater<>(), &LongEdge::ratio);
   return edges;
 }
 
@@ -191,8 +182,7 @@ bool EdgeDivision::divide(Index a, Index b) {
   improvement::TetComplex::Ring ring;
   complex().ring(at, a, b, ring);
   double worst = good_enough;
-  for (const Index t : ring.tets)
-    worst = std::min(worst, rule_.quality(complex().corners(t), complex()[t].corners));
+  for (const Index t : ring.tets) worst = std::min(worst, quality(t));
   Change change;
   operations_.divide_edge(a, b, facing_ ? share_facing(a, b, ring) : 0.5,
                           std::max(0.0, least_quality_share * worst), change);
@@ -229,14 +219,13 @@ bool EdgeDivision::divide_facing_at(Index tet) {
         try_to_divide({{corners[i], corners[j], shares->first}, {corners[k], corners[l], shares->second}}))
       return true;
   }
-  for (unsigned i = 0; i < 4; ++i)
-    for (unsigned j = i + 1; j < 4; ++j)
-      for (unsigned k = 0; k < 4; ++k) {
-        if (k == i || k == j) continue;
-        const Vector along = point(j) - point(i);
-        const double share = dot(point(k) - point(i), along) / squared_norm(along);
-        if (is_inside(share) && try_to_divide({{corners[i], corners[j], share}})) return true;
-      }
+  for (const auto& [i, j] : cell_shapes::corner_pairs)
+    for (unsigned k = 0; k < 4; ++k) {
+      if (k == i || k == j) continue;
+      const Vector along = point(j) - point(i);
+      const double share = dot(point(k) - point(i), along) / squared_norm(along);
+      if (is_inside(share) && try_to_divide({{corners[i], corners[j], share}})) return true;
+    }
   return false;
 }
 
@@ -244,72 +233,60 @@ bool EdgeDivision::divide_facing_at(Index tet) {
 /// as many and the worst are better.
 bool EdgeDivision::try_to_divide(const std::vector<Division>& divisions) {
   ++trials_;
-  before_.clear(), touched_.clear();
-  workpiece_.begin_trial();
-  bool divided = true;
-  for (const auto& [a, b, share] : divisions) {
+  before_.clear();
+  improvement::Trial trial(workpiece_);
+  const auto try_one = [&](const Division& division) {
+    const auto& [a, b, share] = division;
+    if (complex().on_curve(a, b) && std::fabs(share - 0.5) > middle_part_of_curve) return false;
     Change change;
-    if (complex().on_curve(a, b) && std::fabs(share - 0.5) > middle_part_of_curve)
-      divided = false;
-    else
-      operations_.divide_edge(a, b, share, 0, change);
-    divided = divided && change.kind != Change::Kind::none && stays_oriented(complex(), change);
-    if (!divided) break;
+    operations_.divide_edge(a, b, share, 0, change);
+    if (change.kind == Change::Kind::none || !stays_oriented(complex(), change)) return false;
     sizes_.push_back(
         std::min(0.5 * (sizes_[a] + sizes_[b]),
                  size_at(change.feature, complex()[complex().tet_at_edge(a, b)].region, change.place)));
-    apply_on_trial(std::move(change));
-  }
-  if (divided) {
-    improve_touched();
-    if (is_better()) {
-      workpiece_.keep();
+    apply(trial, std::move(change));
+    return true;
+  };
+  if (std::ranges::all_of(divisions, try_one)) {
+    improve_changed(trial);
+    if (is_better(trial)) {
+      trial.keep();
       return true;
     }
   }
-  workpiece_.undo();
+  trial.undo();
   sizes_.resize(mesh().points.size());
   return false;
 }
 
-void EdgeDivision::apply_on_trial(Change change) {
-  std::vector<Index> old;
-  if (change.kind == Change::Kind::move) complex().star(change.vertex, old);
-  old.insert(old.end(), change.replacement.old.begin(), change.replacement.old.end());
-  for (const Index t : old)
-    if (!contains(touched_, t)) {
-      before_.push_back(std::min(good_enough, quality(t)));
-      touched_.push_back(t);
-    }
-  for (const Index t : workpiece_.apply(std::move(change)))
-    if (!contains(touched_, t)) touched_.push_back(t);
+void EdgeDivision::apply(improvement::Trial& trial, Change change) {
+  trial.apply(std::move(change), [&](Index t) { before_.push_back(std::min(good_enough, quality(t))); });
 }
 
-void EdgeDivision::improve_touched() {
+void EdgeDivision::improve_changed(improvement::Trial& trial) {
+  std::vector<Index> given_up;  // tets that nothing has improved since the last change
   for (unsigned step = 0; step < most_steps; ++step) {
     double worst = good_enough;
     Index poor = none;
-    for (const Index t : touched_)
-      if (complex()[t].alive && !contains(given_up_, t))
+    for (const Index t : trial.changed())
+      if (complex()[t].alive && !contains(given_up, t))
         if (const double q = quality(t); q < worst) worst = q, poor = t;
     if (poor == none) break;
     Change change = improvement_of(poor);
     if (change.kind == Change::Kind::none || !stays_oriented(complex(), change) ||
         (change.kind == Change::Kind::contraction && !workpiece_.curve_can_spare(change))) {
-      given_up_.push_back(poor);
+      given_up.push_back(poor);
       continue;
     }
-    apply_on_trial(std::move(change));
-    given_up_.clear();
+    apply(trial, std::move(change));
+    given_up.clear();
   }
-  given_up_.clear();
 }
 
 Change EdgeDivision::improvement_of(Index tet) {
   const auto corners = complex()[tet].corners;
   Change change;
-  for (unsigned i = 0; i < 4; ++i)
-    for (unsigned j = i + 1; j < 4; ++j) operations_.remove_edge(tet, i, j, change);
+  operations_.remove_best_edge(tet, change);
   const auto found = [&] { return change.kind != Change::Kind::none; };
   for (const Index v : corners)
     if (!found()) operations_.move_to_face(v, change);
@@ -322,9 +299,9 @@ Change EdgeDivision::improvement_of(Index tet) {
 }
 
 /// Returns whether fewer tets miss their bounds than before the trial, or as many and the worst are better.
-bool EdgeDivision::is_better() {
+bool EdgeDivision::is_better(const improvement::Trial& trial) {
   std::vector<double> now;
-  for (const Index t : touched_)
+  for (const Index t : trial.changed())
     if (complex()[t].alive)
       if (const double q = quality(t); q < good_enough) now.push_back(q);
   std::erase_if(before_, [](double q) { return q >= good_enough; });

@@ -62,10 +62,10 @@ class EdgeDivision {
   };
   bool divide_facing_at(Index tet);
   bool try_to_divide(const std::vector<Division>& divisions);
-  void apply_on_trial(improvement::Change change);
-  void improve_touched();
+  void apply(improvement::Trial& trial, improvement::Change change);
+  void improve_changed(improvement::Trial& trial);
   improvement::Change improvement_of(Index tet);
-  bool is_better();
+  bool is_better(const improvement::Trial& trial);
   double share_facing(Index a, Index b, const improvement::TetComplex::Ring& ring) const;
   double size_at(const TetMesh::VertexFeature& feature, Index region, const Point& p) const;
 
@@ -78,10 +78,7 @@ class EdgeDivision {
   improvement::CellBounds cells_;
   improvement::ThinRule rule_;
   improvement::Operations operations_;
-  // The current trial:
-  std::vector<double> before_;   // qualities of the tets that it replaced
-  std::vector<Index> touched_;   // tets that it changed
-  std::vector<Index> given_up_;  // tets that nothing improved since
+  std::vector<double> before_;  // qualities of the tets that the current trial replaced
   std::size_t trials_ = 0;
 };
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "collarmesh/error.h"
+#include "common/cell_shapes.h"
 #include "common/sorted.h"
 #include "remesh/mesh_sides.h"
 
@@ -26,8 +27,6 @@ std::string text(const Point& p) { return fmt::format("({:.9g}, {:.9g}, {:.9g})"
 }
 
 using Ends = std::array<Index, 2>;
-
-Ends ends_of(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
 
 bool less(const Point& a, const Point& b) {
   return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
@@ -95,11 +94,10 @@ class ComplexBuilder {
     if (mesh_.edges.empty()) return;
     std::vector<Ends> joined;
     for (const auto& tet : mesh_.tets)
-      for (unsigned i = 0; i < 4; ++i)
-        for (unsigned j = i + 1; j < 4; ++j) joined.push_back(ends_of(tet[i], tet[j]));
+      for (const auto& [i, j] : cell_shapes::corner_pairs) joined.push_back(sorted(tet[i], tet[j]));
     std::sort(joined.begin(), joined.end());
     for (const auto& [a, b] : mesh_.edges)
-      if (!std::binary_search(joined.begin(), joined.end(), ends_of(a, b)))
+      if (!std::binary_search(joined.begin(), joined.end(), sorted(a, b)))
         refuse(PlcFault::Kind::intersection,
                fmt::format("The line of the nodes {} and {} at {} is listed but is no edge of a tetrahedron; "
                            "remove it from the file.",
@@ -172,12 +170,12 @@ class ComplexBuilder {
       Tag tag;
     };
     std::vector<Ends> listed;
-    for (const auto& [a, b] : mesh_.edges) listed.push_back(ends_of(a, b));
+    for (const auto& [a, b] : mesh_.edges) listed.push_back(sorted(a, b));
     std::sort(listed.begin(), listed.end());
     std::vector<EdgeUse> uses;
     for (const MeshSide& side : found_.sides)
       for (unsigned i = 0; i < 3; ++i)
-        uses.push_back({ends_of(side.corners[i], side.corners[(i + 1) % 3]), tag_of(side)});
+        uses.push_back({sorted(side.corners[i], side.corners[(i + 1) % 3]), tag_of(side)});
     std::sort(uses.begin(), uses.end(), [](const EdgeUse& a, const EdgeUse& b) {
       return a.ends != b.ends ? a.ends < b.ends : a.tag < b.tag;
     });

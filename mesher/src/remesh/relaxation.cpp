@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <utility>
 
+#include "common/cell_shapes.h"
+#include "common/sorted.h"
 #include "remesh/orientations.h"
 
 namespace collarmesh::remeshing {
@@ -81,11 +82,10 @@ bool Relaxation::contract_shorter_than(double below, double share) {
   for (Index t = 0; t < complex().size(); ++t) {
     if (!complex()[t].alive) continue;
     const auto& v = complex()[t].corners;
-    for (unsigned i = 0; i < 4; ++i)
-      for (unsigned j = i + 1; j < 4; ++j) {
-        const double length = relative_length(v[i], v[j]);
-        for (const Index end : {v[i], v[j]}) shortest[end] = std::min(shortest[end], length);
-      }
+    for (const auto& [i, j] : cell_shapes::corner_pairs) {
+      const double length = relative_length(v[i], v[j]);
+      for (const Index end : {v[i], v[j]}) shortest[end] = std::min(shortest[end], length);
+    }
   }
   std::vector<Near> candidates;
   for (Index v = 0; v < shortest.size(); ++v)
@@ -136,8 +136,7 @@ void Relaxation::find_neighbours(Index vertex, double below) {
   for (const Index t : star_)
     for (const Index v : complex()[t].corners)
       if (v != vertex) neighbours_.push_back(v);
-  std::ranges::sort(neighbours_);
-  neighbours_.erase(std::unique(neighbours_.begin(), neighbours_.end()), neighbours_.end());
+  sort_uniquely(neighbours_);
   near_.clear();
   longest_ = 0;
   for (const Index v : neighbours_) {
@@ -184,20 +183,10 @@ bool Relaxation::improve_below(double enough, Means means) {
 
 Change Relaxation::improvement_of(Index tet, double enough, Means means) {
   const auto corners = complex()[tet].corners;
-  struct Edge {
-    double length;
-    unsigned i, j;
-  };
-  std::vector<Edge> edges;
-  edges.reserve(6);
-  for (unsigned i = 0; i < 4; ++i)
-    for (unsigned j = i + 1; j < 4; ++j)
-      edges.push_back({distance(mesh().points[corners[i]], mesh().points[corners[j]]), i, j});
-  std::ranges::stable_sort(edges, std::greater<>(), &Edge::length);
   Change change;
   const auto found = [&] { return change.kind != Change::Kind::none; };
-  for (const Edge& edge : edges) {
-    operations_.remove_edge(tet, edge.i, edge.j, change);
+  for (const auto& [i, j] : improvement::longest_first(complex().corners(tet), distance)) {
+    operations_.remove_edge(tet, i, j, change);
     if (found() && change.quality >= enough) return change;
   }
   if (means == Means::edges) return change;

@@ -5,6 +5,7 @@
 #include <deque>
 
 #include "collarmesh/curved_tet.h"
+#include "common/sorted.h"
 #include "second_order/jacobian_coefficients.h"
 
 namespace collarmesh::second_order {
@@ -139,8 +140,7 @@ void Untangling::gather(Index tet, bool wide) {
       free_.push_back({node, feature.dimension == 3 ? Vector{} : plc_.patches[feature.feature].normal});
     }
   for (const Free& f : free_) add_tets_at(f.node, tets_);
-  std::sort(tets_.begin(), tets_.end());
-  tets_.erase(std::unique(tets_.begin(), tets_.end()), tets_.end());
+  sort_uniquely(tets_);
   for (const Index t : tets_) {
     const auto& [a, b, c, d] = mesh_.tets[t];
     six_volumes_.push_back(six_volume(mesh_.points[a], mesh_.points[b], mesh_.points[c], mesh_.points[d]));
