@@ -9,7 +9,7 @@
 #include <cmath>
 #include <optional>
 
-#include "coarsen/coarsen_workpiece.h"
+#include "coarsen/coarsen_edited.h"
 #include "coarsen/failed_repairs.h"
 #include "coarsen/proposals.h"
 #include "coarsen/target_sizes.h"
@@ -23,14 +23,9 @@
 
 namespace collarmesh {
 
-namespace coarsening {
+namespace remeshing::coarsening {
 namespace {
 
-using improvement::CellBounds;
-using improvement::Change;
-using improvement::TetComplex;
-using improvement::ThinShape;
-using improvement::Workpiece;
 using Mode = CoarseningRule::Mode;
 
 constexpr unsigned plain_passes = 4, repair_passes = 6, rounds = 12;
@@ -97,17 +92,15 @@ std::vector<Item> in_order(std::vector<Item> items) {
 /// depend on has changed meanwhile. So the result is the one that a single thread makes.
 class Coarsening {
  public:
-  Coarsening(Workpiece& workpiece, const MeshOptions& made_with, const Execution& execution)
-      : workpiece_(workpiece),
+  Coarsening(EditableMesh& edited, const MeshOptions& made_with, const Execution& execution)
+      : edited_(edited),
         radius_edge_(made_with.bounds.radius_edge),
-        sizes_(target_sizes(mesh(), workpiece.plc, sizes_asked_for(made_with))),
-        thin_(workpiece.plc, mesh(), made_with.bounds.thin_angle, made_with.bounds.reserve, workpiece.forced,
-              made_with.bounds.tets_across()),
-        cells_(workpiece.plc, mesh(), made_with.bounds),
-        rule_(thin_, cells_, made_with.bounds.radius_edge, sizes_),
+        sizes_(target_sizes(mesh(), edited.plc, sizes_asked_for(made_with))),
+        bounds_(edited.tet_bounds(made_with.bounds)),
+        rule_(bounds_, made_with.bounds.radius_edge, sizes_),
         changes_{0, std::vector<std::uint32_t>(mesh().points.size(), 0)},
-        proposer_(workpiece_, thin_, cells_, radius_edge_, sizes_, changes_),
-        proposers_([this] { return Proposer(workpiece_, thin_, cells_, radius_edge_, sizes_, changes_); }),
+        proposer_(edited_, bounds_, radius_edge_, sizes_, changes_),
+        proposers_([this] { return Proposer(edited_, bounds_, radius_edge_, sizes_, changes_); }),
         execution_(execution) {}
 
   // Returns the options without `edges_per_hole`: coarsening keeps holes round without it.
@@ -119,7 +112,7 @@ class Coarsening {
   CoarsenReport run() {
     const auto started = std::chrono::steady_clock::now();
     report_.tets_before = tets_ = complex().size();
-    workpiece_.prepare();
+    edited_.prepare();
     for (unsigned pass = 0; pass < plain_passes && !report_.cancelled; ++pass)
       if (!contract_all(false)) break;
     // Improvement makes room for more collapses: without this flag it would have all vertices tried again
@@ -141,8 +134,8 @@ class Coarsening {
   }
 
  private:
-  const TetComplex& complex() const { return workpiece_.complex; }
-  const TetMesh& mesh() const { return workpiece_.complex.mesh(); }
+  const TetComplex& complex() const { return edited_.complex; }
+  const TetMesh& mesh() const { return edited_.complex.mesh(); }
   double quality(Index tet) const { return rule_.quality(complex().corners(tet), complex()[tet].corners); }
 
   double squared_relative_length(Index a, Index b) const {
@@ -295,11 +288,11 @@ class Coarsening {
   }
 
   bool may_still_be_made(const Change& contraction) const {
-    return contraction.kind == Change::Kind::none || workpiece_.curve_can_spare(contraction);
+    return contraction.is_none() || edited_.curve_can_spare(contraction);
   }
 
   void contract(Index vertex, VertexProposal& found) {
-    if (found.change.kind != Change::Kind::none) {
+    if (!found.change.is_none()) {
       forget_touched();
       apply(std::move(found.change));
       settle();
@@ -319,12 +312,12 @@ class Coarsening {
   }
 
   bool contract_and_repair(Change change, double floor) {
-    improvement::Trial trial(workpiece_);
+    Trial trial(edited_);
     forget_touched();
     examined_.clear();
     const std::size_t before = tets_;
     rule_.set_mode(Mode::trial);
-    for (unsigned step = 0; change.kind != Change::Kind::none; ++step) {
+    for (unsigned step = 0; !change.is_none(); ++step) {
       apply_on_trial(std::move(change));
       const auto [count, worst] = tets_to_mend(floor);
       if (count == 0) {
@@ -430,7 +423,7 @@ class Coarsening {
           return untouched(item.tet) && std::all_of(change.read.begin(), change.read.end(), untouched);
         },
         [&](const Poor&, Change& change) {
-          if (change.kind == Change::Kind::none) return;
+          if (change.is_none()) return;
           forget_touched();
           apply(std::move(change));
           settle();
@@ -508,7 +501,7 @@ class Coarsening {
       const auto& v = complex()[t].corners;
       touched_vertices_.insert(touched_vertices_.end(), v.begin(), v.end());
     }
-    const auto& changed = workpiece_.apply(std::move(change));
+    const auto& changed = edited_.apply(std::move(change));
     touched_.insert(touched_.end(), changed.begin(), changed.end());
     return changed;
   }
@@ -548,15 +541,14 @@ class Coarsening {
 
   // Marks cells again, because coarsening has changed the cells of collars.
   void finish() {
-    workpiece_.complex.forget_balls();
+    edited_.complex.forget_balls();
     report_.tets_after = tets_;
   }
 
-  Workpiece& workpiece_;
+  EditableMesh& edited_;
   double radius_edge_;
   std::vector<double> sizes_;
-  ThinShape thin_;
-  CellBounds cells_;
+  TetBounds bounds_;
   CoarseningRule rule_;
   Changes changes_;
   Proposer proposer_;  // for the thread that applies changes
@@ -584,15 +576,15 @@ class Coarsening {
 };
 
 }  // namespace
-}  // namespace coarsening
+}  // namespace remeshing::coarsening
 
-CoarsenReport coarsen(improvement::Workpiece& workpiece, const MeshOptions& made_with,
+CoarsenReport coarsen(remeshing::EditableMesh& edited, const MeshOptions& made_with,
                       const Execution& execution) {
   if (!(made_with.bounds.thin_angle > 0 && made_with.bounds.thin_angle <= 30))
     throw OptionError("the smallest angle of thin tetrahedra must be above 0 and at most 30 degrees");
   if (!(made_with.bounds.reserve >= 0 && made_with.bounds.reserve <= 0.5))
     throw OptionError("the reserve of angles must be from 0 to 0.5");
-  return coarsening::Coarsening(workpiece, made_with, execution).run();
+  return remeshing::coarsening::Coarsening(edited, made_with, execution).run();
 }
 
 CoarsenReport coarsen(TetMesh& mesh, const Plc& plc, const MeshOptions& made_with,
@@ -600,11 +592,10 @@ CoarsenReport coarsen(TetMesh& mesh, const Plc& plc, const MeshOptions& made_wit
   const SurfaceTolerance tolerance = tolerance_of(plc, made_with.bounds, made_with.size);
   CoarsenReport report;
   ThreadLimit(made_with.threads).run([&] {
-    improvement::Workpiece workpiece(mesh, plc, tolerance, made_with.edges_per_hole,
-                                     made_with.bounds.lower_where_forced);
-    report = coarsen(workpiece, made_with, execution);
-    workpiece.complex.store();
-    improvement::mark_cells(mesh, plc, made_with.bounds);
+    remeshing::EditableMesh edited(mesh, plc, tolerance, made_with.edges_per_hole,
+                                   made_with.bounds.lower_where_forced);
+    report = coarsen(edited, made_with, execution);
+    edited.store_marked(made_with.bounds);
   });
   return report;
 }

@@ -10,7 +10,7 @@
 #include "coarsen/proposals.h"
 #include "common/sorted.h"
 
-namespace collarmesh::coarsening {
+namespace collarmesh::remeshing::coarsening {
 
 /// Remembers vertices of which no collapse could be repaired, and what these trials depended on. As long as
 /// none of that changes, they would fail again in the same way.
@@ -41,4 +41,4 @@ class FailedRepairs {
   std::unordered_map<Index, Failure> failures_;
 };
 
-}  // namespace collarmesh::coarsening
+}  // namespace collarmesh::remeshing::coarsening

@@ -5,9 +5,7 @@
 
 #include "common/contains.h"
 
-namespace collarmesh::coarsening {
-
-using improvement::Change;
+namespace collarmesh::remeshing::coarsening {
 
 namespace {
 
@@ -16,14 +14,13 @@ constexpr double repairable = 0.15;
 
 }  // namespace
 
-Proposer::Proposer(const improvement::Workpiece& workpiece, const improvement::ThinShape& thin,
-                   const improvement::CellBounds& cells, double radius_edge, std::span<const double> sizes,
-                   const Changes& changes)
-    : workpiece_(workpiece),
+Proposer::Proposer(const EditableMesh& edited, const TetBounds& bounds, double radius_edge,
+                   std::span<const double> sizes, const Changes& changes)
+    : edited_(edited),
       changes_(changes),
-      rule_(thin, cells, radius_edge, sizes),
-      operations_(workpiece, rule_),
-      stamps_(workpiece.complex.mesh().points.size(), 0),
+      rule_(bounds, radius_edge, sizes),
+      operations_(edited, rule_),
+      stamps_(edited.complex.mesh().points.size(), 0),
       stayed_(stamps_) {}
 
 // Finds the collapses of a vertex. Lengths rule out most neighbours, at less cost than shapes.
@@ -43,7 +40,7 @@ void Proposer::contractions(Index vertex, bool repairs, VertexProposal& found) {
   for (const Index onto : targets_) {
     if (looks_beyond) found.read.push_back(onto);
     operations_.contract_onto(onto, 0, 1, found.change);
-    if (found.change.kind != Change::Kind::none) return;
+    if (!found.change.is_none()) return;
   }
   if (!repairs) return;
   found.floor = std::min(1.0, operations_.worst_at_vertex());
@@ -51,7 +48,7 @@ void Proposer::contractions(Index vertex, bool repairs, VertexProposal& found) {
   for (const Index onto : targets_) {
     Change change;
     operations_.contract_onto(onto, repairable, -INFINITY, change);
-    if (change.kind != Change::Kind::none) found.to_repair.push_back(std::move(change));
+    if (!change.is_none()) found.to_repair.push_back(std::move(change));
   }
 }
 
@@ -59,15 +56,15 @@ Change Proposer::improvement_of(Index tet, Mode mode) {
   rule_.set_mode(mode);
   const auto corners = complex()[tet].corners;
   Change change;
-  for (const auto& [i, j] : improvement::longest_first(complex().corners(tet), squared_distance)) {
+  for (const auto& [i, j] : longest_first(complex().corners(tet), squared_distance)) {
     operations_.remove_edge(tet, i, j, change);
     if (change.quality >= improved_below) break;
   }
-  for (unsigned i = 0; i < 4 && change.kind == Change::Kind::none; ++i) {
+  for (unsigned i = 0; i < 4 && change.is_none(); ++i) {
     // Whether a move helps depends only on the tets at the vertex; each of them would propose it again.
     if (mode == Mode::final && stays(corners[i])) continue;
     operations_.move_vertex(corners[i], change);
-    if (mode == Mode::final && change.kind == Change::Kind::none) stayed_[corners[i]] = changes_.now;
+    if (mode == Mode::final && change.is_none()) stayed_[corners[i]] = changes_.now;
   }
   return change;
 }
@@ -121,4 +118,4 @@ bool Proposer::are_joined_here(Index a, Index b) const {
   });
 }
 
-}  // namespace collarmesh::coarsening
+}  // namespace collarmesh::remeshing::coarsening

@@ -9,7 +9,7 @@
 #include "refine/sizing.h"
 #include "tolerance/facing.h"
 
-namespace collarmesh::coarsening {
+namespace collarmesh::remeshing::coarsening {
 
 namespace {
 
@@ -141,4 +141,4 @@ std::vector<double> target_sizes(const TetMesh& mesh, const Plc& plc, const Mesh
   return TargetSizes(mesh, plc, options).run();
 }
 
-}  // namespace collarmesh::coarsening
+}  // namespace collarmesh::remeshing::coarsening

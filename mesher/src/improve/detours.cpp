@@ -9,7 +9,7 @@
 #include "common/contains.h"
 #include "common/sorted.h"
 
-namespace collarmesh::improvement {
+namespace collarmesh::remeshing::improvement {
 
 namespace {
 
@@ -36,8 +36,8 @@ bool is_better(const std::vector<double>& now, const std::vector<double>& before
 
 }  // namespace
 
-Detours::Detours(Workpiece& workpiece, Remedies& remedies, Operations& operations, std::size_t most_trials)
-    : workpiece_(workpiece), remedies_(remedies), operations_(operations), most_trials_(most_trials) {}
+Detours::Detours(EditableMesh& edited, Remedies& remedies, Operations& operations, std::size_t most_trials)
+    : edited_(edited), remedies_(remedies), operations_(operations), most_trials_(most_trials) {}
 
 bool Detours::exhausted() const {
   return blunt_ >= most_blunt || trials_ >= std::min(most_trials_, first_trials + trials_per_detour * taken_);
@@ -101,9 +101,9 @@ void Detours::note_changes(std::vector<Index>& tets) {
 // good and no more of them thin than before, or else the detour with the best worst tet. Returns whether
 // `changed_` changed.
 bool Detours::help(Index tet, Effort effort) {
-  if (Change change = propose(tet); change.kind != Change::Kind::none) {
+  if (Change change = propose(tet); !change.is_none()) {
     ++trials_;
-    Trial trial(workpiece_);
+    Trial trial(edited_);
     apply(trial, std::move(change));
     take(trial);
     return true;
@@ -171,11 +171,11 @@ Change Detours::first_step(const FirstStep& step) {
 // Tries a first step, and takes the detour if the result is better and `is_taken` returns true.
 Detours::Result Detours::attempt(const FirstStep& step, const std::function<bool(const Result&)>& is_taken) {
   Change change = first_step(step);
-  if (change.kind == Change::Kind::none) return {};
+  if (change.is_none()) return {};
   ++trials_;
   before_.clear(), to_improve_.clear();
   thin_before_ = 0;
-  Trial trial(workpiece_);
+  Trial trial(edited_);
   apply(trial, std::move(change));
   improve_changed(trial);
   Result found = result(trial);
@@ -207,7 +207,7 @@ void Detours::improve_changed(Trial& trial) {
     *worst = to_improve_.back();
     to_improve_.pop_back();
     Change change = propose(tet);
-    if (change.kind != Change::Kind::none) apply(trial, std::move(change));
+    if (!change.is_none()) apply(trial, std::move(change));
   }
 }
 
@@ -225,4 +225,4 @@ Detours::Result Detours::result(const Trial& trial) const {
           now.empty() ? remedies_.wanted() : now.front()};
 }
 
-}  // namespace collarmesh::improvement
+}  // namespace collarmesh::remeshing::improvement

@@ -8,7 +8,7 @@
 
 #include "improve/remedies.h"
 
-namespace collarmesh::improvement {
+namespace collarmesh::remeshing::improvement {
 
 /// Detours: sequences of operations for tets that no single operation improves. An operation is applied all
 /// the same, at the tet or beside it, and its tets are improved for some steps. The result is kept if it is
@@ -19,12 +19,12 @@ namespace collarmesh::improvement {
 class Detours {
  public:
   /// Keeps all by reference. Starts no detour after `most_trials` operations, but completes the current tet.
-  Detours(Workpiece& workpiece, Remedies& remedies, Operations& operations, std::size_t most_trials);
+  Detours(EditableMesh& edited, Remedies& remedies, Operations& operations, std::size_t most_trials);
 
   /// Takes detours for these tets and, where the number of vertices may change, for poor tets that detours
   /// leave. Takes the worst tet first; tries operations at the tet itself, then beside it; tries again after
   /// a change at a corner, until nothing helps. Returns the number of detours taken. Calls `stopped` between
-  /// tets. Precondition: the workpiece is prepared for trials.
+  /// tets. Precondition: the mesh is prepared for trials.
   std::size_t take_all(std::vector<Index> tets, const std::function<bool()>& stopped);
 
   /// Returns the number of operations tried so far.
@@ -64,9 +64,9 @@ class Detours {
   void improve_changed(Trial& trial);
   Result result(const Trial& trial) const;
   void take(Trial& trial);
-  const TetComplex& complex() const { return workpiece_.complex; }
+  const TetComplex& complex() const { return edited_.complex; }
 
-  Workpiece& workpiece_;
+  EditableMesh& edited_;
   Remedies& remedies_;
   Operations& operations_;
   std::size_t most_trials_, trials_ = 0;
@@ -76,7 +76,7 @@ class Detours {
   std::vector<std::uint32_t> last_detour_at_;  // by vertex: the last detour that changed a tet there
   std::array<Asked, 3> asked_;                 // by Effort
 
-  std::vector<Index> changed_;                 // tets that the last detour changed; some are removed
+  std::vector<Index> changed_;  // tets that the last detour changed; some are removed
 
   // State of the current trial.
   std::vector<double> before_;  // qualities of the changed tets before the trial, at most the wanted one
@@ -84,4 +84,4 @@ class Detours {
   std::vector<Index> to_improve_;
 };
 
-}  // namespace collarmesh::improvement
+}  // namespace collarmesh::remeshing::improvement

@@ -6,7 +6,7 @@
 
 #include "common/cell_shapes.h"
 
-namespace collarmesh::improvement {
+namespace collarmesh::remeshing::improvement {
 
 namespace {
 
@@ -15,9 +15,9 @@ constexpr double enough = 0.7;
 
 }  // namespace
 
-Remedies::Remedies(const Workpiece& workpiece, const SliverRule& rule, const ImproveOptions& options,
+Remedies::Remedies(const EditableMesh& edited, const SliverRule& rule, const ImproveOptions& options,
                    bool refill)
-    : complex_(workpiece.complex),
+    : complex_(edited.complex),
       rule_(rule),
       thin_above_(options.thin_above > 0 ? options.thin_above : options.bounds.radius_edge),
       wanted_(std::sin(options.min_dihedral * std::numbers::pi / 180)),
@@ -37,7 +37,7 @@ Change Remedies::propose(Operations& operations, Index tet) const {
   Change change;
   operations.remove_best_edge(tet, change);
   const auto& corners = complex_[tet].corners;
-  const auto found = [&] { return change.kind != Change::Kind::none; };
+  const auto found = [&] { return !change.is_none(); };
   if (found() || !move_vertices_) return change;
   for (const Index v : corners)
     if (!stays(v)) operations.move_vertex(v, change);
@@ -69,4 +69,4 @@ void Remedies::set_stays(Index tet, bool stays) {
   for (const Index v : complex_[tet].corners) stays_[v] = stays;
 }
 
-}  // namespace collarmesh::improvement
+}  // namespace collarmesh::remeshing::improvement

@@ -49,7 +49,7 @@ std::vector<Index> within_rings(const Lists& neighbours, std::vector<Index> node
   return nodes;
 }
 
-Front::Front(const improvement::TetComplex& complex, const Plc& plc, const WallChoice& walls)
+Front::Front(const remeshing::TetComplex& complex, const Plc& plc, const WallChoice& walls)
     : complex_(complex), mesh_(complex.mesh()), plc_(plc), walls_(walls) {
   find_sides();
   if (sides.empty()) return;

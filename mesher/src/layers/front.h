@@ -7,8 +7,8 @@
 
 #include "collarmesh/tet_mesh.h"
 #include "common/cells_at_vertices.h"
-#include "improve/tet_complex.h"
 #include "layers/wall_choice.h"
+#include "remesh/tet_complex.h"
 
 namespace collarmesh::layering {
 
@@ -63,7 +63,7 @@ struct FrontNode {
 class Front {
  public:
   /// Keeps all by reference. `complex` is that of the mesh.
-  Front(const improvement::TetComplex& complex, const Plc& plc, const WallChoice& walls);
+  Front(const remeshing::TetComplex& complex, const Plc& plc, const WallChoice& walls);
 
   std::vector<WallSide> sides;
   /// Sides of walls on which no layers are asked for, behind those on which there are: without nodes, edges.
@@ -82,7 +82,7 @@ class Front {
   /// Returns whether a face of the mesh is a wall's triangle.
   bool is_wall(Index face) const { return face != none && walls_.is_wall(mesh_.face_patch[face]); }
   bool is_wall_patch(Index patch) const { return walls_.is_wall(patch); }
-  const improvement::TetComplex::Tet& tet(Index t) const { return complex_[t]; }
+  const remeshing::TetComplex::Tet& tet(Index t) const { return complex_[t]; }
   /// Returns whether an edge of the mesh is an edge of a wall's triangle.
   bool is_wall_edge(Index a, Index b) const;
 
@@ -106,7 +106,7 @@ class Front {
   };
   std::vector<PatchNormal> normals_of_patches(Index node) const;
 
-  const improvement::TetComplex& complex_;
+  const remeshing::TetComplex& complex_;
   const TetMesh& mesh_;
   const Plc& plc_;
   const WallChoice& walls_;

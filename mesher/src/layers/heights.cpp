@@ -156,7 +156,7 @@ void Heights::fit_gaps() {
     }
 }
 
-void Heights::fit_patches(const improvement::SmoothSurfaces& surfaces, const SurfaceTolerance& tolerance) {
+void Heights::fit_patches(const remeshing::SmoothSurfaces& surfaces, const SurfaceTolerance& tolerance) {
   constexpr unsigned most_halvings = 3;
   for (Index n = 0; n < size(); ++n) {
     const TetMesh::VertexFeature& slides_on = front_.nodes[n].slides_on;

@@ -331,7 +331,7 @@ SizeField Recut::sizes(const SizeField& of_mesh) const {
   };
 }
 
-void Recut::note_vertices(const improvement::TetComplex& complex) {
+void Recut::note_vertices(const remeshing::TetComplex& complex) {
   std::size_t kept = 0;
   for (Index v = 0; v < places_.size(); ++v) {
     if (!complex.in_use(v)) continue;

@@ -7,7 +7,7 @@
 #include "common/cell_shapes.h"
 #include "common/sorted.h"
 #include "delaunay/predicates.h"
-#include "improve/shape.h"
+#include "remesh/shape.h"
 
 namespace collarmesh::projection {
 
@@ -30,8 +30,8 @@ constexpr double least_course = 0.5;
 // Relative margin of the bounds, for rounding.
 constexpr double margin = 1e-6;
 
-double radius_edge(const improvement::Corners& p) {
-  const improvement::Circumsphere sphere = improvement::circumsphere(p);
+double radius_edge(const remeshing::Corners& p) {
+  const remeshing::Circumsphere sphere = remeshing::circumsphere(p);
   return std::sqrt(sphere.squared_radius / sphere.shortest_squared_edge);
 }
 
@@ -128,7 +128,7 @@ double Relaxation::score(Index tet, const Corners& p) const {
       may_be_thin(tet, p))
     return 1;
   const Wanted& want = wanted(tet);
-  double score = std::min(1., improvement::shape_quality(p) / want.shape);
+  double score = std::min(1., remeshing::shape_quality(p) / want.shape);
   if (in_ball(tet)) return std::min(score, collar_score(tet, p));
   if (bounds_.thin != nullptr) {
     score = std::min(score, angle_score(tet, p));
@@ -147,10 +147,9 @@ double Relaxation::collar_score(Index tet, const Corners& p) const {
 
 // Returns 1 if angles are within the bounds of thin tets, or no farther beyond them than at the beginning.
 double Relaxation::angle_score(Index tet, const Corners& p) const {
-  constexpr double largest = improvement::ThinShape::largest_angle,
-                   rounding = improvement::ThinShape::rounding;
-  const improvement::ExtremeAngles now = improvement::extreme_angles(p),
-                                   then = improvement::extreme_angles(corners(tet, origins_));
+  constexpr double largest = remeshing::ThinShape::largest_angle, rounding = remeshing::ThinShape::rounding;
+  const remeshing::ExtremeAngles now = remeshing::extreme_angles(p),
+                                 then = remeshing::extreme_angles(corners(tet, origins_));
   const double bound = std::asin(bounds_.thin->smallest_sine(p, mesh_.tets[tet])) * 180 / std::numbers::pi,
                sharpest = std::min(bound, then.smallest),
                bluntest = std::max(largest - 2 * rounding, then.largest);
@@ -161,7 +160,7 @@ const Relaxation::Wanted& Relaxation::wanted(Index tet) const {
   Wanted& want = wanted_[tet];
   if (want.shape >= 0) return want;
   const Corners before = corners(tet, origins_);
-  want.shape = std::min(good_shape, improvement::shape_quality(before));
+  want.shape = std::min(good_shape, remeshing::shape_quality(before));
   want.angle = (1 - margin) * std::max(bounds_.collar_angle,
                                        measure(before[0], before[1], before[2], before[3]).max_dihedral);
   want.ratio = (1 - margin) * std::max(bounds_.radius_edge, radius_edge(before));

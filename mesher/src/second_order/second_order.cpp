@@ -12,8 +12,8 @@
 #include "collarmesh/error.h"
 #include "collarmesh/mesher.h"
 #include "common/thread_limit.h"
-#include "improve/replace_tets.h"
-#include "improve/thin_shape.h"
+#include "remesh/replace_tets.h"
+#include "remesh/thin_shape.h"
 #include "second_order/mid_nodes.h"
 #include "second_order/places_on_features.h"
 #include "second_order/untangling.h"
@@ -23,7 +23,7 @@ namespace collarmesh {
 namespace second_order {
 namespace {
 
-using improvement::UnwantedTet;
+using remeshing::UnwantedTet;
 
 // A node farther than this from the middle of its edge, relative to the edge, does not belong to the edge:
 // the nearest point lies on another part of the feature. On a half circle it is 0.5.
@@ -372,16 +372,14 @@ constexpr unsigned most_rounds = 4;
 /// Removes tets from a mesh of first order; returns false if none could be removed.
 bool replace_in_mesh(TetMesh& mesh, const Plc& plc, std::span<const UnwantedTet> unwanted,
                      const SecondOrderOptions& options) {
-  const SurfaceTolerance tolerance = tolerance_of_any_size(plc, options.bounds);
   std::size_t gone = 0;
   ThreadLimit(options.threads).run([&] {
-    improvement::Workpiece workpiece(mesh, plc, tolerance, 0, options.bounds.lower_where_forced);
-    const improvement::ThinShape thin(plc, mesh, options.bounds.thin_angle, 0, workpiece.forced,
-                                      options.bounds.tets_across());
-    const improvement::CellBounds cells(plc, mesh, options.bounds);
-    gone = improvement::replace_tets(workpiece, unwanted, improvement::ThinRule(thin, cells), 1);
-    workpiece.complex.store();
-    improvement::mark_cells(mesh, plc, options.bounds);
+    remeshing::EditableMesh edited(mesh, plc, options.bounds);
+    const remeshing::ThinRule rule({remeshing::ThinShape(plc, mesh, options.bounds.thin_angle, 0,
+                                                         edited.forced, options.bounds.tets_across()),
+                                    remeshing::CellBounds(plc, mesh, options.bounds)});
+    gone = remeshing::replace_tets(edited, unwanted, rule, 1);
+    edited.store_marked(options.bounds);
   });
   return gone > 0;
 }
