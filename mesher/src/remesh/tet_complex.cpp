@@ -380,8 +380,6 @@ void TetComplex::set_face_of_tet(Index tet, unsigned corner, Index face) {
   tets_[tet].faces[corner] = face;
 }
 
-void TetComplex::move_vertex(Index vertex, const Point& p) { old_points_.set(vertex, p); }
-
 void TetComplex::begin_trial() {
   std::apply([](auto&... log) { (log.begin(), ...); }, logs());
 }
