@@ -39,7 +39,7 @@ class Places {
   Places(const std::vector<Point>& points, const std::vector<Index>& given)
       : points_(points), order_(points.size()) {
     std::iota(order_.begin(), order_.end(), Index{0});
-    std::sort(order_.begin(), order_.end(), [&](Index a, Index b) {
+    std::ranges::sort(order_, [&](Index a, Index b) {
       return points_[a] != points_[b] ? less(points_[a], points_[b]) : a < b;
     });
     for (std::size_t i = 1; i < order_.size(); ++i)
@@ -95,9 +95,9 @@ class ComplexBuilder {
     std::vector<Ends> joined;
     for (const auto& tet : mesh_.tets)
       for (const auto& [i, j] : cell_shapes::corner_pairs) joined.push_back(sorted(tet[i], tet[j]));
-    std::sort(joined.begin(), joined.end());
+    std::ranges::sort(joined);
     for (const auto& [a, b] : mesh_.edges)
-      if (!std::binary_search(joined.begin(), joined.end(), sorted(a, b)))
+      if (!std::ranges::binary_search(joined, sorted(a, b)))
         refuse(PlcFault::Kind::intersection,
                fmt::format("The line of the nodes {} and {} at {} is listed but is no edge of a tetrahedron; "
                            "remove it from the file.",
@@ -171,18 +171,17 @@ class ComplexBuilder {
     };
     std::vector<Ends> listed;
     for (const auto& [a, b] : mesh_.edges) listed.push_back(sorted(a, b));
-    std::sort(listed.begin(), listed.end());
+    std::ranges::sort(listed);
     std::vector<EdgeUse> uses;
     for (const MeshSide& side : found_.sides)
       for (unsigned i = 0; i < 3; ++i)
         uses.push_back({sorted(side.corners[i], side.corners[(i + 1) % 3]), tag_of(side)});
-    std::sort(uses.begin(), uses.end(), [](const EdgeUse& a, const EdgeUse& b) {
+    std::ranges::sort(uses, [](const EdgeUse& a, const EdgeUse& b) {
       return a.ends != b.ends ? a.ends < b.ends : a.tag < b.tag;
     });
     for (std::size_t i = 0, j = 0; i < uses.size(); i = j) {
       for (j = i; j < uses.size() && uses[j].ends == uses[i].ends;) ++j;
-      if ((j - i != 2 || uses[i].tag != uses[j - 1].tag) &&
-          !std::binary_search(listed.begin(), listed.end(), uses[i].ends))
+      if ((j - i != 2 || uses[i].tag != uses[j - 1].tag) && !std::ranges::binary_search(listed, uses[i].ends))
         return false;
     }
     return true;
@@ -192,7 +191,7 @@ class ComplexBuilder {
   void find_triangles() {
     std::vector<std::pair<Triangle, Index>> sides;
     for (Index s = 0; s < found_.sides.size(); ++s) sides.emplace_back(sorted(found_.sides[s].corners), s);
-    std::sort(sides.begin(), sides.end());
+    std::ranges::sort(sides);
     std::vector<bool> used(sides.size(), false);
     for (const Plc::Triangle& t : plc_.triangles) {
       const Triangle key = sorted(in_mesh(t));
@@ -201,7 +200,7 @@ class ComplexBuilder {
       side_of_.push_back(at->second);
       used[at->second] = true;
     }
-    const auto missing = std::find(used.begin(), used.end(), false);
+    const auto missing = std::ranges::find(used, false);
     if (missing == used.end() && side_of_.size() == plc_.triangles.size()) return;
     const Triangle& corners =
         found_.sides[missing == used.end() ? 0 : static_cast<std::size_t>(missing - used.begin())].corners;
@@ -223,8 +222,8 @@ class ComplexBuilder {
     std::vector<Index> firsts;
     for (Index t = 0; t < mesh_.tets.size(); ++t)
       if (found_.component[t] == t) firsts.push_back(t);
-    std::stable_sort(firsts.begin(), firsts.end(),
-                     [&](Index a, Index b) { return mesh_.tet_region[a] < mesh_.tet_region[b]; });
+    std::ranges::stable_sort(firsts,
+                             [&](Index a, Index b) { return mesh_.tet_region[a] < mesh_.tet_region[b]; });
     std::vector<Index> number(mesh_.tets.size(), 0);
     plc_.regions.resize(1);
     plc_.regions[0].name = "outside";
@@ -267,7 +266,7 @@ class ComplexBuilder {
   std::array<Index, 2> regions_at(Index triangle) const {
     const MeshSide& side = found_.sides[side_of_[triangle]];
     const Triangle here = in_mesh(plc_.triangles[triangle]);
-    const auto i = static_cast<unsigned>(std::find(here.begin(), here.end(), side.corners[0]) - here.begin());
+    const auto i = static_cast<unsigned>(std::ranges::find(here, side.corners[0]) - here.begin());
     const auto region_of = [&](Index tet) { return tet == none ? 0 : mesh_.tet_region[tet]; };
     std::array<Index, 2> regions{region_of(side.behind), region_of(side.front)};
     if (here[(i + 1) % 3] != side.corners[1]) std::swap(regions[0], regions[1]);

@@ -31,7 +31,7 @@ std::vector<Use> uses_of(const TetMesh& mesh) {
     for (unsigned corner = 0; corner < 4; ++corner)
       uses.push_back({sorted(side_corners(mesh.tets[t], corner)), t, corner});
   for (Index f = 0; f < mesh.faces.size(); ++f) uses.push_back({sorted(mesh.faces[f]), none, f});
-  std::sort(uses.begin(), uses.end());
+  std::ranges::sort(uses);
   return uses;
 }
 
@@ -82,7 +82,7 @@ MeshSides::MeshSides(const TetMesh& mesh, const std::vector<Index>& given) {
       sides.push_back({side_corners(mesh.tets[first], uses[i].place), first, second,
                        listed ? uses[i + tets].place : none});
   }
-  std::sort(sides.begin(), sides.end(), [](const MeshSide& a, const MeshSide& b) {
+  std::ranges::sort(sides, [](const MeshSide& a, const MeshSide& b) {
     return a.behind != b.behind ? a.behind < b.behind : sorted(a.corners) < sorted(b.corners);
   });
   component.resize(mesh.tets.size());

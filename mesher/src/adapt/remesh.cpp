@@ -143,7 +143,7 @@ class Remeshing {
     const ThinShape thin(made_.plc, mesh(), smallest, 0,
                          forced_edges_of(made_.plc, mesh(), options_.mesh.bounds.lower_where_forced));
     const auto& p = mesh().points;
-    return std::all_of(mesh().tets.begin(), mesh().tets.end(), [&](const std::array<Index, 4>& v) {
+    return std::ranges::all_of(mesh().tets, [&](const std::array<Index, 4>& v) {
       return thin.contains({p[v[0]], p[v[1]], p[v[2]], p[v[3]]}, v);
     });
   }
@@ -169,7 +169,7 @@ class Remeshing {
       options.size = diagonal;
     }
     const std::vector<double> sizes = target_sizes();
-    largest_size_ = std::min(diagonal, *std::max_element(sizes.begin(), sizes.end()));
+    largest_size_ = std::min(diagonal, *std::ranges::max_element(sizes));
   }
 
   /// Returns the mean length of the edges at each vertex.

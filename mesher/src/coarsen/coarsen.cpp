@@ -71,7 +71,7 @@ std::size_t proposals_at_once(std::size_t items) {
 // would be slower.
 template <class Item>
 std::vector<Item> in_order(std::vector<Item> items) {
-  std::stable_sort(items.begin(), items.end(), [](const Item& a, const Item& b) { return a.rank < b.rank; });
+  std::ranges::stable_sort(items, [](const Item& a, const Item& b) { return a.rank < b.rank; });
   const std::size_t rows = std::clamp<std::size_t>(items.size() / items_per_row, 1, most_rows);
   std::vector<Item> ordered;
   ordered.reserve(items.size());
@@ -197,7 +197,7 @@ class Coarsening {
     const std::size_t points = mesh().points.size();
     std::vector<ShortEdge> found;
     if (edges.size() < points / points_per_edge) {
-      std::sort(edges.begin(), edges.end(), [](const ShortEdge& a, const ShortEdge& b) {
+      std::ranges::sort(edges, [](const ShortEdge& a, const ShortEdge& b) {
         return a.end != b.end ? a.end < b.end : a.squared_relative_length < b.squared_relative_length;
       });
       for (const ShortEdge& edge : edges)
@@ -249,11 +249,11 @@ class Coarsening {
                },
                [&](const Candidate& candidate, const VertexProposal& found, std::uint32_t begun) {
                  return changes_.at_vertex[candidate.vertex] < begun &&
-                        std::all_of(found.read.begin(), found.read.end(),
-                                    [&](Index onto) { return changes_.at_vertex[onto] < begun; }) &&
+                        std::ranges::all_of(found.read,
+                                            [&](Index onto) { return changes_.at_vertex[onto] < begun; }) &&
                         may_still_be_made(found.change) &&
-                        std::all_of(found.to_repair.begin(), found.to_repair.end(),
-                                    [&](const Change& change) { return may_still_be_made(change); });
+                        std::ranges::all_of(found.to_repair,
+                                            [&](const Change& change) { return may_still_be_made(change); });
                },
                [&](const Candidate& candidate, VertexProposal& found) {
                  contract(candidate.vertex, found);
@@ -307,7 +307,7 @@ class Coarsening {
     // Whether an edge of a curve can be spared depends on more than the tets around; and not all tets at a
     // pinched vertex are found.
     if (mesh().features[vertex].dimension > 1 &&
-        std::none_of(looked_at_.begin(), looked_at_.end(), [&](Index v) { return complex().pinched(v); }))
+        std::ranges::none_of(looked_at_, [&](Index v) { return complex().pinched(v); }))
       failed_.note(vertex, looked_at_, changes_.now);
   }
 
@@ -406,7 +406,7 @@ class Coarsening {
         found.push_back({rank_of_quality(q), t, q});
     });
     const auto by_place = [](const Poor& a, const Poor& b) { return a.tet < b.tet; };
-    if (!std::is_sorted(all.begin(), all.end(), by_place)) std::sort(all.begin(), all.end(), by_place);
+    if (!std::is_sorted(all.begin(), all.end(), by_place)) std::ranges::sort(all, by_place);
     const std::vector<Poor> poor = in_order(std::move(all));
     last_sweep_ = ++changes_.now;
     bool any = false;
@@ -420,7 +420,7 @@ class Coarsening {
         },
         [&](const Poor& item, const Change& change, std::uint32_t begun) {
           const auto untouched = [&](Index t) { return complex()[t].alive && !changed_since(t, begun); };
-          return untouched(item.tet) && std::all_of(change.read.begin(), change.read.end(), untouched);
+          return untouched(item.tet) && std::ranges::all_of(change.read, untouched);
         },
         [&](const Poor&, Change& change) {
           if (change.is_none()) return;
@@ -442,7 +442,7 @@ class Coarsening {
 
   bool changed_since(Index tet, std::uint32_t when) const {
     const auto& v = complex()[tet].corners;
-    return std::any_of(v.begin(), v.end(), [&](Index w) { return changes_.at_vertex[w] >= when; });
+    return std::ranges::any_of(v, [&](Index w) { return changes_.at_vertex[w] >= when; });
   }
 
   // Collects the items that `look(tet, found)` adds to `found`. Calls it once, in any order, for each tet
@@ -488,8 +488,7 @@ class Coarsening {
     for (auto changed = first; changed != log_.end(); ++changed)
       if (complex().in_use(changed->vertex)) vertices.push_back(changed->vertex);
     sort_uniquely(vertices);
-    if (std::any_of(vertices.begin(), vertices.end(), [&](Index v) { return complex().pinched(v); }))
-      return std::nullopt;
+    if (std::ranges::any_of(vertices, [&](Index v) { return complex().pinched(v); })) return std::nullopt;
     return vertices;
   }
 

@@ -28,8 +28,8 @@ class FailedRepairs {
     const auto found = failures_.find(vertex);
     if (found == failures_.end()) return {};
     const Failure& failure = found->second;
-    const bool unchanged = std::all_of(failure.looked_at.begin(), failure.looked_at.end(),
-                                       [&](Index v) { return changes.at_vertex[v] <= failure.when; });
+    const bool unchanged =
+        std::ranges::all_of(failure.looked_at, [&](Index v) { return changes.at_vertex[v] <= failure.when; });
     return unchanged ? std::span<const Index>(failure.looked_at) : std::span<const Index>();
   }
 

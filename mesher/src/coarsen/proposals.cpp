@@ -96,7 +96,7 @@ void Proposer::find_neighbours(Index vertex) {
       squared_shortest_ = std::min(squared_shortest_, squared);
       neighbours_.push_back({rule_.squared_relative_length(squared, vertex, w), squared, w});
     }
-  std::sort(neighbours_.begin(), neighbours_.end());
+  std::ranges::sort(neighbours_);
 }
 
 // Returns whether the edges that a collapse makes have allowed lengths: none is longer than allowed, unless
@@ -113,9 +113,8 @@ bool Proposer::lengths_fit(Index onto) const {
 
 // Returns whether a tet at the current vertex joins a and b.
 bool Proposer::are_joined_here(Index a, Index b) const {
-  return std::any_of(star_.begin(), star_.end(), [&](Index t) {
-    return contains(complex()[t].corners, a) && contains(complex()[t].corners, b);
-  });
+  return std::ranges::any_of(
+      star_, [&](Index t) { return contains(complex()[t].corners, a) && contains(complex()[t].corners, b); });
 }
 
 }  // namespace collarmesh::remeshing::coarsening

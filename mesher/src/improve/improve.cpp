@@ -217,8 +217,8 @@ class Improvement {
   // the tets there. This relies on complete stars; no change is proposed elsewhere.
   bool is_untouched(const Change& change) const {
     const auto untouched = [&](Index t) { return complex()[t].alive && changed_in_[t] != batch_number_; };
-    return std::all_of(change.replacement.old.begin(), change.replacement.old.end(), untouched) &&
-           std::all_of(change.read.begin(), change.read.end(), untouched);
+    return std::ranges::all_of(change.replacement.old, untouched) &&
+           std::ranges::all_of(change.read, untouched);
   }
 
   void apply(Change change) {

@@ -199,7 +199,7 @@ bool Relaxation::improve(Index vertex) {
   // Most places do not help the worst tets, so evaluate these first.
   worst_first_.clear();
   for (const Index t : tets_at_[vertex]) worst_first_.emplace_back(-lack_of(t, corners(t, mesh_.points)), t);
-  std::sort(worst_first_.begin(), worst_first_.end());
+  std::ranges::sort(worst_first_);
   around_.clear();
   double at_start = 0;
   for (const auto& [lack, t] : worst_first_) {
@@ -290,7 +290,7 @@ bool Relaxation::on_course(Index edge) const {
 bool Relaxation::keeps_course(Index vertex) {
   find_features_around();
   const auto edges = edges_at_[vertex];
-  return std::all_of(edges.begin(), edges.end(), [&](Index edge) { return on_course(edge); });
+  return std::ranges::all_of(edges, [&](Index edge) { return on_course(edge); });
 }
 
 // Updates faces and edges on smooth features after vertices slid along them.

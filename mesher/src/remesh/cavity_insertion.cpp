@@ -61,12 +61,12 @@ bool Operations::find_cone_of_cavity(const std::vector<Index>& cavity) {
     }
   }
   const auto on_hull = [&](Index a, Index b) {
-    return std::any_of(cone_.hull.begin(), cone_.hull.end(),
-                       [&](const auto& face) { return contains(face, a) && contains(face, b); });
+    return std::ranges::any_of(cone_.hull,
+                               [&](const auto& face) { return contains(face, a) && contains(face, b); });
   };
-  return std::all_of(cavity.begin(), cavity.end(), [&](Index t) {
+  return std::ranges::all_of(cavity, [&](Index t) {
     const auto& v = complex_[t].corners;
-    return std::all_of(v.begin(), v.end(), [&](Index w) { return on_hull(w, w); }) &&
+    return std::ranges::all_of(v, [&](Index w) { return on_hull(w, w); }) &&
            std::all_of(cell_shapes::corner_pairs.begin(), cell_shapes::corner_pairs.end(),
                        [&](const auto& edge) {
                          const Index a = v[edge[0]], b = v[edge[1]];

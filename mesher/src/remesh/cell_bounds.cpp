@@ -42,7 +42,7 @@ class CreaseEdges {
     for (std::size_t e = 0; e < mesh.edges.size(); ++e)
       if (creases.is_crease(mesh.edge_curve[e]))
         edges_.emplace_back(sorted(mesh.edges[e][0], mesh.edges[e][1]), mesh.edge_tag[e]);
-    std::sort(edges_.begin(), edges_.end());
+    std::ranges::sort(edges_);
   }
 
   /// Returns the tag of the crease that one of the tet's edges lies on; null if no edge lies on a crease.
@@ -110,8 +110,7 @@ void mark_collar_cells(TetMesh& mesh, const Plc& plc, double crease_angle) {
   parallel_for_ranges(mesh.tets.size(), cells_at_once, [&](std::size_t first, std::size_t last) {
     for (std::size_t t = first; t < last; ++t) {
       const auto& corners = mesh.tets[t];
-      const auto on_crease =
-          std::find_if(corners.begin(), corners.end(), [&](Index v) { return creases.at(v); });
+      const auto on_crease = std::ranges::find_if(corners, [&](Index v) { return creases.at(v); });
       if (on_crease == corners.end()) continue;
       const Tag* const tag = edges.tag_in(corners);
       mesh.tet_collar[t] = tag != nullptr ? book : star;

@@ -18,7 +18,7 @@ class CreaseCells {
   CreaseCells(const Plc& plc, const std::vector<TetMesh::VertexFeature>& features, double crease_angle);
 
   bool touch(const std::array<Index, 4>& corners) const {
-    return any_ && std::any_of(corners.begin(), corners.end(), [this](Index v) { return at(v); });
+    return any_ && std::ranges::any_of(corners, [this](Index v) { return at(v); });
   }
   bool at(Index vertex) const { return any_ && vertex < on_crease_.size() && on_crease_[vertex] != 0; }
   bool is_crease(Index curve) const { return curve != none && is_crease_[curve]; }
@@ -54,8 +54,7 @@ class CellBounds {
   bool forbid_thin_tets() const { return narrow_.has_value() || tight_ || mesh_ != nullptr; }
   /// Returns whether the tet needs an interior node and has all corners on surfaces.
   bool lacks_interior_node(const std::array<Index, 4>& corners) const {
-    return mesh_ != nullptr &&
-           std::all_of(corners.begin(), corners.end(), [this](Index v) { return on_surface(v); });
+    return mesh_ != nullptr && std::ranges::all_of(corners, [this](Index v) { return on_surface(v); });
   }
 
  private:

@@ -45,11 +45,11 @@ void CurveSlides::find_all_places() const {
   // Counts only neighbours on the curve that are joined by an edge.
   std::vector<std::array<Index, 2>> edges;
   for (const auto& e : mesh_.edges) edges.push_back({std::min(e[0], e[1]), std::max(e[0], e[1])});
-  std::sort(edges.begin(), edges.end());
+  std::ranges::sort(edges);
   for (Index v = 0; v < places_.size(); ++v)
     for (Index& n : places_[v].neighbours)
-      if (n != none && !std::binary_search(edges.begin(), edges.end(),
-                                           std::array<Index, 2>{std::min(v, n), std::max(v, n)}))
+      if (n != none &&
+          !std::ranges::binary_search(edges, std::array<Index, 2>{std::min(v, n), std::max(v, n)}))
         n = none;
 }
 
@@ -62,8 +62,7 @@ void CurveSlides::find_places(Index curve, std::vector<Index>& vertices,
     const double step = distance(mesh_.points[v], hierarchy.corners(at)[0]);
     places_[v].parameter = std::min(lengths[at] + step, lengths[at + 1]);
   }
-  std::sort(vertices.begin(), vertices.end(),
-            [&](Index a, Index b) { return places_[a].parameter < places_[b].parameter; });
+  std::ranges::sort(vertices, [&](Index a, Index b) { return places_[a].parameter < places_[b].parameter; });
   const bool closed = plc_.curves[curve].closed;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     auto& neighbours = places_[vertices[i]].neighbours;

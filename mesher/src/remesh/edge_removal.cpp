@@ -98,8 +98,7 @@ void Operations::remove_edge(Index tet, unsigned i, unsigned j, Change& change,
       if (opposite == a || opposite == b || t.faces[corner] == none) continue;
       const bool ahead = opposite == ring_.link[k];  // it is the face to the next tet
       const std::size_t at = ahead ? (k + 1) % m : k;
-      if (kept.empty() ||
-          std::none_of(kept.begin(), kept.end(), [&](const auto& x) { return x.first == at; }))
+      if (kept.empty() || std::ranges::none_of(kept, [&](const auto& x) { return x.first == at; }))
         kept.emplace_back(at, t.faces[corner]);
     }
   }
@@ -113,7 +112,7 @@ void Operations::remove_edge(Index tet, unsigned i, unsigned j, Change& change,
     like.push_back(ring_.tets[0]);
   } else {
     if (kept.size() != 2) return;
-    std::sort(kept.begin(), kept.end());
+    std::ranges::sort(kept);
     const Index patch = mesh_.face_patch[kept[0].second];
     if (patch == none || mesh_.face_patch[kept[1].second] != patch || edited_.keeps(patch)) return;
     const std::size_t from = kept[0].first, to = kept[1].first;
@@ -130,7 +129,7 @@ void Operations::remove_edge(Index tet, unsigned i, unsigned j, Change& change,
     }
     for (const auto& [end, face] : {std::pair{b, kept[0].second}, std::pair{a, kept[1].second}}) {
       auto corners = mesh_.faces[face];
-      std::replace(corners.begin(), corners.end(), end, end == b ? d : c);
+      std::ranges::replace(corners, end, end == b ? d : c);
       made.replacement.old_faces.push_back(face);
       made.replacement.created_faces.push_back({corners, face});
     }
@@ -172,9 +171,7 @@ bool Operations::may_turn(Change& change) {
   std::array<Index, 2> shared{none, none};
   unsigned count = 0;
   for (const Index v : turned[0].corners)
-    if (count < 2 &&
-        std::find(turned[1].corners.begin(), turned[1].corners.end(), v) != turned[1].corners.end())
-      shared[count++] = v;
+    if (count < 2 && std::ranges::find(turned[1].corners, v) != turned[1].corners.end()) shared[count++] = v;
   complex_.star(shared[0], star_);
   change.read.insert(change.read.end(), star_.begin(), star_.end());
   if (complex_.on_faces(shared[0], shared[1])) return false;

@@ -51,9 +51,8 @@ const std::vector<Index>& EditableMesh::apply(Change change) {
   }
   if (change.kind == Change::Kind::insertion) {
     const Index vertex = complex.add_vertex(change.place, change.feature);
-    for (auto& tet : created) std::replace(tet.corners.begin(), tet.corners.end(), Change::inserted, vertex);
-    for (auto& face : created_faces)
-      std::replace(face.corners.begin(), face.corners.end(), Change::inserted, vertex);
+    for (auto& tet : created) std::ranges::replace(tet.corners, Change::inserted, vertex);
+    for (auto& face : created_faces) std::ranges::replace(face.corners, Change::inserted, vertex);
     if (change.feature.dimension == 1) {
       complex.divide_curve_edge(change.middle.ends[0], vertex, change.middle.ends[1]);
       curves.divided(vertex, change.middle);

@@ -14,7 +14,7 @@ using Tet = std::array<Index, 4>;
 
 // Rotates the triangle's corners so that the smallest one comes first; its orientation stays.
 Triangle begun_with_smallest(Triangle t) {
-  std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+  std::rotate(t.begin(), std::ranges::min_element(t), t.end());
   return t;
 }
 
@@ -46,7 +46,7 @@ class Filling {
     }
     const Triangle base = front_.back();
     for (const Index apex : vertices_) {
-      if (std::find(base.begin(), base.end(), apex) != base.end()) continue;
+      if (std::ranges::find(base, apex) != base.end()) continue;
       if (steps_left_ == 0 || worst <= above_) return;
       --steps_left_;
       const Tet tet{base[0], base[1], base[2], apex};
@@ -66,12 +66,12 @@ class Filling {
   bool advance(const Tet& tet) {
     for (unsigned corner = 0; corner < 4; ++corner) {
       const Triangle below = begun_with_smallest(turned(side_corners(tet, corner)));
-      if (const auto at = std::find(front_.begin(), front_.end(), below); at != front_.end()) {
+      if (const auto at = std::ranges::find(front_, below); at != front_.end()) {
         front_.erase(at);
         continue;
       }
       const Triangle beyond = turned(below);
-      if (std::find(front_.begin(), front_.end(), beyond) != front_.end()) return false;
+      if (std::ranges::find(front_, beyond) != front_.end()) return false;
       front_.push_back(beyond);
     }
     return true;

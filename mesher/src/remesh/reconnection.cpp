@@ -47,7 +47,7 @@ void Operations::refill(const std::vector<Index>& cavity, Change& change) {
       longest = std::max(longest, squared_distance(mesh_.points[corners[i]], mesh_.points[corners[j]]));
     }
   }
-  std::sort(edges.begin(), edges.end());
+  std::ranges::sort(edges);
   const auto quality_of = [&](const std::array<Index, 4>& v, double above) {
     const double quality = new_quality(v, above);
     if (quality < 0) return quality;

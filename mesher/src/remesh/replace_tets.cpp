@@ -53,7 +53,7 @@ class Replacing {
     operations_.remove_best_edge(tet, removal);
     if (is_as_good_as(least_, removal)) return mended(std::move(removal));
     const auto edges = edges_to_split(corners);
-    return std::any_of(edges.begin(), edges.end(), [this](const auto& edge) { return split(edge); }) ||
+    return std::ranges::any_of(edges, [this](const auto& edge) { return split(edge); }) ||
            (is_as_good_as(mendable * least_, removal) && mended(std::move(removal)));
   }
 
@@ -76,7 +76,7 @@ class Replacing {
     for (const auto& [i, j] : cell_shapes::corner_pairs)
       if (on_no_smooth_patch(corners[i], corners[j])) edges.push_back({corners[i], corners[j]});
     const auto& points = complex().mesh().points;
-    std::sort(edges.begin(), edges.end(), [&](const auto& a, const auto& b) {
+    std::ranges::sort(edges, [&](const auto& a, const auto& b) {
       return squared_distance(points[a[0]], points[a[1]]) > squared_distance(points[b[0]], points[b[1]]);
     });
     return edges;

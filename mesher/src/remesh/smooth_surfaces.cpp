@@ -127,7 +127,7 @@ bool SmoothSurfaces::edge_near(Index patch, const Point& a, const Point& b, Inde
 bool SmoothSurfaces::edges_near(std::span<const Index> old, std::span<const Face> created, std::size_t i,
                                 Index hint) const {
   const auto has_edge = [](const Triangle& t, const Point& a, const Point& b) {
-    return std::find(t.begin(), t.end(), a) != t.end() && std::find(t.begin(), t.end(), b) != t.end();
+    return std::ranges::find(t, a) != t.end() && std::ranges::find(t, b) != t.end();
   };
   const Triangle& t = created[i].corners;
   const Index patch = created[i].patch;
@@ -137,8 +137,8 @@ bool SmoothSurfaces::edges_near(std::span<const Index> old, std::span<const Face
         std::any_of(created.begin(), created.begin() + static_cast<std::ptrdiff_t>(i),
                     [&](const Face& f) { return f.patch == patch && has_edge(f.corners, a, b); });
     if (!asked &&
-        std::none_of(old.begin(), old.end(),
-                     [&](Index f) { return mesh_.face_patch[f] == patch && has_edge(corners(f), a, b); }) &&
+        std::ranges::none_of(
+            old, [&](Index f) { return mesh_.face_patch[f] == patch && has_edge(corners(f), a, b); }) &&
         !edge_near(patch, a, b, hint))
       return false;
   }

@@ -26,8 +26,8 @@ bool equal(const std::array<Index, 3>& a, const std::array<Index, 3>& b) {
 }
 
 bool has_face(const std::array<Index, 4>& tet, const std::array<Index, 3>& face) {
-  return std::count_if(tet.begin(), tet.end(),
-                       [&](Index v) { return v == face[0] || v == face[1] || v == face[2]; }) == 3;
+  return std::ranges::count_if(tet, [&](Index v) { return v == face[0] || v == face[1] || v == face[2]; }) ==
+         3;
 }
 
 constexpr std::size_t stored_at_once = 8192;  // tets in a chunk of one thread
@@ -173,7 +173,7 @@ void TetComplex::ring(Index tet, Index a, Index b, Ring& ring) const {
   };
   const auto across = [&](Index t, Index opposite) {
     const auto& v = tets_[t].corners;
-    return tets_[t].neighbours[static_cast<unsigned>(std::find(v.begin(), v.end(), opposite) - v.begin())];
+    return tets_[t].neighbours[static_cast<unsigned>(std::ranges::find(v, opposite) - v.begin())];
   };
   // At a boundary, go back to the first tet of the ring.
   Index start = tet;
@@ -273,8 +273,7 @@ std::span<const Index> TetComplex::replace(const Replacement& replacement) {
     for (const Index v : corners) old_vertex_tets_.set(v, t);
     for (unsigned corner = 0; corner < 4; ++corner) {
       const auto key = sorted(side_corners(corners, corner));
-      const auto open =
-          std::find_if(open_.begin(), open_.end(), [&](const OpenFace& f) { return equal(f.key, key); });
+      const auto open = std::ranges::find_if(open_, [&](const OpenFace& f) { return equal(f.key, key); });
       if (open == open_.end()) {
         open_.push_back({key, t, corner, none});
         continue;
@@ -355,7 +354,7 @@ void TetComplex::set_curve_edge(Index edge, const std::array<Index, 2>& ends) {
 void TetComplex::join_curve_edges(Index before, Index vertex, Index after) {
   const Index kept = curve_edge(before, vertex), gone = curve_edge(vertex, after);
   std::array<Index, 2> ends = mesh_.edges[kept];  // the kept edge keeps its direction
-  std::replace(ends.begin(), ends.end(), vertex, after);
+  std::ranges::replace(ends, vertex, after);
   set_curve_edge(gone, lost_edge);
   set_curve_edge(kept, ends);
 }
@@ -438,7 +437,7 @@ void TetComplex::write(TetMesh& mesh) const {
 void TetComplex::drop_lost_vertices(TetMesh& mesh) const {
   if (lost_vertices_.empty()) return;
   std::vector<Index> all_lost = lost_vertices_;
-  std::sort(all_lost.begin(), all_lost.end());
+  std::ranges::sort(all_lost);
   std::vector<Index> number(mesh.points.size());
   Index kept = 0;
   auto lost = all_lost.begin();

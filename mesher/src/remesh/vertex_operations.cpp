@@ -93,7 +93,7 @@ bool Operations::faces_are_of_one_patch() const {
 // Adds the edge of a face opposite a corner to the rim, oriented like the face.
 void Operations::add_to_rim(Index face, Index opposite) {
   const auto& v = mesh_.faces[face];
-  const auto i = static_cast<unsigned>(std::find(v.begin(), v.end(), opposite) - v.begin());
+  const auto i = static_cast<unsigned>(std::ranges::find(v, opposite) - v.begin());
   cone_.faces.push_back(face);
   cone_.rim.push_back({v[(i + 1) % 3], v[(i + 2) % 3]});
   cone_.rim_face.push_back(face);
@@ -523,8 +523,8 @@ bool Operations::keeps_topology(Index vertex, Index onto) {
     }
   }
   const auto have = [](const auto& cells, std::initializer_list<Index> vertices) {
-    return std::any_of(cells.begin(), cells.end(), [&](const auto& cell) {
-      return std::all_of(vertices.begin(), vertices.end(), [&](Index v) { return contains(cell, v); });
+    return std::ranges::any_of(cells, [&](const auto& cell) {
+      return std::ranges::all_of(vertices, [&](Index v) { return contains(cell, v); });
     });
   };
   complex_.star(onto, star_);
@@ -534,7 +534,7 @@ bool Operations::keeps_topology(Index vertex, Index onto) {
       if (tet.faces[corner] == none || tet.corners[corner] == onto) continue;
       const auto face = side_corners(tet.corners, corner);
       if (contains(face, vertex)) continue;
-      const auto i = static_cast<unsigned>(std::find(face.begin(), face.end(), onto) - face.begin());
+      const auto i = static_cast<unsigned>(std::ranges::find(face, onto) - face.begin());
       const Index w = face[(i + 1) % 3], x = face[(i + 2) % 3];
       if (have(cone_.rim, {w, x})) return false;
       for (const Index v : {w, x})

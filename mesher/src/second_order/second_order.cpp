@@ -275,8 +275,8 @@ class Curving {
     for (Index m = 0; m < moves_.size(); ++m)
       if (moves_[m].share < 1 && norm(moves_[m].way) > 0) drawn.push_back(m);
     const auto left = [this](Index m) { return (1 - moves_[m].share) * norm(moves_[m].way); };
-    std::sort(drawn.begin(), drawn.end(),
-              [&](Index a, Index b) { return left(a) != left(b) ? left(a) > left(b) : a < b; });
+    std::ranges::sort(drawn,
+                      [&](Index a, Index b) { return left(a) != left(b) ? left(a) > left(b) : a < b; });
     for (const Index m : drawn) {
       if (execution_.cancelled()) return;
       if (norm(moves_[m].way) > farthest * length_of(moves_[m].edge)) continue;
@@ -284,8 +284,8 @@ class Curving {
       for (double share = high; high - low > forward_precision; share = 0.5 * (low + high)) {
         moves_[m].share = share;
         place(moves_[m]);
-        const bool valid = std::all_of(tets_at_move_[m].begin(), tets_at_move_[m].end(),
-                                       [this](Index tet) { return is_valid(curved_tet(mesh_, tet)); });
+        const bool valid = std::ranges::all_of(
+            tets_at_move_[m], [this](Index tet) { return is_valid(curved_tet(mesh_, tet)); });
         (valid ? low : high) = share;
       }
       moves_[m].share = low;
