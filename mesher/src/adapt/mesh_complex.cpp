@@ -5,12 +5,16 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <string>
+#include <string_view>
+#include <tuple>
 #include <utility>
 
-#include "adapt/mesh_sides.h"
 #include "collarmesh/error.h"
 #include "common/cell_shapes.h"
+#include "common/disjoint_sets.h"
 #include "common/sorted.h"
+#include "common/tet_sides.h"
 
 namespace collarmesh::remeshing::adapting {
 
@@ -26,7 +30,104 @@ std::string text(const Point& p) { return fmt::format("({:.9g}, {:.9g}, {:.9g})"
   throw PlcError(message, {{kind, message, std::move(points), at}});
 }
 
+/// Throws PlcError for a cell: "The `what` of the nodes ... at ...", and what is wrong. Nodes have their
+/// numbers in the whole mesh, `given`.
+template <std::size_t n>
+[[noreturn]] void refuse(std::string_view what, std::array<Index, n> cell, const std::vector<Index>& given,
+                         const Point& at, std::string_view wrong,
+                         PlcFault::Kind kind = PlcFault::Kind::intersection) {
+  std::string nodes;
+  for (std::size_t i = 0; i < n; ++i) {
+    cell[i] = given[cell[i]];
+    nodes += fmt::format("{}{}", i == 0 ? "" : i + 1 == n ? " and " : ", ", cell[i]);
+  }
+  refuse(kind, fmt::format("The {} of the nodes {} at {}{}", what, nodes, text(at), wrong),
+         {cell.begin(), cell.end()}, at);
+}
+
 using Ends = std::array<Index, 2>;
+
+using Triangle = std::array<Index, 3>;
+
+/// A triangle that separates a region from another one or from the outside, or that the mesh lists as a face.
+struct MeshSide {
+  Triangle corners;     ///< corners; the tet `behind` is on the triangle's back side
+  Index behind, front;  ///< tets; none: the outside
+  Index face;           ///< index of the mesh's face; none if it is not listed
+};
+
+/// Finds these triangles (if the mesh lists every side of its tets, faces inside a region count if they have
+/// a tag other than 0), in the order of their tets, and which tets are connected without crossing such a
+/// triangle. Throws PlcError for sides that more than two tets share, and for listed faces that are no side
+/// of a tet; messages name points by `given`. Cost: O(n log n).
+struct MeshSides {
+  MeshSides(const TetMesh& mesh, const std::vector<Index>& given);
+
+  std::vector<MeshSide> sides;
+  std::vector<Index> component;  ///< by tet: the first tet connected to it
+};
+
+/// A side of a tet, or a listed face.
+struct Use {
+  Triangle key;  // sorted corners
+  Index tet;     // none: a listed face
+  Index place;   // the opposite corner, or the number of the face
+};
+
+std::vector<Use> uses_of(const TetMesh& mesh) {
+  std::vector<Use> uses;
+  uses.reserve(4 * mesh.tets.size() + mesh.faces.size());
+  for (Index t = 0; t < mesh.tets.size(); ++t)
+    for (unsigned corner = 0; corner < 4; ++corner)
+      uses.push_back({sorted(side_corners(mesh.tets[t], corner)), t, corner});
+  for (Index f = 0; f < mesh.faces.size(); ++f) uses.push_back({sorted(mesh.faces[f]), none, f});
+  std::ranges::sort(uses, {}, [](const Use& use) { return std::tuple(use.key, use.tet, use.place); });
+  return uses;
+}
+
+/// Returns whether the mesh lists every side of its tets as a face, as some programs do. Then being listed
+/// says nothing about a face inside a region.
+bool lists_every_side(const std::vector<Use>& uses) {
+  for (std::size_t i = 0, j = 0; i < uses.size(); i = j) {
+    for (j = i; j < uses.size() && uses[j].key == uses[i].key;) ++j;
+    if (uses[j - 1].tet != none) return false;
+  }
+  return true;
+}
+
+MeshSides::MeshSides(const TetMesh& mesh, const std::vector<Index>& given) {
+  const std::vector<Use> uses = uses_of(mesh);
+  const bool every_side = lists_every_side(uses);
+  DisjointSets connected(mesh.tets.size());
+  for (std::size_t i = 0, j = 0; i < uses.size(); i = j) {
+    for (j = i; j < uses.size() && uses[j].key == uses[i].key;) ++j;
+    const auto tets = static_cast<std::size_t>(std::find_if(uses.begin() + static_cast<std::ptrdiff_t>(i),
+                                                            uses.begin() + static_cast<std::ptrdiff_t>(j),
+                                                            [](const Use& use) { return use.tet == none; }) -
+                                               (uses.begin() + static_cast<std::ptrdiff_t>(i)));
+    const auto& [a, b, c] = uses[i].key;
+    const Point centre = (mesh.points[a] + mesh.points[b] + mesh.points[c]) / 3;
+    if (tets == 0)
+      refuse("triangle", uses[i].key, given, centre,
+             " is listed as a face but is no side of a tetrahedron; remove it from the file.");
+    if (tets > 2)
+      refuse("triangle", uses[i].key, given, centre,
+             fmt::format(" is a side of {} tetrahedra; remove those that overlap others.", tets));
+    const bool listed = i + tets < j;
+    const bool counts = listed && !(every_side && mesh.face_tag[uses[i + tets].place] == 0);
+    const Index first = uses[i].tet, second = tets == 2 ? uses[i + 1].tet : none;
+    if (!counts && second != none && mesh.tet_region[first] == mesh.tet_region[second])
+      connected.unite(first, second);
+    else
+      sides.push_back({side_corners(mesh.tets[first], uses[i].place), first, second,
+                       listed ? uses[i + tets].place : none});
+  }
+  std::ranges::sort(sides, [](const MeshSide& a, const MeshSide& b) {
+    return a.behind != b.behind ? a.behind < b.behind : sorted(a.corners) < sorted(b.corners);
+  });
+  component.resize(mesh.tets.size());
+  for (Index t = 0; t < mesh.tets.size(); ++t) component[t] = connected.find(t);
+}
 
 bool less(const Point& a, const Point& b) {
   return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
@@ -98,11 +199,8 @@ class ComplexBuilder {
     std::ranges::sort(joined);
     for (const auto& [a, b] : mesh_.edges)
       if (!std::ranges::binary_search(joined, sorted(a, b)))
-        refuse(PlcFault::Kind::intersection,
-               fmt::format("The line of the nodes {} and {} at {} is listed but is no edge of a tetrahedron; "
-                           "remove it from the file.",
-                           given_[a], given_[b], text(mesh_.points[a])),
-               {given_[a], given_[b]}, mesh_.points[a]);
+        refuse("line", Ends{a, b}, given_, mesh_.points[a],
+               " is listed but is no edge of a tetrahedron; remove it from the file.");
   }
 
   double six_volume_of(Index tet) const {
@@ -116,17 +214,13 @@ class ComplexBuilder {
     for (const MeshSide& side : found_.sides)
       for (const Index tet : {side.behind, side.front}) {
         if (tet == none) continue;
-        const auto& [a, b, c, d] = mesh_.tets[tet];
         Box box;
         for (const Index v : mesh_.tets[tet]) box.add(mesh_.points[v]);
         const double length = box.diagonal();
         if (six_volume_of(tet) >= -rounded_volume * length * length * length) continue;
-        refuse(PlcFault::Kind::intersection,
-               fmt::format(
-                   "The tetrahedron of the nodes {}, {}, {} and {} at {} is inverted and has a side on a "
-                   "boundary; exchange two of its nodes, or move them until its volume is positive.",
-                   given_[a], given_[b], given_[c], given_[d], text(mesh_.points[a])),
-               {given_[a], given_[b], given_[c], given_[d]}, mesh_.points[a]);
+        refuse("tetrahedron", mesh_.tets[tet], given_, mesh_.points[mesh_.tets[tet][0]],
+               " is inverted and has a side on a boundary; exchange two of its nodes, or move them until its "
+               "volume is positive.");
       }
   }
 
@@ -204,13 +298,8 @@ class ComplexBuilder {
     if (missing == used.end() && side_of_.size() == plc_.triangles.size()) return;
     const Triangle& corners =
         found_.sides[missing == used.end() ? 0 : static_cast<std::size_t>(missing - used.begin())].corners;
-    const Point& at = mesh_.points[corners[0]];
-    refuse(
-        PlcFault::Kind::degenerate_facet,
-        fmt::format("The side of a tetrahedron on a boundary, of the nodes {}, {} and {} at {}, has no area; "
-                    "move one of its nodes.",
-                    given_[corners[0]], given_[corners[1]], given_[corners[2]], text(at)),
-        {given_[corners[0]], given_[corners[1]], given_[corners[2]]}, at);
+    refuse("side of a tetrahedron on a boundary,", corners, given_, mesh_.points[corners[0]],
+           ", has no area; move one of its nodes.", PlcFault::Kind::degenerate_facet);
   }
 
   Triangle in_mesh(const Plc::Triangle& t) const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/contains.h"
 
@@ -96,7 +97,8 @@ void Proposer::find_neighbours(Index vertex) {
       squared_shortest_ = std::min(squared_shortest_, squared);
       neighbours_.push_back({rule_.squared_relative_length(squared, vertex, w), squared, w});
     }
-  std::ranges::sort(neighbours_);
+  std::ranges::sort(neighbours_, {},
+                    [](const Neighbour& n) { return std::pair(n.squared_relative_length, n.vertex); });
 }
 
 // Returns whether the edges that a collapse makes have allowed lengths: none is longer than allowed, unless

@@ -47,12 +47,6 @@ class Proposer {
   struct Neighbour {
     double squared_relative_length, squared_length;
     Index vertex;
-
-    friend bool operator<(const Neighbour& x, const Neighbour& y) {
-      return x.squared_relative_length != y.squared_relative_length
-                 ? x.squared_relative_length < y.squared_relative_length
-                 : x.vertex < y.vertex;
-    }
   };
 
   const TetComplex& complex() const { return edited_.complex; }

@@ -107,8 +107,7 @@ bool Core::push(Heights& heights, const std::vector<std::uint8_t>& levels) {
     failed_ = nodes_near(poor, rings);
   for (Index n = 0; n < heights.size(); ++n)
     if (!is_reached(n, heights)) failed_.push_back(n);
-  std::sort(failed_.begin(), failed_.end());
-  failed_.erase(std::unique(failed_.begin(), failed_.end()), failed_.end());
+  sort_uniquely(failed_);
   return false;
 }
 
@@ -147,8 +146,7 @@ void Core::fit_tets(Heights& heights, const std::vector<std::uint8_t>& levels) {
         for (const Index v : complex[tets[i]].corners)
           if (v < node_of_.size() && node_of_[v] != none) at.push_back(node_of_[v]);
     if (at.empty()) return;
-    std::sort(at.begin(), at.end());
-    at.erase(std::unique(at.begin(), at.end()), at.end());
+    sort_uniquely(at);
     for (const Index n : at)
       if (heights[n] > 0) heights.lower(n, fitting * heights[n], Cause::core);
     heights.settle();
@@ -322,8 +320,7 @@ std::vector<double> Core::shares_of(const std::vector<Vector>& moves, const std:
         for (const Index v : complex[moved[i]].corners)
           if (shares[v] > 0) at.push_back(v);
     if (at.empty()) return shares;
-    std::sort(at.begin(), at.end());
-    at.erase(std::unique(at.begin(), at.end()), at.end());
+    sort_uniquely(at);
     changed.assign(changed.size(), false);
     for (const Index v : at) {
       shares[v] = pass < most_halvings ? 0.5 * shares[v] : 0;

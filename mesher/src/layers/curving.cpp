@@ -261,8 +261,7 @@ class Curving {
       if (!in_core(t) && !jacobian_exceeds(curved_tet(mesh_, t))) note(mesh_.tets[t], cell_shapes::tet_edges);
     for (const Index t : tets_at_wall_)
       if (!jacobian_exceeds(curved_tet(mesh_, t))) note(mesh_.tets[t], cell_shapes::tet_edges);
-    std::sort(at.begin(), at.end());
-    at.erase(std::unique(at.begin(), at.end()), at.end());
+    sort_uniquely(at);
     return at;
   }
 

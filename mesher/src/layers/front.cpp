@@ -7,6 +7,7 @@
 
 #include "common/contains.h"
 #include "common/edge_key.h"
+#include "common/sorted.h"
 #include "common/tet_sides.h"
 #include "layers/direction.h"
 
@@ -24,10 +25,7 @@ bool is_alike(const std::array<Index, 3>& t, const std::array<Index, 3>& u) {
   return false;
 }
 
-void sort_and_drop_repeated(std::vector<Index>& list) {
-  std::sort(list.begin(), list.end());
-  list.erase(std::unique(list.begin(), list.end()), list.end());
-}
+void sort_and_drop_repeated(std::vector<Index>& list) { sort_uniquely(list); }
 
 }  // namespace
 
@@ -85,8 +83,7 @@ void Front::find_sides() {
       on_wall[side.corners[i]] = true;
       wall_edges_.push_back(edge_key(side.corners[i], side.corners[(i + 1) % 3]));
     }
-  std::sort(wall_edges_.begin(), wall_edges_.end());
-  wall_edges_.erase(std::unique(wall_edges_.begin(), wall_edges_.end()), wall_edges_.end());
+  sort_uniquely(wall_edges_);
 }
 
 void Front::add_side(Index tet, unsigned corner) {

@@ -8,6 +8,7 @@
 #include "common/box_tree.h"
 #include "common/layer_jacobians.h"
 #include "common/parallel_for.h"
+#include "common/sorted.h"
 
 namespace collarmesh::layering {
 
@@ -236,8 +237,7 @@ bool Heights::unfold(bool strictly) {
   std::vector<Index> at;
   for (std::size_t s = 0; s < folded.size(); ++s)
     if (folded[s] != 0) at.insert(at.end(), front_.sides[s].nodes.begin(), front_.sides[s].nodes.end());
-  std::sort(at.begin(), at.end());
-  at.erase(std::unique(at.begin(), at.end()), at.end());
+  sort_uniquely(at);
   for (const Index n : at)
     if (length_[n] > 0) lower(n, strictly ? 0 : lowering * length_[n], Cause::fold);
   return !at.empty();
