@@ -20,7 +20,8 @@ class FeatureShapes {
   /// Returns the segments of a curve, as triangles without area.
   const TriangleHierarchy& curve(Index curve) {
     auto& found = curves_[curve];
-    if (!found) found = std::make_unique<TriangleHierarchy>(plc_.points, flat_triangles_of(plc_.curves[curve]));
+    if (!found)
+      found = std::make_unique<TriangleHierarchy>(plc_.points, flat_triangles_of(plc_.curves[curve]));
     return *found;
   }
   /// Returns the triangles of a patch.
@@ -30,7 +31,8 @@ class FeatureShapes {
   }
   /// Returns the nearest point of a curve or patch.
   Point nearest(const TetMesh::VertexFeature& feature, const Point& p) {
-    const TriangleHierarchy& pieces = feature.dimension == 1 ? curve(feature.feature) : patch(feature.feature);
+    const TriangleHierarchy& pieces =
+        feature.dimension == 1 ? curve(feature.feature) : patch(feature.feature);
     const auto [a, b, c] = pieces.corners(pieces.nearest(p));
     return nearest_point_on_triangle(p, a, b, c);
   }
