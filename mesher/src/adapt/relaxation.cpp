@@ -45,36 +45,40 @@ Relaxation::Relaxation(EditableMesh& edited, const MeshOptions& options, const s
 
 void Relaxation::contract() {
   for (const double length : lengths) {
-    kept_.assign(mesh().points.size(), 0);
-    for (unsigned pass = 0; pass < most_relaxations; ++pass)
-      if (!contract_shorter_than(length, share_left)) break;
-    for (unsigned pass = 0; pass < most_improvements; ++pass)
-      if (!improve_below(good, pass == 0 ? Means::edges : Means::vertices)) break;
-    for (unsigned pass = 0; pass < most_relaxations; ++pass)
-      if (!contract_shorter_than(length, share_left)) break;
+    contract_short(length);
+    improve_tets(good, Means::vertices);
+    contract_again(length);
   }
 }
 
 void Relaxation::contract_short(double below) {
   kept_.assign(mesh().points.size(), 0);
-  for (unsigned pass = 0; pass < most_relaxations; ++pass)
-    if (!contract_shorter_than(below, share_left)) break;
+  contract_again(below);
 }
 
 void Relaxation::improve() {
-  for (unsigned pass = 0; pass < most_improvements; ++pass)
-    if (!improve_below(better, pass == 0 ? Means::edges : Means::moves)) break;
+  improve_tets(better, Means::moves);
+  contract_again(lengths.back());
+  improve_tets(better, Means::vertices);
+}
+
+/// Repeats collapses as long as that is worthwhile.
+void Relaxation::contract_again(double below) {
   for (unsigned pass = 0; pass < most_relaxations; ++pass)
-    if (!contract_shorter_than(lengths.back(), share_left)) break;
+    if (!contract_shorter_than(below)) break;
+}
+
+/// Improves tets as long as that is worthwhile, at first by removing edges alone.
+void Relaxation::improve_tets(double enough, Means later) {
   for (unsigned pass = 0; pass < most_improvements; ++pass)
-    if (!improve_below(better, pass == 0 ? Means::edges : Means::vertices)) break;
+    if (!improve_below(enough, pass == 0 ? Means::edges : later)) break;
 }
 
 double Relaxation::relative_length(Index a, Index b) const {
   return distance(mesh().points[a], mesh().points[b]) / (0.5 * (sizes_[a] + sizes_[b]));
 }
 
-bool Relaxation::contract_shorter_than(double below, double share) {
+bool Relaxation::contract_shorter_than(double below) {
   std::vector<double> shortest(mesh().points.size(), INFINITY);
   for (Index t = 0; t < complex().size(); ++t) {
     if (!complex()[t].alive) continue;
@@ -93,7 +97,7 @@ bool Relaxation::contract_shorter_than(double below, double share) {
     if (stopped()) return false;
     const Index v = candidate.vertex;
     if (!complex().in_use(v) || kept_[v] > changed_[v]) continue;
-    if (contract_at(v, below, share))
+    if (contract_at(v, below))
       ++contractions_;
     else
       kept_[v] = ++now_;
@@ -102,11 +106,11 @@ bool Relaxation::contract_shorter_than(double below, double share) {
          least_share_changed * static_cast<double>(shortest.size());
 }
 
-bool Relaxation::contract_at(Index vertex, double below, double share) {
+bool Relaxation::contract_at(Index vertex, double below) {
   complex().star(vertex, star_);
   if (star_.size() > most_tets || !operations_.begin_contractions(vertex, star_)) return false;
   find_neighbours(vertex, below);
-  const double least_quality = std::max(least, std::min(share * operations_.worst_at_vertex(), good));
+  const double least_quality = std::max(least, std::min(share_left * operations_.worst_at_vertex(), good));
   unsigned tries = 0;
   for (const Near& onto : near_) {
     if (++tries > most_tries) return false;

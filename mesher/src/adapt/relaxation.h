@@ -48,10 +48,12 @@ class Relaxation {
   const TetMesh& mesh() const { return edited_.complex.mesh(); }
   double quality(Index tet) const { return rule_.quality(complex().corners(tet), complex()[tet].corners); }
   double relative_length(Index a, Index b) const;
-  bool contract_shorter_than(double below, double share);
-  bool contract_at(Index vertex, double below, double share);
+  void contract_again(double below);
+  bool contract_shorter_than(double below);
+  bool contract_at(Index vertex, double below);
   void find_neighbours(Index vertex, double below);
   bool may_share_feature(Index vertex, Index onto) const;
+  void improve_tets(double enough, Means later);
   bool improve_below(double enough, Means means);
   Change improvement_of(Index tet, double enough, Means means);
   void apply(Change change);

@@ -223,17 +223,13 @@ class BoundaryProjection {
     if (!options_.bounds.thin_in_narrow_places_only) return around;
     const remeshing::CellBounds now(plc_, mesh_, options_.bounds);
     for (Index t = 0; t < mesh_.tets.size() && !execution_.cancelled(); ++t) {
-      if (now.allow(corners(t), mesh_.tets[t]) || !cells_.allow(room_.origins_of(t), mesh_.tets[t])) continue;
+      if (now.allow(room_.corners_of(t), mesh_.tets[t]) || !cells_.allow(room_.origins_of(t), mesh_.tets[t]))
+        continue;
       if (move_farthest_back(mesh_.tets[t], around)) continue;
       for (const Index p : mesh_.tets[t])
         for (const Index other : room_.tets_at()[p]) move_farthest_back(mesh_.tets[other], around);
     }
     return around;
-  }
-
-  remeshing::Corners corners(Index tet) const {
-    const auto& [a, b, c, d] = mesh_.tets[tet];
-    return {mesh_.points[a], mesh_.points[b], mesh_.points[c], mesh_.points[d]};
   }
 
   void go_back(Index p, std::vector<Index>& around) {

@@ -35,6 +35,7 @@ class Relaxation {
   const CellsAtVertices& tets_at() const { return tets_at_; }
   /// Returns the initial place of the vertex.
   const Point& origin(Index vertex) const { return origins_[vertex]; }
+  remeshing::Corners corners_of(Index tet) const { return corners(tet, mesh_.points); }
   /// Returns the initial corners of the tet.
   remeshing::Corners origins_of(Index tet) const { return corners(tet, origins_); }
   /// Returns the initial shortest edge at the vertex.

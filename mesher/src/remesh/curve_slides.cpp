@@ -6,6 +6,7 @@
 
 #include "common/round_curves.h"
 #include "common/segments.h"
+#include "common/sorted.h"
 #include "location/triangle_hierarchy.h"
 
 namespace collarmesh::remeshing {
@@ -44,13 +45,11 @@ void CurveSlides::find_all_places() const {
   }
   // Counts only neighbours on the curve that are joined by an edge.
   std::vector<std::array<Index, 2>> edges;
-  for (const auto& e : mesh_.edges) edges.push_back({std::min(e[0], e[1]), std::max(e[0], e[1])});
+  for (const auto& e : mesh_.edges) edges.push_back(sorted(e));
   std::ranges::sort(edges);
   for (Index v = 0; v < places_.size(); ++v)
     for (Index& n : places_[v].neighbours)
-      if (n != none &&
-          !std::ranges::binary_search(edges, std::array<Index, 2>{std::min(v, n), std::max(v, n)}))
-        n = none;
+      if (n != none && !std::ranges::binary_search(edges, sorted(v, n))) n = none;
 }
 
 void CurveSlides::find_places(Index curve, std::vector<Index>& vertices,

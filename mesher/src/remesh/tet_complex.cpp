@@ -159,21 +159,14 @@ void TetComplex::ring(Index tet, Index a, Index b, Ring& ring) const {
   ring.link.clear();
   // Returns the two other corners of a tet, in the order for which (a, b, c, d) is positive.
   const auto others = [&](Index t) {
-    const auto& v = tets_[t].corners;
-    unsigned ia = 0, ib = 0;
-    for (unsigned i = 0; i < 4; ++i) {
-      if (v[i] == a) ia = i;
-      if (v[i] == b) ib = i;
-    }
     // In the positively oriented face opposite a, begin with the corner after b.
-    const auto face = side_corners(v, ia);
-    for (unsigned i = 0; i < 3; ++i)
-      if (face[i] == v[ib]) return std::array<Index, 2>{face[(i + 1) % 3], face[(i + 2) % 3]};
-    return std::array<Index, 2>{none, none};
+    const auto& v = tets_[t].corners;
+    const auto face = side_corners(v, place_of(a, v));
+    const auto i = static_cast<unsigned>(std::ranges::find(face, b) - face.begin());
+    return std::array<Index, 2>{face[(i + 1) % 3], face[(i + 2) % 3]};
   };
   const auto across = [&](Index t, Index opposite) {
-    const auto& v = tets_[t].corners;
-    return tets_[t].neighbours[static_cast<unsigned>(std::ranges::find(v, opposite) - v.begin())];
+    return tets_[t].neighbours[place_of(opposite, tets_[t].corners)];
   };
   // At a boundary, go back to the first tet of the ring.
   Index start = tet;
@@ -248,9 +241,9 @@ std::span<const Index> TetComplex::replace(const Replacement& replacement) {
       old_vertex_tets_.set(v, none);
       cavity_vertices_.push_back(v);
     }
-    old_tets_.note(t);
-    tets_[t].alive = false;
-    ++tets_[t].generation;
+    Tet& removed = changing(t);
+    removed.alive = false;
+    ++removed.generation;
     free_.push_back(t);
   }
   created_.clear();
@@ -264,8 +257,7 @@ std::span<const Index> TetComplex::replace(const Replacement& replacement) {
     } else {
       t = old_free_.pop();
     }
-    old_tets_.note(t);
-    Tet& tet = tets_[t];
+    Tet& tet = changing(t);
     tet = {corners, {none, none, none, none}, {none, none, none, none}, tags_[i].first, tet.generation, true,
            false};
     old_origins_.set(t, tags_[i].second);
@@ -280,7 +272,7 @@ std::span<const Index> TetComplex::replace(const Replacement& replacement) {
       }
       tet.neighbours[corner] = open->tet;
       tet.faces[corner] = open->face;
-      if (open->tet != none) set_neighbour(open->tet, open->corner, t);
+      if (open->tet != none) changing(open->tet).neighbours[open->corner] = t;
       *open = open_.back();
       open_.pop_back();
     }
@@ -288,7 +280,7 @@ std::span<const Index> TetComplex::replace(const Replacement& replacement) {
   // The remaining faces of the border have no tet on this side any more.
   for (const OpenFace& open : open_) {
     if (open.tet == none) continue;
-    set_neighbour(open.tet, open.corner, none);
+    changing(open.tet).neighbours[open.corner] = none;
     for (const Index v : open.key) old_vertex_tets_.set(v, open.tet);
   }
   for (const Index v : cavity_vertices_)
@@ -331,13 +323,13 @@ void TetComplex::make_faces(const Replacement& replacement) {
 void TetComplex::set_face(const std::array<Index, 3>& corners, Index face) {
   const auto key = sorted(corners);
   for (const OpenFace& open : open_)
-    if (open.tet != none && equal(open.key, key)) set_face_of_tet(open.tet, open.corner, face);
+    if (open.tet != none && equal(open.key, key)) changing(open.tet).faces[open.corner] = face;
   for (const Index t : created_) {
     if (!has_face(tets_[t].corners, key)) continue;
     const unsigned corner = corner_across(t, key);
-    set_face_of_tet(t, corner, face);
+    changing(t).faces[corner] = face;
     const Index other = tets_[t].neighbours[corner];
-    if (other != none) set_face_of_tet(other, corner_across(other, key), face);
+    if (other != none) changing(other).faces[corner_across(other, key)] = face;
   }
 }
 
@@ -369,14 +361,9 @@ void TetComplex::divide_curve_edge(Index before, Index vertex, Index after) {
   set_curve_edge(added, {vertex, last});
 }
 
-void TetComplex::set_neighbour(Index tet, unsigned corner, Index neighbour) {
+TetComplex::Tet& TetComplex::changing(Index tet) {
   old_tets_.note(tet);
-  tets_[tet].neighbours[corner] = neighbour;
-}
-
-void TetComplex::set_face_of_tet(Index tet, unsigned corner, Index face) {
-  old_tets_.note(tet);
-  tets_[tet].faces[corner] = face;
+  return tets_[tet];
 }
 
 void TetComplex::begin_trial() {

@@ -125,8 +125,8 @@ class TetComplex {
   void find_pinched_vertices();
   void make_faces(const Replacement& replacement);
   void set_face(const std::array<Index, 3>& corners, Index face);
-  void set_neighbour(Index tet, unsigned corner, Index neighbour);
-  void set_face_of_tet(Index tet, unsigned corner, Index face);
+  /// Returns a tet that is about to change.
+  Tet& changing(Index tet);
   void set_curve_edge(Index edge, const std::array<Index, 2>& ends);
   void forget_curve_edge(std::size_t edge);
   void write(TetMesh& mesh) const;

@@ -150,15 +150,16 @@ class Curving {
   Point home(Index edge) const {
     const auto [a, b] = edges_.ends(edge);
     const Point middle = 0.5 * (mesh_.points[a] + mesh_.points[b]);
-    const auto at = std::lower_bound(slight_moves_.begin(), slight_moves_.end(), edge,
-                                     [](const SlightMove& move, Index e) { return move.edge < e; });
-    return at != slight_moves_.end() && at->edge == edge ? middle + at->way : middle;
+    const SlightMove* const slight = found_in(slight_moves_, edge);
+    return slight != nullptr ? middle + slight->way : middle;
   }
 
-  const Move* move_of(Index edge) const {
-    const auto at = std::lower_bound(moves_.begin(), moves_.end(), edge,
-                                     [](const Move& move, Index e) { return move.edge < e; });
-    return at != moves_.end() && at->edge == edge ? &*at : nullptr;
+  const Move* move_of(Index edge) const { return found_in(moves_, edge); }
+
+  template <class Moves>
+  static const typename Moves::value_type* found_in(const Moves& moves, Index edge) {
+    const auto at = std::ranges::lower_bound(moves, edge, {}, &Moves::value_type::edge);
+    return at != moves.end() && at->edge == edge ? &*at : nullptr;
   }
 
   std::optional<std::array<Index, 2>> edge_at_flat_corner(const std::array<Index, 4>& tet,
