@@ -150,8 +150,8 @@ class Curving {
   Point home(Index edge) const {
     const auto [a, b] = edges_.ends(edge);
     const Point middle = 0.5 * (mesh_.points[a] + mesh_.points[b]);
-    const SlightMove* const slight = found_in(slight_moves_, edge);
-    return slight != nullptr ? middle + slight->way : middle;
+    const SlightMove* const move = found_in(slight_moves_, edge);
+    return move != nullptr ? middle + move->way : middle;
   }
 
   const Move* move_of(Index edge) const { return found_in(moves_, edge); }
