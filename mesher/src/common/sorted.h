@@ -26,8 +26,8 @@ std::array<Index, corner_count> sorted(std::array<Index, corner_count> corners) 
 template <class Items, class Key = std::identity>
 void sort_uniquely(Items& items, const Key& key = {}) {
   std::ranges::sort(items, {}, key);
-  const auto repeated = std::ranges::unique(items, {}, key);
-  items.erase(repeated.begin(), repeated.end());
+  const auto same = [&](const auto& a, const auto& b) { return std::invoke(key, a) == std::invoke(key, b); };
+  items.erase(std::unique(items.begin(), items.end(), same), items.end());
 }
 
 }  // namespace collarmesh
