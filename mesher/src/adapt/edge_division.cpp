@@ -10,6 +10,7 @@
 #include "common/cell_shapes.h"
 #include "common/contains.h"
 #include "common/found_in_ranges.h"
+#include "common/sort_uniquely.h"
 #include "common/sorted.h"
 #include "common/tet_sides.h"
 

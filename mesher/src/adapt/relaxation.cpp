@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "common/cell_shapes.h"
-#include "common/sorted.h"
+#include "common/sort_uniquely.h"
 
 namespace collarmesh::remeshing::adapting {
 

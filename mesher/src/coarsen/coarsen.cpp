@@ -17,7 +17,7 @@
 #include "common/cell_shapes.h"
 #include "common/found_in_ranges.h"
 #include "common/parallel_for.h"
-#include "common/sorted.h"
+#include "common/sort_uniquely.h"
 #include "common/tet_sides.h"
 #include "common/thread_limit.h"
 

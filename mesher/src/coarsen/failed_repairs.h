@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "coarsen/proposals.h"
-#include "common/sorted.h"
+#include "common/sort_uniquely.h"
 
 namespace collarmesh::remeshing::coarsening {
 

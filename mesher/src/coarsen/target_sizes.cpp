@@ -67,14 +67,14 @@ class TargetSizes {
   double size_on_curve(Index curve, const Point& p) {
     if (options_.elements_per_circle == 0 || plc_.curves[curve].straight)
       return sizing_.feature_size(1, curve, p);
-    const Index at = shapes_.curve(curve).nearest(p);
+    const Index at = nearest_triangle(shapes_.curve(curve), p);
     return sizing_.curve_size(curve, at, at, p);
   }
 
   double size_on_patch(Index patch, const Point& p) {
     if (options_.elements_per_circle == 0 || plc_.patches[patch].planar)
       return sizing_.feature_size(2, patch, p);
-    const Index at = shapes_.patch(patch).nearest(p);
+    const Index at = nearest_triangle(shapes_.patch(patch), p);
     return sizing_.triangle_size(patch, plc_.patches[patch].first_triangle + at, p);
   }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <functional>
 #include <utility>
 
 #include "collarmesh/geometry.h"
@@ -20,14 +19,6 @@ std::array<Index, corner_count> sorted(std::array<Index, corner_count> corners) 
     for (std::size_t i = last; i > 0 && corners[i] < corners[i - 1]; --i)
       std::swap(corners[i], corners[i - 1]);
   return corners;
-}
-
-/// Sorts a list by a key and leaves only one item of each key.
-template <class Items, class Key = std::identity>
-void sort_uniquely(Items& items, const Key& key = {}) {
-  std::ranges::sort(items, {}, key);
-  const auto same = [&](const auto& a, const auto& b) { return std::invoke(key, a) == std::invoke(key, b); };
-  items.erase(std::unique(items.begin(), items.end(), same), items.end());
 }
 
 }  // namespace collarmesh

@@ -7,7 +7,7 @@
 
 #include "common/cell_shapes.h"
 #include "common/contains.h"
-#include "common/sorted.h"
+#include "common/sort_uniquely.h"
 
 namespace collarmesh::remeshing::improvement {
 

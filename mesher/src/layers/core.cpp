@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/parallel_for.h"
+#include "common/sort_uniquely.h"
 #include "common/sorted.h"
 #include "common/tet_sides.h"
 #include "improve/improve_edited.h"

@@ -11,6 +11,7 @@
 #include "common/cell_shapes.h"
 #include "common/edge_key.h"
 #include "common/layer_jacobians.h"
+#include "common/sort_uniquely.h"
 #include "common/sorted.h"
 #include "common/tet_sides.h"
 

@@ -7,7 +7,7 @@
 
 #include "common/contains.h"
 #include "common/edge_key.h"
-#include "common/sorted.h"
+#include "common/sort_uniquely.h"
 #include "common/tet_sides.h"
 #include "layers/direction.h"
 

@@ -8,7 +8,7 @@
 #include "common/box_tree.h"
 #include "common/layer_jacobians.h"
 #include "common/parallel_for.h"
-#include "common/sorted.h"
+#include "common/sort_uniquely.h"
 
 namespace collarmesh::layering {
 

@@ -10,6 +10,13 @@
 
 namespace collarmesh {
 
+/// Returns the triangle nearest to p.
+inline Index nearest_triangle(const TriangleHierarchy& triangles, const Point& p) {
+  Index found = none;
+  triangles.squared_distance_to(p, INFINITY, &found);
+  return found;
+}
+
 /// The tessellated curves and patches of a complex, with hierarchies that are built on first use.
 class FeatureShapes {
  public:
@@ -33,7 +40,7 @@ class FeatureShapes {
   Point nearest(const TetMesh::VertexFeature& feature, const Point& p) {
     const TriangleHierarchy& pieces =
         feature.dimension == 1 ? curve(feature.feature) : patch(feature.feature);
-    const auto [a, b, c] = pieces.corners(pieces.nearest(p));
+    const auto [a, b, c] = pieces.corners(nearest_triangle(pieces, p));
     return nearest_point_on_triangle(p, a, b, c);
   }
 

@@ -96,13 +96,6 @@ class TriangleHierarchy {
   double squared_distance_to(const Point& p, double bound, Index* nearest, const Skips& skips,
                              const Counts& counts) const;
 
-  /// Returns the triangle nearest to p.
-  Index nearest(const Point& p) const {
-    Index found = none;
-    squared_distance_to(p, INFINITY, &found);
-    return found;
-  }
-
   /// Returns a triangle whose squared distance from p is below `bound` (the `hint` if it is one), or none.
   Index triangle_within(const Point& p, double bound, Index hint = none) const {
     return triangle_within(p, bound, hint, [](Index) { return true; });

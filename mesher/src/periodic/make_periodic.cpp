@@ -4,7 +4,7 @@
 
 #include "collarmesh/periodic.h"
 #include "common/distance_tree.h"
-#include "common/sorted.h"
+#include "common/sort_uniquely.h"
 #include "periodic/cavity.h"
 #include "periodic/chains.h"
 #include "periodic/feature_images.h"

@@ -6,7 +6,7 @@
 
 #include "common/box_tree.h"
 #include "common/edge_key.h"
-#include "common/sorted.h"
+#include "common/sort_uniquely.h"
 
 namespace collarmesh::periodicity {
 

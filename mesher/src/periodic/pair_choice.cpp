@@ -11,7 +11,7 @@
 
 #include "collarmesh/error.h"
 #include "common/named_tags.h"
-#include "common/sorted.h"
+#include "common/sort_uniquely.h"
 
 namespace collarmesh::periodicity {
 

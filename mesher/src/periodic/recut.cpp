@@ -8,6 +8,7 @@
 #include "common/cell_shapes.h"
 #include "common/edge_key.h"
 #include "common/flat_table.h"
+#include "common/sort_uniquely.h"
 #include "common/sorted.h"
 #include "common/tet_sides.h"
 #include "periodic/pair_choice.h"

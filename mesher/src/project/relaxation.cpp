@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "common/cell_shapes.h"
-#include "common/sorted.h"
+#include "common/sort_uniquely.h"
 #include "delaunay/predicates.h"
 #include "remesh/shape.h"
 

@@ -7,7 +7,7 @@
 #include "common/round_curves.h"
 #include "common/segments.h"
 #include "common/sorted.h"
-#include "location/triangle_hierarchy.h"
+#include "location/feature_shapes.h"
 
 namespace collarmesh::remeshing {
 
@@ -57,7 +57,7 @@ void CurveSlides::find_places(Index curve, std::vector<Index>& vertices,
   const auto& lengths = paths_.lengths(curve);
   const TriangleHierarchy hierarchy(plc_.points, flat_triangles_of(plc_.curves[curve]));
   for (const Index v : vertices) {
-    const Index at = hierarchy.nearest(mesh_.points[v]);
+    const Index at = nearest_triangle(hierarchy, mesh_.points[v]);
     const double step = distance(mesh_.points[v], hierarchy.corners(at)[0]);
     places_[v].parameter = std::min(lengths[at] + step, lengths[at + 1]);
   }

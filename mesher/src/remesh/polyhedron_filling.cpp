@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "common/sorted.h"
+#include "common/sort_uniquely.h"
 #include "common/tet_sides.h"
 
 namespace collarmesh::remeshing {

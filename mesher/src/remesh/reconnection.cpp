@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/cell_shapes.h"
+#include "common/sort_uniquely.h"
 #include "common/sorted.h"
 #include "remesh/operations.h"
 #include "remesh/polyhedron_filling.h"

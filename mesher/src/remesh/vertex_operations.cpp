@@ -5,7 +5,7 @@
 
 #include "common/contains.h"
 #include "common/index_set.h"
-#include "common/sorted.h"
+#include "common/sort_uniquely.h"
 #include "remesh/operations.h"
 #include "remesh/shape.h"
 

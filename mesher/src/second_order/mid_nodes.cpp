@@ -4,7 +4,7 @@
 #include <cassert>
 
 #include "common/edge_key.h"
-#include "common/sorted.h"
+#include "common/sort_uniquely.h"
 
 namespace collarmesh::second_order {
 

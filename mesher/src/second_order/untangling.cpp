@@ -5,7 +5,7 @@
 #include <deque>
 
 #include "collarmesh/curved_tet.h"
-#include "common/sorted.h"
+#include "common/sort_uniquely.h"
 #include "second_order/jacobian_coefficients.h"
 
 namespace collarmesh::second_order {
