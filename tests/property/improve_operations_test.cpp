@@ -59,7 +59,8 @@ struct Workbench {
 
   double worst(std::span<const Index> tets) const {
     double quality = INFINITY;
-    for (const Index t : tets) quality = std::min(quality, edited.quality(t));
+    for (const Index t : tets)
+      quality = std::min(quality, remeshing::shape_quality(edited.complex.corners(t)));
     return quality;
   }
 
