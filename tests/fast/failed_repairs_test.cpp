@@ -9,8 +9,8 @@
 namespace collarmesh::failed_repairs_test {
 namespace {
 
-using coarsening::Changes;
-using coarsening::FailedRepairs;
+using remeshing::coarsening::Changes;
+using remeshing::coarsening::FailedRepairs;
 
 std::vector<Index> looked_at(const FailedRepairs& failed, Index vertex, const Changes& changes) {
   const auto found = failed.still_fails(vertex, changes);

@@ -10,7 +10,7 @@
 #include <set>
 
 #include "collarmesh/plc_builder.h"
-#include "improve/thin_shape.h"
+#include "remesh/thin_shape.h"
 #include "support/shapes.h"
 
 namespace collarmesh::forced_edges_test {
@@ -167,7 +167,7 @@ TEST(ForcedEdges, ThinTetsMayBeAsSharpAsTheyLeaveThem) {
   mesh.points.resize(4);
   const auto forced =
       std::make_shared<const ForcedEdges>(faces.with({faces.below, faces.below, faces.below, faces.above}));
-  const improvement::ThinShape with(faces.plc, mesh, 8, 0, forced), without(faces.plc, mesh, 8, 0, nullptr);
+  const remeshing::ThinShape with(faces.plc, mesh, 8, 0, forced), without(faces.plc, mesh, 8, 0, nullptr);
   for (const double height : {0.3, 0.09, 0.01, 1e-4}) {
     const Corners prism{Point{0, 0, 0}, Point{1, 0, 0}, Point{0, 1, 0}, Point{0, 0, height}};
     EXPECT_TRUE(with.contains(prism, four)) << height;

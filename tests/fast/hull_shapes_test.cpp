@@ -1,5 +1,5 @@
 // Tets measured in pairs have the same shape as tets measured one by one.
-#include "improve/hull_shapes.h"
+#include "remesh/hull_shapes.h"
 
 #include <gtest/gtest.h>
 
@@ -13,9 +13,9 @@
 namespace collarmesh::hull_shapes_test {
 namespace {
 
-using improvement::Corners;
-using improvement::ExtremeCosines;
-using improvement::HullShapes;
+using remeshing::Corners;
+using remeshing::ExtremeCosines;
+using remeshing::HullShapes;
 
 struct Hull {
   std::vector<Point> points;
@@ -61,7 +61,7 @@ TEST(HullShapes, AnglesAreThoseOfEachTet) {
   unsigned positive = 0, others = 0;
   for (std::size_t k = 0; k < 20000; ++k)
     for_each_tet(any_hull(1 + k % 9, random), [&](const Corners& p, const ExtremeCosines& found) {
-      const ExtremeCosines expected = improvement::extreme_cosines(p);
+      const ExtremeCosines expected = remeshing::extreme_cosines(p);
       const double longest = std::sqrt(std::max(
           {squared_distance(p[0], p[1]), squared_distance(p[0], p[2]), squared_distance(p[0], p[3])}));
       const double six_volume = std::fabs(dot(p[1] - p[0], cross(p[2] - p[0], p[3] - p[0])));
@@ -84,22 +84,22 @@ TEST(HullShapes, QualitiesOfCoarseningAreThoseOfTheAngles) {
   std::mt19937 random(12);
   const Plc plc;
   const TetMesh mesh;
-  const improvement::ThinShape thin(plc, mesh, 8, 0, nullptr);
+  const remeshing::TetBounds bounds{remeshing::ThinShape(plc, mesh, 8, 0, nullptr),
+                                    remeshing::CellBounds(plc, mesh, {})};
   const std::vector<double> sizes;
-  const improvement::CellBounds cells(plc, mesh, {});
-  coarsening::CoarseningRule rule(thin, cells, 2, sizes);
+  remeshing::coarsening::CoarseningRule rule(bounds, 2, sizes);
   constexpr std::array<Index, 4> corners{0, 1, 2, 3};
   constexpr double radians = std::numbers::pi / 180;
   std::array<unsigned, 3> seen{};  // without volume, with an angle too large, other
   for (std::size_t k = 0; k < 5000; ++k)
     for_each_tet(any_hull(1 + k % 9, random), [&](const Corners& p, const ExtremeCosines& paired) {
-      const auto angles = improvement::extreme_angles(p);
+      const auto angles = remeshing::extreme_angles(p);
       ++seen[angles.smallest < 0 ? 0 : angles.largest > 150 ? 1 : 2];
       if (!(angles.smallest > 0.01 && angles.largest < 179.99)) return;
       const double sharp = std::sin(angles.smallest * radians) / std::sin(8 * radians),
                    blunt = angles.largest > 90 ? std::sin(angles.largest * radians) / 0.5 : 2;
       if (std::fabs(blunt - 1) < 1e-5) return;
-      using Mode = coarsening::CoarseningRule::Mode;
+      using Mode = remeshing::coarsening::CoarseningRule::Mode;
       for (const Mode mode : {Mode::final, Mode::trial, Mode::force}) {
         rule.set_mode(mode);
         const bool last = blunt < 1 && mode != Mode::force;

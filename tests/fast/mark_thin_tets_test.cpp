@@ -5,7 +5,7 @@
 #include <random>
 
 #include "collarmesh/tet_mesh.h"
-#include "improve/thin_shape.h"
+#include "remesh/thin_shape.h"
 #include "support/sanitized.h"
 
 namespace collarmesh::mark_thin_tets_test {
@@ -37,7 +37,7 @@ TEST(MarkThinTets, MarksWhatIsAboveTheBound) {
     };
     const double bound = measured(static_cast<std::size_t>(i)) * (1 + (i % 3 - 1) * 1e-15);
     if (!std::isfinite(bound)) continue;
-    improvement::mark_thin_tets(mesh, bound);
+    remeshing::mark_thin_tets(mesh, bound);
     ASSERT_EQ(mesh.tet_thin.size(), mesh.tets.size());
     for (std::size_t t = 0; t < (i == 0 ? mesh.tets.size() : 300); ++t)
       ASSERT_EQ(mesh.tet_thin[t] != 0, mesh.tet_collar[t] == 0 && measured(t) > bound) << i << ' ' << t;

@@ -1,4 +1,4 @@
-#include "improve/polyhedron_filling.h"
+#include "remesh/polyhedron_filling.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "collarmesh/geometry.h"
 
-namespace collarmesh::improvement::polyhedron_filling_test {
+namespace collarmesh::remeshing::polyhedron_filling_test {
 namespace {
 
 using Triangle = std::array<Index, 3>;
@@ -110,4 +110,4 @@ TEST(PolyhedronFilling, EndsAfterItsSteps) {
 }
 
 }  // namespace
-}  // namespace collarmesh::improvement::polyhedron_filling_test
+}  // namespace collarmesh::remeshing::polyhedron_filling_test

@@ -1,5 +1,5 @@
 // The quick answers given for most tets without divisions must be correct.
-#include "improve/shape_rule.h"
+#include "remesh/shape_rule.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 namespace collarmesh::shape_rules_test {
 namespace {
 
-using improvement::Corners;
+using remeshing::Corners;
 
 /// Returns tets from regular to flat and needle-like, at many scales, some inverted.
 Corners any_tet(std::mt19937& random) {
@@ -38,9 +38,9 @@ TEST(ShapeRules, AnglesThatAreSurelyBetweenAreBetween) {
     const Corners p = any_tet(random);
     const double smallest = std::uniform_real_distribution(1.0, 60.0)(random),
                  largest = std::uniform_real_distribution(95.0, 175.0)(random);
-    const auto angles = improvement::extreme_angles(p);
+    const auto angles = remeshing::extreme_angles(p);
     const bool is_between = angles.smallest > smallest && angles.largest < largest;
-    const bool surely = improvement::surely_between(p, squared_cosine(smallest), squared_cosine(largest));
+    const bool surely = remeshing::surely_between(p, squared_cosine(smallest), squared_cosine(largest));
     EXPECT_TRUE(is_between || !surely)
         << smallest << ' ' << angles.smallest << ' ' << largest << ' ' << angles.largest;
     sure += surely ? 1 : 0;
@@ -55,12 +55,13 @@ TEST(ShapeRules, WhatSurelyExceedsAQualityExceedsIt) {
   std::mt19937 random(6);
   const Plc plc;
   const TetMesh mesh;
-  const improvement::ThinShape thin(plc, mesh, 8, 0, nullptr), with_reserve(plc, mesh, 8, 0.05, nullptr);
-  const improvement::SliverRule with_thin(2, &thin), without(2);
+  const remeshing::CellBounds cells(plc, mesh, {});
+  const remeshing::TetBounds bounds{remeshing::ThinShape(plc, mesh, 8, 0, nullptr), cells},
+      with_reserve{remeshing::ThinShape(plc, mesh, 8, 0.05, nullptr), cells};
+  const remeshing::SliverRule with_thin(2, &bounds.thin), without(2);
   const std::vector<double> sizes;
-  const improvement::CellBounds cells(plc, mesh, {});
-  const coarsening::CoarseningRule coarse(thin, cells, 2, sizes),
-      coarse_with_reserve(with_reserve, cells, 2, sizes);
+  const remeshing::coarsening::CoarseningRule coarse(bounds, 2, sizes),
+      coarse_with_reserve(with_reserve, 2, sizes);
   constexpr std::array<Index, 4> corners{0, 1, 2, 3};
   std::array<unsigned, 4> sure{};
   for (unsigned i = 0; i < 200000; ++i) {

@@ -19,11 +19,11 @@
 namespace collarmesh::detours_test {
 namespace {
 
-using improvement::Detours;
-using improvement::Operations;
-using improvement::Remedies;
-using improvement::SliverRule;
-using improvement::Workpiece;
+using remeshing::EditableMesh;
+using remeshing::Operations;
+using remeshing::SliverRule;
+using remeshing::improvement::Detours;
+using remeshing::improvement::Remedies;
 using testing::Meshed;
 
 constexpr double reached_angle = 33, wanted_angle = 38, hopeless_angle = 65;
@@ -49,19 +49,19 @@ ImproveOptions options(double angle) {
 /// The objects that detours work with.
 struct Bench {
   explicit Bench(Meshed& meshed, double wanted = wanted_angle)
-      : workpiece(meshed.result.mesh, meshed.plc,
-                  SurfaceTolerance(default_distance(0, meshed.plc.bounds.diagonal()))),
+      : edited(meshed.result.mesh, meshed.plc,
+               SurfaceTolerance(default_distance(0, meshed.plc.bounds.diagonal()))),
         rule(options(wanted).bounds.radius_edge),
-        remedies(workpiece, rule, options(wanted)),
-        operations(workpiece, rule) {
-    workpiece.prepare();
+        remedies(edited, rule, options(wanted)),
+        operations(edited, rule) {
+    edited.prepare();
   }
 
-  Detours detours(std::size_t most_trials) { return {workpiece, remedies, operations, most_trials}; }
+  Detours detours(std::size_t most_trials) { return {edited, remedies, operations, most_trials}; }
 
   std::vector<Index> poor() const {
     std::vector<Index> found;
-    for (Index t = 0; t < workpiece.complex.size(); ++t)
+    for (Index t = 0; t < edited.complex.size(); ++t)
       if (remedies.poor_quality(t) < INFINITY) found.push_back(t);
     return found;
   }
@@ -77,12 +77,12 @@ struct Bench {
   /// Returns all tets, in no order.
   std::multiset<std::array<Index, 4>> tets() const {
     std::multiset<std::array<Index, 4>> found;
-    for (Index t = 0; t < workpiece.complex.size(); ++t)
-      if (workpiece.complex[t].alive) found.insert(workpiece.complex[t].corners);
+    for (Index t = 0; t < edited.complex.size(); ++t)
+      if (edited.complex[t].alive) found.insert(edited.complex[t].corners);
     return found;
   }
 
-  Workpiece workpiece;
+  EditableMesh edited;
   SliverRule rule;
   Remedies remedies;
   Operations operations;
@@ -124,7 +124,7 @@ TEST(Detours, MakeTheMeshBetter) {
     poor.resize(std::min<std::size_t>(poor.size(), 15));
     for (const Index tet : poor)
       if (bench.remedies.poor_quality(tet) < INFINITY) taken += take_and_compare(meshed, bench, tet) ? 1 : 0;
-    bench.workpiece.complex.store();
+    bench.edited.store();
     meshed.report = check(meshed.result.mesh, meshed.plc);
     EXPECT_EQ(testing::faults(meshed), "");
   }
@@ -145,7 +145,7 @@ TEST(Detours, LeaveTheMeshAsItWas) {
     for (const Index tet : poor)
       if (bench.remedies.poor_quality(tet) < INFINITY)
         refused += take_and_compare(meshed, bench, tet) ? 0 : 1;
-    bench.workpiece.complex.store();
+    bench.edited.store();
     meshed.report = check(meshed.result.mesh, meshed.plc);
     EXPECT_EQ(testing::faults(meshed), "");
   }
@@ -173,7 +173,7 @@ TEST(Detours, AHopelessBoundEnds) {
     detours.take_all(bench.poor(), never);
     EXPECT_GE(detours.trials(), 100U);
     EXPECT_LT(detours.trials(), 100U + most_of_one_tet);
-    bench.workpiece.complex.store();
+    bench.edited.store();
     EXPECT_EQ(improve(meshed.result.mesh, meshed.plc, options(hopeless_angle)).detours, 0U);
     meshed.report = check(meshed.result.mesh, meshed.plc);
     EXPECT_EQ(testing::faults(meshed), "");

@@ -5,8 +5,8 @@
 #include <map>
 
 #include "common/tet_sides.h"
-#include "improve/tet_complex.h"
 #include "refine/generate_linked.h"
+#include "remesh/tet_complex.h"
 #include "support/acute_shapes.h"
 #include "support/meshing.h"
 #include "support/shapes.h"
@@ -70,7 +70,7 @@ TEST(Extraction, KnowsNeighboursAndTheComplexFindsTheRest) {
     const auto tets_of = sides(mesh);
     std::size_t open = 0, shared = 0;
     TetMesh copy = mesh;
-    const improvement::TetComplex with(mesh, known), without(copy);
+    const remeshing::TetComplex with(mesh, known), without(copy);
     for (Index t = 0; t < mesh.tets.size(); ++t)
       for (unsigned corner = 0; corner < 4; ++corner) {
         auto side = side_corners(mesh.tets[t], corner);

@@ -9,7 +9,7 @@
 #include <set>
 #include <string>
 
-#include "improve/operations.h"
+#include "remesh/operations.h"
 #include "support/acute_shapes.h"
 #include "support/meshing.h"
 #include "support/shapes.h"
@@ -17,10 +17,10 @@
 namespace collarmesh::improve_operations_test {
 namespace {
 
-using improvement::Change;
-using improvement::Operations;
-using improvement::TetComplex;
-using improvement::Workpiece;
+using remeshing::Change;
+using remeshing::EditableMesh;
+using remeshing::Operations;
+using remeshing::TetComplex;
 using testing::mesh_of;
 using testing::Meshed;
 using testing::with_size;
@@ -55,18 +55,19 @@ constexpr std::size_t single_steps = 2;
 /// A complex, and operations on a mesh of its own.
 struct Workbench {
   Workbench(const Meshed& meshed, const TetMesh& of)
-      : mesh(of), workpiece(mesh, meshed.plc, SurfaceTolerance(distance)), operations(workpiece, rule) {}
+      : mesh(of), edited(mesh, meshed.plc, SurfaceTolerance(distance)), operations(edited, rule) {}
 
   double worst(std::span<const Index> tets) const {
     double quality = INFINITY;
-    for (const Index t : tets) quality = std::min(quality, workpiece.quality(t));
+    for (const Index t : tets)
+      quality = std::min(quality, remeshing::shape_quality(edited.complex.corners(t)));
     return quality;
   }
 
   TetMesh mesh;
-  Workpiece workpiece;
-  const TetComplex& complex = workpiece.complex;
-  improvement::SliverRule rule{radius_edge};
+  EditableMesh edited;
+  const TetComplex& complex = edited.complex;
+  remeshing::SliverRule rule{radius_edge};
   Operations operations;
 };
 
@@ -110,7 +111,7 @@ std::vector<Operation> all_operations() {
            {1, 2, 3}},
           {"edge removal anyhow",
            [](Workbench& on, Index tet, unsigned i, unsigned j, Change& change) {
-             on.operations.remove_edge_anyhow(tet, i, j, least, change);
+             on.operations.remove_edge(tet, i, j, change, least);
            },
            Change::Kind::edge_removal,
            {3},
@@ -124,7 +125,7 @@ std::vector<Operation> all_operations() {
            true},
           {"contraction anyhow",
            [=](Workbench& on, Index tet, unsigned i, unsigned j, Change& change) {
-             on.operations.contract_edge_anyhow(corner(on, tet, i), corner(on, tet, j), least, change);
+             on.operations.contract_edge(corner(on, tet, i), corner(on, tet, j), change, least);
            },
            Change::Kind::contraction,
            {1, 2, 3},
@@ -146,7 +147,7 @@ void apply(Workbench& on, const Change& change, bool anyhow = false) {
   std::vector<Index> before = change.replacement.old;
   if (change.kind == Change::Kind::move) on.complex.star(change.vertex, before);
   const double worst = on.worst(before);
-  const auto& changed = on.workpiece.apply(change);
+  const auto& changed = on.edited.apply(change);
   EXPECT_GT(on.worst(changed), anyhow ? least : worst);
   if (changed.empty()) return;  // a sliver was given to the other side
   EXPECT_NEAR(on.worst(changed), change.quality, 1e-12);
@@ -194,12 +195,10 @@ class ImproveOperations : public ::testing::Test {
 };
 
 /// A rule with which all shapes are equally good.
-class AnyShape final : public improvement::ShapeRule {
+class AnyShape final : public remeshing::ShapeRule {
  public:
-  double quality(const improvement::Corners&, const std::array<Index, 4>&) const override { return 1; }
-  bool allows(const improvement::Corners&, const std::array<Index, 4>&, double) const override {
-    return true;
-  }
+  double quality(const remeshing::Corners&, const std::array<Index, 4>&) const override { return 1; }
+  bool allows(const remeshing::Corners&, const std::array<Index, 4>&, double) const override { return true; }
 };
 
 /// The link: vertices and pairs, sorted, that cells at a vertex contribute.
@@ -241,7 +240,7 @@ TEST_F(ImproveOperations, ContractionsOnFeaturesKeepTheLinkCondition) {
   for (const auto& [name, meshed] : meshes()) {
     SCOPED_TRACE(name);
     Workbench on(meshed, meshed.result.mesh);
-    Operations operations(on.workpiece, rule);
+    Operations operations(on.edited, rule);
     std::set<std::array<Index, 2>> edges;
     for (const auto& face : on.mesh.faces)
       for (unsigned i = 0; i < 3; ++i)
@@ -262,7 +261,7 @@ TEST_F(ImproveOperations, ContractionsOnFeaturesKeepTheLinkCondition) {
       const bool holds = link_condition(tets, vertex, onto) && link_condition(faces, vertex, onto);
       forbidden += holds ? 0 : 1;
       Change change;
-      operations.contract_edge_anyhow(vertex, onto, 0, change);
+      operations.contract_edge(vertex, onto, change, 0);
       if (change.kind == Change::Kind::none) continue;
       ++proposed;
       EXPECT_TRUE(holds) << vertex << " onto " << onto;
@@ -333,10 +332,10 @@ TEST(ContractionsOnFeatures, EachPartOfTheLinkConditionForbidsSome) {
     SCOPED_TRACE(name);
     TetMesh mesh = body(tets, points);
     EXPECT_EQ(link_condition(mesh.tets, 0, 1) && link_condition(mesh.faces, 0, 1), allowed);
-    Workpiece workpiece(mesh, plc, SurfaceTolerance(distance));
-    Operations operations(workpiece, rule);
+    EditableMesh edited(mesh, plc, SurfaceTolerance(distance));
+    Operations operations(edited, rule);
     Change change;
-    operations.contract_edge_anyhow(0, 1, 0, change);
+    operations.contract_edge(0, 1, change, 0);
     EXPECT_EQ(change.kind, allowed ? Change::Kind::contraction : Change::Kind::none);
   }
 }
@@ -355,7 +354,7 @@ TEST_F(ImproveOperations, EachKeepsTheCertificate) {
           if (change.kind == Change::Kind::none) break;
           ++seen;
           apply(on, change, operation.anyhow);
-          on.workpiece.complex.store();
+          on.edited.store();
           ASSERT_EQ(faults_of(meshed, on.mesh), "");
         }
       }
@@ -380,7 +379,7 @@ TEST_F(ImproveOperations, ManyKeepTheCertificate) {
         apply(on, change, operation.anyhow);
         ++done;
       }
-      on.workpiece.complex.store();
+      on.edited.store();
       mesh = on.mesh;
       ASSERT_EQ(faults_of(meshed, mesh), "");
     }

@@ -8,7 +8,7 @@
 
 #include "collarmesh/error.h"
 #include "collarmesh/improve.h"
-#include "improve/shape.h"
+#include "remesh/shape.h"
 #include "support/acute_shapes.h"
 #include "support/meshing.h"
 #include "support/shapes.h"
@@ -50,7 +50,7 @@ std::vector<Shape> shapes() {
 
 double quality(const TetMesh& mesh, std::size_t tet) {
   const auto& v = mesh.tets[tet];
-  return improvement::shape_quality(
+  return remeshing::shape_quality(
       {mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]], mesh.points[v[3]]});
 }
 
@@ -239,7 +239,7 @@ TEST(ImproveLevels, OthersAreRefused) {
 }
 
 TEST(ImproveShape, SmallestSine) {
-  using improvement::shape_quality;
+  using remeshing::shape_quality;
   const double regular = std::sqrt(8.0) / 3;  // the sine of arccos(1/3)
   EXPECT_NEAR(shape_quality({Point{1, 1, 1}, Point{-1, 1, -1}, Point{1, -1, -1}, Point{-1, -1, 1}}), regular,
               1e-12);

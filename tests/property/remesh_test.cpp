@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "adapt/mesh_complex.h"
 #include "collarmesh/error.h"
 #include "collarmesh/mesh_measures.h"
 #include "collarmesh/remesh.h"
 #include "common/sorted.h"
-#include "improve/operations.h"
-#include "remesh/mesh_complex.h"
+#include "remesh/operations.h"
 #include "support/meshes.h"
 #include "support/shapes.h"
 #include "support/tet_mesh_comparison.h"
@@ -393,16 +393,15 @@ TEST(Remesh, EndsAtABudget) {
 
 // All edges of a mesh are divided in a trial, and everything is undone.
 TEST(DividedEdges, AreUndone) {
-  using namespace improvement;
+  using namespace remeshing;
   for (const TetMesh& mesh : {meshed_two_boxes(3).mesh, meshed({icosphere(1, 6)}, 0.5)}) {
-    remeshing::MeshComplex given = remeshing::complex_of(mesh, {});
+    remeshing::adapting::MeshComplex given = remeshing::adapting::complex_of(mesh, {});
     const TetMesh before = given.mesh;
-    Workpiece workpiece(given.mesh, given.plc, tolerance_of(given.plc, {}, 0.3));
-    workpiece.prepare();
-    const ThinShape thin(given.plc, given.mesh, 8, 0, workpiece.forced);
-    const CellBounds cells(given.plc, given.mesh, {});
-    const ThinRule rule(thin, cells);
-    Operations operations(workpiece, rule);
+    EditableMesh edited(given.mesh, given.plc, tolerance_of(given.plc, {}, 0.3));
+    edited.prepare();
+    const ThinRule rule(
+        {ThinShape(given.plc, given.mesh, 8, 0, edited.forced), CellBounds(given.plc, given.mesh, {})});
+    Operations operations(edited, rule);
     const auto divide_all = [&] {
       std::map<unsigned, unsigned> divided;
       std::set<std::pair<Index, Index>> edges;
@@ -411,24 +410,24 @@ TEST(DividedEdges, AreUndone) {
           for (const Index w : tet)
             if (v < w) edges.emplace(v, w);
       for (const auto& [a, b] : edges) {
-        if (workpiece.complex.tet_at_edge(a, b) == none) continue;
+        if (edited.complex.tet_at_edge(a, b) == none) continue;
         Change change;
         operations.divide_edge(a, b, 0.5, 0, change);
         if (change.kind == Change::Kind::none) continue;
         ++divided[change.feature.dimension];
-        workpiece.apply(std::move(change));
+        edited.apply(std::move(change));
       }
       return divided;
     };
-    workpiece.begin_trial();
+    remeshing::Trial once(edited);
     const auto first = divide_all();
-    workpiece.undo();
+    once.undo();
     EXPECT_EQ(given.mesh.points, before.points);
     EXPECT_EQ(given.mesh.edges, before.edges);
-    workpiece.begin_trial();
+    remeshing::Trial again(edited);
     EXPECT_EQ(divide_all(), first);
-    workpiece.undo();
-    workpiece.complex.store();
+    again.undo();
+    edited.store();
     expect_same(given.mesh, before);
     for (const unsigned dimension : {1U, 2U, 3U})
       EXPECT_EQ(first.contains(dimension), dimension > 1 || !before.edges.empty()) << dimension;
@@ -436,24 +435,24 @@ TEST(DividedEdges, AreUndone) {
 }
 
 TEST(DividedEdges, KeepCurvesWhole) {
-  remeshing::MeshComplex given = remeshing::complex_of(meshed({plate_with_hole(1, 24)}, 0.6), {});
+  remeshing::adapting::MeshComplex given =
+      remeshing::adapting::complex_of(meshed({plate_with_hole(1, 24)}, 0.6), {});
   const auto before = curve_lengths(given.mesh);
-  improvement::Workpiece workpiece(given.mesh, given.plc, tolerance_of(given.plc, {}, 0.6));
-  workpiece.prepare();
-  const improvement::ThinShape thin(given.plc, given.mesh, 8, 0, workpiece.forced);
-  const improvement::CellBounds cells(given.plc, given.mesh, {});
-  const improvement::ThinRule rule(thin, cells);
-  improvement::Operations operations(workpiece, rule);
+  remeshing::EditableMesh edited(given.mesh, given.plc, tolerance_of(given.plc, {}, 0.6));
+  edited.prepare();
+  const remeshing::ThinRule rule({remeshing::ThinShape(given.plc, given.mesh, 8, 0, edited.forced),
+                                  remeshing::CellBounds(given.plc, given.mesh, {})});
+  remeshing::Operations operations(edited, rule);
   std::size_t divided = 0;
   for (unsigned round = 0; round < 3; ++round)
     for (const auto& [a, b] : std::vector(given.mesh.edges)) {
-      improvement::Change change;
+      remeshing::Change change;
       operations.divide_edge(a, b, 0.5, 0, change);
-      if (change.kind == improvement::Change::Kind::none) continue;
+      if (change.kind == remeshing::Change::Kind::none) continue;
       ++divided;
-      workpiece.apply(std::move(change));
+      edited.apply(std::move(change));
     }
-  workpiece.complex.store();
+  edited.store();
   EXPECT_GT(divided, 6 * before.size());
   expect_near(before, curve_lengths(given.mesh), 1e-12);
   EXPECT_TRUE(check(given.mesh, given.plc, {.bounds = {.radius_edge = 1e9}}).passed());

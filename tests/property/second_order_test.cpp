@@ -16,7 +16,7 @@
 #include "collarmesh/curved_tet.h"
 #include "collarmesh/error.h"
 #include "collarmesh/improve.h"
-#include "improve/shape.h"
+#include "remesh/shape.h"
 #include "support/meshing.h"
 #include "support/second_order.h"
 #include "support/shapes.h"
@@ -258,7 +258,7 @@ TEST(SecondOrder, TetsAreMarkedThinEvenWhereNoneCouldBeReplaced) {
     if (!report.straightened.empty() && sorted_tets(mesh) == sorted_tets(meshed.result.mesh)) ++none_replaced;
     for (Index t = 0; t < mesh.tets.size(); ++t) {
       const auto& v = mesh.tets[t];
-      const auto sphere = improvement::circumsphere(
+      const auto sphere = remeshing::circumsphere(
           {mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]], mesh.points[v[3]]});
       EXPECT_EQ(mesh.tet_thin[t] != 0, sphere.squared_radius > 4 * sphere.shortest_squared_edge) << t;
     }

@@ -18,7 +18,7 @@
 #include "common/sorted.h"
 #include "common/split_mix.h"
 #include "local_mesh.h"
-#include "second_order/nearest_on_features.h"
+#include "location/feature_shapes.h"
 #include "shared_points.h"
 
 namespace collarmesh::distributed {
@@ -316,7 +316,7 @@ class Certification {
   }
 
   void check_points() {
-    second_order::NearestOnFeatures nearest(plc_);
+    FeatureShapes nearest(plc_);
     for (std::size_t i = 0; i < mesh_->points.size(); ++i) {
       if (!owns(i)) continue;
       const Point& p = mesh_->points[i];
@@ -329,7 +329,7 @@ class Certification {
   }
 
   void check_distance(std::string_view what, const Point& p, const TetMesh::VertexFeature& feature,
-                      second_order::NearestOnFeatures& nearest) {
+                      FeatureShapes& nearest) {
     const checks::Subject& subject = expected_->subject;
     const Index i = feature.feature;
     const bool on_curve = feature.dimension == 1;

@@ -9,26 +9,23 @@
 #include <cmath>
 #include <optional>
 
-#include "coarsen/coarsen_workpiece.h"
+#include "coarsen/coarsen_edited.h"
 #include "coarsen/failed_repairs.h"
 #include "coarsen/proposals.h"
 #include "coarsen/target_sizes.h"
 #include "collarmesh/error.h"
+#include "common/cell_shapes.h"
 #include "common/found_in_ranges.h"
 #include "common/parallel_for.h"
+#include "common/sort_uniquely.h"
 #include "common/tet_sides.h"
 #include "common/thread_limit.h"
 
 namespace collarmesh {
 
-namespace coarsening {
+namespace remeshing::coarsening {
 namespace {
 
-using improvement::CellBounds;
-using improvement::Change;
-using improvement::TetComplex;
-using improvement::ThinShape;
-using improvement::Workpiece;
 using Mode = CoarseningRule::Mode;
 
 constexpr unsigned plain_passes = 4, repair_passes = 6, rounds = 12;
@@ -74,7 +71,7 @@ std::size_t proposals_at_once(std::size_t items) {
 // would be slower.
 template <class Item>
 std::vector<Item> in_order(std::vector<Item> items) {
-  std::stable_sort(items.begin(), items.end(), [](const Item& a, const Item& b) { return a.rank < b.rank; });
+  std::ranges::stable_sort(items, [](const Item& a, const Item& b) { return a.rank < b.rank; });
   const std::size_t rows = std::clamp<std::size_t>(items.size() / items_per_row, 1, most_rows);
   std::vector<Item> ordered;
   ordered.reserve(items.size());
@@ -95,17 +92,15 @@ std::vector<Item> in_order(std::vector<Item> items) {
 /// depend on has changed meanwhile. So the result is the one that a single thread makes.
 class Coarsening {
  public:
-  Coarsening(Workpiece& workpiece, const MeshOptions& made_with, const Execution& execution)
-      : workpiece_(workpiece),
+  Coarsening(EditableMesh& edited, const MeshOptions& made_with, const Execution& execution)
+      : edited_(edited),
         radius_edge_(made_with.bounds.radius_edge),
-        sizes_(target_sizes(mesh(), workpiece.plc, sizes_asked_for(made_with))),
-        thin_(workpiece.plc, mesh(), made_with.bounds.thin_angle, made_with.bounds.reserve, workpiece.forced,
-              made_with.bounds.tets_across()),
-        cells_(workpiece.plc, mesh(), made_with.bounds),
-        rule_(thin_, cells_, made_with.bounds.radius_edge, sizes_),
+        sizes_(target_sizes(mesh(), edited.plc, sizes_asked_for(made_with))),
+        bounds_(edited.tet_bounds(made_with.bounds)),
+        rule_(bounds_, made_with.bounds.radius_edge, sizes_),
         changes_{0, std::vector<std::uint32_t>(mesh().points.size(), 0)},
-        proposer_(workpiece_, thin_, cells_, radius_edge_, sizes_, changes_),
-        proposers_([this] { return Proposer(workpiece_, thin_, cells_, radius_edge_, sizes_, changes_); }),
+        proposer_(edited_, bounds_, radius_edge_, sizes_, changes_),
+        proposers_([this] { return Proposer(edited_, bounds_, radius_edge_, sizes_, changes_); }),
         execution_(execution) {}
 
   // Returns the options without `edges_per_hole`: coarsening keeps holes round without it.
@@ -117,7 +112,7 @@ class Coarsening {
   CoarsenReport run() {
     const auto started = std::chrono::steady_clock::now();
     report_.tets_before = tets_ = complex().size();
-    workpiece_.prepare();
+    edited_.prepare();
     for (unsigned pass = 0; pass < plain_passes && !report_.cancelled; ++pass)
       if (!contract_all(false)) break;
     // Improvement makes room for more collapses: without this flag it would have all vertices tried again
@@ -139,8 +134,8 @@ class Coarsening {
   }
 
  private:
-  const TetComplex& complex() const { return workpiece_.complex; }
-  const TetMesh& mesh() const { return workpiece_.complex.mesh(); }
+  const TetComplex& complex() const { return edited_.complex; }
+  const TetMesh& mesh() const { return edited_.complex.mesh(); }
   double quality(Index tet) const { return rule_.quality(complex().corners(tet), complex()[tet].corners); }
 
   double squared_relative_length(Index a, Index b) const {
@@ -202,7 +197,7 @@ class Coarsening {
     const std::size_t points = mesh().points.size();
     std::vector<ShortEdge> found;
     if (edges.size() < points / points_per_edge) {
-      std::sort(edges.begin(), edges.end(), [](const ShortEdge& a, const ShortEdge& b) {
+      std::ranges::sort(edges, [](const ShortEdge& a, const ShortEdge& b) {
         return a.end != b.end ? a.end < b.end : a.squared_relative_length < b.squared_relative_length;
       });
       for (const ShortEdge& edge : edges)
@@ -223,17 +218,16 @@ class Coarsening {
     const auto& v = complex()[tet].corners;
     const auto p = complex().corners(tet);
     const std::array<double, 4> size{sizes_[v[0]], sizes_[v[1]], sizes_[v[2]], sizes_[v[3]]};
-    for (unsigned i = 0; i < 4; ++i)
-      for (unsigned j = i + 1; j < 4; ++j) {
-        const double twice_target = size[i] + size[j];
-        if (squared_distance(p[i], p[j]) >
-            0.25 * surely * square(contracted_below) * twice_target * twice_target)
-          continue;
-        const double length = squared_relative_length(v[i], v[j]);
-        if (!is_short(length)) continue;
-        if (is_asked(v[i], length)) ends.push_back({length, v[i]});
-        if (is_asked(v[j], length)) ends.push_back({length, v[j]});
-      }
+    for (const auto& [i, j] : cell_shapes::corner_pairs) {
+      const double twice_target = size[i] + size[j];
+      if (squared_distance(p[i], p[j]) >
+          0.25 * surely * square(contracted_below) * twice_target * twice_target)
+        continue;
+      const double length = squared_relative_length(v[i], v[j]);
+      if (!is_short(length)) continue;
+      for (const Index end : {v[i], v[j]})
+        if (is_asked(end, length)) ends.push_back({length, end});
+    }
   }
 
   // Returns whether a vertex with an edge of this squared relative length is tried.
@@ -255,11 +249,11 @@ class Coarsening {
                },
                [&](const Candidate& candidate, const VertexProposal& found, std::uint32_t begun) {
                  return changes_.at_vertex[candidate.vertex] < begun &&
-                        std::all_of(found.read.begin(), found.read.end(),
-                                    [&](Index onto) { return changes_.at_vertex[onto] < begun; }) &&
+                        std::ranges::all_of(found.read,
+                                            [&](Index onto) { return changes_.at_vertex[onto] < begun; }) &&
                         may_still_be_made(found.change) &&
-                        std::all_of(found.to_repair.begin(), found.to_repair.end(),
-                                    [&](const Change& change) { return may_still_be_made(change); });
+                        std::ranges::all_of(found.to_repair,
+                                            [&](const Change& change) { return may_still_be_made(change); });
                },
                [&](const Candidate& candidate, VertexProposal& found) {
                  contract(candidate.vertex, found);
@@ -294,11 +288,11 @@ class Coarsening {
   }
 
   bool may_still_be_made(const Change& contraction) const {
-    return contraction.kind == Change::Kind::none || workpiece_.curve_can_spare(contraction);
+    return contraction.is_none() || edited_.curve_can_spare(contraction);
   }
 
   void contract(Index vertex, VertexProposal& found) {
-    if (found.change.kind != Change::Kind::none) {
+    if (!found.change.is_none()) {
       forget_touched();
       apply(std::move(found.change));
       settle();
@@ -313,21 +307,21 @@ class Coarsening {
     // Whether an edge of a curve can be spared depends on more than the tets around; and not all tets at a
     // pinched vertex are found.
     if (mesh().features[vertex].dimension > 1 &&
-        std::none_of(looked_at_.begin(), looked_at_.end(), [&](Index v) { return complex().pinched(v); }))
+        std::ranges::none_of(looked_at_, [&](Index v) { return complex().pinched(v); }))
       failed_.note(vertex, looked_at_, changes_.now);
   }
 
   bool contract_and_repair(Change change, double floor) {
-    workpiece_.begin_trial();
+    Trial trial(edited_);
     forget_touched();
     examined_.clear();
     const std::size_t before = tets_;
     rule_.set_mode(Mode::trial);
-    apply_on_trial(std::move(change));
-    for (unsigned step = 0;; ++step) {
+    for (unsigned step = 0; !change.is_none(); ++step) {
+      apply_on_trial(std::move(change));
       const auto [count, worst] = tets_to_mend(floor);
       if (count == 0) {
-        workpiece_.keep();
+        trial.keep();
         settle();
         ++report_.contracted_edges;
         ++report_.repaired;
@@ -336,11 +330,9 @@ class Coarsening {
       if (step + count > most_repairs + 1) break;
       examined_.insert(examined_.end(), complex()[worst].corners.begin(), complex()[worst].corners.end());
       change = proposer_.improvement_of(worst, Mode::trial);
-      if (change.kind == Change::Kind::none) break;
-      apply_on_trial(std::move(change));
     }
     look_at_touched();
-    workpiece_.undo();
+    trial.undo();
     tets_ = before;
     look_at_examined();
     return false;
@@ -414,7 +406,7 @@ class Coarsening {
         found.push_back({rank_of_quality(q), t, q});
     });
     const auto by_place = [](const Poor& a, const Poor& b) { return a.tet < b.tet; };
-    if (!std::is_sorted(all.begin(), all.end(), by_place)) std::sort(all.begin(), all.end(), by_place);
+    if (!std::is_sorted(all.begin(), all.end(), by_place)) std::ranges::sort(all, by_place);
     const std::vector<Poor> poor = in_order(std::move(all));
     last_sweep_ = ++changes_.now;
     bool any = false;
@@ -428,10 +420,10 @@ class Coarsening {
         },
         [&](const Poor& item, const Change& change, std::uint32_t begun) {
           const auto untouched = [&](Index t) { return complex()[t].alive && !changed_since(t, begun); };
-          return untouched(item.tet) && std::all_of(change.read.begin(), change.read.end(), untouched);
+          return untouched(item.tet) && std::ranges::all_of(change.read, untouched);
         },
         [&](const Poor&, Change& change) {
-          if (change.kind == Change::Kind::none) return;
+          if (change.is_none()) return;
           forget_touched();
           apply(std::move(change));
           settle();
@@ -450,7 +442,7 @@ class Coarsening {
 
   bool changed_since(Index tet, std::uint32_t when) const {
     const auto& v = complex()[tet].corners;
-    return std::any_of(v.begin(), v.end(), [&](Index w) { return changes_.at_vertex[w] >= when; });
+    return std::ranges::any_of(v, [&](Index w) { return changes_.at_vertex[w] >= when; });
   }
 
   // Collects the items that `look(tet, found)` adds to `found`. Calls it once, in any order, for each tet
@@ -496,14 +488,8 @@ class Coarsening {
     for (auto changed = first; changed != log_.end(); ++changed)
       if (complex().in_use(changed->vertex)) vertices.push_back(changed->vertex);
     sort_uniquely(vertices);
-    if (std::any_of(vertices.begin(), vertices.end(), [&](Index v) { return complex().pinched(v); }))
-      return std::nullopt;
+    if (std::ranges::any_of(vertices, [&](Index v) { return complex().pinched(v); })) return std::nullopt;
     return vertices;
-  }
-
-  static void sort_uniquely(std::vector<Index>& items) {
-    std::sort(items.begin(), items.end());
-    items.erase(std::unique(items.begin(), items.end()), items.end());
   }
 
   const std::vector<Index>& apply(Change change) {
@@ -514,7 +500,7 @@ class Coarsening {
       const auto& v = complex()[t].corners;
       touched_vertices_.insert(touched_vertices_.end(), v.begin(), v.end());
     }
-    const auto& changed = workpiece_.apply(std::move(change));
+    const auto& changed = edited_.apply(std::move(change));
     touched_.insert(touched_.end(), changed.begin(), changed.end());
     return changed;
   }
@@ -554,15 +540,14 @@ class Coarsening {
 
   // Marks cells again, because coarsening has changed the cells of collars.
   void finish() {
-    workpiece_.complex.forget_balls();
+    edited_.complex.forget_balls();
     report_.tets_after = tets_;
   }
 
-  Workpiece& workpiece_;
+  EditableMesh& edited_;
   double radius_edge_;
   std::vector<double> sizes_;
-  ThinShape thin_;
-  CellBounds cells_;
+  TetBounds bounds_;
   CoarseningRule rule_;
   Changes changes_;
   Proposer proposer_;  // for the thread that applies changes
@@ -590,15 +575,15 @@ class Coarsening {
 };
 
 }  // namespace
-}  // namespace coarsening
+}  // namespace remeshing::coarsening
 
-CoarsenReport coarsen(improvement::Workpiece& workpiece, const MeshOptions& made_with,
+CoarsenReport coarsen(remeshing::EditableMesh& edited, const MeshOptions& made_with,
                       const Execution& execution) {
   if (!(made_with.bounds.thin_angle > 0 && made_with.bounds.thin_angle <= 30))
     throw OptionError("the smallest angle of thin tetrahedra must be above 0 and at most 30 degrees");
   if (!(made_with.bounds.reserve >= 0 && made_with.bounds.reserve <= 0.5))
     throw OptionError("the reserve of angles must be from 0 to 0.5");
-  return coarsening::Coarsening(workpiece, made_with, execution).run();
+  return remeshing::coarsening::Coarsening(edited, made_with, execution).run();
 }
 
 CoarsenReport coarsen(TetMesh& mesh, const Plc& plc, const MeshOptions& made_with,
@@ -606,11 +591,10 @@ CoarsenReport coarsen(TetMesh& mesh, const Plc& plc, const MeshOptions& made_wit
   const SurfaceTolerance tolerance = tolerance_of(plc, made_with.bounds, made_with.size);
   CoarsenReport report;
   ThreadLimit(made_with.threads).run([&] {
-    improvement::Workpiece workpiece(mesh, plc, tolerance, made_with.edges_per_hole,
-                                     made_with.bounds.lower_where_forced);
-    report = coarsen(workpiece, made_with, execution);
-    workpiece.complex.store();
-    improvement::mark_cells(mesh, plc, made_with.bounds);
+    remeshing::EditableMesh edited(mesh, plc, tolerance, made_with.edges_per_hole,
+                                   made_with.bounds.lower_where_forced);
+    report = coarsen(edited, made_with, execution);
+    edited.store_marked(made_with.bounds);
   });
   return report;
 }

@@ -3,16 +3,14 @@
 #include <algorithm>
 #include <span>
 
-#include "improve/shape_rule.h"
+#include "remesh/shape_rule.h"
 
-namespace collarmesh::coarsening {
-
-using improvement::Corners;
+namespace collarmesh::remeshing::coarsening {
 
 /// The rule of coarsening. A tet of quality 1 or more keeps the bounds on thin tets; its quality tells how
 /// far its angles are within or beyond these bounds. A tet with an angle above the largest one allowed is
 /// worse than any tet without.
-class CoarseningRule final : public improvement::AngleRule {
+class CoarseningRule final : public AngleRule {
  public:
   enum class Mode {
     final,  ///< new tets keep the guarantee: they are thin or within the radius-edge bound
@@ -24,19 +22,18 @@ class CoarseningRule final : public improvement::AngleRule {
   /// longer.
   static constexpr double longest_new = 1.5;
 
-  /// Keeps references to `thin`, `cells` and `sizes` (by vertex).
-  CoarseningRule(const improvement::ThinShape& thin, const improvement::CellBounds& cells, double radius_edge,
-                 std::span<const double> sizes)
-      : thin_(thin), cells_(cells), bound_(radius_edge), sizes_(sizes) {}
+  /// Keeps references to the bounds and to `sizes` (by vertex).
+  CoarseningRule(const TetBounds& bounds, double radius_edge, std::span<const double> sizes)
+      : thin_(bounds.thin), cells_(bounds.cells), bound_(radius_edge), sizes_(sizes) {}
 
-  double quality_of(const improvement::ExtremeCosines& cosines, const Corners& p,
+  double quality_of(const ExtremeCosines& cosines, const Corners& p,
                     const std::array<Index, 4>& corners) const override {
     const auto [sharp, blunt] = thin_.squared_margins(cosines, p, corners);
     if (blunt < 0) return -1;
     if (blunt < 1 && mode_ != Mode::force) return beyond * std::sqrt(blunt * std::min(1.0, sharp));
     const double quality = std::sqrt(std::min(blunt, sharp));
     const bool fits = mode_ == Mode::force || !cells_.forbid_thin_tets() || cells_.allow(p, corners);
-    return fits ? quality : improvement::CellBounds::forbidden * std::min(1.0, quality);
+    return fits ? quality : CellBounds::forbidden * std::min(1.0, quality);
   }
   /// Returns whether the quality is above this value, which is at least 1. Much cheaper than the quality; may
   /// return false for some tets above it.
@@ -73,11 +70,11 @@ class CoarseningRule final : public improvement::AngleRule {
     return target * target;
   }
 
-  const improvement::ThinShape& thin_;
-  const improvement::CellBounds& cells_;
-  improvement::RadiusEdgeBound bound_;
+  const ThinShape& thin_;
+  const CellBounds& cells_;
+  RadiusEdgeBound bound_;
   std::span<const double> sizes_;
   Mode mode_ = Mode::final;
 };
 
-}  // namespace collarmesh::coarsening
+}  // namespace collarmesh::remeshing::coarsening

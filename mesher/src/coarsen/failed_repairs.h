@@ -8,8 +8,9 @@
 #include <vector>
 
 #include "coarsen/proposals.h"
+#include "common/sort_uniquely.h"
 
-namespace collarmesh::coarsening {
+namespace collarmesh::remeshing::coarsening {
 
 /// Remembers vertices of which no collapse could be repaired, and what these trials depended on. As long as
 /// none of that changes, they would fail again in the same way.
@@ -17,8 +18,7 @@ class FailedRepairs {
  public:
   /// Notes that all collapses of a vertex have failed now, and the vertices at whose tets they looked.
   void note(Index vertex, std::vector<Index> looked_at, std::uint32_t now) {
-    std::sort(looked_at.begin(), looked_at.end());
-    looked_at.erase(std::unique(looked_at.begin(), looked_at.end()), looked_at.end());
+    sort_uniquely(looked_at);
     failures_.insert_or_assign(vertex, Failure{now, std::move(looked_at)});
   }
 
@@ -28,8 +28,8 @@ class FailedRepairs {
     const auto found = failures_.find(vertex);
     if (found == failures_.end()) return {};
     const Failure& failure = found->second;
-    const bool unchanged = std::all_of(failure.looked_at.begin(), failure.looked_at.end(),
-                                       [&](Index v) { return changes.at_vertex[v] <= failure.when; });
+    const bool unchanged =
+        std::ranges::all_of(failure.looked_at, [&](Index v) { return changes.at_vertex[v] <= failure.when; });
     return unchanged ? std::span<const Index>(failure.looked_at) : std::span<const Index>();
   }
 
@@ -41,4 +41,4 @@ class FailedRepairs {
   std::unordered_map<Index, Failure> failures_;
 };
 
-}  // namespace collarmesh::coarsening
+}  // namespace collarmesh::remeshing::coarsening

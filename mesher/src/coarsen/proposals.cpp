@@ -2,46 +2,26 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/contains.h"
 
-namespace collarmesh::coarsening {
-
-using improvement::Change;
+namespace collarmesh::remeshing::coarsening {
 
 namespace {
 
 // A collapse may be repaired if it makes no tet worse than this.
 constexpr double repairable = 0.15;
 
-// Returns the edges of a tet, longest first: removing the longest edges of a sliver helps most.
-std::array<std::array<unsigned, 2>, 6> longest_first(const improvement::Corners& p) {
-  struct Edge {
-    double squared_length;
-    std::array<unsigned, 2> ends;
-  };
-  std::array<Edge, 6> edges;
-  unsigned count = 0;
-  for (unsigned i = 0; i < 4; ++i)
-    for (unsigned j = i + 1; j < 4; ++j) edges[count++] = {squared_distance(p[i], p[j]), {i, j}};
-  std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
-    return a.squared_length != b.squared_length ? a.squared_length > b.squared_length : a.ends < b.ends;
-  });
-  std::array<std::array<unsigned, 2>, 6> sorted;
-  std::transform(edges.begin(), edges.end(), sorted.begin(), [](const Edge& e) { return e.ends; });
-  return sorted;
-}
-
 }  // namespace
 
-Proposer::Proposer(const improvement::Workpiece& workpiece, const improvement::ThinShape& thin,
-                   const improvement::CellBounds& cells, double radius_edge, std::span<const double> sizes,
-                   const Changes& changes)
-    : workpiece_(workpiece),
+Proposer::Proposer(const EditableMesh& edited, const TetBounds& bounds, double radius_edge,
+                   std::span<const double> sizes, const Changes& changes)
+    : edited_(edited),
       changes_(changes),
-      rule_(thin, cells, radius_edge, sizes),
-      operations_(workpiece, rule_),
-      stamps_(workpiece.complex.mesh().points.size(), 0),
+      rule_(bounds, radius_edge, sizes),
+      operations_(edited, rule_),
+      stamps_(edited.complex.mesh().points.size(), 0),
       stayed_(stamps_) {}
 
 // Finds the collapses of a vertex. Lengths rule out most neighbours, at less cost than shapes.
@@ -61,7 +41,7 @@ void Proposer::contractions(Index vertex, bool repairs, VertexProposal& found) {
   for (const Index onto : targets_) {
     if (looks_beyond) found.read.push_back(onto);
     operations_.contract_onto(onto, 0, 1, found.change);
-    if (found.change.kind != Change::Kind::none) return;
+    if (!found.change.is_none()) return;
   }
   if (!repairs) return;
   found.floor = std::min(1.0, operations_.worst_at_vertex());
@@ -69,7 +49,7 @@ void Proposer::contractions(Index vertex, bool repairs, VertexProposal& found) {
   for (const Index onto : targets_) {
     Change change;
     operations_.contract_onto(onto, repairable, -INFINITY, change);
-    if (change.kind != Change::Kind::none) found.to_repair.push_back(std::move(change));
+    if (!change.is_none()) found.to_repair.push_back(std::move(change));
   }
 }
 
@@ -77,15 +57,15 @@ Change Proposer::improvement_of(Index tet, Mode mode) {
   rule_.set_mode(mode);
   const auto corners = complex()[tet].corners;
   Change change;
-  for (const auto& [i, j] : longest_first(complex().corners(tet))) {
+  for (const auto& [i, j] : longest_first(complex().corners(tet), squared_distance)) {
     operations_.remove_edge(tet, i, j, change);
     if (change.quality >= improved_below) break;
   }
-  for (unsigned i = 0; i < 4 && change.kind == Change::Kind::none; ++i) {
+  for (unsigned i = 0; i < 4 && change.is_none(); ++i) {
     // Whether a move helps depends only on the tets at the vertex; each of them would propose it again.
     if (mode == Mode::final && stays(corners[i])) continue;
     operations_.move_vertex(corners[i], change);
-    if (mode == Mode::final && change.kind == Change::Kind::none) stayed_[corners[i]] = changes_.now;
+    if (mode == Mode::final && change.is_none()) stayed_[corners[i]] = changes_.now;
   }
   return change;
 }
@@ -117,7 +97,8 @@ void Proposer::find_neighbours(Index vertex) {
       squared_shortest_ = std::min(squared_shortest_, squared);
       neighbours_.push_back({rule_.squared_relative_length(squared, vertex, w), squared, w});
     }
-  std::sort(neighbours_.begin(), neighbours_.end());
+  std::ranges::sort(neighbours_, {},
+                    [](const Neighbour& n) { return std::pair(n.squared_relative_length, n.vertex); });
 }
 
 // Returns whether the edges that a collapse makes have allowed lengths: none is longer than allowed, unless
@@ -134,9 +115,8 @@ bool Proposer::lengths_fit(Index onto) const {
 
 // Returns whether a tet at the current vertex joins a and b.
 bool Proposer::are_joined_here(Index a, Index b) const {
-  return std::any_of(star_.begin(), star_.end(), [&](Index t) {
-    return contains(complex()[t].corners, a) && contains(complex()[t].corners, b);
-  });
+  return std::ranges::any_of(
+      star_, [&](Index t) { return contains(complex()[t].corners, a) && contains(complex()[t].corners, b); });
 }
 
-}  // namespace collarmesh::coarsening
+}  // namespace collarmesh::remeshing::coarsening

@@ -5,16 +5,16 @@
 #include <vector>
 
 #include "coarsen/coarsening_rule.h"
-#include "improve/operations.h"
+#include "remesh/operations.h"
 
-namespace collarmesh::coarsening {
+namespace collarmesh::remeshing::coarsening {
 
 /// The collapses of one vertex that the lengths of edges allow in the current mesh.
 struct VertexProposal {
-  improvement::Change change;  ///< a collapse that shapes allow, too, onto the nearest possible neighbour; or
-                               ///< none
-  std::vector<improvement::Change> to_repair;  ///< collapses onto each neighbour that leave tets to improve
-  double floor = 0;                            ///< repairs may make no tet worse than this
+  Change change;  ///< a collapse that shapes allow, too, onto the nearest possible neighbour; or
+                  ///< none
+  std::vector<Change> to_repair;  ///< collapses onto each neighbour that leave tets to improve
+  double floor = 0;               ///< repairs may make no tet worse than this
   /// The proposal depends on the tets at the vertex and at these vertices. Empty inside regions, where the
   /// link condition is not checked.
   std::vector<Index> read;
@@ -31,10 +31,9 @@ class Proposer {
  public:
   using Mode = CoarseningRule::Mode;
 
-  /// Keeps references to all but the number; `thin`, `cells` and `sizes` belong to the rule.
-  Proposer(const improvement::Workpiece& workpiece, const improvement::ThinShape& thin,
-           const improvement::CellBounds& cells, double radius_edge, std::span<const double> sizes,
-           const Changes& changes);
+  /// Keeps references to all but the number; `bounds` and `sizes` belong to the rule.
+  Proposer(const EditableMesh& edited, const TetBounds& bounds, double radius_edge,
+           std::span<const double> sizes, const Changes& changes);
   Proposer(const Proposer&) = delete;
   Proposer& operator=(const Proposer&) = delete;
 
@@ -42,21 +41,15 @@ class Proposer {
   void contractions(Index vertex, bool repairs, VertexProposal& found);
   /// Returns a change that makes a tet better: the removal of an edge (the longest one that makes it good
   /// enough, or else the best one), or a move of a corner.
-  improvement::Change improvement_of(Index tet, Mode mode);
+  Change improvement_of(Index tet, Mode mode);
 
  private:
   struct Neighbour {
     double squared_relative_length, squared_length;
     Index vertex;
-
-    friend bool operator<(const Neighbour& x, const Neighbour& y) {
-      return x.squared_relative_length != y.squared_relative_length
-                 ? x.squared_relative_length < y.squared_relative_length
-                 : x.vertex < y.vertex;
-    }
   };
 
-  const improvement::TetComplex& complex() const { return workpiece_.complex; }
+  const TetComplex& complex() const { return edited_.complex; }
   const std::vector<Point>& points() const { return complex().mesh().points; }
   void find_neighbours(Index vertex);
   bool may_share_feature(Index vertex, Index onto) const;
@@ -67,10 +60,10 @@ class Proposer {
     return stayed_[vertex] != 0 && stayed_[vertex] >= changes_.at_vertex[vertex];
   }
 
-  const improvement::Workpiece& workpiece_;
+  const EditableMesh& edited_;
   const Changes& changes_;
   CoarseningRule rule_;
-  improvement::Operations operations_;
+  Operations operations_;
   std::vector<Index> star_;            // tets at the current vertex
   std::vector<Neighbour> neighbours_;  // neighbours of that vertex, the nearest by size first
   std::vector<Index> targets_;         // neighbours onto which lengths allow a collapse
@@ -90,4 +83,4 @@ constexpr bool is_short(double squared_relative_length) {
   return squared_relative_length < contracted_below * contracted_below;
 }
 
-}  // namespace collarmesh::coarsening
+}  // namespace collarmesh::remeshing::coarsening

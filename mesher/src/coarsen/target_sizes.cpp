@@ -1,15 +1,15 @@
 #include "coarsen/target_sizes.h"
 
 #include <algorithm>
-#include <memory>
+#include <functional>
 #include <queue>
 
-#include "coarsen/gap_widths.h"
-#include "common/segments.h"
-#include "location/triangle_hierarchy.h"
+#include "common/cells_at_vertices.h"
+#include "location/feature_shapes.h"
 #include "refine/sizing.h"
+#include "tolerance/facing.h"
 
-namespace collarmesh::coarsening {
+namespace collarmesh::remeshing::coarsening {
 
 namespace {
 
@@ -26,14 +26,13 @@ class TargetSizes {
         options_(options),
         sizing_(plc, options, Frame()),
         sizes_(mesh.points.size(), INFINITY),
-        on_patch_(plc.patches.size()),
-        on_curve_(plc.curves.size()) {}
+        shapes_(plc) {}
 
   std::vector<double> run() {
     see_regions();
     for (Index v = 0; v < mesh_.points.size(); ++v) see_feature(v);
     if (options_.elements_across_gap > 0) see_gaps();
-    grade();
+    grade_sizes(mesh_, growth(), sizes_);
     return std::move(sizes_);
   }
 
@@ -68,32 +67,35 @@ class TargetSizes {
   double size_on_curve(Index curve, const Point& p) {
     if (options_.elements_per_circle == 0 || plc_.curves[curve].straight)
       return sizing_.feature_size(1, curve, p);
-    auto& segments = on_curve_[curve];
-    if (!segments)
-      segments = std::make_unique<TriangleHierarchy>(plc_.points, flat_triangles_of(plc_.curves[curve]));
-    Index at = 0;
-    segments->squared_distance_to(p, INFINITY, &at);
+    const Index at = nearest_triangle(shapes_.curve(curve), p);
     return sizing_.curve_size(curve, at, at, p);
   }
 
   double size_on_patch(Index patch, const Point& p) {
     if (options_.elements_per_circle == 0 || plc_.patches[patch].planar)
       return sizing_.feature_size(2, patch, p);
-    auto& triangles = on_patch_[patch];
-    if (!triangles) triangles = hierarchy_of_patch(plc_, patch);
-    Index at = 0;
-    triangles->squared_distance_to(p, INFINITY, &at);
+    const Index at = nearest_triangle(shapes_.patch(patch), p);
     return sizing_.triangle_size(patch, plc_.patches[patch].first_triangle + at, p);
   }
 
+  // Measures, as the refinement does, the distance of the surface from the features that it faces across a
+  // region: along the normal, among triangles turned towards it.
   void see_gaps() {
-    GapWidths gaps(plc_);
+    const FacingSurfaces facing(plc_);
+    FacingSurfaces::Crossings crossings;
     for (Index f = 0; f < mesh_.faces.size(); ++f) {
       const auto& [a, b, c] = mesh_.faces[f];
-      if (mesh_.face_patch[f] == none) continue;
+      const Index patch = mesh_.face_patch[f];
+      if (patch == none) continue;
       const double widest = sizing_.widest_gap(std::max({sizes_[a], sizes_[b], sizes_[c]}));
       const Point centre = (mesh_.points[a] + mesh_.points[b] + mesh_.points[c]) / 3;
-      const double width = gaps.from(centre, mesh_.face_patch[f], widest);
+      Index at = none;
+      facing.triangles().squared_distance_to(centre, INFINITY, &at,
+                                             [&](Index t) { return plc_.triangles[t].patch == patch; });
+      double width = widest;
+      for (unsigned side = 0; side < 2 && at != none; ++side)
+        if (plc_.patches[patch].regions[side] != 0)
+          width = std::min(width, facing.from(centre, at, side, widest, crossings).distance);
       if (width >= widest) continue;
       for (const Index v : mesh_.faces[f]) see(v, sizing_.gap_size(width));
     }
@@ -104,57 +106,39 @@ class TargetSizes {
     return options_.elements_across_gap > 0 ? growth_in_gaps : natural_growth;
   }
 
-  // Spreads the smallest sizes along the edges of the mesh.
-  void grade() {
-    const auto [least, largest] = std::minmax_element(sizes_.begin(), sizes_.end());
-    if (least == sizes_.end() || *least == *largest) return;
-    const double growth = this->growth();
-    find_neighbours();
-    using Entry = std::pair<double, Index>;
-    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front;
-    for (Index v = 0; v < sizes_.size(); ++v) front.push({sizes_[v], v});
-    while (!front.empty()) {
-      const auto [size, vertex] = front.top();
-      front.pop();
-      if (size > sizes_[vertex]) continue;
-      for (std::size_t i = first_neighbour_[vertex]; i < first_neighbour_[vertex + 1]; ++i) {
-        const Index other = neighbours_[i];
-        const double graded = size + growth * distance(mesh_.points[vertex], mesh_.points[other]);
-        if (graded >= sizes_[other]) continue;
-        sizes_[other] = graded;
-        front.push({graded, other});
-      }
-    }
-  }
-
-  // Finds the neighbours of each vertex; lists a neighbour once for each tet at the common edge.
-  void find_neighbours() {
-    first_neighbour_.assign(mesh_.points.size() + 1, 0);
-    for (const auto& tet : mesh_.tets)
-      for (const Index v : tet) first_neighbour_[v + 1] += 3;
-    for (std::size_t v = 1; v < first_neighbour_.size(); ++v) first_neighbour_[v] += first_neighbour_[v - 1];
-    neighbours_.resize(first_neighbour_.back());
-    std::vector<std::size_t> next(first_neighbour_.begin(), first_neighbour_.end() - 1);
-    for (const auto& tet : mesh_.tets)
-      for (const Index v : tet)
-        for (const Index w : tet)
-          if (w != v) neighbours_[next[v]++] = w;
-  }
-
   const TetMesh& mesh_;
   const Plc& plc_;
   const MeshOptions& options_;
   Sizing sizing_;
   std::vector<double> sizes_;
-  std::vector<std::unique_ptr<TriangleHierarchy>> on_patch_, on_curve_;
-  std::vector<std::size_t> first_neighbour_;
-  std::vector<Index> neighbours_;
+  FeatureShapes shapes_;
 };
 
 }  // namespace
+
+void grade_sizes(const TetMesh& mesh, double growth, std::vector<double>& sizes) {
+  const auto [least, largest] = std::minmax_element(sizes.begin(), sizes.end());
+  if (least == sizes.end() || *least == *largest) return;
+  const CellsAtVertices tets_at(mesh.tets, mesh.points.size());
+  using Entry = std::pair<double, Index>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front;
+  for (Index v = 0; v < sizes.size(); ++v) front.emplace(sizes[v], v);
+  while (!front.empty()) {
+    const auto [size, vertex] = front.top();
+    front.pop();
+    if (size > sizes[vertex]) continue;
+    for (const Index t : tets_at[vertex])
+      for (const Index other : mesh.tets[t]) {
+        const double graded = size + growth * distance(mesh.points[vertex], mesh.points[other]);
+        if (graded >= sizes[other]) continue;
+        sizes[other] = graded;
+        front.emplace(graded, other);
+      }
+  }
+}
 
 std::vector<double> target_sizes(const TetMesh& mesh, const Plc& plc, const MeshOptions& options) {
   return TargetSizes(mesh, plc, options).run();
 }
 
-}  // namespace collarmesh::coarsening
+}  // namespace collarmesh::remeshing::coarsening

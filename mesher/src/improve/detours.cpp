@@ -7,8 +7,9 @@
 
 #include "common/cell_shapes.h"
 #include "common/contains.h"
+#include "common/sort_uniquely.h"
 
-namespace collarmesh::improvement {
+namespace collarmesh::remeshing::improvement {
 
 namespace {
 
@@ -35,8 +36,8 @@ bool is_better(const std::vector<double>& now, const std::vector<double>& before
 
 }  // namespace
 
-Detours::Detours(Workpiece& workpiece, Remedies& remedies, Operations& operations, std::size_t most_trials)
-    : workpiece_(workpiece), remedies_(remedies), operations_(operations), most_trials_(most_trials) {}
+Detours::Detours(EditableMesh& edited, Remedies& remedies, Operations& operations, std::size_t most_trials)
+    : edited_(edited), remedies_(remedies), operations_(operations), most_trials_(most_trials) {}
 
 bool Detours::exhausted() const {
   return blunt_ >= most_blunt || trials_ >= std::min(most_trials_, first_trials + trials_per_detour * taken_);
@@ -61,8 +62,7 @@ std::size_t Detours::take_all(std::vector<Index> tets, const std::function<bool(
 bool Detours::take_round(std::vector<Index>& tets, Effort effort, const std::function<bool()>& stopped) {
   const auto is_good = [this](Index t) { return remedies_.poor_quality(t) == INFINITY; };
   std::erase_if(tets, is_good);
-  std::ranges::sort(tets, {}, [this](Index t) { return std::pair(remedies_.poor_quality(t), t); });
-  tets.erase(std::unique(tets.begin(), tets.end()), tets.end());
+  sort_uniquely(tets, [this](Index t) { return std::pair(remedies_.poor_quality(t), t); });
   Asked& asked = asked_[static_cast<unsigned>(effort)];
   const std::uint32_t before = taken_;
   const std::size_t count = tets.size();
@@ -101,13 +101,14 @@ void Detours::note_changes(std::vector<Index>& tets) {
 // good and no more of them thin than before, or else the detour with the best worst tet. Returns whether
 // `changed_` changed.
 bool Detours::help(Index tet, Effort effort) {
-  if (Change change = propose(tet); change.kind != Change::Kind::none) {
+  if (Change change = propose(tet); !change.is_none()) {
     ++trials_;
-    begin_trial();
-    apply(std::move(change));
-    workpiece_.keep();
+    Trial trial(edited_);
+    trial.apply(std::move(change), [](Index) {});
+    take(trial);
     return true;
   }
+  const auto is_perfect = [this](const Result& r) { return r.worst >= remedies_.wanted() && !r.more_thin; };
   Result best;
   FirstStep step{};
   for (const Index place : places(tet, effort)) {
@@ -117,21 +118,14 @@ bool Detours::help(Index tet, Effort effort) {
                                         Operation::insertion, Operation::removal}) {
         if (operation != Operation::removal && !may_change_vertices) continue;
         const FirstStep tried{place, edge, operation};
-        const Result found = attempt(tried);
-        if (!found.better) continue;
-        if (found.worst >= remedies_.wanted() && !found.more_thin) {
-          workpiece_.keep();
-          return true;
-        }
-        workpiece_.undo();
-        if (!is_worth_it(found, effort)) continue;
+        const Result found = attempt(tried, is_perfect);
+        if (found.taken) return true;
+        if (!found.better || !is_worth_it(found, effort)) continue;
         const auto worth = [](const Result& r) { return std::tuple(r.better, !r.more_thin, r.worst); };
         if (worth(found) > worth(best)) best = found, step = tried;
       }
   }
-  if (!best.better || !attempt(step).better) return false;
-  workpiece_.keep();
-  return true;
+  return best.better && attempt(step, [](const Result&) { return true; }).taken;
 }
 
 // Returns whether a result is worth it. More thin tets are worth it only if all other tets are good
@@ -164,51 +158,50 @@ Change Detours::first_step(const FirstStep& step) {
   const auto [i, j] = cell_shapes::corner_pairs[step.edge];
   const Index a = corners[i], b = corners[j];
   Change change;
+  const double above = least_quality_on_way;
   switch (step.operation) {
-    case Operation::contraction: operations_.contract_edge_anyhow(a, b, least_quality_on_way, change); break;
-    case Operation::contraction_turned:
-      operations_.contract_edge_anyhow(b, a, least_quality_on_way, change);
-      break;
-    case Operation::insertion: operations_.split_edge_anyhow(a, b, least_quality_on_way, change); break;
-    case Operation::removal:
-      operations_.remove_edge_anyhow(step.tet, i, j, least_quality_on_way, change);
-      break;
+    case Operation::contraction: operations_.contract_edge(a, b, change, above); break;
+    case Operation::contraction_turned: operations_.contract_edge(b, a, change, above); break;
+    case Operation::insertion: operations_.split_edge_anyhow(a, b, above, change); break;
+    case Operation::removal: operations_.remove_edge(step.tet, i, j, change, above); break;
   }
   return change;
 }
 
-// Tries a first step. If the result is better, the trial stays open.
-Detours::Result Detours::attempt(const FirstStep& step) {
+// Tries a first step, and takes the detour if the result is better and `is_taken` returns true.
+Detours::Result Detours::attempt(const FirstStep& step, const std::function<bool(const Result&)>& is_taken) {
   Change change = first_step(step);
-  if (change.kind == Change::Kind::none) return {};
+  if (change.is_none()) return {};
   ++trials_;
-  begin_trial();
-  apply(std::move(change));
-  improve_changed();
-  const Result found = result();
-  if (!found.better) workpiece_.undo();
+  before_.clear(), to_improve_.clear();
+  thin_before_ = 0;
+  Trial trial(edited_);
+  apply(trial, std::move(change));
+  improve_changed(trial);
+  Result found = result(trial);
+  found.taken = found.better && is_taken(found);
+  if (found.taken)
+    take(trial);
+  else
+    trial.undo();
   return found;
 }
 
-void Detours::begin_trial() {
-  ++trial_;
-  changed_.clear(), before_.clear(), to_improve_.clear();
-  thin_before_ = 0;
-  workpiece_.begin_trial();
+void Detours::take(Trial& trial) {
+  trial.keep();
+  changed_ = trial.changed();
 }
 
-void Detours::apply(Change change) {
-  std::vector<Index> star;
-  if (change.kind == Change::Kind::move) complex().star(change.vertex, star);
-  for (const Index t : star) see_before(t);
-  for (const Index t : change.replacement.old) see_before(t);
-  for (const Index t : workpiece_.apply(std::move(change))) {
-    set_changed(t);
+void Detours::apply(Trial& trial, Change change) {
+  const auto see_before = [this](Index tet) {
+    before_.push_back(std::min(remedies_.wanted(), remedies_.quality(tet)));
+    thin_before_ += remedies_.is_thin(tet) ? 1 : 0;
+  };
+  for (const Index t : trial.apply(std::move(change), see_before))
     if (!contains(to_improve_, t)) to_improve_.push_back(t);
-  }
 }
 
-void Detours::improve_changed() {
+void Detours::improve_changed(Trial& trial) {
   const auto key = [this](Index t) { return std::pair(remedies_.poor_quality(t), t); };
   for (unsigned step = 0; step < most_detours && !to_improve_.empty(); ++step) {
     const auto worst = std::ranges::min_element(to_improve_, {}, key);
@@ -217,37 +210,22 @@ void Detours::improve_changed() {
     *worst = to_improve_.back();
     to_improve_.pop_back();
     Change change = propose(tet);
-    if (change.kind != Change::Kind::none) apply(std::move(change));
+    if (!change.is_none()) apply(trial, std::move(change));
   }
 }
 
-Detours::Result Detours::result() const {
+Detours::Result Detours::result(const Trial& trial) const {
   std::vector<double> now, before = before_;
   std::size_t thin = 0;
-  for (const Index t : changed_) {
+  for (const Index t : trial.changed()) {
     if (!complex()[t].alive) continue;
     now.push_back(std::min(remedies_.wanted(), remedies_.quality(t)));
     thin += remedies_.is_thin(t) ? 1 : 0;
   }
   std::ranges::sort(before);
   std::ranges::sort(now);
-  return {is_better(now, before, remedies_.wanted()), thin > thin_before_,
+  return {is_better(now, before, remedies_.wanted()), false, thin > thin_before_,
           now.empty() ? remedies_.wanted() : now.front()};
 }
 
-// Records that a tet, which may be older than the trial, is about to change.
-void Detours::see_before(Index tet) {
-  if (tet < last_trial_of_.size() && last_trial_of_[tet] == trial_) return;
-  set_changed(tet);
-  before_.push_back(std::min(remedies_.wanted(), remedies_.quality(tet)));
-  thin_before_ += remedies_.is_thin(tet) ? 1 : 0;
-}
-
-void Detours::set_changed(Index tet) {
-  if (tet >= last_trial_of_.size()) last_trial_of_.resize(complex().size(), 0);
-  if (last_trial_of_[tet] == trial_) return;
-  last_trial_of_[tet] = trial_;
-  changed_.push_back(tet);
-}
-
-}  // namespace collarmesh::improvement
+}  // namespace collarmesh::remeshing::improvement

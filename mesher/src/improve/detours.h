@@ -8,7 +8,7 @@
 
 #include "improve/remedies.h"
 
-namespace collarmesh::improvement {
+namespace collarmesh::remeshing::improvement {
 
 /// Detours: sequences of operations for tets that no single operation improves. An operation is applied all
 /// the same, at the tet or beside it, and its tets are improved for some steps. The result is kept if it is
@@ -19,12 +19,12 @@ namespace collarmesh::improvement {
 class Detours {
  public:
   /// Keeps all by reference. Starts no detour after `most_trials` operations, but completes the current tet.
-  Detours(Workpiece& workpiece, Remedies& remedies, Operations& operations, std::size_t most_trials);
+  Detours(EditableMesh& edited, Remedies& remedies, Operations& operations, std::size_t most_trials);
 
   /// Takes detours for these tets and, where the number of vertices may change, for poor tets that detours
   /// leave. Takes the worst tet first; tries operations at the tet itself, then beside it; tries again after
   /// a change at a corner, until nothing helps. Returns the number of detours taken. Calls `stopped` between
-  /// tets. Precondition: the workpiece is prepared for trials.
+  /// tets. Precondition: the mesh is prepared for trials.
   std::size_t take_all(std::vector<Index> tets, const std::function<bool()>& stopped);
 
   /// Returns the number of operations tried so far.
@@ -40,7 +40,7 @@ class Detours {
   };
   /// The result of a trial.
   struct Result {
-    bool better = false;
+    bool better = false, taken = false;
     bool more_thin = false;  ///< more tets are thin than before the trial
     double worst = 0;        ///< smallest quality of the changed tets, at most the wanted quality
   };
@@ -58,17 +58,15 @@ class Detours {
   void note_changes(std::vector<Index>& tets);
   std::vector<Index> places(Index tet, Effort effort) const;
   Change first_step(const FirstStep& step);
-  Result attempt(const FirstStep& step);
+  Result attempt(const FirstStep& step, const std::function<bool(const Result&)>& is_taken);
   bool is_worth_it(const Result& result, Effort effort) const;
-  void begin_trial();
-  void apply(Change change);
-  void improve_changed();
-  Result result() const;
-  void see_before(Index tet);
-  void set_changed(Index tet);
-  const TetComplex& complex() const { return workpiece_.complex; }
+  void apply(Trial& trial, Change change);
+  void improve_changed(Trial& trial);
+  Result result(const Trial& trial) const;
+  void take(Trial& trial);
+  const TetComplex& complex() const { return edited_.complex; }
 
-  Workpiece& workpiece_;
+  EditableMesh& edited_;
   Remedies& remedies_;
   Operations& operations_;
   std::size_t most_trials_, trials_ = 0;
@@ -78,14 +76,12 @@ class Detours {
   std::vector<std::uint32_t> last_detour_at_;  // by vertex: the last detour that changed a tet there
   std::array<Asked, 3> asked_;                 // by Effort
 
+  std::vector<Index> changed_;  // tets that the last detour changed; some are removed
+
   // State of the current trial.
-  std::uint32_t trial_ = 0;
-  std::vector<std::uint32_t> last_trial_of_;  // by tet: the last trial that changed it
-  std::vector<Index> changed_;                // changed tets; some have been removed since
-  std::vector<double> before_;                // qualities of the changed tets before the trial, at most the
-                                              // wanted one
+  std::vector<double> before_;  // qualities of the changed tets before the trial, at most the wanted one
   std::size_t thin_before_ = 0;
   std::vector<Index> to_improve_;
 };
 
-}  // namespace collarmesh::improvement
+}  // namespace collarmesh::remeshing::improvement

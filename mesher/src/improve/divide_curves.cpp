@@ -1,4 +1,4 @@
-#include "improve/divide_curves.h"
+#include "improve/improve_edited.h"
 
 #include <algorithm>
 #include <array>
@@ -6,9 +6,9 @@
 #include <optional>
 #include <utility>
 
-#include "improve/operations.h"
+#include "remesh/operations.h"
 
-namespace collarmesh::improvement {
+namespace collarmesh::remeshing::improvement {
 
 namespace {
 
@@ -34,28 +34,25 @@ std::optional<std::array<Index, 2>> edge_to_divide(const TetComplex& complex, In
 
 }  // namespace
 
-std::size_t divide_curves_at_poor_tets(Workpiece& workpiece, const Bounds& bounds) {
-  const TetComplex& complex = workpiece.complex;
-  const ThinShape thin(workpiece.plc, complex.mesh(), bounds.thin_angle, bounds.reserve, workpiece.forced,
-                       bounds.tets_across());
-  const CellBounds cells(workpiece.plc, complex.mesh(), bounds);
-  const ThinRule rule(thin, cells);
+std::size_t divide_curves_at_poor_tets(EditableMesh& edited, const Bounds& bounds) {
+  const TetComplex& complex = edited.complex;
+  const ThinRule rule(edited.tet_bounds(bounds));
   const RadiusEdgeBound ratio(bounds.radius_edge);
-  Operations operations(workpiece, rule);
+  Operations operations(edited, rule);
   std::size_t divided = 0;
   for (Index t = 0, tets = complex.size(); t < tets; ++t) {
     if (!complex[t].alive || ratio.holds(complex.corners(t)) ||
         rule.quality(complex.corners(t), complex[t].corners) >= 1)
       continue;
     const auto edge = edge_to_divide(complex, t);
-    if (!edge || workpiece.is_fixed((*edge)[0]) || workpiece.is_fixed((*edge)[1])) continue;
+    if (!edge || edited.is_fixed((*edge)[0]) || edited.is_fixed((*edge)[1])) continue;
     Change change;
     operations.divide_edge((*edge)[0], (*edge)[1], 0.5, least_divided, change);
-    if (change.kind == Change::Kind::none) continue;
-    workpiece.apply(std::move(change));
+    if (change.is_none()) continue;
+    edited.apply(std::move(change));
     ++divided;
   }
   return divided;
 }
 
-}  // namespace collarmesh::improvement
+}  // namespace collarmesh::remeshing::improvement

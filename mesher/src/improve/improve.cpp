@@ -13,13 +13,13 @@
 #include "common/parallel_for.h"
 #include "common/thread_limit.h"
 #include "improve/detours.h"
-#include "improve/improve_workpiece.h"
-#include "improve/operations.h"
+#include "improve/improve_edited.h"
 #include "improve/remedies.h"
+#include "remesh/operations.h"
 
 namespace collarmesh {
 
-namespace improvement {
+namespace remeshing::improvement {
 namespace {
 
 // Changes are proposed at once for one in this many tets, so few that proposals rarely meet.
@@ -41,16 +41,14 @@ constexpr std::size_t trials = 4000, tets_per_trial = 50;
 /// the result does not depend on the number of threads.
 class Improvement {
  public:
-  Improvement(Workpiece& workpiece, const ImproveOptions& options, const Execution& execution,
+  Improvement(EditableMesh& edited, const ImproveOptions& options, const Execution& execution,
               bool thoroughly)
-      : workpiece_(workpiece),
-        thin_(workpiece.plc, complex().mesh(), options.bounds.thin_angle, options.bounds.reserve,
-              workpiece.forced, options.bounds.tets_across()),
-        cells_(workpiece.plc, complex().mesh(), options.bounds),
-        rule_(options.bounds.radius_edge, options.bounds.thin_angle > 0 ? &thin_ : nullptr,
-              options.bounds.thin_angle > 0 ? &cells_ : nullptr),
-        remedies_(workpiece, rule_, options, thoroughly),
-        operations_([this] { return Operations(workpiece_, rule_); }),
+      : edited_(edited),
+        bounds_(edited.tet_bounds(options.bounds)),
+        rule_(options.bounds.radius_edge, options.bounds.thin_angle > 0 ? &bounds_.thin : nullptr,
+              options.bounds.thin_angle > 0 ? &bounds_.cells : nullptr),
+        remedies_(edited, rule_, options, thoroughly),
+        operations_([this] { return Operations(edited_, rule_); }),
         execution_(execution),
         detours_(thoroughly && options.move_vertices),
         passes_(options.passes) {}
@@ -84,7 +82,7 @@ class Improvement {
     }
   };
 
-  const TetComplex& complex() const { return workpiece_.complex; }
+  const TetComplex& complex() const { return edited_.complex; }
 
   std::size_t changes() const {
     return report_.edge_removals + report_.boundary_flips + report_.moved_vertices +
@@ -155,7 +153,7 @@ class Improvement {
       ++batch_number_;
       changed_in_.resize(complex().size(), 0);
       for (std::size_t i = 0; i < batch_.size(); ++i)
-        if (proposals_[i].kind == Change::Kind::none) nothing_helps(batch_[i].tet);
+        if (proposals_[i].is_none()) nothing_helps(batch_[i].tet);
       for (std::size_t i = 0; i < batch_.size(); ++i) {
         if (is_untouched(proposals_[i]))
           apply(std::move(proposals_[i]));
@@ -206,10 +204,10 @@ class Improvement {
     const auto may_change = [this](Index t) { return remedies_.may_change_vertices(t); };
     const auto count = static_cast<std::size_t>(std::ranges::count_if(poor, may_change));
     if (count == 0 || count > few + complex().size() / tets_per_few) return false;
-    workpiece_.prepare();
+    edited_.prepare();
     rule_.set_least_gain(least_gain_in_detours);
     remedies_.forget();
-    Detours detours(workpiece_, remedies_, operations_.local(), trials + complex().size() / tets_per_trial);
+    Detours detours(edited_, remedies_, operations_.local(), trials + complex().size() / tets_per_trial);
     report_.detours = detours.take_all(std::move(poor), [this] { return report_.cancelled = stopped(); });
     return true;
   }
@@ -219,8 +217,8 @@ class Improvement {
   // the tets there. This relies on complete stars; no change is proposed elsewhere.
   bool is_untouched(const Change& change) const {
     const auto untouched = [&](Index t) { return complex()[t].alive && changed_in_[t] != batch_number_; };
-    return std::all_of(change.replacement.old.begin(), change.replacement.old.end(), untouched) &&
-           std::all_of(change.read.begin(), change.read.end(), untouched);
+    return std::ranges::all_of(change.replacement.old, untouched) &&
+           std::ranges::all_of(change.read, untouched);
   }
 
   void apply(Change change) {
@@ -230,7 +228,7 @@ class Improvement {
       case Change::Kind::boundary_flip: ++report_.boundary_flips; break;
       case Change::Kind::move: ++report_.moved_vertices; break;
       case Change::Kind::contraction:
-        if (!workpiece_.curve_can_spare(change))
+        if (!edited_.curve_can_spare(change))
           return;  // another change has used the curve's last spare
                    // edge
         ++report_.contracted_edges;
@@ -241,7 +239,7 @@ class Improvement {
         break;
     }
     for (const Index t : change.replacement.old) note_change_at(t);
-    for (const Index t : workpiece_.apply(std::move(change))) {
+    for (const Index t : edited_.apply(std::move(change))) {
       if (t >= changed_in_.size()) changed_in_.resize(complex().size(), 0);
       changed_in_[t] = batch_number_;
       if (t < failed_in_.size()) failed_in_[t] = 0;
@@ -251,9 +249,8 @@ class Improvement {
     }
   }
 
-  Workpiece& workpiece_;
-  ThinShape thin_;
-  CellBounds cells_;
+  EditableMesh& edited_;
+  TetBounds bounds_;
   SliverRule rule_;
   Remedies remedies_;
   tbb::enumerable_thread_specific<Operations> operations_;
@@ -272,7 +269,7 @@ class Improvement {
 };
 
 }  // namespace
-}  // namespace improvement
+}  // namespace remeshing::improvement
 
 ImproveOptions improve_options(unsigned level) {
   ImproveOptions options;
@@ -285,21 +282,21 @@ ImproveOptions improve_options(unsigned level) {
   return options;
 }
 
-ImproveReport improve(improvement::Workpiece& workpiece, const ImproveOptions& options,
+ImproveReport improve(remeshing::EditableMesh& edited, const ImproveOptions& options,
                       const Execution& execution, bool thoroughly) {
-  return improvement::Improvement(workpiece, options, execution, thoroughly).run();
+  return remeshing::improvement::Improvement(edited, options, execution, thoroughly).run();
 }
 
 ImproveReport improve(TetMesh& mesh, const Plc& plc, const ImproveOptions& options,
                       const Execution& execution) {
-  const SurfaceTolerance tolerance = tolerance_of_any_size(plc, options.bounds);
   ImproveReport report;
   ThreadLimit(options.threads).run([&] {
-    improvement::Workpiece workpiece(mesh, plc, tolerance, options.edges_per_hole,
-                                     options.bounds.lower_where_forced);
-    report = improve(workpiece, options, execution);
-    workpiece.complex.store();
-    if (options.bounds.thin_angle > 0) improvement::mark_cells(mesh, plc, options.bounds);
+    remeshing::EditableMesh edited(mesh, plc, options.bounds, options.edges_per_hole);
+    report = improve(edited, options, execution);
+    if (options.bounds.thin_angle > 0)
+      edited.store_marked(options.bounds);
+    else
+      edited.store();
   });
   return report;
 }

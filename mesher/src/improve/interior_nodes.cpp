@@ -1,12 +1,13 @@
-#include "improve/interior_nodes.h"
+#include "improve/improve_edited.h"
 
 #include <algorithm>
 #include <vector>
 
-#include "improve/operations.h"
-#include "improve/replace_tets.h"
+#include "common/cell_shapes.h"
+#include "remesh/operations.h"
+#include "remesh/replace_tets.h"
 
-namespace collarmesh::improvement {
+namespace collarmesh::remeshing::improvement {
 
 namespace {
 
@@ -14,11 +15,7 @@ namespace {
 /// the cells of collars may be replaced.
 class InteriorRule final : public ShapeRule {
  public:
-  InteriorRule(const Workpiece& workpiece, const Bounds& bounds)
-      : thin_(workpiece.plc, workpiece.complex.mesh(), bounds.thin_angle, bounds.reserve, workpiece.forced,
-              bounds.tets_across()),
-        cells_(workpiece.plc, workpiece.complex.mesh(), bounds),
-        rule_(thin_, cells_) {}
+  InteriorRule(const EditableMesh& edited, const Bounds& bounds) : rule_(edited.tet_bounds(bounds)) {}
 
   double quality(const Corners& p, const std::array<Index, 4>& corners) const override {
     return rule_.quality(p, corners);
@@ -29,19 +26,17 @@ class InteriorRule final : public ShapeRule {
 
   const ThinRule& of_thin_tets() const { return rule_; }
   bool is_to_go(const TetComplex::Tet& tet) const {
-    return tet.alive && cells_.lacks_interior_node(tet.corners);
+    return tet.alive && rule_.bounds().cells.lacks_interior_node(tet.corners);
   }
 
  private:
-  ThinShape thin_;
-  CellBounds cells_;
   ThinRule rule_;
 };
 
-std::vector<Index> tets_to_go(const Workpiece& workpiece, const InteriorRule& rule) {
+std::vector<Index> tets_to_go(const EditableMesh& edited, const InteriorRule& rule) {
   std::vector<Index> found;
-  for (Index t = 0; t < workpiece.complex.size(); ++t)
-    if (rule.is_to_go(workpiece.complex[t])) found.push_back(t);
+  for (Index t = 0; t < edited.complex.size(); ++t)
+    if (rule.is_to_go(edited.complex[t])) found.push_back(t);
   return found;
 }
 
@@ -51,46 +46,44 @@ Change change_for(Operations& operations, const TetComplex& complex, Index tet) 
   constexpr double good = 1;
   const std::array<Index, 4> corners = complex[tet].corners;
   Change change;
-  for (unsigned i = 0; i < 4; ++i)
-    for (unsigned j = i + 1; j < 4; ++j) operations.remove_edge(tet, i, j, change);
-  if (change.kind != Change::Kind::none && change.quality >= good) return change;
-  for (unsigned i = 0; i < 4; ++i)
-    for (unsigned j = i + 1; j < 4; ++j)
-      if (!complex.on_faces(corners[i], corners[j]))
-        operations.split_edge(corners[i], corners[j], CellBounds::forbidden, change);
-  if (change.kind != Change::Kind::none && change.quality >= good) return change;
+  operations.remove_best_edge(tet, change);
+  if (!change.is_none() && change.quality >= good) return change;
+  for (const auto& [i, j] : cell_shapes::corner_pairs)
+    if (!complex.on_faces(corners[i], corners[j]))
+      operations.split_edge(corners[i], corners[j], CellBounds::forbidden, change);
+  if (!change.is_none() && change.quality >= good) return change;
   operations.insert_in_cavity(tet, CellBounds::forbidden, change);
   return change;
 }
 
 }  // namespace
 
-void insert_interior_nodes(Workpiece& workpiece, const Bounds& bounds, InteriorNodesReport& report) {
-  workpiece.complex.forget_balls();
-  const InteriorRule rule(workpiece, bounds);
-  Operations operations(workpiece, rule);
-  const std::vector<Index> tets = tets_to_go(workpiece, rule);
+void insert_interior_nodes(EditableMesh& edited, const Bounds& bounds, InteriorNodesReport& report) {
+  edited.complex.forget_balls();
+  const InteriorRule rule(edited, bounds);
+  Operations operations(edited, rule);
+  const std::vector<Index> tets = tets_to_go(edited, rule);
   report.found += tets.size();
   for (const Index t : tets) {
-    if (!rule.is_to_go(workpiece.complex[t])) continue;
-    Change change = change_for(operations, workpiece.complex, t);
-    if (change.kind == Change::Kind::none || change.quality <= CellBounds::forbidden) continue;
+    if (!rule.is_to_go(edited.complex[t])) continue;
+    Change change = change_for(operations, edited.complex, t);
+    if (change.is_none() || change.quality <= CellBounds::forbidden) continue;
     ++(change.kind == Change::Kind::insertion ? report.inserted_nodes : report.removed_edges);
-    workpiece.apply(std::move(change));
+    edited.apply(std::move(change));
   }
 }
 
-void complete_interior_nodes(Workpiece& workpiece, const Bounds& bounds, InteriorNodesReport& report) {
-  const InteriorRule rule(workpiece, bounds);
-  const std::vector<Index> tets = tets_to_go(workpiece, rule);
+void complete_interior_nodes(EditableMesh& edited, const Bounds& bounds, InteriorNodesReport& report) {
+  const InteriorRule rule(edited, bounds);
+  const std::vector<Index> tets = tets_to_go(edited, rule);
   report.found += tets.size();
   std::vector<UnwantedTet> unwanted;
   unwanted.reserve(tets.size());
   for (const Index t : tets) unwanted.push_back({.tet = t});
-  const std::size_t points = workpiece.complex.mesh().points.size();
-  replace_tets(workpiece, unwanted, rule.of_thin_tets(), 1);
-  report.inserted_nodes += workpiece.complex.mesh().points.size() - points;
-  report.remaining = tets_to_go(workpiece, rule).size();
+  const std::size_t points = edited.complex.mesh().points.size();
+  replace_tets(edited, unwanted, rule.of_thin_tets(), 1);
+  report.inserted_nodes += edited.complex.mesh().points.size() - points;
+  report.remaining = tets_to_go(edited, rule).size();
 }
 
-}  // namespace collarmesh::improvement
+}  // namespace collarmesh::remeshing::improvement

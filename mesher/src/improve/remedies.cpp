@@ -4,7 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-namespace collarmesh::improvement {
+#include "common/cell_shapes.h"
+
+namespace collarmesh::remeshing::improvement {
 
 namespace {
 
@@ -13,9 +15,9 @@ constexpr double enough = 0.7;
 
 }  // namespace
 
-Remedies::Remedies(const Workpiece& workpiece, const SliverRule& rule, const ImproveOptions& options,
+Remedies::Remedies(const EditableMesh& edited, const SliverRule& rule, const ImproveOptions& options,
                    bool refill)
-    : complex_(workpiece.complex),
+    : complex_(edited.complex),
       rule_(rule),
       thin_above_(options.thin_above > 0 ? options.thin_above : options.bounds.radius_edge),
       wanted_(std::sin(options.min_dihedral * std::numbers::pi / 180)),
@@ -33,28 +35,22 @@ double Remedies::poor_quality(Index tet) const {
 
 Change Remedies::propose(Operations& operations, Index tet) const {
   Change change;
-  for (unsigned i = 0; i < 4; ++i)
-    for (unsigned j = i + 1; j < 4; ++j) operations.remove_edge(tet, i, j, change);
+  operations.remove_best_edge(tet, change);
   const auto& corners = complex_[tet].corners;
-  const auto found = [&] { return change.kind != Change::Kind::none; };
+  const auto found = [&] { return !change.is_none(); };
   if (found() || !move_vertices_) return change;
   for (const Index v : corners)
     if (!stays(v)) operations.move_vertex(v, change);
   if (found() || !may_change_vertices(tet)) return change;
-  for (const Index v : corners)
-    for (const Index w : corners)
-      if (v != w) operations.contract_edge(v, w, change);
-  for (unsigned i = 0; i < 4 && !found(); ++i)
-    for (unsigned j = i + 1; j < 4 && !found(); ++j)
-      operations.split_edge(corners[i], corners[j], enough * wanted_, change);
+  operations.contract_best_edge(tet, change);
+  for (const auto& [i, j] : cell_shapes::corner_pairs)
+    if (!found()) operations.split_edge(corners[i], corners[j], enough * wanted_, change);
   if (found() || !rule_.is_blunt(quality(tet))) return change;
   // For a flat tet, such as one between the pairs of a wall.
   if (refill_) operations.reconnect(tet, change);
   if (found()) return change;
   // A longer edge is better than a missed guarantee, so any length is allowed here.
-  for (const Index v : corners)
-    for (const Index w : corners)
-      if (v != w) operations.contract_edge_to_any_length(v, w, change);
+  operations.contract_best_edge(tet, change, Operations::Lengths::any);
   return change;
 }
 
@@ -73,4 +69,4 @@ void Remedies::set_stays(Index tet, bool stays) {
   for (const Index v : complex_[tet].corners) stays_[v] = stays;
 }
 
-}  // namespace collarmesh::improvement
+}  // namespace collarmesh::remeshing::improvement

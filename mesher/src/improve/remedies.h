@@ -3,10 +3,10 @@
 #include <vector>
 
 #include "collarmesh/improve.h"
-#include "improve/operations.h"
-#include "improve/shape_rule.h"
+#include "remesh/operations.h"
+#include "remesh/shape_rule.h"
 
-namespace collarmesh::improvement {
+namespace collarmesh::remeshing::improvement {
 
 /// Proposes operations that may improve a poor tet, in the order in which to try them. Remembers for each
 /// vertex whether moving it is known to be useless. Only reads the mesh; several threads may call it at once,
@@ -14,7 +14,7 @@ namespace collarmesh::improvement {
 class Remedies {
  public:
   /// Keeps both by reference. `refill`: fill the space around flat tets again where nothing else helps.
-  Remedies(const Workpiece& workpiece, const SliverRule& rule, const ImproveOptions& options,
+  Remedies(const EditableMesh& edited, const SliverRule& rule, const ImproveOptions& options,
            bool refill = true);
 
   /// Returns the sine of the angle up to which tets are improved.
@@ -57,4 +57,4 @@ class Remedies {
   std::vector<bool> stays_;  // by vertex: no move of it helps, and nothing at it has changed since
 };
 
-}  // namespace collarmesh::improvement
+}  // namespace collarmesh::remeshing::improvement

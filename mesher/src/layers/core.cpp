@@ -7,14 +7,15 @@
 #include <utility>
 
 #include "common/parallel_for.h"
+#include "common/sort_uniquely.h"
 #include "common/sorted.h"
 #include "common/tet_sides.h"
-#include "improve/improve_workpiece.h"
+#include "improve/improve_edited.h"
 #include "layers/core_mesh.h"
 
 namespace collarmesh::layering {
 
-using improvement::Workpiece;
+using remeshing::EditableMesh;
 
 namespace {
 
@@ -51,10 +52,9 @@ Core::Core(const TetMesh& mesh, const Plc& plc, const Front& front, const Height
   mesh_ = std::move(copy.mesh);
   vertex_of_ = std::move(copy.vertex_of);
   node_of_ = std::move(copy.node_of);
-  piece_ = std::make_unique<Workpiece>(mesh_, plc, *options_.bounds.tolerance, 0,
-                                       options_.bounds.lower_where_forced);
-  thin_ = std::make_unique<improvement::ThinShape>(plc, mesh_, options_.bounds.thin_angle, 0, piece_->forced,
-                                                   options_.bounds.tets_across());
+  piece_ = std::make_unique<EditableMesh>(mesh_, plc, options_.bounds);
+  thin_ = std::make_unique<remeshing::ThinShape>(plc, mesh_, options_.bounds.thin_angle, 0, piece_->forced,
+                                                 options_.bounds.tets_across());
   fix_wall();
   for (const Index t : poor_tets()) poor_at_first_.push_back(sorted(piece_->complex[t].corners));
   std::sort(poor_at_first_.begin(), poor_at_first_.end());
@@ -108,8 +108,7 @@ bool Core::push(Heights& heights, const std::vector<std::uint8_t>& levels) {
     failed_ = nodes_near(poor, rings);
   for (Index n = 0; n < heights.size(); ++n)
     if (!is_reached(n, heights)) failed_.push_back(n);
-  std::sort(failed_.begin(), failed_.end());
-  failed_.erase(std::unique(failed_.begin(), failed_.end()), failed_.end());
+  sort_uniquely(failed_);
   return false;
 }
 
@@ -137,7 +136,7 @@ void Core::fit_tets(Heights& heights, const std::vector<std::uint8_t>& levels) {
     parallel_for_ranges(tets.size(), at_once, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const Index t = tets[i];
-        improvement::Corners p = corners(t);
+        remeshing::Corners p = corners(t);
         for (unsigned k = 0; k < 4; ++k) p[k] = p[k] + moves[complex[t].corners[k]];
         spoilt[i] = margin(p, t) < least[i] ? 1 : 0;
       }
@@ -148,8 +147,7 @@ void Core::fit_tets(Heights& heights, const std::vector<std::uint8_t>& levels) {
         for (const Index v : complex[tets[i]].corners)
           if (v < node_of_.size() && node_of_[v] != none) at.push_back(node_of_[v]);
     if (at.empty()) return;
-    std::sort(at.begin(), at.end());
-    at.erase(std::unique(at.begin(), at.end()), at.end());
+    sort_uniquely(at);
     for (const Index n : at)
       if (heights[n] > 0) heights.lower(n, fitting * heights[n], Cause::core);
     heights.settle();
@@ -157,9 +155,9 @@ void Core::fit_tets(Heights& heights, const std::vector<std::uint8_t>& levels) {
 }
 
 /// Returns the angles of a tet relative to their bounds: at least 1 if it keeps them.
-double Core::margin(const improvement::Corners& p, Index tet) const {
+double Core::margin(const remeshing::Corners& p, Index tet) const {
   const auto [sharp, blunt] =
-      thin_->squared_margins(improvement::extreme_cosines(p), p, piece_->complex[tet].corners);
+      thin_->squared_margins(remeshing::extreme_cosines(p), p, piece_->complex[tet].corners);
   return blunt < 0 ? -1 : std::sqrt(std::min(sharp, blunt));
 }
 
@@ -311,10 +309,10 @@ std::vector<double> Core::shares_of(const std::vector<Vector>& moves, const std:
       for (std::size_t i = begin; i < end; ++i) {
         const auto& c = complex[moved[i]].corners;
         if (std::none_of(c.begin(), c.end(), [&](Index v) { return changed[v]; })) continue;
-        improvement::Corners p = corners(moved[i]);
-        if (pass == 0) before[i] = improvement::shape_quality(p);
+        remeshing::Corners p = corners(moved[i]);
+        if (pass == 0) before[i] = remeshing::shape_quality(p);
         for (unsigned k = 0; k < 4; ++k) p[k] = p[k] + shares[c[k]] * moves[c[k]];
-        const double after = improvement::shape_quality(p);
+        const double after = remeshing::shape_quality(p);
         spoilt[i] = after > 0 && (after >= good_quality || after >= quality_left * before[i]) ? 0 : 1;
       }
     });
@@ -324,8 +322,7 @@ std::vector<double> Core::shares_of(const std::vector<Vector>& moves, const std:
         for (const Index v : complex[moved[i]].corners)
           if (shares[v] > 0) at.push_back(v);
     if (at.empty()) return shares;
-    std::sort(at.begin(), at.end());
-    at.erase(std::unique(at.begin(), at.end()), at.end());
+    sort_uniquely(at);
     changed.assign(changed.size(), false);
     for (const Index v : at) {
       shares[v] = pass < most_halvings ? 0.5 * shares[v] : 0;

@@ -7,10 +7,10 @@
 
 #include "collarmesh/improve.h"
 #include "collarmesh/progress.h"
-#include "improve/thin_shape.h"
-#include "improve/workpiece.h"
 #include "layers/front.h"
 #include "layers/heights.h"
+#include "remesh/editable_mesh.h"
+#include "remesh/thin_shape.h"
 
 namespace collarmesh::layering {
 
@@ -31,7 +31,7 @@ class Core {
   const std::vector<Index>& failed() const { return failed_; }
   bool cancelled() const { return cancelled_; }
 
-  const improvement::TetComplex& complex() const { return piece_->complex; }
+  const remeshing::TetComplex& complex() const { return piece_->complex; }
   const TetMesh& mesh() const { return mesh_; }
   /// Returns the vertex of the core at a node of the front; the mesh's own where there are no layers.
   Index vertex_of(Index node) const { return vertex_of_[node]; }
@@ -47,7 +47,7 @@ class Core {
   std::vector<Index> vertices_near_front(unsigned rings) const;
   void find_around(const std::vector<Index>& near);
   void spread(std::vector<Vector>& moves, const std::vector<Index>& near) const;
-  double margin(const improvement::Corners& p, Index tet) const;
+  double margin(const remeshing::Corners& p, Index tet) const;
   void constrain(Index vertex, Vector& move) const;
   std::vector<double> shares_of(const std::vector<Vector>& moves, const std::vector<Index>& near) const;
   void improve_tets(double angle, bool thoroughly);
@@ -57,7 +57,7 @@ class Core {
   bool lower_at(const std::vector<Index>& tets, double share, Heights& heights) const;
   std::vector<std::uint8_t> vertices_near(const std::vector<Index>& tets, unsigned rings) const;
   std::vector<Index> nodes_near(const std::vector<Index>& tets, unsigned rings) const;
-  improvement::Corners corners(Index tet) const { return piece_->complex.corners(tet); }
+  remeshing::Corners corners(Index tet) const { return piece_->complex.corners(tet); }
 
   const TetMesh& given_;
   const Plc& plc_;
@@ -68,8 +68,8 @@ class Core {
   std::vector<Index> vertex_of_;  // by node of the front
   std::vector<Index> node_of_;    // by vertex of the core that existed at first: node of the front; none
   std::vector<double> reached_;   // by node of the front: its distance now
-  std::unique_ptr<improvement::Workpiece> piece_;
-  std::unique_ptr<improvement::ThinShape> thin_;
+  std::unique_ptr<remeshing::EditableMesh> piece_;
+  std::unique_ptr<remeshing::ThinShape> thin_;
   std::vector<std::array<Index, 4>> poor_at_first_;  // sorted corners
   Lists around_;  // by vertex near the front: its neighbours; empty for fixed vertices
   std::vector<Index> failed_;

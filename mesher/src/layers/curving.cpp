@@ -11,6 +11,7 @@
 #include "common/cell_shapes.h"
 #include "common/edge_key.h"
 #include "common/layer_jacobians.h"
+#include "common/sort_uniquely.h"
 #include "common/sorted.h"
 #include "common/tet_sides.h"
 
@@ -262,8 +263,7 @@ class Curving {
       if (!in_core(t) && !jacobian_exceeds(curved_tet(mesh_, t))) note(mesh_.tets[t], cell_shapes::tet_edges);
     for (const Index t : tets_at_wall_)
       if (!jacobian_exceeds(curved_tet(mesh_, t))) note(mesh_.tets[t], cell_shapes::tet_edges);
-    std::sort(at.begin(), at.end());
-    at.erase(std::unique(at.begin(), at.end()), at.end());
+    sort_uniquely(at);
     return at;
   }
 

@@ -7,6 +7,7 @@
 
 #include "common/contains.h"
 #include "common/edge_key.h"
+#include "common/sort_uniquely.h"
 #include "common/tet_sides.h"
 #include "layers/direction.h"
 
@@ -24,15 +25,10 @@ bool is_alike(const std::array<Index, 3>& t, const std::array<Index, 3>& u) {
   return false;
 }
 
-void sort_and_drop_repeated(std::vector<Index>& list) {
-  std::sort(list.begin(), list.end());
-  list.erase(std::unique(list.begin(), list.end()), list.end());
-}
-
 }  // namespace
 
 std::vector<Index> within_rings(const Lists& neighbours, std::vector<Index> nodes, unsigned rings) {
-  sort_and_drop_repeated(nodes);
+  sort_uniquely(nodes);
   std::vector<bool> found(neighbours.size(), false);
   for (const Index n : nodes) found[n] = true;
   std::size_t first = 0;  // index of the last ring's first node
@@ -49,7 +45,7 @@ std::vector<Index> within_rings(const Lists& neighbours, std::vector<Index> node
   return nodes;
 }
 
-Front::Front(const improvement::TetComplex& complex, const Plc& plc, const WallChoice& walls)
+Front::Front(const remeshing::TetComplex& complex, const Plc& plc, const WallChoice& walls)
     : complex_(complex), mesh_(complex.mesh()), plc_(plc), walls_(walls) {
   find_sides();
   if (sides.empty()) return;
@@ -85,8 +81,7 @@ void Front::find_sides() {
       on_wall[side.corners[i]] = true;
       wall_edges_.push_back(edge_key(side.corners[i], side.corners[(i + 1) % 3]));
     }
-  std::sort(wall_edges_.begin(), wall_edges_.end());
-  wall_edges_.erase(std::unique(wall_edges_.begin(), wall_edges_.end()), wall_edges_.end());
+  sort_uniquely(wall_edges_);
 }
 
 void Front::add_side(Index tet, unsigned corner) {
@@ -147,7 +142,7 @@ void Front::find_sector(Index vertex, Index tet, std::vector<Index>& sector) {
       sector.push_back(next);
     }
   }
-  sort_and_drop_repeated(faces);
+  sort_uniquely(faces);
   faces_at_.entries.insert(faces_at_.entries.end(), faces.begin(), faces.end());
   faces_at_.end_group();
   for (const Index e : edges_at_[vertex]) {
@@ -228,7 +223,7 @@ void Front::list_sides() {
     for (const Index s : sides_at[n])
       for (const Index other : sides[s].nodes)
         if (other != n) around.push_back(other);
-    sort_and_drop_repeated(around);
+    sort_uniquely(around);
     neighbours.entries.insert(neighbours.entries.end(), around.begin(), around.end());
     neighbours.end_group();
   }

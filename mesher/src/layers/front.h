@@ -7,8 +7,8 @@
 
 #include "collarmesh/tet_mesh.h"
 #include "common/cells_at_vertices.h"
-#include "improve/tet_complex.h"
 #include "layers/wall_choice.h"
+#include "remesh/tet_complex.h"
 
 namespace collarmesh::layering {
 
@@ -64,7 +64,7 @@ struct FrontNode {
 class Front {
  public:
   /// Keeps all by reference. `complex` is that of the mesh.
-  Front(const improvement::TetComplex& complex, const Plc& plc, const WallChoice& walls);
+  Front(const remeshing::TetComplex& complex, const Plc& plc, const WallChoice& walls);
 
   std::vector<WallSide> sides;
   /// Sides of walls that get no layers while the other side does; they have no nodes and no edges.
@@ -83,7 +83,7 @@ class Front {
   /// Returns whether a face of the mesh is a wall's triangle.
   bool is_wall(Index face) const { return face != none && walls_.is_wall(mesh_.face_patch[face]); }
   bool is_wall_patch(Index patch) const { return walls_.is_wall(patch); }
-  const improvement::TetComplex::Tet& tet(Index t) const { return complex_[t]; }
+  const remeshing::TetComplex::Tet& tet(Index t) const { return complex_[t]; }
   /// Returns whether an edge of the mesh is an edge of a wall's triangle.
   bool is_wall_edge(Index a, Index b) const;
 
@@ -107,7 +107,7 @@ class Front {
   };
   std::vector<PatchNormal> normals_of_patches(Index node) const;
 
-  const improvement::TetComplex& complex_;
+  const remeshing::TetComplex& complex_;
   const TetMesh& mesh_;
   const Plc& plc_;
   const WallChoice& walls_;

@@ -8,6 +8,7 @@
 #include "common/box_tree.h"
 #include "common/layer_jacobians.h"
 #include "common/parallel_for.h"
+#include "common/sort_uniquely.h"
 
 namespace collarmesh::layering {
 
@@ -156,7 +157,7 @@ void Heights::fit_gaps() {
     }
 }
 
-void Heights::fit_patches(const improvement::SmoothSurfaces& surfaces, const SurfaceTolerance& tolerance) {
+void Heights::fit_patches(const remeshing::SmoothSurfaces& surfaces, const SurfaceTolerance& tolerance) {
   constexpr unsigned most_halvings = 3;
   for (Index n = 0; n < size(); ++n) {
     const TetMesh::VertexFeature& slides_on = front_.nodes[n].slides_on;
@@ -236,8 +237,7 @@ bool Heights::unfold(bool strictly) {
   std::vector<Index> at;
   for (std::size_t s = 0; s < folded.size(); ++s)
     if (folded[s] != 0) at.insert(at.end(), front_.sides[s].nodes.begin(), front_.sides[s].nodes.end());
-  std::sort(at.begin(), at.end());
-  at.erase(std::unique(at.begin(), at.end()), at.end());
+  sort_uniquely(at);
   for (const Index n : at)
     if (length_[n] > 0) lower(n, strictly ? 0 : lowering * length_[n], Cause::fold);
   return !at.empty();

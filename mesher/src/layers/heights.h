@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "improve/smooth_surfaces.h"
 #include "layers/curving.h"
 #include "layers/front.h"
+#include "remesh/smooth_surfaces.h"
 
 namespace collarmesh::layering {
 
@@ -47,7 +47,7 @@ class Heights {
   /// Lowers distances in gaps: the stacks on both sides leave a part of each gap to the tets between.
   void fit_gaps();
   /// Lowers distances where nodes would leave curved patches on which they slide.
-  void fit_patches(const improvement::SmoothSurfaces& surfaces, const SurfaceTolerance& tolerance);
+  void fit_patches(const remeshing::SmoothSurfaces& surfaces, const SurfaceTolerance& tolerance);
   /// Lowers distances where curved edges of the wall would rise above a part of the layers.
   void fit_bulges(const Bulges& bulges);
   /// Lowers distances where cells would fold, and where neighbours have less than half the height. Returns

@@ -7,7 +7,6 @@
 
 #include "collarmesh/layers.h"
 #include "common/thread_limit.h"
-#include "improve/cell_bounds.h"
 #include "layers/core.h"
 #include "layers/curving.h"
 #include "layers/front.h"
@@ -15,6 +14,7 @@
 #include "layers/make.h"
 #include "layers/stack.h"
 #include "layers/wall_choice.h"
+#include "remesh/cell_bounds.h"
 
 namespace collarmesh {
 
@@ -66,7 +66,7 @@ class LayerMaker {
   Outcome make() {
     Heights heights(front_, mesh_, plc_, walls_);
     heights.fit_gaps();
-    heights.fit_patches(improvement::SmoothSurfaces(plc_, mesh_, *improvement_.bounds.tolerance),
+    heights.fit_patches(remeshing::SmoothSurfaces(plc_, mesh_, *improvement_.bounds.tolerance),
                         *improvement_.bounds.tolerance);
     heights.fit_bulges(bulges_);
     heights.settle();
@@ -202,7 +202,7 @@ class LayerMaker {
   WallChoice walls_;
   Bulges bulges_;
   bool is_second_order_;
-  improvement::TetComplex complex_;
+  remeshing::TetComplex complex_;
   Front front_;
   std::vector<Index> folded_;  // vertices of walls at curved cells that folded, sorted
   LayersReport report_;
@@ -222,7 +222,7 @@ LayersReport make(TetMesh& mesh, const Plc& plc, const LayerOptions& options,
   ThreadLimit(improvement.threads).run([&] {
     report = LayerMaker(mesh, plc, options, with_tolerance, second_order, execution).run(made);
     if (!report.cancelled && with_tolerance.bounds.thin_angle > 0)
-      improvement::mark_cells(mesh, plc, with_tolerance.bounds);
+      remeshing::mark_cells(mesh, plc, with_tolerance.bounds);
   });
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   return report;

@@ -5,7 +5,7 @@
 
 #include "common/contains.h"
 #include "common/tet_sides.h"
-#include "improve/shape.h"
+#include "remesh/shape.h"
 
 namespace collarmesh::periodicity {
 
@@ -65,8 +65,7 @@ double CavityEditor::worst(const Cavity& cavity, const Point& apex, Index vertex
   double worst = cavity.tets.empty() ? -1 : INFINITY;
   const auto see = [&](const std::array<Index, 3>& corners) {
     if (worst < least_quality || contains(corners, vertex)) return;
-    worst =
-        std::min(worst, improvement::shape_quality({apex, at(corners[0]), at(corners[1]), at(corners[2])}));
+    worst = std::min(worst, remeshing::shape_quality({apex, at(corners[0]), at(corners[1]), at(corners[2])}));
   };
   for (const Cavity::Side& side : cavity.hull) see(side.corners);
   for (const TetComplex::NewFace& face : cavity.floor) see(face.corners);

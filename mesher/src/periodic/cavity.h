@@ -3,11 +3,11 @@
 #include <array>
 #include <vector>
 
-#include "improve/tet_complex.h"
+#include "remesh/tet_complex.h"
 
 namespace collarmesh::periodicity {
 
-using improvement::TetComplex;
+using remeshing::TetComplex;
 
 /// A set of tets that will be replaced by tets with a common apex, an existing or a new vertex. Removed faces
 /// of the mesh are replaced, too: by cones of that apex, or by a floor of given faces.

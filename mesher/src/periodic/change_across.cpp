@@ -13,20 +13,20 @@ constexpr unsigned edges_between = 6;  // edges between the part that changes an
 
 void change_across(TetMesh& mesh, const Plc& plc, const PeriodicOptions& options, double distance,
                    const SurfaceTolerance& tolerance, Recut::Moved moved, double edges_per_hole,
-                   const std::function<void(improvement::Workpiece&, const Recut&)>& change) {
+                   const std::function<void(remeshing::EditableMesh&, const Recut&)>& change) {
   const std::vector<PatchPair> pairs = choose_pairs(options, plc);
   std::vector<FeatureImages> images;
   images.reserve(pairs.size());
   for (const PatchPair& pair : pairs) images.push_back(find_images(pair, plc, distance));
   Recut recut(mesh, plc, tolerance, pairs, images, moved);
   // With distances of the copied complex, edges between copies would count as forced to be short.
-  improvement::Workpiece workpiece(recut.mesh(), recut.complex().plc, recut.complex().tolerance,
-                                   edges_per_hole, false);
-  workpiece.fix(recut.fixed());
-  workpiece.leave(recut.farther_than(edges_between));
-  change(workpiece, recut);
-  recut.note_vertices(workpiece.complex);
-  workpiece.complex.store();
+  remeshing::EditableMesh edited(recut.mesh(), recut.complex().plc, recut.complex().tolerance, edges_per_hole,
+                                 false);
+  edited.fix(recut.fixed());
+  edited.leave(recut.farther_than(edges_between));
+  change(edited, recut);
+  recut.note_vertices(edited.complex);
+  edited.store();
   mesh = recut.back();
   map_corners(mesh);
 }

@@ -4,8 +4,8 @@
 
 #include "collarmesh/periodic.h"
 #include "collarmesh/surface_tolerance.h"
-#include "improve/workpiece.h"
 #include "periodic/recut.h"
+#include "remesh/editable_mesh.h"
 
 namespace collarmesh::periodicity {
 
@@ -14,6 +14,6 @@ namespace collarmesh::periodicity {
 /// mesh is of first order.
 void change_across(TetMesh& mesh, const Plc& plc, const PeriodicOptions& options, double distance,
                    const SurfaceTolerance& tolerance, Recut::Moved moved, double edges_per_hole,
-                   const std::function<void(improvement::Workpiece&, const Recut&)>& change);
+                   const std::function<void(remeshing::EditableMesh&, const Recut&)>& change);
 
 }  // namespace collarmesh::periodicity

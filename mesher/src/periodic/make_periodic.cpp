@@ -4,6 +4,7 @@
 
 #include "collarmesh/periodic.h"
 #include "common/distance_tree.h"
+#include "common/sort_uniquely.h"
 #include "periodic/cavity.h"
 #include "periodic/chains.h"
 #include "periodic/feature_images.h"
@@ -80,8 +81,7 @@ struct Surface {
     for (const Index face : faces[patch])
       for (const Index v : mesh.faces[face])
         if (mesh.features[v].dimension == 2) inside.push_back(v);
-    std::sort(inside.begin(), inside.end());
-    inside.erase(std::unique(inside.begin(), inside.end()), inside.end());
+    sort_uniquely(inside);
     return inside;
   }
   std::vector<SpacedPlace> spaced_on_curve(const TetMesh& mesh, Index curve) const {
@@ -264,8 +264,7 @@ std::vector<Tag> tags_of(const std::vector<Index>& patches, const Plc& plc) {
   std::vector<Tag> tags;
   tags.reserve(patches.size());
   for (const Index patch : patches) tags.push_back(plc.patches[patch].tag);
-  std::sort(tags.begin(), tags.end());
-  tags.erase(std::unique(tags.begin(), tags.end()), tags.end());
+  sort_uniquely(tags);
   return tags;
 }
 

@@ -6,6 +6,7 @@
 
 #include "common/box_tree.h"
 #include "common/edge_key.h"
+#include "common/sort_uniquely.h"
 
 namespace collarmesh::periodicity {
 
@@ -32,12 +33,8 @@ Nodes nodes_of(const TetMesh& mesh, std::span<const Tag> tags, std::size_t& face
       for (unsigned i = 0; i < 3; ++i)
         nodes.mid_nodes.emplace_back(edge_key(corners[i], corners[(i + 1) % 3]), mesh.face_mid_nodes[f][i]);
   }
-  const auto unique = [](auto& items) {
-    std::sort(items.begin(), items.end());
-    items.erase(std::unique(items.begin(), items.end()), items.end());
-  };
-  unique(nodes.corners);
-  unique(nodes.mid_nodes);
+  sort_uniquely(nodes.corners);
+  sort_uniquely(nodes.mid_nodes);
   return nodes;
 }
 

@@ -11,6 +11,7 @@
 
 #include "collarmesh/error.h"
 #include "common/named_tags.h"
+#include "common/sort_uniquely.h"
 
 namespace collarmesh::periodicity {
 
@@ -105,8 +106,7 @@ class PairReader {
       if (patches.size() == before)
         refuse(text_, fmt::format("no patch is called '{}'; there are {}", name, list_of_patches(plc_)));
     }
-    std::sort(patches.begin(), patches.end());
-    patches.erase(std::unique(patches.begin(), patches.end()), patches.end());
+    sort_uniquely(patches);
     return patches;
   }
 

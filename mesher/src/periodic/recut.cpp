@@ -8,6 +8,7 @@
 #include "common/cell_shapes.h"
 #include "common/edge_key.h"
 #include "common/flat_table.h"
+#include "common/sort_uniquely.h"
 #include "common/sorted.h"
 #include "common/tet_sides.h"
 #include "periodic/pair_choice.h"
@@ -130,8 +131,7 @@ void Recut::find_neighbours() const {
   edges.reserve(cell_shapes::corner_pairs.size() * mesh_.tets.size());
   for (const auto& tet : mesh_.tets)
     for (const auto& [i, j] : cell_shapes::corner_pairs) edges.push_back(edge_key(tet[i], tet[j]));
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  sort_uniquely(edges);
   neighbours_.resize(mesh_.points.size());
   for (const std::uint64_t edge : edges) {
     const auto a = static_cast<Index>(edge >> 32U), b = static_cast<Index>(edge);
@@ -143,13 +143,11 @@ void Recut::find_neighbours() const {
 void Recut::number_copies() {
   copies_ = shifts_;
   copies_.push_back(0);
-  std::sort(copies_.begin(), copies_.end());
-  copies_.erase(std::unique(copies_.begin(), copies_.end()), copies_.end());
+  sort_uniquely(copies_);
   for (const Shift shift : std::vector<Shift>(copies_))  // a vertex of a feature on several seams belongs to
                                                          // a copy that is moved by fewer pairs
     for (Shift part = shift; part > 0; part = (part - 1) & shift) copies_.push_back(part);
-  std::sort(copies_.begin(), copies_.end());
-  copies_.erase(std::unique(copies_.begin(), copies_.end()), copies_.end());
+  sort_uniquely(copies_);
   for (const Shift shift : copies_) {
     copy_of_.emplace(shift, static_cast<Index>(motions_.size()));
     motions_.push_back(motion_of(shift));
@@ -331,7 +329,7 @@ SizeField Recut::sizes(const SizeField& of_mesh) const {
   };
 }
 
-void Recut::note_vertices(const improvement::TetComplex& complex) {
+void Recut::note_vertices(const remeshing::TetComplex& complex) {
   std::size_t kept = 0;
   for (Index v = 0; v < places_.size(); ++v) {
     if (!complex.in_use(v)) continue;

@@ -11,9 +11,9 @@
 #include "collarmesh/mesher.h"
 #include "collarmesh/plc.h"
 #include "collarmesh/tet_mesh.h"
-#include "improve/tet_complex.h"
 #include "periodic/feature_images.h"
 #include "periodic/tiled_complex.h"
+#include "remesh/tet_complex.h"
 
 namespace collarmesh::periodicity {
 
@@ -44,7 +44,7 @@ class Recut {
   SizeField sizes(const SizeField& of_mesh) const;
 
   /// Removes the entries of vertices that the complex has lost. Call it before the complex is stored.
-  void note_vertices(const improvement::TetComplex& complex);
+  void note_vertices(const remeshing::TetComplex& complex);
   /// Returns the mesh, cut at the faces of the pairs again, without a map. Precondition: the complex is
   /// stored.
   TetMesh back() const;

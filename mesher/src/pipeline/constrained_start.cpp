@@ -5,12 +5,12 @@
 #include <cstddef>
 #include <utility>
 
+#include "adapt/bring_to_size.h"
 #include "constrained/constrained_tetrahedra.h"
-#include "improve/cell_bounds.h"
-#include "improve/thin_shape.h"
 #include "pipeline/certification.h"
 #include "pipeline/reshaping.h"
-#include "remesh/bring_to_size.h"
+#include "remesh/cell_bounds.h"
+#include "remesh/thin_shape.h"
 
 namespace collarmesh::pipeline {
 
@@ -21,8 +21,8 @@ bool has_flat_tet(const TetMesh& mesh) {
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
     if (mesh.tet_thin[t] == 0 && mesh.tet_collar[t] == 0) continue;
     const auto& [a, b, c, d] = mesh.tets[t];
-    const improvement::Corners p{mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]};
-    if (improvement::extreme_angles(p).largest > improvement::ThinShape::largest_angle) return true;
+    const remeshing::Corners p{mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]};
+    if (remeshing::extreme_angles(p).largest > remeshing::ThinShape::largest_angle) return true;
   }
   return false;
 }
@@ -43,7 +43,7 @@ void tetrahedralize(MeshJob& job) {
   result.has_narrow_cells = job.refined_with.bounds.lower_where_forced = true;
   bool brought = false;
   job.control.watch([&](const Execution& watched) {
-    brought = remeshing::bring_to_size(result.mesh, *job.plc, job.refined_with, watched);
+    brought = remeshing::adapting::bring_to_size(result.mesh, *job.plc, job.refined_with, watched);
   });
   if (brought) return;
   result.status = MeshStatus::budget_hit;
@@ -73,8 +73,9 @@ void settle(MeshJob& job, Hope hope) {
   for (unsigned round = 0; round < most_rounds && least > 0; ++round) {
     TetMesh mesh = made.result.mesh;
     const auto before = made.improvement;
-    job.control.watch(
-        [&](const Execution& watched) { remeshing::relax(mesh, *job.plc, job.refined_with, watched); });
+    job.control.watch([&](const Execution& watched) {
+      remeshing::adapting::relax(mesh, *job.plc, job.refined_with, watched);
+    });
     coarsen_and_improve(job, mesh, {}, thoroughly);
     const std::size_t poor = count_misshapen(job, mesh);
     if (poor >= least) {
@@ -100,10 +101,10 @@ void mend_flat_tets(MeshJob& job) {
   TetMesh mesh = job.made.result.mesh;
   bool changed = false;
   job.control.watch([&](const Execution& watched) {
-    changed = remeshing::face_each_other(mesh, *job.plc, job.refined_with, watched);
+    changed = remeshing::adapting::face_each_other(mesh, *job.plc, job.refined_with, watched);
   });
   if (!changed) return;
-  improvement::mark_cells(mesh, *job.plc, job.refined_with.bounds);
+  remeshing::mark_cells(mesh, *job.plc, job.refined_with.bounds);
   if (count_misshapen(job, mesh) < least) job.made.result.mesh = std::move(mesh);
 }
 

@@ -7,13 +7,13 @@
 
 #include "coarsen/target_sizes.h"
 #include "common/thread_limit.h"
-#include "improve/cell_bounds.h"
-#include "improve/divide_curves.h"
+#include "improve/improve_edited.h"
 #include "periodic/change_across.h"
 #include "periodic/make_periodic.h"
 #include "periodic/node_map.h"
 #include "pipeline/certification.h"
 #include "pipeline/reshaping.h"
+#include "remesh/cell_bounds.h"
 
 namespace collarmesh::pipeline {
 
@@ -24,7 +24,8 @@ using periodicity::Recut;
 TetMesh refined_with_nodes_of(MeshJob& job, const TetMesh& source) {
   TetMesh mesh = job.refined;
   std::vector<double> targets;
-  if (&source == &job.refined) targets = coarsening::target_sizes(source, *job.plc, job.refined_with);
+  if (&source == &job.refined)
+    targets = remeshing::coarsening::target_sizes(source, *job.plc, job.refined_with);
   coarsen_and_improve(job, mesh,
                       periodicity::add_periodic_nodes(mesh, source, *job.plc, job.options.periodic,
                                                       job.refined_with.bounds.tolerance->largest(), targets));
@@ -41,13 +42,13 @@ void change_across(MeshJob& job, TetMesh& mesh, Recut::Moved moved, const Change
   ThreadLimit(job.options.mesh.threads).run([&] {
     periodicity::change_across(mesh, *job.plc, job.options.periodic, tolerance.largest(), tolerance, moved,
                                job.refined_with.edges_per_hole, change);
-    improvement::mark_cells(mesh, *job.plc, job.refined_with.bounds);
+    remeshing::mark_cells(mesh, *job.plc, job.refined_with.bounds);
   });
 }
 
 void divide_curves_at_poor_tets(MeshJob& job, TetMesh& mesh) {
-  change_across(job, mesh, Recut::Moved::beside_first, [&](improvement::Workpiece& workpiece, const auto&) {
-    improvement::divide_curves_at_poor_tets(workpiece, job.refined_with.bounds);
+  change_across(job, mesh, Recut::Moved::beside_first, [&](remeshing::EditableMesh& edited, const auto&) {
+    remeshing::improvement::divide_curves_at_poor_tets(edited, job.refined_with.bounds);
   });
 }
 
@@ -59,10 +60,10 @@ std::size_t reshape_across(MeshJob& job, TetMesh& mesh, bool insert) {
   TetMesh best;
   std::size_t least = SIZE_MAX;
   for (const Moved moved : {Moved::beside_first, Moved::beside_second, Moved::first_half}) {
-    change_across(job, mesh, moved, [&](improvement::Workpiece& workpiece, const Recut& recut) {
+    change_across(job, mesh, moved, [&](remeshing::EditableMesh& edited, const Recut& recut) {
       MeshOptions options = job.refined_with;
       options.size_field = recut.sizes(options.size_field);
-      reshape(job, workpiece, options, insert);
+      reshape(job, edited, options, insert);
     });
     const std::size_t poor = count_misshapen(job, mesh);
     if (poor < least) {

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 
-#include "coarsen/coarsen_workpiece.h"
+#include "coarsen/coarsen_edited.h"
 #include "common/thread_limit.h"
-#include "improve/cell_bounds.h"
-#include "improve/improve_workpiece.h"
-#include "improve/interior_nodes.h"
+#include "improve/improve_edited.h"
 #include "pipeline/periodic_faces.h"
 #include "pipeline/refinement.h"
+#include "remesh/cell_bounds.h"
 
 namespace collarmesh::pipeline {
 
@@ -31,21 +30,21 @@ ImproveOptions options_of_improvement(const MeshJob& job) {
   return options;
 }
 
-void improve_elements(MeshJob& job, improvement::Workpiece& workpiece, bool thoroughly = true) {
+void improve_elements(MeshJob& job, remeshing::EditableMesh& edited, bool thoroughly = true) {
   if (job.options.improve == 0) return;
   if (job.made.coarsening) job.control.begin("improve", 0.7, 0.8);
   const ImproveOptions options = options_of_improvement(job);
-  job.made.improvement = improve(workpiece, options, job.execution(), thoroughly);
+  job.made.improvement = improve(edited, options, job.execution(), thoroughly);
   if (job.made.improvement.cancelled) job.control.stop();
 }
 
-void coarsen_elements(MeshJob& job, improvement::Workpiece& workpiece) {
+void coarsen_elements(MeshJob& job, remeshing::EditableMesh& edited) {
   if (!job.options.coarsen) return;
-  job.made.coarsening = coarsen(workpiece, job.refined_with, job.execution());
+  job.made.coarsening = coarsen(edited, job.refined_with, job.execution());
   if (job.made.coarsening->cancelled) job.control.stop();
   if (!job.options.trace || job.options.improve == 0) return;
-  TetMesh coarsened = workpiece.complex.stored();
-  improvement::mark_cells(coarsened, *job.plc, job.refined_with.bounds);
+  TetMesh coarsened = edited.complex.stored();
+  remeshing::mark_cells(coarsened, *job.plc, job.refined_with.bounds);
   job.trace("coarsen", coarsened);
 }
 
@@ -58,27 +57,27 @@ bool is_settled_later(const MeshJob& job) {
 void insert_interior_nodes(MeshJob& job) {
   const Bounds& bounds = job.refined_with.bounds;
   if (!bounds.interior_node) return;
-  improvement::Workpiece workpiece(job.made.result.mesh, *job.plc, *bounds.tolerance, 0,
-                                   bounds.lower_where_forced, job.neighbours);
+  remeshing::EditableMesh edited(job.made.result.mesh, *job.plc, bounds, 0, job.neighbours);
   job.neighbours = KnownNeighbours();
   job.made.interior_nodes.emplace();
-  improvement::insert_interior_nodes(workpiece, bounds, *job.made.interior_nodes);
-  workpiece.complex.store();
+  remeshing::improvement::insert_interior_nodes(edited, bounds, *job.made.interior_nodes);
+  edited.store();
 }
 
-void complete_interior_nodes(MeshJob& job, improvement::Workpiece& workpiece) {
+void complete_interior_nodes(MeshJob& job, remeshing::EditableMesh& edited) {
   if (job.refined_with.bounds.interior_node)
-    improvement::complete_interior_nodes(workpiece, job.refined_with.bounds, *job.made.interior_nodes);
+    remeshing::improvement::complete_interior_nodes(edited, job.refined_with.bounds,
+                                                    *job.made.interior_nodes);
 }
 
 /// Improves tets that miss their bounds, or nearly so, with operations that insert and remove vertices.
-void insert_where_poor(MeshJob& job, improvement::Workpiece& workpiece) {
+void insert_where_poor(MeshJob& job, remeshing::EditableMesh& edited) {
   constexpr double nearly = 1.25;
   if (job.options.improve == 0) return;
   ImproveOptions options = options_of_improvement(job);
   options.keep_vertices = false;
   options.min_dihedral = std::min(options.min_dihedral, nearly * options.bounds.thin_angle);
-  if (improve(workpiece, options, job.execution()).cancelled) job.control.stop();
+  if (improve(edited, options, job.execution()).cancelled) job.control.stop();
 }
 
 }  // namespace
@@ -101,15 +100,17 @@ void reshape(MeshJob& job) {
     return;
   }
   ThreadLimit(job.options.mesh.threads).run([&] {
-    improvement::Workpiece workpiece(mesh, *job.plc, *job.refined_with.bounds.tolerance,
-                                     job.options.coarsen ? job.refined_with.edges_per_hole : 0,
-                                     job.refined_with.bounds.lower_where_forced, job.neighbours);
+    const Bounds& bounds = job.refined_with.bounds;
+    remeshing::EditableMesh edited(mesh, *job.plc, bounds,
+                                   job.options.coarsen ? job.refined_with.edges_per_hole : 0, job.neighbours);
     job.neighbours = KnownNeighbours();
-    coarsen_elements(job, workpiece);
-    improve_elements(job, workpiece, !is_settled_later(job));
-    complete_interior_nodes(job, workpiece);
-    workpiece.complex.store();
-    if (job.options.coarsen) improvement::mark_cells(mesh, *job.plc, job.refined_with.bounds);
+    coarsen_elements(job, edited);
+    improve_elements(job, edited, !is_settled_later(job));
+    complete_interior_nodes(job, edited);
+    if (job.options.coarsen)
+      edited.store_marked(bounds);
+    else
+      edited.store();
   });
   job.trace(job.options.improve > 0 ? "improve" : "coarsen", mesh);
 }
@@ -117,23 +118,21 @@ void reshape(MeshJob& job) {
 void coarsen_and_improve(MeshJob& job, TetMesh& mesh, const std::vector<Index>& fixed, bool thoroughly) {
   ThreadLimit(job.options.mesh.threads).run([&] {
     const Bounds& bounds = job.refined_with.bounds;
-    improvement::Workpiece workpiece(mesh, *job.plc, *bounds.tolerance, job.refined_with.edges_per_hole,
-                                     bounds.lower_where_forced);
-    workpiece.fix(fixed);
-    const CoarsenReport coarsening = coarsen(workpiece, job.refined_with, job.execution());
+    remeshing::EditableMesh edited(mesh, *job.plc, bounds, job.refined_with.edges_per_hole);
+    edited.fix(fixed);
+    const CoarsenReport coarsening = coarsen(edited, job.refined_with, job.execution());
     if (coarsening.cancelled) job.control.stop();
     if (!job.made.coarsening) job.made.coarsening = coarsening;
-    improve_elements(job, workpiece, thoroughly);
-    workpiece.complex.store();
-    improvement::mark_cells(mesh, *job.plc, bounds);
+    improve_elements(job, edited, thoroughly);
+    edited.store_marked(bounds);
   });
 }
 
-void reshape(MeshJob& job, improvement::Workpiece& workpiece, const MeshOptions& options, bool insert) {
-  if (coarsen(workpiece, options, job.execution()).cancelled) job.control.stop();
-  improve_elements(job, workpiece);
-  if (insert) insert_where_poor(job, workpiece);
-  complete_interior_nodes(job, workpiece);
+void reshape(MeshJob& job, remeshing::EditableMesh& edited, const MeshOptions& options, bool insert) {
+  if (coarsen(edited, options, job.execution()).cancelled) job.control.stop();
+  improve_elements(job, edited);
+  if (insert) insert_where_poor(job, edited);
+  complete_interior_nodes(job, edited);
 }
 
 }  // namespace collarmesh::pipeline

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "improve/workpiece.h"
 #include "pipeline/mesh_job.h"
+#include "remesh/editable_mesh.h"
 
 namespace collarmesh::pipeline {
 
@@ -15,8 +15,8 @@ void reshape(MeshJob& job);
 void coarsen_and_improve(MeshJob& job, TetMesh& mesh, const std::vector<Index>& fixed,
                          bool thoroughly = true);
 
-/// Coarsens and improves a workpiece's mesh by these options. If asked to, inserts vertices where tets still
+/// Coarsens and improves an edited mesh by these options. If asked to, inserts vertices where tets still
 /// miss their bounds. Completes interior nodes.
-void reshape(MeshJob& job, improvement::Workpiece& workpiece, const MeshOptions& options, bool insert);
+void reshape(MeshJob& job, remeshing::EditableMesh& edited, const MeshOptions& options, bool insert);
 
 }  // namespace collarmesh::pipeline

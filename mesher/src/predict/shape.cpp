@@ -9,7 +9,7 @@ namespace collarmesh::prediction {
 
 namespace {
 
-// The same cosines as in the measurement of gaps (coarsen/gap_widths.cpp).
+// The same cosines as in the measurement of gaps (tolerance/facing.cpp).
 constexpr double least_facing = 0.5, least_facing_of_neighbours = 0.966;
 
 std::vector<std::array<Index, 3>> triangles_of(const Plc& plc) {

@@ -34,7 +34,7 @@ class BoundaryProjection {
         execution_(execution),
         tolerance_(tolerance_of_any_size(plc, options.bounds)),
         thin_(plc, mesh, options.bounds.thin_angle, 0,
-              improvement::forced_edges_of(plc, mesh, options.bounds.lower_where_forced),
+              remeshing::forced_edges_of(plc, mesh, options.bounds.lower_where_forced),
               options.bounds.tets_across()),
         cells_(plc, mesh, options.bounds),
         room_(mesh, limited_, bounds(plc)) {}
@@ -58,7 +58,7 @@ class BoundaryProjection {
     finish();
     if (!thin_.empty())
       ThreadLimit(options_.threads).run([&] {
-        improvement::mark_thin_tets(mesh_, options_.bounds.radius_edge);
+        remeshing::mark_thin_tets(mesh_, options_.bounds.radius_edge);
       });
     return report_;
   }
@@ -202,8 +202,8 @@ class BoundaryProjection {
   template <std::size_t n>
   bool move_farthest_back(const std::array<Index, n>& vertices, std::vector<Index>& around) {
     const auto moved = [&](Index p) { return distance(mesh_.points[p], room_.origin(p)); };
-    const Index farthest = *std::max_element(vertices.begin(), vertices.end(),
-                                             [&](Index a, Index b) { return moved(a) < moved(b); });
+    const Index farthest =
+        *std::ranges::max_element(vertices, [&](Index a, Index b) { return moved(a) < moved(b); });
     if (moved(farthest) == 0) return false;
     if (const Index slot = slot_of_[farthest]; slot != none) set_done(slot, false);
     go_back(farthest, around);
@@ -221,19 +221,15 @@ class BoundaryProjection {
   std::vector<Index> keep_narrow_places() {
     std::vector<Index> around;
     if (!options_.bounds.thin_in_narrow_places_only) return around;
-    const improvement::CellBounds now(plc_, mesh_, options_.bounds);
+    const remeshing::CellBounds now(plc_, mesh_, options_.bounds);
     for (Index t = 0; t < mesh_.tets.size() && !execution_.cancelled(); ++t) {
-      if (now.allow(corners(t), mesh_.tets[t]) || !cells_.allow(room_.origins_of(t), mesh_.tets[t])) continue;
+      if (now.allow(room_.corners_of(t), mesh_.tets[t]) || !cells_.allow(room_.origins_of(t), mesh_.tets[t]))
+        continue;
       if (move_farthest_back(mesh_.tets[t], around)) continue;
       for (const Index p : mesh_.tets[t])
         for (const Index other : room_.tets_at()[p]) move_farthest_back(mesh_.tets[other], around);
     }
     return around;
-  }
-
-  improvement::Corners corners(Index tet) const {
-    const auto& [a, b, c, d] = mesh_.tets[tet];
-    return {mesh_.points[a], mesh_.points[b], mesh_.points[c], mesh_.points[d]};
   }
 
   void go_back(Index p, std::vector<Index>& around) {
@@ -324,8 +320,8 @@ class BoundaryProjection {
   const Execution& execution_;
   SurfaceTolerance tolerance_;
   std::optional<TriangleHierarchy> triangles_;  // set if the tolerance varies
-  improvement::ThinShape thin_;
-  improvement::CellBounds cells_;
+  remeshing::ThinShape thin_;
+  remeshing::CellBounds cells_;
   projection::Relaxation room_;
   std::vector<Move> moves_;
   std::vector<Index> slot_of_;       // by point: index in moves_

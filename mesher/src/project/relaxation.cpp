@@ -4,8 +4,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/cell_shapes.h"
+#include "common/sort_uniquely.h"
 #include "delaunay/predicates.h"
-#include "improve/shape.h"
+#include "remesh/shape.h"
 
 namespace collarmesh::projection {
 
@@ -28,8 +30,8 @@ constexpr double least_course = 0.5;
 // Relative margin of the bounds, for rounding.
 constexpr double margin = 1e-6;
 
-double radius_edge(const improvement::Corners& p) {
-  const improvement::Circumsphere sphere = improvement::circumsphere(p);
+double radius_edge(const remeshing::Corners& p) {
+  const remeshing::Circumsphere sphere = remeshing::circumsphere(p);
   return std::sqrt(sphere.squared_radius / sphere.shortest_squared_edge);
 }
 
@@ -118,15 +120,15 @@ double Relaxation::score(Index tet, const Corners& p) const {
   const double six = six_volume(p[0], p[1], p[2], p[3]);
   if (six <= 0) {
     double longest = 0;
-    for (unsigned i = 0; i < 4; ++i)
-      for (unsigned j = i + 1; j < 4; ++j) longest = std::max(longest, squared_distance(p[i], p[j]));
+    for (const auto& [i, j] : cell_shapes::corner_pairs)
+      longest = std::max(longest, squared_distance(p[i], p[j]));
     return longest > 0 ? six / (longest * std::sqrt(longest)) : -1;
   }
   if (!in_ball(tet) && bounds_.thin != nullptr && bounds_.thin->is_thin_by_force(p, mesh_.tets[tet]) &&
       may_be_thin(tet, p))
     return 1;
   const Wanted& want = wanted(tet);
-  double score = std::min(1., improvement::shape_quality(p) / want.shape);
+  double score = std::min(1., remeshing::shape_quality(p) / want.shape);
   if (in_ball(tet)) return std::min(score, collar_score(tet, p));
   if (bounds_.thin != nullptr) {
     score = std::min(score, angle_score(tet, p));
@@ -145,10 +147,9 @@ double Relaxation::collar_score(Index tet, const Corners& p) const {
 
 // Returns 1 if angles are within the bounds of thin tets, or no farther beyond them than at the beginning.
 double Relaxation::angle_score(Index tet, const Corners& p) const {
-  constexpr double largest = improvement::ThinShape::largest_angle,
-                   rounding = improvement::ThinShape::rounding;
-  const improvement::ExtremeAngles now = improvement::extreme_angles(p),
-                                   then = improvement::extreme_angles(corners(tet, origins_));
+  constexpr double largest = remeshing::ThinShape::largest_angle, rounding = remeshing::ThinShape::rounding;
+  const remeshing::ExtremeAngles now = remeshing::extreme_angles(p),
+                                 then = remeshing::extreme_angles(corners(tet, origins_));
   const double bound = std::asin(bounds_.thin->smallest_sine(p, mesh_.tets[tet])) * 180 / std::numbers::pi,
                sharpest = std::min(bound, then.smallest),
                bluntest = std::max(largest - 2 * rounding, then.largest);
@@ -159,7 +160,7 @@ const Relaxation::Wanted& Relaxation::wanted(Index tet) const {
   Wanted& want = wanted_[tet];
   if (want.shape >= 0) return want;
   const Corners before = corners(tet, origins_);
-  want.shape = std::min(good_shape, improvement::shape_quality(before));
+  want.shape = std::min(good_shape, remeshing::shape_quality(before));
   want.angle = (1 - margin) * std::max(bounds_.collar_angle,
                                        measure(before[0], before[1], before[2], before[3]).max_dihedral);
   want.ratio = (1 - margin) * std::max(bounds_.radius_edge, radius_edge(before));
@@ -198,7 +199,7 @@ bool Relaxation::improve(Index vertex) {
   // Most places do not help the worst tets, so evaluate these first.
   worst_first_.clear();
   for (const Index t : tets_at_[vertex]) worst_first_.emplace_back(-lack_of(t, corners(t, mesh_.points)), t);
-  std::sort(worst_first_.begin(), worst_first_.end());
+  std::ranges::sort(worst_first_);
   around_.clear();
   double at_start = 0;
   for (const auto& [lack, t] : worst_first_) {
@@ -238,10 +239,6 @@ bool Relaxation::improve(Index vertex) {
 }
 
 std::vector<Index> Relaxation::relax(std::vector<Index> tets) {
-  const auto sort_out = [](std::vector<Index>& list) {
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-  };
   double missing = INFINITY;  // sum over all tets
   unsigned idle = 0;          // sweeps since the sum last fell much
   for (unsigned sweep = 0; sweep < sweeps && idle < idle_sweeps; ++sweep) {
@@ -260,7 +257,7 @@ std::vector<Index> Relaxation::relax(std::vector<Index> tets) {
     } else {
       ++idle;
     }
-    sort_out(vertices);
+    sort_uniquely(vertices);
     bool moved = false;
     for (const Index v : vertices) {
       if (in_vain(v)) continue;
@@ -271,7 +268,7 @@ std::vector<Index> Relaxation::relax(std::vector<Index> tets) {
       moved = true;
       tets.insert(tets.end(), tets_at_[v].begin(), tets_at_[v].end());
     }
-    sort_out(tets);
+    sort_uniquely(tets);
     if (!moved) break;
   }
   tets.erase(std::remove_if(tets.begin(), tets.end(), [&](Index t) { return good(t); }), tets.end());
@@ -293,7 +290,7 @@ bool Relaxation::on_course(Index edge) const {
 bool Relaxation::keeps_course(Index vertex) {
   find_features_around();
   const auto edges = edges_at_[vertex];
-  return std::all_of(edges.begin(), edges.end(), [&](Index edge) { return on_course(edge); });
+  return std::ranges::all_of(edges, [&](Index edge) { return on_course(edge); });
 }
 
 // Updates faces and edges on smooth features after vertices slid along them.

@@ -9,16 +9,16 @@
 #include "collarmesh/exact_geometry.h"
 #include "collarmesh/tet_mesh.h"
 #include "common/cells_at_vertices.h"
-#include "improve/cell_bounds.h"
-#include "improve/thin_shape.h"
+#include "remesh/cell_bounds.h"
+#include "remesh/thin_shape.h"
 
 namespace collarmesh::projection {
 
 struct Bounds {
-  double radius_edge = 2;                          ///< bound for tets that are neither thin nor in collars
-  double collar_angle = 150;                       ///< largest dihedral angle in collars, degrees
-  const improvement::ThinShape* thin = nullptr;    ///< null: no tet is thin
-  const improvement::CellBounds* cells = nullptr;  ///< set if tets may be thin
+  double radius_edge = 2;                        ///< bound for tets that are neither thin nor in collars
+  double collar_angle = 150;                     ///< largest dihedral angle in collars, degrees
+  const remeshing::ThinShape* thin = nullptr;    ///< null: no tet is thin
+  const remeshing::CellBounds* cells = nullptr;  ///< set if tets may be thin
   /// Largest distance of faces and edges from the exact geometry, by patch and by curve, absolute.
   std::vector<double> patch_sag, curve_sag;
 };
@@ -35,8 +35,9 @@ class Relaxation {
   const CellsAtVertices& tets_at() const { return tets_at_; }
   /// Returns the initial place of the vertex.
   const Point& origin(Index vertex) const { return origins_[vertex]; }
+  remeshing::Corners corners_of(Index tet) const { return corners(tet, mesh_.points); }
   /// Returns the initial corners of the tet.
-  improvement::Corners origins_of(Index tet) const { return corners(tet, origins_); }
+  remeshing::Corners origins_of(Index tet) const { return corners(tet, origins_); }
   /// Returns the initial shortest edge at the vertex.
   double shortest_edge(Index vertex) const;
   /// Returns whether the tet has positive volume and is within its bound.

@@ -18,7 +18,7 @@ class JacobianCoefficients {
   explicit JacobianCoefficients(const CurvedTet& nodes);
 
   const Values& values() const { return values_; }
-  double least() const { return *std::min_element(values_.begin(), values_.end()); }
+  double least() const { return *std::ranges::min_element(values_); }
   /// Returns the gradient of the weighted sum of the coefficients with respect to the six mid-edge nodes.
   std::array<Vector, 6> gradient(const Values& weights) const;
 

@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "common/edge_key.h"
+#include "common/sort_uniquely.h"
 
 namespace collarmesh::second_order {
 
@@ -16,8 +17,7 @@ MeshEdges::MeshEdges(const TetMesh& mesh) : first_node_(static_cast<Index>(mesh.
   for (const auto& [a, b, c] : mesh.faces)
     for (const std::uint64_t each : {edge_key(a, b), edge_key(b, c), edge_key(c, a)}) keys_.push_back(each);
   for (const auto& [a, b] : mesh.edges) keys_.push_back(edge_key(a, b));
-  std::sort(keys_.begin(), keys_.end());
-  keys_.erase(std::unique(keys_.begin(), keys_.end()), keys_.end());
+  sort_uniquely(keys_);
   keys_.shrink_to_fit();
   features_.resize(keys_.size());
   for (std::size_t f = 0; f < mesh.faces.size(); ++f)

@@ -4,7 +4,7 @@
 
 #include "collarmesh/exact_geometry.h"
 #include "common/flat_features.h"
-#include "second_order/nearest_on_features.h"
+#include "location/feature_shapes.h"
 
 namespace collarmesh::second_order {
 
@@ -14,7 +14,7 @@ class PlacesOnFeatures {
  public:
   /// Keeps references to both.
   PlacesOnFeatures(const Plc& plc, const ExactGeometry& exact)
-      : plc_(plc), nearest_(plc), flat_(plc), exact_(exact ? flat_.limit(exact) : ExactGeometry{}) {}
+      : plc_(plc), shapes_(plc), flat_(plc), exact_(exact ? flat_.limit(exact) : ExactGeometry{}) {}
   PlacesOnFeatures(const PlacesOnFeatures&) = delete;
   PlacesOnFeatures& operator=(const PlacesOnFeatures&) = delete;
 
@@ -34,12 +34,12 @@ class PlacesOnFeatures {
   Point place(const TetMesh::VertexFeature& feature, const Point& p) {
     if (exact_)
       if (const auto place = exact_(feature.dimension, feature.feature, p)) return *place;
-    return is_smooth(feature) ? nearest_.nearest(feature, p) : p;
+    return is_smooth(feature) ? shapes_.nearest(feature, p) : p;
   }
 
  private:
   const Plc& plc_;
-  NearestOnFeatures nearest_;
+  FeatureShapes shapes_;
   FlatFeatures flat_;
   ExactGeometry exact_;  // restricted to flat features; empty if there is none
 };

@@ -12,8 +12,8 @@
 #include "collarmesh/error.h"
 #include "collarmesh/mesher.h"
 #include "common/thread_limit.h"
-#include "improve/replace_tets.h"
-#include "improve/thin_shape.h"
+#include "remesh/replace_tets.h"
+#include "remesh/thin_shape.h"
 #include "second_order/mid_nodes.h"
 #include "second_order/places_on_features.h"
 #include "second_order/untangling.h"
@@ -23,7 +23,7 @@ namespace collarmesh {
 namespace second_order {
 namespace {
 
-using improvement::UnwantedTet;
+using remeshing::UnwantedTet;
 
 // A node farther than this from the middle of its edge, relative to the edge, does not belong to the edge:
 // the nearest point lies on another part of the feature. On a half circle it is 0.5.
@@ -151,15 +151,16 @@ class Curving {
   Point home(Index edge) const {
     const auto [a, b] = edges_.ends(edge);
     const Point middle = 0.5 * (mesh_.points[a] + mesh_.points[b]);
-    const auto at = std::lower_bound(slight_moves_.begin(), slight_moves_.end(), edge,
-                                     [](const SlightMove& move, Index e) { return move.edge < e; });
-    return at != slight_moves_.end() && at->edge == edge ? middle + at->way : middle;
+    const SlightMove* const move = found_in(slight_moves_, edge);
+    return move != nullptr ? middle + move->way : middle;
   }
 
-  const Move* move_of(Index edge) const {
-    const auto at = std::lower_bound(moves_.begin(), moves_.end(), edge,
-                                     [](const Move& move, Index e) { return move.edge < e; });
-    return at != moves_.end() && at->edge == edge ? &*at : nullptr;
+  const Move* move_of(Index edge) const { return found_in(moves_, edge); }
+
+  template <class Moves>
+  static const typename Moves::value_type* found_in(const Moves& moves, Index edge) {
+    const auto at = std::ranges::lower_bound(moves, edge, {}, &Moves::value_type::edge);
+    return at != moves.end() && at->edge == edge ? &*at : nullptr;
   }
 
   std::optional<std::array<Index, 2>> edge_at_flat_corner(const std::array<Index, 4>& tet,
@@ -276,8 +277,8 @@ class Curving {
     for (Index m = 0; m < moves_.size(); ++m)
       if (moves_[m].share < 1 && norm(moves_[m].way) > 0) drawn.push_back(m);
     const auto left = [this](Index m) { return (1 - moves_[m].share) * norm(moves_[m].way); };
-    std::sort(drawn.begin(), drawn.end(),
-              [&](Index a, Index b) { return left(a) != left(b) ? left(a) > left(b) : a < b; });
+    std::ranges::sort(drawn,
+                      [&](Index a, Index b) { return left(a) != left(b) ? left(a) > left(b) : a < b; });
     for (const Index m : drawn) {
       if (execution_.cancelled()) return;
       if (norm(moves_[m].way) > farthest * length_of(moves_[m].edge)) continue;
@@ -285,8 +286,8 @@ class Curving {
       for (double share = high; high - low > forward_precision; share = 0.5 * (low + high)) {
         moves_[m].share = share;
         place(moves_[m]);
-        const bool valid = std::all_of(tets_at_move_[m].begin(), tets_at_move_[m].end(),
-                                       [this](Index tet) { return is_valid(curved_tet(mesh_, tet)); });
+        const bool valid = std::ranges::all_of(
+            tets_at_move_[m], [this](Index tet) { return is_valid(curved_tet(mesh_, tet)); });
         (valid ? low : high) = share;
       }
       moves_[m].share = low;
@@ -373,16 +374,14 @@ constexpr unsigned most_rounds = 4;
 /// Removes tets from a mesh of first order; returns false if none could be removed.
 bool replace_in_mesh(TetMesh& mesh, const Plc& plc, std::span<const UnwantedTet> unwanted,
                      const SecondOrderOptions& options) {
-  const SurfaceTolerance tolerance = tolerance_of_any_size(plc, options.bounds);
   std::size_t gone = 0;
   ThreadLimit(options.threads).run([&] {
-    improvement::Workpiece workpiece(mesh, plc, tolerance, 0, options.bounds.lower_where_forced);
-    const improvement::ThinShape thin(plc, mesh, options.bounds.thin_angle, 0, workpiece.forced,
-                                      options.bounds.tets_across());
-    const improvement::CellBounds cells(plc, mesh, options.bounds);
-    gone = improvement::replace_tets(workpiece, unwanted, improvement::ThinRule(thin, cells), 1);
-    workpiece.complex.store();
-    improvement::mark_cells(mesh, plc, options.bounds);
+    remeshing::EditableMesh edited(mesh, plc, options.bounds);
+    const remeshing::ThinRule rule({remeshing::ThinShape(plc, mesh, options.bounds.thin_angle, 0,
+                                                         edited.forced, options.bounds.tets_across()),
+                                    remeshing::CellBounds(plc, mesh, options.bounds)});
+    gone = remeshing::replace_tets(edited, unwanted, rule, 1);
+    edited.store_marked(options.bounds);
   });
   return gone > 0;
 }

@@ -5,6 +5,7 @@
 #include <deque>
 
 #include "collarmesh/curved_tet.h"
+#include "common/sort_uniquely.h"
 #include "second_order/jacobian_coefficients.h"
 
 namespace collarmesh::second_order {
@@ -89,7 +90,7 @@ std::size_t Untangling::untangle_farther(Index tet) {
 std::size_t Untangling::untangle_within(Index tet, bool wide) {
   const auto& nodes = mesh_.tet_mid_nodes[tet];
   const auto is_free = [this](Index node) { return may_move(node - edges_.first_node()); };
-  if (std::none_of(nodes.begin(), nodes.end(), is_free)) return 0;
+  if (std::ranges::none_of(nodes, is_free)) return 0;
   gather(tet, wide);
   std::vector<Point> before;
   for (const Free& f : free_) before.push_back(mesh_.points[f.node]);
@@ -97,7 +98,7 @@ std::size_t Untangling::untangle_within(Index tet, bool wide) {
   for (const Index t : tets_)
     if (is_valid(t)) valid.push_back(t);
   const auto done = [&] {
-    return is_valid(tet) && std::all_of(valid.begin(), valid.end(), [this](Index t) { return is_valid(t); });
+    return is_valid(tet) && std::ranges::all_of(valid, [this](Index t) { return is_valid(t); });
   };
   double least = least_coefficient();
   for (unsigned i = 0; i < most_barriers; ++i) {
@@ -139,8 +140,7 @@ void Untangling::gather(Index tet, bool wide) {
       free_.push_back({node, feature.dimension == 3 ? Vector{} : plc_.patches[feature.feature].normal});
     }
   for (const Free& f : free_) add_tets_at(f.node, tets_);
-  std::sort(tets_.begin(), tets_.end());
-  tets_.erase(std::unique(tets_.begin(), tets_.end()), tets_.end());
+  sort_uniquely(tets_);
   for (const Index t : tets_) {
     const auto& [a, b, c, d] = mesh_.tets[t];
     six_volumes_.push_back(six_volume(mesh_.points[a], mesh_.points[b], mesh_.points[c], mesh_.points[d]));
@@ -157,7 +157,7 @@ std::vector<Index> Untangling::tets_at(Index edge) {
   const auto [a, end] = edges_.ends(edge);
   std::vector<Index> found;
   for (const Index t : tets_at_vertex_[a])
-    if (std::find(mesh_.tets[t].begin(), mesh_.tets[t].end(), end) != mesh_.tets[t].end()) found.push_back(t);
+    if (std::ranges::find(mesh_.tets[t], end) != mesh_.tets[t].end()) found.push_back(t);
   return found;
 }
 

@@ -1,0 +1,184 @@
+#include "adapt/bring_to_size.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "adapt/edge_division.h"
+#include "adapt/relaxation.h"
+#include "coarsen/target_sizes.h"
+#include "common/cell_shapes.h"
+#include "common/thread_limit.h"
+#include "remesh/editable_mesh.h"
+
+namespace collarmesh::remeshing::adapting {
+
+namespace {
+
+// Number of rounds of divisions and improvement, and number of passes of divisions in each round.
+constexpr unsigned rounds = 3, divisions = 2;
+// A round that makes fewer changes than this share of the tets is the last one.
+constexpr double least_share_of_round = 0.01;
+// Most divisions of thin parts. Each halves the edges along them.
+constexpr unsigned most_halvings = 12;
+// Edges shorter than this share of the target lie around or across a thin part.
+constexpr double around = 0.3;
+// Edges longer than this factor times the target are divided.
+constexpr double longest = coarsening::CoarseningRule::longest_new;
+
+// Ratio of an edge to a short edge beside it; edges may grow from there by this much per unit of distance.
+constexpr double of_shortest = 1.5, growth = 1;
+
+// Graded sizes are used only if they multiply the number of tets by at most `most_times`, plus `some`.
+constexpr double most_times = 2, some = 2000, tets_per_cube = 8;
+
+class Bringing {
+ public:
+  Bringing(TetMesh& mesh, const Plc& plc, MeshOptions options, const Execution& execution)
+      : mesh_(mesh), plc_(plc), options_(std::move(options)), execution_(execution) {
+    options_.edges_per_hole = 0;  // a hole may have no edges but the existing ones
+  }
+
+  bool run() {
+    relax([](Relaxation& relaxation) { relaxation.contract(); });
+    if (is_thin()) divide_thin();
+    for (unsigned round = 0; round < rounds && may_go_on(); ++round) {
+      std::size_t changes = 0;
+      for (unsigned pass = 0; pass < divisions && may_go_on(); ++pass) changes += divide();
+      relax([&](Relaxation& relaxation) {
+        relaxation.improve();
+        changes += relaxation.changes();
+      });
+      if (static_cast<double>(changes) < least_share_of_round * static_cast<double>(mesh_.tets.size())) break;
+    }
+    if (may_go_on()) face_each_other();
+    return may_go_on();
+  }
+
+  bool may_go_on() const {
+    return !execution_.cancelled() &&
+           (options_.max_vertices == 0 || mesh_.points.size() < options_.max_vertices);
+  }
+
+  EditableMesh edited() { return {mesh_, plc_, options_.bounds, options_.edges_per_hole}; }
+
+  /// Gives tets that miss their bounds vertices that face each other, and improves the others.
+  void face_each_other() {
+    for (unsigned round = 0; round < rounds && may_go_on() && divide_crossing() > 0; ++round)
+      relax([](Relaxation& relaxation) { relaxation.improve(); });
+  }
+
+  std::size_t divide_crossing() {
+    EditableMesh piece = edited();
+    const std::size_t divided = EdgeDivision(piece, options_, sizes()).divide_crossing(execution_);
+    piece.store();
+    return divided;
+  }
+
+  template <class Stage>
+  void relax(const Stage& stage) {
+    EditableMesh piece = edited();
+    Relaxation relaxation(piece, options_, sizes(), execution_);
+    stage(relaxation);
+    piece.store();
+  }
+
+ private:
+  std::vector<double> sizes() const { return coarsening::target_sizes(mesh_, plc_, options_); }
+
+  /// Returns sizes that grow with the distance from edges shorter than the targets. Collapses have left these
+  /// edges, so they will stay, and tets between short and long edges have poor shapes.
+  std::vector<double> sizes_beside_short_edges() const {
+    std::vector<double> graded = sizes();
+    for (const auto& tet : mesh_.tets)
+      for (const auto& [i, j] : cell_shapes::corner_pairs) {
+        const double most = of_shortest * distance(mesh_.points[tet[i]], mesh_.points[tet[j]]);
+        for (const Index v : {tet[i], tet[j]}) graded[v] = std::min(graded[v], most);
+      }
+    coarsening::grade_sizes(mesh_, growth, graded);
+    return graded;
+  }
+
+  /// Returns whether sizes take far more tets than the targets, as graded ones do along thin parts.
+  bool take_too_many_tets(const std::vector<double>& graded) const {
+    return tets_of(graded) > most_times * tets_of(sizes()) + some;
+  }
+
+  /// Returns sizes beside short edges or, where they would take very many tets, the targets.
+  std::vector<double> graded_sizes() const {
+    std::vector<double> graded = sizes_beside_short_edges();
+    return take_too_many_tets(graded) ? sizes() : graded;
+  }
+
+  bool is_thin() const { return take_too_many_tets(sizes_beside_short_edges()); }
+
+  /// Divides edges along thin parts where vertices face each other, and collapses those around and across
+  /// them that are no longer needed. Nothing moves in between, so that vertices go on facing each other.
+  void divide_thin() {
+    for (unsigned pass = 0; pass < most_halvings && may_go_on(); ++pass) {
+      EditableMesh piece = edited();
+      EdgeDivision division(piece, options_, sizes());
+      division.divide_facing();
+      const std::size_t divided = division.divide_all(longest, options_.max_vertices, execution_);
+      piece.store();
+      if (divided == 0) break;
+      relax([](Relaxation& relaxation) { relaxation.contract_short(around); });
+    }
+  }
+
+  /// Estimates the number of tets for these sizes, given by vertex.
+  double tets_of(const std::vector<double>& size) const {
+    double sum = 0;
+    for (const auto& tet : mesh_.tets) {
+      const double mean = 0.25 * (size[tet[0]] + size[tet[1]] + size[tet[2]] + size[tet[3]]);
+      double pieces = 1;  // number of pieces of the tet's extent
+      for (const auto& [i, j] : cell_shapes::corner_pairs)
+        pieces = std::max(pieces, distance(mesh_.points[tet[i]], mesh_.points[tet[j]]) / mean);
+      const auto& p = mesh_.points;
+      const double volume = six_volume(p[tet[0]], p[tet[1]], p[tet[2]], p[tet[3]]) / 6;
+      sum += std::max(pieces, tets_per_cube * volume / (mean * mean * mean));
+    }
+    return sum;
+  }
+
+  /// Divides long edges. Returns how many.
+  std::size_t divide() {
+    EditableMesh piece = edited();
+    const std::size_t divided =
+        EdgeDivision(piece, options_, graded_sizes()).divide_all(longest, options_.max_vertices, execution_);
+    piece.store();
+    return divided;
+  }
+
+  TetMesh& mesh_;
+  const Plc& plc_;
+  MeshOptions options_;
+  const Execution& execution_;
+};
+
+}  // namespace
+
+bool bring_to_size(TetMesh& mesh, const Plc& plc, const MeshOptions& options, const Execution& execution) {
+  bool ended = false;
+  ThreadLimit(options.threads).run([&] { ended = Bringing(mesh, plc, options, execution).run(); });
+  return ended;
+}
+
+void relax(TetMesh& mesh, const Plc& plc, const MeshOptions& options, const Execution& execution) {
+  ThreadLimit(options.threads).run([&] {
+    Bringing bringing(mesh, plc, options, execution);
+    bringing.relax([](Relaxation& relaxation) { relaxation.improve(); });
+    bringing.face_each_other();
+  });
+}
+
+bool face_each_other(TetMesh& mesh, const Plc& plc, const MeshOptions& options, const Execution& execution) {
+  bool changed = false;
+  ThreadLimit(options.threads).run([&] {
+    Bringing bringing(mesh, plc, options, execution);
+    for (unsigned round = 0; round < rounds && bringing.divide_crossing() > 0; ++round) changed = true;
+  });
+  return changed;
+}
+
+}  // namespace collarmesh::remeshing::adapting

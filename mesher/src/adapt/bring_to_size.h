@@ -1,0 +1,23 @@
+#pragma once
+
+#include "collarmesh/mesher.h"
+#include "collarmesh/plc.h"
+#include "collarmesh/progress.h"
+#include "collarmesh/tet_mesh.h"
+
+namespace collarmesh::remeshing::adapting {
+
+/// Brings a mesh of a complex, with tets of any shapes, approximately to its sizes: collapses short edges,
+/// divides long edges, and improves tets. Coarsening and improvement must follow. `options.bounds.tolerance`
+/// must be set. Returns false if it was stopped, or if the mesh reached `options.max_vertices` vertices.
+bool bring_to_size(TetMesh& mesh, const Plc& plc, const MeshOptions& options, const Execution& execution);
+
+/// Improves tets and collapses short edges where that has become possible. The only bound is that no tet
+/// around gets much worse.
+void relax(TetMesh& mesh, const Plc& plc, const MeshOptions& options, const Execution& execution);
+
+/// Divides edges on opposite sides of thin places at vertices that face each other, where fewer tets miss the
+/// bounds then. Returns whether the mesh has changed.
+bool face_each_other(TetMesh& mesh, const Plc& plc, const MeshOptions& options, const Execution& execution);
+
+}  // namespace collarmesh::remeshing::adapting

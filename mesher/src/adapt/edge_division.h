@@ -1,0 +1,83 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "collarmesh/mesher.h"
+#include "collarmesh/progress.h"
+#include "refine/sizing.h"
+#include "remesh/cell_bounds.h"
+#include "remesh/operations.h"
+
+namespace collarmesh::remeshing::adapting {
+
+/// Divides the edges of a mesh that are longer than its sizes ask for: on curves, in patches and inside
+/// regions.
+class EdgeDivision {
+ public:
+  /// Keeps the mesh and the options by reference; `sizes` are targets at the current vertices.
+  EdgeDivision(EditableMesh& edited, const MeshOptions& options, std::vector<double> sizes);
+
+  /// Divides once each edge that is longer than `longest` times its target, the relatively longest ones
+  /// first. Returns the number of divided edges. Skips edges whose division would make much worse tets. Stops
+  /// at `most_vertices`; 0: no bound.
+  std::size_t divide_all(double longest, std::size_t most_vertices, const Execution& execution);
+  /// Divides once each edge on a curve or in a patch that is farther from it than the tolerance, as
+  /// `divide_all` does.
+  std::size_t divide_distant(std::size_t most_vertices, const Execution& execution);
+  /// Divides edges beside a vertex near them at the place that faces it, not in the middle.
+  void divide_facing() { facing_ = true; }
+  /// Divides opposite edges of a flat tet, as between the two sides of a thin wall, where they cross: at two
+  /// places that face each other. Does so for tets that miss their bounds, if fewer miss them then, or as
+  /// many and the worst are better. Returns the number of pairs.
+  std::size_t divide_crossing(const Execution& execution);
+
+ private:
+  struct LongEdge {
+    double ratio;  // length relative to the target
+    Index a, b;
+  };
+
+  const TetComplex& complex() const { return edited_.complex; }
+  const TetMesh& mesh() const { return edited_.complex.mesh(); }
+  std::size_t divide_each(const std::vector<LongEdge>& edges, std::size_t most_vertices,
+                          const Execution& execution);
+  std::vector<LongEdge> long_edges(double longest) const;
+  std::vector<LongEdge> distant_edges() const;
+  struct EdgeOfPatch {
+    Index a, b, patch;
+  };
+  void add_edges_of_face(const std::array<Index, 3>& face, Index patch,
+                         std::vector<EdgeOfPatch>& found) const;
+  bool is_near(const EdgeOfPatch& edge) const;
+  double ratio(Index a, Index b) const;
+  double ratio_by_field(const LongEdge& edge) const;
+  void add_missing_sizes();
+  bool divide(Index a, Index b);
+  double quality(Index tet) const { return rule_.quality(complex().corners(tet), complex()[tet].corners); }
+  /// An edge, and the share of its length at which to divide it.
+  struct Division {
+    Index a, b;
+    double share;
+  };
+  bool divide_facing_at(Index tet);
+  bool try_to_divide(const std::vector<Division>& divisions);
+  void apply(Trial& trial, Change change);
+  void improve_changed(Trial& trial);
+  Change improvement_of(Index tet);
+  bool is_better(const Trial& trial);
+  double share_facing(Index a, Index b, const TetComplex::Ring& ring) const;
+  double size_at(const TetMesh::VertexFeature& feature, Index region, const Point& p) const;
+
+  EditableMesh& edited_;
+  const MeshOptions& options_;
+  Sizing sizing_;
+  std::vector<double> sizes_;  // by vertex
+  bool facing_ = false;
+  ThinRule rule_;
+  Operations operations_;
+  std::vector<double> before_;  // qualities of the tets that the current trial replaced
+  std::size_t trials_ = 0;
+};
+
+}  // namespace collarmesh::remeshing::adapting

@@ -1,0 +1,139 @@
+#pragma once
+
+#include <array>
+#include <utility>
+
+#include "remesh/cell_bounds.h"
+#include "remesh/shape.h"
+#include "remesh/thin_shape.h"
+
+namespace collarmesh::remeshing {
+
+class AngleRule;
+
+/// Defines the quality of tets, and which tets operations may make. Several threads may query it at once.
+class ShapeRule {
+ public:
+  ShapeRule() = default;
+  ShapeRule(const ShapeRule&) = delete;
+  ShapeRule& operator=(const ShapeRule&) = delete;
+  virtual ~ShapeRule() = default;
+
+  /// Returns the quality: the larger the better; not positive for a flat or an inverted tet.
+  virtual double quality(const Corners& p, const std::array<Index, 4>& corners) const = 0;
+  /// Returns this rule if it depends only on the extreme angles of tets (pairs of tets are then measured
+  /// faster), else null.
+  virtual const AngleRule* by_angles() const { return nullptr; }
+  /// Returns whether an operation may make this tet. Precondition: its quality is positive.
+  virtual bool allows(const Corners& p, const std::array<Index, 4>& corners, double quality) const = 0;
+  /// Returns whether an operation may make an edge between these vertices in place of an edge of another
+  /// length.
+  virtual bool allows_edge(Index, Index, double /*squared_length*/, double /*squared_before*/) const {
+    return true;
+  }
+  /// Returns the share by which a move of a vertex must raise the quality to be worth it.
+  virtual double least_gain() const { return 1e-3; }
+  /// Returns the number of step lengths that a move tries, each half of the one before.
+  virtual unsigned step_lengths() const { return 4; }
+  /// Returns whether operations may replace cells of collars.
+  virtual bool dissolves_collars() const { return false; }
+};
+
+/// A rule in which the extreme angles of a tet determine its quality.
+class AngleRule : public ShapeRule {
+ public:
+  virtual double quality_of(const ExtremeCosines& cosines, const Corners& p,
+                            const std::array<Index, 4>& corners) const = 0;
+  double quality(const Corners& p, const std::array<Index, 4>& corners) const final {
+    return quality_of(extreme_cosines(p), p, corners);
+  }
+  const AngleRule* by_angles() const final { return this; }
+};
+
+/// A bound on circumradius / shortest edge, which thin tets may exceed.
+class RadiusEdgeBound {
+ public:
+  explicit RadiusEdgeBound(double radius_edge) : squared_(radius_edge * radius_edge) {}
+  bool holds(const Corners& p) const {
+    const Circumsphere sphere = circumsphere(p);
+    return sphere.squared_radius <= squared_ * sphere.shortest_squared_edge;
+  }
+
+ private:
+  double squared_;
+};
+
+/// The rule of thin tets. A quality of 1 or more means that the tet keeps the bounds on thin tets, in a place
+/// where it may be thin. Allows operations to make any tet.
+class ThinRule final : public AngleRule {
+ public:
+  explicit ThinRule(TetBounds bounds) : bounds_(std::move(bounds)) {}
+
+  const TetBounds& bounds() const { return bounds_; }
+
+  double quality_of(const ExtremeCosines& cosines, const Corners& p,
+                    const std::array<Index, 4>& corners) const override {
+    const auto [sharp, blunt] = bounds_.thin.squared_margins(cosines, p, corners);
+    if (blunt < 0) return -1;
+    const double quality = std::sqrt(std::min(sharp, blunt));
+    const bool fits = !bounds_.cells.forbid_thin_tets() || bounds_.cells.allow(p, corners);
+    return fits ? quality : CellBounds::forbidden * std::min(1.0, quality);
+  }
+  bool allows(const Corners&, const std::array<Index, 4>&, double) const override { return true; }
+
+ private:
+  TetBounds bounds_;
+};
+
+/// The rule of improvement: the smallest sine of the dihedral angles, within the radius-edge bound. Where
+/// tets may be thin, tets with an angle above the largest one of thin tets are worse than all others.
+class SliverRule final : public ShapeRule {
+ public:
+  /// Keeps references to `thin` and `cells`. If `thin` is null, no tet may exceed the bound.
+  explicit SliverRule(double radius_edge, const ThinShape* thin = nullptr, const CellBounds* cells = nullptr)
+      : bound_(radius_edge), thin_(thin), cells_(cells) {}
+
+  double quality(const Corners& p, const std::array<Index, 4>& corners) const override {
+    const double sine = shape_quality(p);
+    if (thin_ == nullptr || !(sine > 0)) return sine;
+    if (forbids_thin_tets() && !cells_->allow(p, corners)) return CellBounds::forbidden * sine;
+    return thin_->is_blunt(p, sine) ? beyond * sine : thin_->shape_quality_where_forced(p, corners, sine);
+  }
+  bool allows(const Corners& p, const std::array<Index, 4>& corners, double) const override {
+    return (bound_.holds(p) || (thin_ != nullptr && thin_->contains(p, corners))) &&
+           (cells_ == nullptr || cells_->allow(p, corners));
+  }
+
+  /// Returns whether the quality is above this value, which is positive. Much cheaper than the quality; may
+  /// return false for some tets above it.
+  bool surely_exceeds(double quality, const Corners& p) const {
+    if (forbids_thin_tets()) return false;
+    const double of_obtuse = quality / obtuse_weight;
+    const double of_largest = thin_ != nullptr ? thin_->squared_cosine_of_largest() : 1;
+    return of_obtuse < 1 &&
+           surely_between(p, 1 - quality * quality, std::min(1 - of_obtuse * of_obtuse, of_largest));
+  }
+
+  /// Returns whether no better tet is possible, because the input forces an edge to be short.
+  bool is_as_forced(const Corners& p, const std::array<Index, 4>& corners) const {
+    return thin_ != nullptr && thin_->is_as_forced(p, corners);
+  }
+  double least_gain() const override { return least_gain_; }
+  /// Sets `least_gain` for later operations.
+  void set_least_gain(double share) { least_gain_ = share; }
+  /// Returns whether a tet of this quality has an angle above the largest one of thin tets, or none above
+  /// 0.06 degrees. False if no tet may be thin.
+  bool is_blunt(double quality) const { return thin_ != nullptr && quality < beyond; }
+
+ private:
+  static constexpr double beyond = 1e-3;
+
+  bool forbids_thin_tets() const { return cells_ != nullptr && cells_->forbid_thin_tets(); }
+
+  RadiusEdgeBound bound_;
+  const ThinShape* thin_;
+  const CellBounds* cells_;
+  double least_gain_ = 1e-3;
+};
+
+}  // namespace collarmesh::remeshing

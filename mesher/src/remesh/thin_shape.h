@@ -1,0 +1,249 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "collarmesh/plc.h"
+#include "collarmesh/tet_mesh.h"
+#include "remesh/shape.h"
+#include "tolerance/forced_edges.h"
+
+namespace collarmesh::remeshing {
+
+/// A tet's extreme angles as squared cosines with the signs of the cosines: like cosines they decrease as
+/// angles grow, but they need no roots.
+struct ExtremeCosines {
+  double smallest_angle;  ///< signed squared cosine of the smallest dihedral angle
+  double largest_angle;   ///< signed squared cosine of the largest dihedral or face angle
+  bool positive;          ///< whether the volume is positive
+};
+
+inline double signed_square(double x) { return x * std::fabs(x); }
+/// Returns the squared sine of an angle from its signed squared cosine.
+inline double squared_sine(double signed_square_of_cosine) { return 1 - std::fabs(signed_square_of_cosine); }
+inline double sine(double signed_square_of_cosine) {
+  return std::sqrt(squared_sine(signed_square_of_cosine));
+}
+
+/// Returns the signed squared cosine of the largest angle of the tet's faces.
+inline double least_cosine_of_faces(const Corners& p) {
+  const double ab = squared_distance(p[0], p[1]), ac = squared_distance(p[0], p[2]),
+               ad = squared_distance(p[0], p[3]), bc = squared_distance(p[1], p[2]),
+               bd = squared_distance(p[1], p[3]), cd = squared_distance(p[2], p[3]);
+  double least = 1;
+  const auto see_face = [&least](double x, double y, double z) {
+    const double longest = std::max({x, y, z}), excess = x + y + z - 2 * longest;
+    if (excess >= 0) return;
+    const double others = longest == x ? y * z : longest == y ? x * z : x * y;
+    least = std::min(least, 0.25 * signed_square(excess) / others);
+  };
+  see_face(ab, ac, bc);
+  see_face(ab, ad, bd);
+  see_face(ac, ad, cd);
+  see_face(bc, bd, cd);
+  return least;
+}
+
+/// Returns the extreme dihedral angles.
+inline ExtremeCosines dihedral_cosines(const Corners& p) {
+  const Vector ab = p[1] - p[0], ac = p[2] - p[0], ad = p[3] - p[0], bc = p[2] - p[1], bd = p[3] - p[1];
+  const Vector n_a = cross(bc, bd), n_b = cross(ad, ac), n_c = cross(ab, ad), n_d = cross(ac, ab);
+  if (!(-dot(n_d, ad) > 0)) return {1, -1, false};
+  const double a = 1 / squared_norm(n_a), b = 1 / squared_norm(n_b), c = 1 / squared_norm(n_c),
+               d = 1 / squared_norm(n_d);
+  // The negated product of outward normals is the cosine of the angle between the faces.
+  const auto square = [](double product, double x, double y) {
+    return -(product * x) * (std::fabs(product) * y);  // this order keeps products in range at any scale
+  };
+  const std::array<double, 6> squares{square(dot(n_c, n_d), c, d), square(dot(n_b, n_d), b, d),
+                                      square(dot(n_b, n_c), b, c), square(dot(n_a, n_d), a, d),
+                                      square(dot(n_a, n_c), a, c), square(dot(n_a, n_b), a, b)};
+  double least = squares[0], greatest = squares[0];
+  for (unsigned i = 1; i < 6; ++i) {
+    least = std::min(least, squares[i]);
+    greatest = std::max(greatest, squares[i]);
+  }
+  return {std::min(1.0, greatest), std::max(-1.0, least), true};
+}
+
+inline ExtremeCosines extreme_cosines(const Corners& p) {
+  ExtremeCosines cosines = dihedral_cosines(p);
+  if (cosines.positive)
+    cosines.largest_angle = std::max(-1.0, std::min(cosines.largest_angle, least_cosine_of_faces(p)));
+  return cosines;
+}
+
+/// Returns whether all dihedral angles lie between the angles with these two squared cosines, the second one
+/// obtuse, and face angles are below the second one. Has no divisions; returns false in close cases.
+inline bool surely_between(const Corners& p, double squared_cosine, double squared_obtuse_cosine) {
+  constexpr double rounding = 1e-9;
+  const double sharp = squared_cosine * (1 - rounding), blunt = squared_obtuse_cosine * (1 - rounding);
+  const Vector ab = p[1] - p[0], ac = p[2] - p[0], ad = p[3] - p[0], bc = p[2] - p[1], bd = p[3] - p[1],
+               cd = p[3] - p[2];
+  const Vector n_a = cross(bc, bd), n_b = cross(ad, ac), n_c = cross(ab, ad), n_d = cross(ac, ab);
+  const double a = squared_norm(n_a), b = squared_norm(n_b), c = squared_norm(n_c), d = squared_norm(n_d);
+  // Counts violations without branches; NaN violates every bound.
+  unsigned beyond = 0;
+  const auto require = [&beyond](bool holds) { beyond |= holds ? 0U : 1U; };
+  // The negated product of outward normals has the sign of the cosine.
+  const auto see_edge = [&](const Vector& m, const Vector& n, double squares) {
+    const double product = dot(m, n);
+    require(product * product < (product < 0 ? sharp : blunt) * squares);
+  };
+  see_edge(n_c, n_d, c * d);
+  see_edge(n_b, n_d, b * d);
+  see_edge(n_b, n_c, b * c);
+  see_edge(n_a, n_d, a * d);
+  see_edge(n_a, n_c, a * c);
+  see_edge(n_a, n_b, a * b);
+  // Tests a corner of a face, between sides of squared lengths x and y.
+  const auto see_corner = [&](double x, double y, double across) {
+    const double product = std::min(0.0, x + y - across);
+    require(product * product < 4 * blunt * (x * y));
+  };
+  const auto see_face = [&](double x, double y, double z) {
+    see_corner(x, y, z);
+    see_corner(y, z, x);
+    see_corner(z, x, y);
+  };
+  const double s_ab = squared_norm(ab), s_ac = squared_norm(ac), s_ad = squared_norm(ad),
+               s_bc = squared_norm(bc), s_bd = squared_norm(bd), s_cd = squared_norm(cd);
+  see_face(s_ab, s_ac, s_bc);
+  see_face(s_ab, s_ad, s_bd);
+  see_face(s_ac, s_ad, s_cd);
+  see_face(s_bc, s_bd, s_cd);
+  require(-dot(n_d, ad) > 0);
+  return beyond == 0;
+}
+
+/// A tet's extreme angles, degrees.
+struct ExtremeAngles {
+  double smallest;  ///< smallest dihedral angle; negative for a flat or an inverted tet
+  double largest;   ///< largest dihedral or face angle
+};
+
+inline ExtremeAngles extreme_angles(const Corners& p) {
+  const ExtremeCosines cosines = extreme_cosines(p);
+  if (!cosines.positive) return {-1, 180};
+  const auto angle = [](double square) {
+    return std::acos(std::copysign(std::sqrt(std::fabs(square)), square)) * 180 / std::numbers::pi;
+  };
+  return {angle(cosines.smallest_angle), angle(cosines.largest_angle)};
+}
+
+/// The bounds on the shape of thin tets: on dihedral angles from below and above, and on face angles from
+/// above, as tight as thin places permit. If features meet at less than twice the smallest angle, the lower
+/// bound is half the angle between them. If the input forces an edge of the tet to be short, the lower bound
+/// is half the angle that the edge leaves.
+class ThinShape {
+ public:
+  static constexpr double largest_angle = 150;  ///< degrees
+  static constexpr double rounding = 1e-6;      ///< degrees, a margin for other ways to compute an angle
+
+  /// `smallest_angle` is in degrees; 0: no tet is thin. Vertices have their current numbers. `reserve` is the
+  /// share of the bounds, counted from 0 and from 180 degrees, that is kept in reserve. `forced`: see
+  /// forced_edges_of. `tets_across`: see Bounds.
+  ThinShape(const Plc& plc, const TetMesh& mesh, double smallest_angle, double reserve,
+            std::shared_ptr<const ForcedEdges> forced, double tets_across = 1);
+
+  bool empty() const { return !(smallest_ > 0); }
+  double squared_cosine_of_largest() const { return -cosine_; }
+  /// Returns the sine of the lower bound on a tet's dihedral angles, with a margin for rounding.
+  double smallest_sine(const Corners& p, const std::array<Index, 4>& corners) const {
+    return std::min(smallest_sine_at(corners), forced_sine(p, corners));
+  }
+  /// Returns whether a tet of positive volume has an angle above the largest one of thin tets. `shape` is its
+  /// shape_quality, which rules out such dihedral angles for most tets.
+  bool is_blunt(const Corners& p, double shape) const {
+    return shape > obtuse_weight * least_blunt_ + rounding ? least_cosine_of_faces(p) < cosine_
+                                                           : extreme_cosines(p).largest_angle < cosine_;
+  }
+  /// The squared sines of the smallest angle and of 180 degrees minus the largest angle, relative to those of
+  /// their bounds: both are at least 1 if a tet is thin. Negative for a flat or an inverted tet.
+  struct SquaredMargins {
+    double sharp, blunt;
+  };
+  SquaredMargins squared_margins(const ExtremeCosines& cosines, const Corners& p,
+                                 const std::array<Index, 4>& corners) const {
+    if (!cosines.positive) return {-1, -1};
+    const double least = smallest_sine_at(corners), sharp = squared_sine(cosines.smallest_angle),
+                 blunt = cosines.largest_angle < 0 ? squared_sine(cosines.largest_angle) : 1;
+    double margin = sharp / (least * least);
+    if (forced_ && margin < good_enough)
+      if (const double forced = forced_sine(p, corners); forced < deep)
+        margin = std::max(margin, std::min(good_enough, sharp / (forced * forced)));
+    return {margin, blunt * inverse_squared_least_blunt_};
+  }
+  /// Returns the quality of a tet of positive volume; `sine` is its quality by angles alone (shape_quality).
+  /// At forced edges, small angles count relative to what the edges permit, so that large angles decide.
+  double shape_quality_where_forced(const Corners& p, const std::array<Index, 4>& corners,
+                                    double sine) const {
+    const double forced = sine < largest_forced_sine ? forced_sine(p, corners) : 1;
+    if (forced >= deep) return sine;
+    const ExtremeCosines cosines = extreme_cosines(p);
+    const double sharp = remeshing::sine(cosines.smallest_angle) * sine_ / forced;
+    return cosines.largest_angle < 0 ? std::min(sharp, obtuse_weight * remeshing::sine(cosines.largest_angle))
+                                     : sharp;
+  }
+  /// Returns whether a tet of positive volume is about as good as its forced edges permit.
+  bool is_as_forced(const Corners& p, const std::array<Index, 4>& corners) const {
+    if (empty() || !forced_ || forced_sine(p, corners) >= deep) return false;
+    const SquaredMargins margins = squared_margins(extreme_cosines(p), p, corners);
+    return std::min(margins.sharp, margins.blunt) >= good_enough;
+  }
+  /// Returns true only if both margins are above this value, which is at least 1. Much cheaper than the
+  /// margins; may return false for some tets above it.
+  bool surely_exceeds(double margin, const Corners& p) const {
+    const double sharp = margin * sine_, blunt = margin * least_blunt_;
+    return blunt < 1 && surely_between(p, 1 - sharp * sharp, 1 - blunt * blunt);
+  }
+  /// Returns whether the tet is thin only because the input forces an edge to be short.
+  bool is_thin_by_force(const Corners& p, const std::array<Index, 4>& corners) const {
+    return !empty() && forced_ && forced_sine(p, corners) < sine_ && contains(p, corners);
+  }
+  bool contains(const Corners& p, const std::array<Index, 4>& corners) const {
+    if (empty()) return false;
+    const ExtremeCosines cosines = extreme_cosines(p);
+    if (!cosines.positive || cosines.largest_angle < cosine_) return false;
+    const double smallest = sine(cosines.smallest_angle);
+    return smallest >= smallest_sine_at(corners) || smallest >= forced_sine(p, corners);
+  }
+
+ private:
+  // The sine of 1.7 degrees. If forced edges permit less, further attempts gain nothing. If they permit more,
+  // operations treat the tet as if its edges were not forced, although the bound is lower.
+  static constexpr double deep = 0.03;
+  // Largest squared margin that forced edges can give a tet.
+  static constexpr double good_enough = 2;
+  // Tets whose smallest angle has a larger sine need no lower bound.
+  static constexpr double largest_forced_sine = 0.35;
+
+  double smallest_sine_at(const std::array<Index, 4>& corners) const {
+    double least = sine_;
+    if (sine_at_vertex_.empty()) return least;
+    for (const Index v : corners)
+      if (v < sine_at_vertex_.size()) least = std::min(least, sine_at_vertex_[v]);
+    return least;
+  }
+  double forced_sine(const Corners& p, const std::array<Index, 4>& corners) const;
+
+  double smallest_, sine_, cosine_, least_blunt_, inverse_squared_least_blunt_;
+  double share_;                        // share of the forced angle that tets must keep, including the
+                                        // reserve
+  std::vector<double> sine_at_vertex_;  // empty if no crease is sharp enough to lower the bound
+  std::shared_ptr<const ForcedEdges> forced_;
+};
+
+/// Returns the forced edges of a mesh in its current state, whose faces must be set. Null unless they may
+/// lower the bounds.
+std::shared_ptr<const ForcedEdges> forced_edges_of(const Plc& plc, const TetMesh& mesh, bool lower_bounds);
+
+/// Marks the tets outside collars whose circumradius / shortest edge is above the bound.
+void mark_thin_tets(TetMesh& mesh, double radius_edge);
+
+}  // namespace collarmesh::remeshing
