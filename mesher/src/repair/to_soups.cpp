@@ -73,11 +73,11 @@ class SoupMaker {
     add_new_edges(known);
   }
 
+  // Adds the new edges at which facets of a soup that names its features end or meet sharply. They have the
+  // tag 0, because any other tag may be that of an edge of the CAD shape.
   void add_new_edges(const std::set<std::array<Index, 3>>& known) {
     if (std::none_of(soups_.begin(), soups_.end(), [](const PolygonSoup& s) { return s.given_features; }))
       return;
-    std::vector<Tag> next_tag(soups_.size(), 1);
-    for (const Segment& s : draft_.segments) next_tag[s.soup] = std::max(next_tag[s.soup], s.tag + 1);
     const EdgeTable edges(draft_.triangles, draft_.points.size());
     std::vector<Index> of_soup;
     for (Index e = 0; e < edges.size(); ++e) {
@@ -91,7 +91,7 @@ class SoupMaker {
           if (draft_.origins[other / 3].soup == soup) of_soup.push_back(other / 3);
         if (of_soup[0] != side / 3) continue;
         if (of_soup.size() != 2 || sharp(of_soup[0], of_soup[1]))
-          result_[soup].segments.push_back({point(soup, a), point(soup, b), next_tag[soup]});
+          result_[soup].segments.push_back({point(soup, a), point(soup, b), 0});
       }
     }
   }
