@@ -6,15 +6,20 @@
 #include <utility>
 
 #include "constrained/constrained_tetrahedra.h"
+#include "constrained/ladders.h"
 #include "improve/cell_bounds.h"
 #include "improve/thin_shape.h"
 #include "pipeline/certification.h"
 #include "pipeline/reshaping.h"
+#include "pipeline/vertex_bound.h"
 #include "remesh/bring_to_size.h"
 
 namespace collarmesh::pipeline {
 
 namespace {
+
+// A mesh with a larger share of tets that miss their bounds is not worth further work.
+constexpr std::size_t tets_per_poor = 50;
 
 /// Returns whether a thin tet or one of a collar has a larger angle than these may have.
 bool has_flat_tet(const TetMesh& mesh) {
@@ -27,6 +32,29 @@ bool has_flat_tet(const TetMesh& mesh) {
   return false;
 }
 
+/// Returns the complex with its long narrow strips divided to the size.
+Plc divided_strips(const MeshJob& job) {
+  constexpr double share_of_tolerance = 0.05;
+  return with_ladders(*job.plc, smallest_size(job.options.mesh, job.plc->bounds.diagonal()),
+                      [&](Index triangle) {
+                        return share_of_tolerance * job.refined_with.bounds.tolerance->at_triangle(triangle);
+                      });
+}
+
+/// Coarsens and improves the tetrahedra, and keeps the result if hardly any tet misses its bounds: between the
+/// rungs of strips, where vertices face each other, nothing else is needed, and collapses that keep no bounds
+/// would do harm.
+bool is_good_when_coarsened(MeshJob& job) {
+  TetMesh mesh = job.made.result.mesh;
+  coarsen_and_improve(job, mesh, {}, false);
+  const bool good = tets_per_poor * count_misshapen(job, mesh) <= mesh.tets.size();
+  if (good)
+    job.made.result.mesh = std::move(mesh);
+  else
+    job.made.coarsening.reset();
+  return good;
+}
+
 }  // namespace
 
 bool may_start_constrained(const PipelineOptions& options) {
@@ -37,10 +65,12 @@ void tetrahedralize(MeshJob& job) {
   job.control.begin("tetrahedralize", 0.06, 0.2);
   MeshResult& result = job.made.result;
   job.neighbours = KnownNeighbours();
+  const Plc divided = divided_strips(job);
   job.control.watch(
-      [&](const Execution& watched) { result.mesh = constrained_tetrahedra(*job.plc, watched).mesh; });
+      [&](const Execution& watched) { result.mesh = constrained_tetrahedra(divided, watched).mesh; });
   job.control.begin("remesh", 0.2, 0.6);
   result.has_narrow_cells = job.refined_with.bounds.lower_where_forced = true;
+  if (divided.points.size() > job.plc->points.size() && is_good_when_coarsened(job)) return;
   bool brought = false;
   job.control.watch([&](const Execution& watched) {
     brought = remeshing::bring_to_size(result.mesh, *job.plc, job.refined_with, watched);
@@ -55,7 +85,7 @@ void tetrahedralize(MeshJob& job) {
 
 void settle(MeshJob& job, Hope hope) {
   constexpr unsigned most_rounds = 6;
-  constexpr std::size_t tets_per_poor = 50, few = 20;
+  constexpr std::size_t few = 20;
   if (job.refined_with.bounds.interior_node)
     return;  // interior nodes are complete; coarsening would remove
              // them
