@@ -21,7 +21,8 @@ namespace {
 
 // Edges longer than this factor times the size are long.
 constexpr double long_edge = 1.6;
-// Limit of added points: `rail_points_per_point` times the number of points of the complex, plus `some_rail_points`.
+// Limit of added points: `rail_points_per_point` times the number of points of the complex, plus
+// `some_rail_points`.
 constexpr std::size_t rail_points_per_point = 100, some_rail_points = 20'000;
 // Sums of opposite angles nearer to half a circle than this leave the choice of the diagonal open, radians.
 constexpr double open_choice = 1e-3, rounding_of_angles = 1e-6;
@@ -50,7 +51,8 @@ class Ladders {
     find_rails();
     std::size_t points = 0;
     for (const Rail& rail : rails_) points += rail.pieces - 1;
-    if (points == 0 || points > rail_points_per_point * made_.points.size() + some_rail_points) return std::move(made_);
+    if (points == 0 || points > rail_points_per_point * made_.points.size() + some_rail_points)
+      return std::move(made_);
     for (const Rail& rail : rails_) divide(rail);
     make_rungs();
     choose_diagonals();
@@ -99,7 +101,8 @@ class Ladders {
   /// Returns whether a triangle of a smooth patch has two long edges and a short one.
   bool is_needle(Index triangle) const {
     const auto& [a, b, c] = triangles_[triangle].points;
-    const unsigned long_edges = (is_long(a, b) ? 1U : 0U) + (is_long(b, c) ? 1U : 0U) + (is_long(c, a) ? 1U : 0U);
+    const unsigned long_edges =
+        (is_long(a, b) ? 1U : 0U) + (is_long(b, c) ? 1U : 0U) + (is_long(c, a) ? 1U : 0U);
     return is_smooth(triangle) && long_edges == 2;
   }
   bool is_longest_in(Index triangle, Index a, Index b) const {
@@ -125,9 +128,9 @@ class Ladders {
     const Point &pa = point(a), &pb = point(b), &pc = point(quad.c), &pd = point(quad.d);
     const Vector ab = pb - pa, cd = pd - pc, across = cross(ab, cd);
     const double crossing = norm(across);
-    if (!(crossing > 0) || std::fabs(dot(pc - pa, across)) >
-                               crossing * std::min(may_move_(triangles_[first].origin),
-                                                   may_move_(triangles_[second].origin)))
+    if (!(crossing > 0) ||
+        std::fabs(dot(pc - pa, across)) >
+            crossing * std::min(may_move_(triangles_[first].origin), may_move_(triangles_[second].origin)))
       return false;
     // Both ends of each diagonal are on opposite sides of the other diagonal.
     const auto parts = [&](const Point& from, const Vector& along, const Point& p, const Point& q) {
@@ -141,7 +144,8 @@ class Ladders {
     std::vector<std::tuple<bool, double, std::uint64_t>> candidates;
     for (const std::uint64_t key : keys_) {
       Quad quad;
-      if (!is_long(static_cast<Index>(key >> 32U), static_cast<Index>(key)) || !find_flat_quad(key, quad)) continue;
+      if (!is_long(static_cast<Index>(key >> 32U), static_cast<Index>(key)) || !find_flat_quad(key, quad))
+        continue;
       if (!is_needle(quad.first) || !is_needle(quad.second)) continue;
       const bool longest =
           is_longest_in(quad.first, quad.a, quad.b) && is_longest_in(quad.second, quad.a, quad.b);
@@ -180,13 +184,15 @@ class Ladders {
     }
     std::vector<double> longest(keys.size(), 0);
     for (Index i = 0; i < keys.size(); ++i) {
+      if (edges_.at(keys[i]).is_diagonal) continue;
       double& most = longest[strips.find(i)];
       most = std::max(most, length(static_cast<Index>(keys[i] >> 32U), static_cast<Index>(keys[i])));
     }
     for (Index i = 0; i < keys.size(); ++i) {
       if (edges_.at(keys[i]).is_diagonal) continue;
-      rails_.push_back({static_cast<Index>(keys[i] >> 32U), static_cast<Index>(keys[i]),
-                        static_cast<std::size_t>(std::ceil(longest[strips.find(i)] / size_ - rounding_of_angles))});
+      rails_.push_back(
+          {static_cast<Index>(keys[i] >> 32U), static_cast<Index>(keys[i]),
+           static_cast<std::size_t>(std::ceil(longest[strips.find(i)] / size_ - rounding_of_angles))});
     }
   }
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "collarmesh/plc_builder.h"
 #include "constrained/constrained_tetrahedra.h"
 #include "constrained/ladders.h"
 #include "improve/cell_bounds.h"
@@ -32,6 +33,13 @@ bool has_flat_tet(const TetMesh& mesh) {
   return false;
 }
 
+/// Makes the constrained tetrahedra of a complex with the features of the job's.
+void fill(MeshJob& job, const Plc& plc) {
+  job.control.begin("tetrahedralize", 0.06, 0.2);
+  job.control.watch(
+      [&](const Execution& watched) { job.made.result.mesh = constrained_tetrahedra(plc, watched).mesh; });
+}
+
 /// Returns the complex with its long narrow strips divided to the size.
 Plc divided_strips(const MeshJob& job) {
   constexpr double share_of_tolerance = 0.05;
@@ -41,17 +49,31 @@ Plc divided_strips(const MeshJob& job) {
                       });
 }
 
-/// Coarsens and improves the tetrahedra, and keeps the result if hardly any tet misses its bounds: between the
-/// rungs of strips, where vertices face each other, nothing else is needed, and collapses that keep no bounds
-/// would do harm.
-bool is_good_when_coarsened(MeshJob& job) {
-  TetMesh mesh = job.made.result.mesh;
-  coarsen_and_improve(job, mesh, {}, false);
-  const bool good = tets_per_poor * count_misshapen(job, mesh) <= mesh.tets.size();
-  if (good)
-    job.made.result.mesh = std::move(mesh);
-  else
-    job.made.coarsening.reset();
+/// Makes, improves and coarsens tetrahedra between the rungs of strips, if there are any. Returns whether
+/// hardly any tet misses its bounds. Then nothing else is needed, as vertices face each other, and collapses
+/// that keep no bounds would do harm.
+bool is_good_with_ladders(MeshJob& job) {
+  constexpr std::size_t tets_per_poor_before = 10;
+  const Plc divided = divided_strips(job);
+  if (divided.points.size() == job.plc->points.size()) return false;
+  try {
+    fill(job, divided);
+  } catch (const PlcError&) {
+    return false;
+  }
+  TetMesh& mesh = job.made.result.mesh;
+  const auto is_good = [&](std::size_t tets_per) {
+    return tets_per * count_misshapen(job, mesh) <= mesh.tets.size();
+  };
+  job.control.begin("remesh", 0.2, 0.6);
+  job.made.coarsening.emplace();  // what coarsening may leave counts as good
+  improve_before_coarsening(job, mesh);
+  bool good = is_good(tets_per_poor_before);
+  if (good) {
+    coarsen_and_improve(job, mesh, {}, false);
+    good = is_good(tets_per_poor);
+  }
+  job.made.coarsening.reset();
   return good;
 }
 
@@ -62,15 +84,12 @@ bool may_start_constrained(const PipelineOptions& options) {
 }
 
 void tetrahedralize(MeshJob& job) {
-  job.control.begin("tetrahedralize", 0.06, 0.2);
   MeshResult& result = job.made.result;
   job.neighbours = KnownNeighbours();
-  const Plc divided = divided_strips(job);
-  job.control.watch(
-      [&](const Execution& watched) { result.mesh = constrained_tetrahedra(divided, watched).mesh; });
-  job.control.begin("remesh", 0.2, 0.6);
   result.has_narrow_cells = job.refined_with.bounds.lower_where_forced = true;
-  if (divided.points.size() > job.plc->points.size() && is_good_when_coarsened(job)) return;
+  if (is_good_with_ladders(job)) return;
+  fill(job, *job.plc);
+  job.control.begin("remesh", 0.2, 0.6);
   bool brought = false;
   job.control.watch([&](const Execution& watched) {
     brought = remeshing::bring_to_size(result.mesh, *job.plc, job.refined_with, watched);

@@ -114,6 +114,16 @@ void reshape(MeshJob& job) {
   job.trace(job.options.improve > 0 ? "improve" : "coarsen", mesh);
 }
 
+void improve_before_coarsening(MeshJob& job, TetMesh& mesh) {
+  ThreadLimit(job.options.mesh.threads).run([&] {
+    const Bounds& bounds = job.refined_with.bounds;
+    improvement::Workpiece workpiece(mesh, *job.plc, *bounds.tolerance, 0, bounds.lower_where_forced);
+    improve_elements(job, workpiece);
+    workpiece.complex.store();
+    improvement::mark_cells(mesh, *job.plc, bounds);
+  });
+}
+
 void coarsen_and_improve(MeshJob& job, TetMesh& mesh, const std::vector<Index>& fixed, bool thoroughly) {
   ThreadLimit(job.options.mesh.threads).run([&] {
     const Bounds& bounds = job.refined_with.bounds;

@@ -43,7 +43,9 @@ bool has_thin_shells(const Plc& plc, const SurfaceTolerance& tolerance, double s
     for (Index i = 0; i < patch.triangle_count; ++i) {
       const Index t = patch.first_triangle + i;
       const double largest = curvature[i].largest, other = std::fabs(largest - std::fabs(curvature[i].sum));
-      const auto chord = [&](double of) { return std::min(size, std::sqrt(8 * tolerance.at_triangle(t) / of)); };
+      const auto chord = [&](double of) {
+        return std::min(size, std::sqrt(8 * tolerance.at_triangle(t) / of));
+      };
       chords[t] = {chord(largest), chord(std::min(largest, other))};
     }
   }
