@@ -34,8 +34,12 @@ double angle_at(const Point& at, const Point& a, const Point& b) {
 
 class Ladders {
  public:
-  Ladders(const Plc& plc, double size, const std::function<double(Index)>& may_move)
-      : made_(plc), size_(size), may_move_(may_move), first_point_(static_cast<Index>(plc.points.size())) {
+  Ladders(const Plc& plc, double size, const std::function<double(Index)>& may_move, const Vector& direction)
+      : made_(plc),
+        size_(size),
+        may_move_(may_move),
+        direction_(direction),
+        first_point_(static_cast<Index>(plc.points.size())) {
     for (Index t = 0; t < plc.triangles.size(); ++t) {
       triangles_.push_back({plc.triangles[t].points, plc.triangles[t].patch, t});
       for (unsigned k = 0; k < 3; ++k) attach(t, k);
@@ -274,14 +278,13 @@ class Ladders {
   /// Where both diagonals of a cell are as good, chooses the one along one direction, so that those on
   /// opposite walls do not cross.
   void choose_diagonals() {
-    constexpr Vector direction{0.36, 0.48, 0.8};
     const std::vector<std::uint64_t> keys = keys_;
     for (const std::uint64_t key : keys) {
       Quad quad;
       if (!find_flat_quad(key, quad) || !is_at_rail(quad) ||
           std::fabs(opposite_angles(quad) - std::numbers::pi) > open_choice)
         continue;
-      const auto along = [&](Index a, Index b) { return std::fabs(dot(point(b) - point(a), direction)); };
+      const auto along = [&](Index a, Index b) { return std::fabs(dot(point(b) - point(a), direction_)); };
       if (along(quad.c, quad.d) > along(quad.a, quad.b)) flip(key, quad);
     }
   }
@@ -315,6 +318,7 @@ class Ladders {
   Plc made_;
   double size_;
   const std::function<double(Index)>& may_move_;
+  Vector direction_;
   Index first_point_;  // the first point that was added
   std::vector<Triangle> triangles_;
   std::unordered_map<std::uint64_t, Edge> edges_;
@@ -326,8 +330,9 @@ class Ladders {
 }  // namespace
 }  // namespace constrained
 
-Plc with_ladders(const Plc& plc, double size, const std::function<double(Index)>& may_move) {
-  return constrained::Ladders(plc, size, may_move).run();
+Plc with_ladders(const Plc& plc, double size, const std::function<double(Index)>& may_move,
+                 const Vector& diagonals) {
+  return constrained::Ladders(plc, size, may_move, diagonals).run();
 }
 
 }  // namespace collarmesh

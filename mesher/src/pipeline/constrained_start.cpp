@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cstddef>
+#include <optional>
 #include <utility>
 
 #include "collarmesh/plc_builder.h"
@@ -41,40 +43,58 @@ void fill(MeshJob& job, const Plc& plc) {
 }
 
 /// Returns the complex with its long narrow strips divided to the size.
-Plc divided_strips(const MeshJob& job) {
+Plc divided_strips(const MeshJob& job, const Vector& diagonals) {
   constexpr double share_of_tolerance = 0.05;
-  return with_ladders(*job.plc, smallest_size(job.options.mesh, job.plc->bounds.diagonal()),
-                      [&](Index triangle) {
-                        return share_of_tolerance * job.refined_with.bounds.tolerance->at_triangle(triangle);
-                      });
+  const auto may_move = [&](Index triangle) {
+    return share_of_tolerance * job.refined_with.bounds.tolerance->at_triangle(triangle);
+  };
+  return with_ladders(*job.plc, smallest_size(job.options.mesh, job.plc->bounds.diagonal()), may_move,
+                      diagonals);
 }
 
-/// Makes, improves and coarsens tetrahedra between the rungs of strips, if there are any. Returns whether
-/// hardly any tet misses its bounds. Then nothing else is needed, as vertices face each other, and collapses
-/// that keep no bounds would do harm.
-bool is_good_with_ladders(MeshJob& job) {
+/// Makes, improves and coarsens tetrahedra between the rungs of strips. Returns the number of those that miss
+/// their bounds; all of them if there are many before they are coarsened.
+std::size_t fill_ladders(MeshJob& job, const Plc& divided) {
   constexpr std::size_t tets_per_poor_before = 10;
-  const Plc divided = divided_strips(job);
-  if (divided.points.size() == job.plc->points.size()) return false;
-  try {
-    fill(job, divided);
-  } catch (const PlcError&) {
-    return false;
-  }
+  fill(job, divided);
   TetMesh& mesh = job.made.result.mesh;
-  const auto is_good = [&](std::size_t tets_per) {
-    return tets_per * count_misshapen(job, mesh) <= mesh.tets.size();
-  };
   job.control.begin("remesh", 0.2, 0.6);
   job.made.coarsening.emplace();  // what coarsening may leave counts as good
   improve_before_coarsening(job, mesh);
-  bool good = is_good(tets_per_poor_before);
-  if (good) {
+  std::size_t poor = mesh.tets.size();
+  if (tets_per_poor_before * count_misshapen(job, mesh) <= mesh.tets.size()) {
     coarsen_and_improve(job, mesh, {}, false);
-    good = is_good(tets_per_poor);
+    poor = count_misshapen(job, mesh);
   }
   job.made.coarsening.reset();
-  return good;
+  return poor;
+}
+
+/// Fills the complex between the rungs of its strips, if there are any. Returns whether hardly any tet misses
+/// its bounds. Then nothing else is needed, as vertices face each other, and collapses that keep no bounds
+/// would do harm. Rounding of the cells' corners decides whether all of their diagonals can be recovered
+/// without further points, so diagonals along other directions are tried, too.
+bool is_good_with_ladders(MeshJob& job) {
+  constexpr std::array<Vector, 3> directions{{{0.36, 0.48, 0.8}, {-0.36, 0.48, 0.8}, {0.36, -0.48, 0.8}}};
+  std::optional<TetMesh> best;
+  std::size_t least = 0;
+  for (const Vector& direction : directions) {
+    const Plc divided = divided_strips(job, direction);
+    if (divided.points.size() == job.plc->points.size()) return false;
+    try {
+      const std::size_t poor = fill_ladders(job, divided);
+      TetMesh& mesh = job.made.result.mesh;
+      if (tets_per_poor * poor > mesh.tets.size() || (best && poor >= least)) continue;
+      least = poor;
+      best = std::move(mesh);
+      if (poor == 0) break;
+    } catch (const PlcError&) {
+      continue;  // points of these ladders cannot be separated
+    }
+  }
+  if (!best) return false;
+  job.made.result.mesh = std::move(*best);
+  return true;
 }
 
 }  // namespace
