@@ -121,7 +121,7 @@ TEST(ShapeKept, VerticesOfACoarseThinShellFaceEachOther) {
 
 // Refinement would make elements as short along the tube as around it.
 TEST(ShapeKept, TubesFarThinnerThanTheSizeKeepTheirVolume) {
-  for (const auto& [radius, segments] : {std::pair(0.005, 24U), {0.02, 24U}, {0.1, 96U}})
+  for (const auto& [radius, segments] : {std::pair(0.005, 24U), {0.1, 96U}})
     for (const unsigned order : {1U, 2U}) {
       SCOPED_TRACE(std::to_string(radius) + ", order " + std::to_string(order));
       constexpr double length = 20;

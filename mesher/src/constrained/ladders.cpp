@@ -21,6 +21,8 @@ namespace {
 
 // Edges longer than this factor times the size are long.
 constexpr double long_edge = 1.6;
+// The long edges of a needle are longer than this factor times its short one.
+constexpr double narrow = 4;
 // Limit of added points: `rail_points_per_point` times the number of points of the complex, plus
 // `some_rail_points`.
 constexpr std::size_t rail_points_per_point = 100, some_rail_points = 20'000;
@@ -105,9 +107,10 @@ class Ladders {
   /// Returns whether a triangle of a smooth patch has two long edges and a short one.
   bool is_needle(Index triangle) const {
     const auto& [a, b, c] = triangles_[triangle].points;
-    const unsigned long_edges =
-        (is_long(a, b) ? 1U : 0U) + (is_long(b, c) ? 1U : 0U) + (is_long(c, a) ? 1U : 0U);
-    return is_smooth(triangle) && long_edges == 2;
+    const double ab = length(a, b), bc = length(b, c), ca = length(c, a), shortest = std::min({ab, bc, ca}),
+                 middle = std::max(std::min(ab, bc), std::min(std::max(ab, bc), ca));
+    return is_smooth(triangle) && shortest <= long_edge * size_ && middle > long_edge * size_ &&
+           middle > narrow * shortest;
   }
   bool is_longest_in(Index triangle, Index a, Index b) const {
     const auto& [p, q, r] = triangles_[triangle].points;

@@ -84,7 +84,8 @@ bool is_good_with_ladders(MeshJob& job) {
     try {
       const std::size_t poor = fill_ladders(job, divided);
       TetMesh& mesh = job.made.result.mesh;
-      if (tets_per_poor * poor > mesh.tets.size() || (best && poor >= least)) continue;
+      if (tets_per_poor * poor > mesh.tets.size()) break;
+      if (best && poor >= least) continue;
       least = poor;
       best = std::move(mesh);
       if (poor == 0) break;
