@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
 #include "collarmesh/plc_builder.h"
 #include "support/shapes.h"
 #include "tolerance/thin_places.h"
@@ -33,6 +35,18 @@ TEST(ThinShells, AreHollowBallsFarThinnerThanTheSize) {
 TEST(ThinShells, AreCoatings) {
   EXPECT_TRUE(has_thin({uv_sphere(6, 12, 24), uv_sphere(5.97, 12, 24)}));
   EXPECT_FALSE(has_thin({uv_sphere(6, 12, 24), uv_sphere(4, 12, 24)}));
+}
+
+// Elements may be long along a tube, however short chords around it are.
+TEST(ThinShells, AreTubes) {
+  const auto tube = [](double radius) {
+    const std::vector<Point> profile{
+        {0.9 * radius, 0, 0}, {radius, 0, 0}, {radius, 0, 20}, {0.9 * radius, 0, 20}};
+    return revolution(profile, 24, true);
+  };
+  EXPECT_TRUE(has_thin({tube(0.1)}));
+  EXPECT_TRUE(has_thin({tube(0.005)}));
+  EXPECT_FALSE(has_thin({tube(6)}));
 }
 
 // Around a thin rod chords are as short as it is thin; planar sheets need no elements as short as their gap.

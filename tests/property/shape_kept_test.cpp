@@ -6,6 +6,7 @@
 #include <numbers>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "collarmesh/pipeline.h"
@@ -116,6 +117,26 @@ TEST(ShapeKept, AShellFarThinnerThanTheSizeKeepsItsVolume) {
 TEST(ShapeKept, VerticesOfACoarseThinShellFaceEachOther) {
   const SoupPipelineResult made = meshed_shell(16, 0.02, 1);
   EXPECT_LT(100 * made.check.findings_total, made.result.mesh.tets.size());
+}
+
+// Refinement would make elements as short along the tube as around it.
+TEST(ShapeKept, TubesFarThinnerThanTheSizeKeepTheirVolume) {
+  for (const auto& [radius, segments] : {std::pair(0.005, 24U), {0.1, 96U}})
+    for (const unsigned order : {1U, 2U}) {
+      SCOPED_TRACE(std::to_string(radius) + ", order " + std::to_string(order));
+      constexpr double length = 20;
+      const std::vector<Point> profile{
+          {0.9 * radius, 0, 0}, {radius, 0, 0}, {radius, 0, length}, {0.9 * radius, 0, length}};
+      const PolygonSoup tube = testing::revolution(profile, segments, true);
+      PipelineOptions options;
+      options.mesh = with_size(1);
+      options.order = order;
+      const SoupPipelineResult made = run_pipeline({&tube, 1}, options);
+      EXPECT_EQ(made.missed(), "");
+      const double expected = enclosed_by(tube);
+      EXPECT_NEAR(made.check.of_mesh.volumes.at(1), expected, (order == 1 ? 0.02 : 0.01) * expected);
+      EXPECT_LT(made.result.mesh.tets.size(), 5000U);
+    }
 }
 
 // A sphere bends in two directions, so its chords remove twice as much as those of a cylinder.

@@ -2,19 +2,27 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cstddef>
+#include <optional>
 #include <utility>
 
 #include "adapt/bring_to_size.h"
+#include "collarmesh/plc_builder.h"
 #include "constrained/constrained_tetrahedra.h"
+#include "constrained/ladders.h"
 #include "pipeline/certification.h"
 #include "pipeline/reshaping.h"
+#include "pipeline/vertex_bound.h"
 #include "remesh/cell_bounds.h"
 #include "remesh/thin_shape.h"
 
 namespace collarmesh::pipeline {
 
 namespace {
+
+// A mesh with a larger share of tets that miss their bounds is not worth further work.
+constexpr std::size_t tets_per_poor = 50;
 
 /// Returns whether a thin tet or one of a collar has a larger angle than these may have.
 bool has_flat_tet(const TetMesh& mesh) {
@@ -27,6 +35,69 @@ bool has_flat_tet(const TetMesh& mesh) {
   return false;
 }
 
+/// Makes the constrained tetrahedra of a complex with the features of the job's.
+void fill(MeshJob& job, const Plc& plc) {
+  job.control.begin("tetrahedralize", 0.06, 0.2);
+  job.control.watch(
+      [&](const Execution& watched) { job.made.result.mesh = constrained_tetrahedra(plc, watched).mesh; });
+}
+
+/// Returns the complex with its long narrow strips divided to the size.
+Plc divided_strips(const MeshJob& job, const Vector& diagonals) {
+  constexpr double share_of_tolerance = 0.05;
+  const auto may_move = [&](Index triangle) {
+    return share_of_tolerance * job.refined_with.bounds.tolerance->at_triangle(triangle);
+  };
+  return with_ladders(*job.plc, smallest_size(job.options.mesh, job.plc->bounds.diagonal()), may_move,
+                      diagonals);
+}
+
+/// Makes, improves and coarsens tetrahedra between the rungs of strips. Returns the number of those that miss
+/// their bounds; all of them if there are many before they are coarsened.
+std::size_t fill_ladders(MeshJob& job, const Plc& divided) {
+  constexpr std::size_t tets_per_poor_before = 10;
+  fill(job, divided);
+  TetMesh& mesh = job.made.result.mesh;
+  job.control.begin("remesh", 0.2, 0.6);
+  job.made.coarsening.emplace();  // what coarsening may leave counts as good
+  improve_before_coarsening(job, mesh);
+  std::size_t poor = mesh.tets.size();
+  if (tets_per_poor_before * count_misshapen(job, mesh) <= mesh.tets.size()) {
+    coarsen_and_improve(job, mesh, {}, false);
+    poor = count_misshapen(job, mesh);
+  }
+  job.made.coarsening.reset();
+  return poor;
+}
+
+/// Fills the complex between the rungs of its strips, if there are any. Returns whether hardly any tet misses
+/// its bounds. Then nothing else is needed, as vertices face each other, and collapses that keep no bounds
+/// would do harm. Rounding of the cells' corners decides whether all of their diagonals can be recovered
+/// without further points, so diagonals along other directions are tried, too.
+bool is_good_with_ladders(MeshJob& job) {
+  constexpr std::array<Vector, 3> directions{{{0.36, 0.48, 0.8}, {-0.36, 0.48, 0.8}, {0.36, -0.48, 0.8}}};
+  std::optional<TetMesh> best;
+  std::size_t least = 0;
+  for (const Vector& direction : directions) {
+    const Plc divided = divided_strips(job, direction);
+    if (divided.points.size() == job.plc->points.size()) return false;
+    try {
+      const std::size_t poor = fill_ladders(job, divided);
+      TetMesh& mesh = job.made.result.mesh;
+      if (tets_per_poor * poor > mesh.tets.size()) break;
+      if (best && poor >= least) continue;
+      least = poor;
+      best = std::move(mesh);
+      if (poor == 0) break;
+    } catch (const PlcError&) {
+      continue;  // points of these ladders cannot be separated
+    }
+  }
+  if (!best) return false;
+  job.made.result.mesh = std::move(*best);
+  return true;
+}
+
 }  // namespace
 
 bool may_start_constrained(const PipelineOptions& options) {
@@ -34,13 +105,12 @@ bool may_start_constrained(const PipelineOptions& options) {
 }
 
 void tetrahedralize(MeshJob& job) {
-  job.control.begin("tetrahedralize", 0.06, 0.2);
   MeshResult& result = job.made.result;
   job.neighbours = KnownNeighbours();
-  job.control.watch(
-      [&](const Execution& watched) { result.mesh = constrained_tetrahedra(*job.plc, watched).mesh; });
-  job.control.begin("remesh", 0.2, 0.6);
   result.has_narrow_cells = job.refined_with.bounds.lower_where_forced = true;
+  if (is_good_with_ladders(job)) return;
+  fill(job, *job.plc);
+  job.control.begin("remesh", 0.2, 0.6);
   bool brought = false;
   job.control.watch([&](const Execution& watched) {
     brought = remeshing::adapting::bring_to_size(result.mesh, *job.plc, job.refined_with, watched);
@@ -55,7 +125,7 @@ void tetrahedralize(MeshJob& job) {
 
 void settle(MeshJob& job, Hope hope) {
   constexpr unsigned most_rounds = 6;
-  constexpr std::size_t tets_per_poor = 50, few = 20;
+  constexpr std::size_t few = 20;
   if (job.refined_with.bounds.interior_node)
     return;  // interior nodes are complete; coarsening would remove
              // them

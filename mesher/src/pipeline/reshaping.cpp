@@ -115,6 +115,15 @@ void reshape(MeshJob& job) {
   job.trace(job.options.improve > 0 ? "improve" : "coarsen", mesh);
 }
 
+void improve_before_coarsening(MeshJob& job, TetMesh& mesh) {
+  ThreadLimit(job.options.mesh.threads).run([&] {
+    const Bounds& bounds = job.refined_with.bounds;
+    remeshing::EditableMesh edited(mesh, *job.plc, bounds, 0);
+    improve_elements(job, edited);
+    edited.store_marked(bounds);
+  });
+}
+
 void coarsen_and_improve(MeshJob& job, TetMesh& mesh, const std::vector<Index>& fixed, bool thoroughly) {
   ThreadLimit(job.options.mesh.threads).run([&] {
     const Bounds& bounds = job.refined_with.bounds;

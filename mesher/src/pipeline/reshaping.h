@@ -10,6 +10,9 @@ namespace collarmesh::pipeline {
 /// Coarsens and improves the mesh of the job and inserts interior nodes, as the options ask for.
 void reshape(MeshJob& job);
 
+/// Improves a mesh of the complex that is not coarsened yet, with the bounds of the job.
+void improve_before_coarsening(MeshJob& job, TetMesh& mesh);
+
 /// Coarsens and improves a mesh of the complex, with the bounds of the job. Fixed vertices stay where they
 /// are. `thoroughly`: also by means that are slow if many tets stay poor.
 void coarsen_and_improve(MeshJob& job, TetMesh& mesh, const std::vector<Index>& fixed,

@@ -13,8 +13,8 @@ namespace collarmesh {
 
 namespace {
 
-// Numbers of squares that cover the shells: those with sides as long as the shells are thin must be this
-// many, and this many times those with sides as long as the chords.
+// Numbers that cover the shells: squares with sides as long as the shells are thin must be this many, and
+// this many times the rectangles whose sides are chords.
 constexpr double least_squares = 20'000, least_ratio = 30;
 
 /// Returns the distance to the opposite side of the wall or gap; infinite if there is none.
@@ -33,13 +33,20 @@ bool has_thin_shells(const Plc& plc, const SurfaceTolerance& tolerance, double s
   struct Squares {
     double of_thickness = 0, of_chords = 0;
   };
-  std::vector<double> chords(plc.triangles.size(), 0);
+  struct Chords {
+    double shorter = 0, longer = 0;
+  };
+  std::vector<Chords> chords(plc.triangles.size());
   for (const Plc::Patch& patch : plc.patches) {
     if (patch.planar) continue;
     const std::vector<Curvature> curvature = curvatures(plc, patch);
     for (Index i = 0; i < patch.triangle_count; ++i) {
       const Index t = patch.first_triangle + i;
-      chords[t] = std::min(size, std::sqrt(8 * tolerance.at_triangle(t) / curvature[i].largest));
+      const double largest = curvature[i].largest, other = std::fabs(largest - std::fabs(curvature[i].sum));
+      const auto chord = [&](double of) {
+        return std::min(size, std::sqrt(8 * tolerance.at_triangle(t) / of));
+      };
+      chords[t] = {chord(largest), chord(std::min(largest, other))};
     }
   }
   const Thickness thickness(plc);
@@ -47,12 +54,12 @@ bool has_thin_shells(const Plc& plc, const SurfaceTolerance& tolerance, double s
   parallel_for_ranges(squares.size(), 256, [&](std::size_t first, std::size_t last) {
     Thickness::Crossings crossings;
     for (auto t = static_cast<Index>(first); t < last; ++t) {
-      if (chords[t] == 0) continue;
+      if (chords[t].shorter == 0) continue;
       const double thin = thickness_at(thickness, t, crossings);
-      if (!(thin < chords[t])) continue;
+      if (!(thin < chords[t].shorter)) continue;
       const auto& [a, b, c] = plc.triangles[t].points;
       const double area = 0.5 * norm(cross(plc.points[b] - plc.points[a], plc.points[c] - plc.points[a]));
-      squares[t] = {area / (thin * thin), area / (chords[t] * chords[t])};
+      squares[t] = {area / (thin * thin), area / (chords[t].shorter * chords[t].longer)};
     }
   });
   const Squares all =
