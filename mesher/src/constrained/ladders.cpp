@@ -53,6 +53,7 @@ class Ladders {
   }
 
   Plc run() {
+    if (!needles_prevail()) return std::move(made_);
     find_diagonals();
     find_rails();
     std::size_t points = 0;
@@ -111,6 +112,19 @@ class Ladders {
                  middle = std::max(std::min(ab, bc), std::min(std::max(ab, bc), ca));
     return is_smooth(triangle) && shortest <= long_edge * size_ && middle > long_edge * size_ &&
            middle > narrow * shortest;
+  }
+  /// Returns whether most of the surface is made of needles. Ladders on a small part of it cure little, and
+  /// the attempt costs time.
+  bool needles_prevail() const {
+    constexpr double least_share = 0.5;
+    double all = 0, needles = 0;
+    for (Index t = 0; t < triangles_.size(); ++t) {
+      const auto& [a, b, c] = triangles_[t].points;
+      const double area = norm(cross(point(b) - point(a), point(c) - point(a)));
+      all += area;
+      if (is_needle(t)) needles += area;
+    }
+    return needles >= least_share * all;
   }
   bool is_longest_in(Index triangle, Index a, Index b) const {
     const auto& [p, q, r] = triangles_[triangle].points;

@@ -162,7 +162,7 @@ void name_features(const std::string& text, Plc& plc) {
     json = Json::parse(text);
   } catch (const Json::exception& error) {
     const auto* syntax = dynamic_cast<const Json::parse_error*>(&error);
-    fail(place_in(text, syntax == nullptr ? 1 : syntax->byte), "this is no JSON");
+    fail(place_in(text, syntax == nullptr ? 1 : syntax->byte), "this is not JSON");
   }
   if (!json.is_object())
     throw OptionError("names: expected a JSON object with \"patches\", \"curves\" or \"regions\"");
