@@ -202,6 +202,49 @@ TEST(RepairBoxes, TurnedInSeveralSoupsTheFirstHasThePlace) {
   }
 }
 
+// Names the edges of each soup by segments, with tags that no other soup has. Returns the ends of each.
+std::map<Tag, std::array<Point, 2>> name_edges(std::vector<PolygonSoup>& soups) {
+  std::map<Tag, std::array<Point, 2>> ends;
+  for (PolygonSoup& soup : soups) {
+    soup.given_features = true;
+    for (Index f = 0; f < soup.facet_count(); ++f) {
+      const auto corners = soup.polygon(soup.facet_polygons(f)[0]);
+      for (std::size_t i = 0; i < corners.size(); ++i) {
+        const Index a = corners[i], b = corners[(i + 1) % corners.size()];
+        if (a > b) continue;
+        const auto tag = static_cast<Tag>(ends.size() + 1);
+        soup.segments.push_back({a, b, tag});
+        ends[tag] = {soup.points[a], soup.points[b]};
+      }
+    }
+  }
+  return ends;
+}
+
+double distance_from_line(const Point& p, const std::array<Point, 2>& line) {
+  return norm(cross(p - line[0], line[1] - line[0])) / distance(line[0], line[1]);
+}
+
+TEST(RepairBoxes, NewEdgesHaveNoTagOfAnother) {
+  Random random(8);
+  for (unsigned member = 0; member < members(12); ++member) {
+    SCOPED_TRACE(member);
+    auto soups = turned_cubes(random, 2);
+    const auto edges = name_edges(soups);
+    const RepairedPlc r = repaired(soups);
+    bool any_new = false;
+    for (const Plc::Curve& curve : r.plc.curves) {
+      any_new = any_new || curve.tag == 0;
+      if (curve.tag == 0) continue;
+      ASSERT_TRUE(edges.count(curve.tag) > 0) << "curve " << curve.tag;
+      for (const Index v : curve.points)
+        EXPECT_LE(distance_from_line(r.plc.points[v], edges.at(curve.tag)), 2 * r.report.tolerance)
+            << "curve " << curve.tag;
+    }
+    EXPECT_TRUE(any_new);
+  }
+}
+
 // Named kinds of intersections, as one soup and as two.
 TEST(RepairBoxes, SpecialMeetings) {
   struct Case {
