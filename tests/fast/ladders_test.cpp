@@ -96,5 +96,16 @@ TEST(Ladders, LeaveOtherSurfacesAsTheyAre) {
   }
 }
 
+TEST(Ladders, LeaveStripsThatAreASmallPartOfTheSurface) {
+  const PolygonSoup rod = cylinder(0.05, pieces, strips);
+  const double area_of_rod = 2 * std::numbers::pi * 0.05 * pieces;
+  for (const double share : {0.5, 2.0}) {
+    const double radius = std::sqrt(share * area_of_rod / (4 * std::numbers::pi));
+    const Plc plc = build_plc(std::vector{rod, translated(icosphere(radius, 8), {5, 0, 0})});
+    const Plc made = divided(plc, 1, 1e-6);
+    EXPECT_EQ(made.points.size() > plc.points.size(), share < 1);
+  }
+}
+
 }  // namespace
 }  // namespace collarmesh::ladders_test

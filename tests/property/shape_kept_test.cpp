@@ -139,6 +139,18 @@ TEST(ShapeKept, TubesFarThinnerThanTheSizeKeepTheirVolume) {
     }
 }
 
+// Ladders have as many points as the size asks for, whatever the limit.
+TEST(ShapeKept, TubesHeedTheLimitOfVertices) {
+  const std::vector<Point> profile{{0.018, 0, 0}, {0.02, 0, 0}, {0.02, 0, 20}, {0.018, 0, 20}};
+  PipelineOptions options;
+  options.mesh = with_size(1);
+  options.start = Start::constrained;
+  const std::vector tube{testing::revolution(profile, 24, true)};
+  EXPECT_EQ(run_pipeline(tube, options).missed(), "");
+  options.mesh.max_vertices = 300;
+  EXPECT_EQ(run_pipeline(tube, options).result.status, MeshStatus::budget_hit);
+}
+
 // A sphere bends in two directions, so its chords remove twice as much as those of a cylinder.
 TEST(ShapeKept, ALargeBallLosesNoMoreThanARod) {
   PipelineOptions options;

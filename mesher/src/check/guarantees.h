@@ -6,13 +6,10 @@
 /// The names of the guarantees, as in Finding::guarantee. They are stable, because scripts look for them.
 ///
 /// To add a guarantee:
-/// 1. Give it a name here (guarantees of layers, periodic faces and split patches: layer_cells.h,
-/// layer_walls.h,
-///    periodic.h). Does a mesh of other sizes miss it although it follows the shape? Then list it in
-///    `of_shapes`.
+/// 1. Give it a name here, or in the header of its part: layer_cells.h, layer_walls.h, periodic.h. If a mesh
+///    of other sizes misses it although it follows the shape, list it in `of_shapes`.
 /// 2. If it concerns single tets or nodes, write a predicate into predicates.h and call it from tets.cpp or
-///    second_order.cpp; otherwise declare a check in subject.h and call it from `judge` in check.cpp. Either
-///    reports what it finds to Findings.
+///    second_order.cpp. Otherwise declare a check in subject.h and call it from `judge` in check.cpp.
 /// 3. Under MPI nothing of this runs by itself: call the predicate from `Certification` in
 ///    distributed/src/certify.cpp, which adds up over the ranks.
 /// 4. Break it on purpose in tests/fast/check_wrong_meshes_test.cpp.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -9,6 +10,7 @@
 
 #include "adapt/bring_to_size.h"
 #include "collarmesh/plc_builder.h"
+#include "common/cell_shapes.h"
 #include "constrained/constrained_tetrahedra.h"
 #include "constrained/ladders.h"
 #include "pipeline/certification.h"
@@ -16,6 +18,7 @@
 #include "pipeline/vertex_bound.h"
 #include "remesh/cell_bounds.h"
 #include "remesh/thin_shape.h"
+#include "tolerance/thin_shells.h"
 
 namespace collarmesh::pipeline {
 
@@ -42,14 +45,28 @@ void fill(MeshJob& job, const Plc& plc) {
       [&](const Execution& watched) { job.made.result.mesh = constrained_tetrahedra(plc, watched).mesh; });
 }
 
+/// Returns whether ladders may help: in shells far thinner than the size, if one size is asked for
+/// everywhere, because the rungs are divided to that size and not further.
+bool may_have_ladders(const MeshJob& job, double size) {
+  const MeshOptions& asked = job.options.mesh;
+  return asked.region_size.empty() && asked.patch_size.empty() && asked.curve_size.empty() &&
+         !asked.size_field && asked.elements_per_circle == 0 && asked.elements_across_gap == 0 &&
+         !job.given.periodic.any() && has_thin_shells(*job.plc, *job.refined_with.bounds.tolerance, size);
+}
+
+/// Returns whether a number of vertices exceeds the limit that was given.
+bool exceeds_vertices(const MeshJob& job, std::size_t vertices) {
+  const std::size_t most = job.refined_with.max_vertices;
+  return most > 0 && vertices > most;
+}
+
 /// Returns the complex with its long narrow strips divided to the size.
-Plc divided_strips(const MeshJob& job, const Vector& diagonals) {
+Plc divided_strips(const MeshJob& job, double size, const Vector& diagonals) {
   constexpr double share_of_tolerance = 0.05;
   const auto may_move = [&](Index triangle) {
     return share_of_tolerance * job.refined_with.bounds.tolerance->at_triangle(triangle);
   };
-  return with_ladders(*job.plc, smallest_size(job.options.mesh, job.plc->bounds.diagonal()), may_move,
-                      diagonals);
+  return with_ladders(*job.plc, size, may_move, diagonals);
 }
 
 /// Makes, improves and coarsens tetrahedra between the rungs of strips. Returns the number of those that miss
@@ -63,7 +80,7 @@ std::size_t fill_ladders(MeshJob& job, const Plc& divided) {
   improve_before_coarsening(job, mesh);
   std::size_t poor = mesh.tets.size();
   if (tets_per_poor_before * count_misshapen(job, mesh) <= mesh.tets.size()) {
-    coarsen_and_improve(job, mesh, {}, false);
+    coarsen_and_improve(job, mesh, {}, true);
     poor = count_misshapen(job, mesh);
   }
   job.made.coarsening.reset();
@@ -76,15 +93,20 @@ std::size_t fill_ladders(MeshJob& job, const Plc& divided) {
 /// without further points, so diagonals along other directions are tried, too.
 bool is_good_with_ladders(MeshJob& job) {
   constexpr std::array<Vector, 3> directions{{{0.36, 0.48, 0.8}, {-0.36, 0.48, 0.8}, {0.36, -0.48, 0.8}}};
+  const double size = smallest_size(job.options.mesh, job.plc->bounds.diagonal());
+  if (!may_have_ladders(job, size)) return false;
   std::optional<TetMesh> best;
   std::size_t least = 0;
   for (const Vector& direction : directions) {
-    const Plc divided = divided_strips(job, direction);
-    if (divided.points.size() == job.plc->points.size()) return false;
+    const Plc divided = divided_strips(job, size, direction);
+    if (divided.points.size() == job.plc->points.size() || exceeds_vertices(job, divided.points.size()))
+      return false;
     try {
       const std::size_t poor = fill_ladders(job, divided);
       TetMesh& mesh = job.made.result.mesh;
-      if (tets_per_poor * poor > mesh.tets.size()) break;
+      if (tets_per_poor * poor > mesh.tets.size() || !keeps_lengths(mesh, size) ||
+          exceeds_vertices(job, mesh.points.size()))
+        break;
       if (best && poor >= least) continue;
       least = poor;
       best = std::move(mesh);
@@ -99,6 +121,17 @@ bool is_good_with_ladders(MeshJob& job) {
 }
 
 }  // namespace
+
+bool keeps_lengths(const TetMesh& mesh, double size) {
+  constexpr double longest = 2.5, tets_per_long = 100;
+  const auto is_long = [&](const std::array<Index, 4>& tet) {
+    return std::ranges::any_of(cell_shapes::corner_pairs, [&](const auto& edge) {
+      return distance(mesh.points[tet[edge[0]]], mesh.points[tet[edge[1]]]) > longest * size;
+    });
+  };
+  return tets_per_long * static_cast<double>(std::ranges::count_if(mesh.tets, is_long)) <=
+         static_cast<double>(mesh.tets.size());
+}
 
 bool may_start_constrained(const PipelineOptions& options) {
   return options.start == Start::automatic && options.coarsen && !options.periodic.any();

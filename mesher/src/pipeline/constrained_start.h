@@ -13,6 +13,9 @@ enum class Hope { any, good };
 /// vertices.
 bool may_start_constrained(const PipelineOptions& options);
 
+/// Returns whether hardly any tet has an edge far longer than this size.
+bool keeps_lengths(const TetMesh& mesh, double size);
+
 /// Makes the constrained tetrahedra of the complex, and brings their edges to the target lengths. Throws
 /// Ended.
 void tetrahedralize(MeshJob& job);

@@ -3,13 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <memory>
 #include <utility>
 
 #include "check/guarantees.h"
 #include "collarmesh/error.h"
-#include "common/cell_shapes.h"
 #include "common/thread_limit.h"
 #include "periodic/make_periodic.h"
 #include "periodic/tolerance_across.h"
@@ -151,25 +149,14 @@ bool MeshMaker::may_take_constrained(const Plc& plc) const {
   return plc.triangles.size() <= most_triangles && hopeless_ != &plc;
 }
 
-/// Returns whether hardly any tet has an edge far longer than the target.
-bool MeshMaker::keeps_lengths(const TetMesh& mesh) const {
-  constexpr double longest = 2.5, tets_per_long = 100;
-  const double size = smallest_size(job_.options.mesh, job_.plc->bounds.diagonal());
-  const auto is_long = [&](const std::array<Index, 4>& tet) {
-    return std::ranges::any_of(cell_shapes::corner_pairs, [&](const auto& edge) {
-      return distance(mesh.points[tet[edge[0]]], mesh.points[tet[edge[1]]]) > longest * size;
-    });
-  };
-  return tets_per_long * static_cast<double>(std::ranges::count_if(mesh.tets, is_long)) <=
-         static_cast<double>(mesh.tets.size());
-}
-
 bool MeshMaker::take_constrained(const Plc& plc, const std::string& why, Lengths lengths) {
   if (!may_take_constrained(plc)) return false;
   const std::optional<SurfaceTolerance> nearer = nearer_;
   std::optional<PipelineResult> constrained = from_constrained(plc, why, Hope::good);
   is_constrained_ = constrained && constrained->guarantees_hold() &&
-                    (lengths == Lengths::any || keeps_lengths(constrained->result.mesh));
+                    (lengths == Lengths::any ||
+                     keeps_lengths(constrained->result.mesh,
+                                   smallest_size(job_.options.mesh, job_.plc->bounds.diagonal())));
   hopeless_ = is_constrained_ ? nullptr : &plc;
   if (is_constrained_)
     job_.made = std::move(*constrained);

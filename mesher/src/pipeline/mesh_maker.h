@@ -68,7 +68,6 @@ class MeshMaker {
   bool may_take_constrained(const Plc& plc) const;
   bool is_far_too_fine() const;
   bool replace_refined();
-  bool keeps_lengths(const TetMesh& mesh) const;
   void make_or_take_constrained(const Plc& plc, const std::string& why);
   const SurfaceTolerance& tolerance(const Plc& plc);
   SurfaceTolerance tolerance(const Plc& plc, int order) const;

@@ -119,7 +119,7 @@ void improve_before_coarsening(MeshJob& job, TetMesh& mesh) {
   ThreadLimit(job.options.mesh.threads).run([&] {
     const Bounds& bounds = job.refined_with.bounds;
     remeshing::EditableMesh edited(mesh, *job.plc, bounds, 0);
-    improve_elements(job, edited);
+    improve_elements(job, edited, false);
     edited.store_marked(bounds);
   });
 }

@@ -39,27 +39,19 @@ class AxisFlattener {
   double at(Index point) const { return draft_.points[point][axis_]; }
 
   std::vector<FlatFacet> flat_facets() const {
+    constexpr double flat = 1e-7, along = 0.9;
+    const double most = std::min(tolerance_, flat * draft_.bounds.diagonal());
     const std::vector<bool> thin = thin_soups();
     std::vector<FlatFacet> facets;
     for (Index t = 0; t < draft_.triangles.size(); ++t) {
       const auto& [a, b, c] = draft_.triangles[t];
       const auto [low, high] = std::minmax({at(a), at(b), at(c)});
-      if (high - low > tolerance_ || thin[draft_.origins[t].soup]) continue;
+      if (high - low > most || thin[draft_.origins[t].soup]) continue;
       const Vector area = area_vector(draft_, draft_.triangles[t]);
-      if (is_across(area, high - low)) facets.push_back({low, high, norm(area), t});
+      if (std::fabs(area[axis_]) > along * norm(area)) facets.push_back({low, high, norm(area), t});
     }
     std::ranges::sort(facets, {}, [](const FlatFacet& f) { return std::pair(f.low, f.triangle); });
     return facets;
-  }
-
-  // Returns whether a facet with this area and extent along the axis is perpendicular to it: facets with
-  // hardly an extent need not be precise, others may be sloped a little.
-  bool is_across(Vector area, double extent) const {
-    constexpr double flat = 1e-7, along = 0.9, most_slope = 1e-4;
-    const double up = std::fabs(area[axis_]), size = norm(area);
-    if (extent <= flat * draft_.bounds.diagonal()) return up > along * size;
-    area[axis_] = 0;
-    return norm(area) <= most_slope * up;
   }
 
   std::vector<bool> thin_soups() const {
