@@ -9,7 +9,8 @@
 /// 1. Give it a name here, or in the header of its part: layer_cells.h, layer_walls.h, periodic.h. If a mesh
 ///    of other sizes misses it although it follows the shape, list it in `of_shapes`.
 /// 2. If it concerns single tets or nodes, write a predicate into predicates.h and call it from tets.cpp or
-///    second_order.cpp. Otherwise declare a check in subject.h and call it from `judge` in check.cpp.
+///    second_order.cpp. Otherwise declare a check in subject.h and call it from `judge` in check.cpp, for
+///    meshes without tets from `judge_shells` in shells.cpp.
 /// 3. Under MPI nothing of this runs by itself: call the predicate from `Certification` in
 ///    distributed/src/certify.cpp, which adds up over the ranks.
 /// 4. Break it on purpose in tests/fast/check_wrong_meshes_test.cpp.

@@ -538,7 +538,7 @@ class Coarsening {
     log_.push_back({changes_.now, vertex});
   }
 
-  // Marks cells again, because coarsening has changed the cells of collars.
+  // Drops the balls, because coarsening has changed the cells of collars.
   void finish() {
     edited_.complex.forget_balls();
     report_.tets_after = tets_;

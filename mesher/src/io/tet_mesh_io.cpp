@@ -17,11 +17,13 @@ namespace {
 
 /// A format of meshes. A new one needs:
 /// - a writer and, if it is read, a reader, each in a file of this folder, declared in tet_mesh_formats.h;
-/// - FileWriter in the writer, so that the file appears complete or not at all;
+/// - FileWriter in the writer, or UnfinishedFile where a library writes, so that the file appears complete or
+///   not at all;
 /// - a line in `tet_mesh_formats`;
 /// - a line in `meshes` in report/conversion_report.cpp, or `convert` reports no losses;
 /// - if it writes side files, a line in files/file_groups.cpp, so that none takes the place of an input;
-/// - a line in tests/fast/io_round_trip_test.cpp if it is read, else a case of io/solver_formats_test.py;
+/// - a line in tests/fast/io_round_trip_test.cpp if it is read, else a case of
+///   tests/io/solver_formats_test.py;
 /// - a row in doc/formats.md.
 struct TetMeshFormat {
   std::string_view extension;
