@@ -19,7 +19,7 @@ namespace {
 constexpr unsigned rounds = 3, divisions = 2;
 // A round that makes fewer changes than this share of the tets is the last one.
 constexpr double least_share_of_round = 0.01;
-// Most divisions of thin parts. Each halves the edges along them.
+// Largest number of passes that divide thin parts. Each halves the edges along them.
 constexpr unsigned most_halvings = 12;
 // Edges shorter than this share of the target lie around or across a thin part.
 constexpr double around = 0.3;
@@ -62,7 +62,8 @@ class Bringing {
 
   EditableMesh edited() { return {mesh_, plc_, options_.bounds, options_.edges_per_hole}; }
 
-  /// Gives tets that miss their bounds vertices that face each other, and improves the others.
+  /// Inserts vertices that face each other at tets that miss their bounds, and improves what remains, in
+  /// rounds.
   void face_each_other() {
     for (unsigned round = 0; round < rounds && may_go_on() && divide_crossing() > 0; ++round)
       relax([](Relaxation& relaxation) { relaxation.improve(); });

@@ -29,7 +29,7 @@ constexpr std::size_t edges_between_reports = 4096;
 constexpr double middle_part = 0.4, middle_part_of_curve = 0.1;  // from the middle, relative to the edge
 // Number of trials before the first division that helps, and its increase with each.
 constexpr std::size_t first_trials = 60, trials_per_division = 8;
-constexpr unsigned most_steps = 20;  // of improvement in a trial
+constexpr unsigned most_steps = 20;  // improvement steps in a trial
 
 bool is_inside(double share) { return std::fabs(share - 0.5) < middle_part; }
 

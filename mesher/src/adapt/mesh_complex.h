@@ -27,7 +27,8 @@ CornerMesh corners_of(const TetMesh& mesh);
 /// Builds the complex of a mesh. Its facets are the sides of tets at a boundary or between two regions, and
 /// listed faces inside a region. If the mesh has edges along all borders between tags of its faces, these
 /// edges are its curves; otherwise folds above `options.feature_angle` are curves, too. Connected tets of one
-/// region form a region of the complex. Throws PlcError if the tets do not fit each other. Cost: O(n log n).
+/// region form a region of the complex. Throws PlcError if the mesh does not conform, or if boundaries of its
+/// regions are inverted, one-sided or without area. Cost: O(n log n).
 MeshComplex complex_of(const TetMesh& mesh, const PlcOptions& options);
 
 }  // namespace collarmesh::remeshing::adapting

@@ -46,8 +46,9 @@ constexpr double longest_at_first = 1.4142, longest_later = coarsening::Coarseni
 constexpr double any_ratio = 1e12;
 // Smaller than any ratio: with this bound angles alone decide, and slivers with a small ratio are forbidden.
 constexpr double no_ratio = 0.1;
-// Shares that are left of the distance from a given complex, for what lies between the places where
-// operations measure it and for moves onto exact geometry, and of the bounds on angles, for these moves.
+// Share of the distance from a given complex that operations may use: the rest is for what lies between the
+// places where they measure it, and for moves onto exact geometry. Share of the bounds on angles that is kept
+// in reserve for these moves.
 constexpr double distance_left = 0.75, angle_reserve = 0.05;
 // If the smallest angle of a mesh, away from creases and narrow places, is at least this (degrees), the mesh
 // keeps it.
@@ -55,7 +56,7 @@ constexpr double good_angle = 15;
 
 class Remeshing {
  public:
-  /// `complex`: the one that the mesh was made of; null: that of its own surface.
+  /// `complex`: the complex that the mesh was made from; null: builds one from the mesh's own surface.
   Remeshing(const TetMesh& given, const Plc* complex, const PipelineOptions& options,
             const AdaptOptions& adapt, const Execution& execution)
       : given_(given),
@@ -95,7 +96,7 @@ class Remeshing {
       follow_complex();
     if (adapt_) adapt_(made_.plc, options_);
     if (complex_ == nullptr)
-      options_.exact = {}, options_.exact_measures = {};  // of features of another complex
+      options_.exact = {}, options_.exact_measures = {};  // these belong to features of another complex
     require_known_tags(options_.mesh, made_.plc);
     made_.remeshing.tets_before = mesh().tets.size();
     measure_before();

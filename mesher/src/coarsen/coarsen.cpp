@@ -43,14 +43,13 @@ constexpr unsigned most_sweeps = 8;
 // it found nothing more, all vertices are tried again.
 constexpr double least_share = 0.005;
 constexpr std::size_t steps_between_reports = 4096;
-// If more vertices have changed than this, looking at all tets costs less than finding the tets at the
-// vertices.
+// If more than one change in this many tets was logged, looking at all tets costs less than finding the tets
+// at the changed vertices.
 constexpr std::size_t tets_per_logged_change = 24;
 // The number of items for which changes are proposed at once is limited in two ways: absolutely, and to one
-// in so many items, so that proposals rarely meet but each thread has several.
+// in `items_per_proposal` items, so that proposals rarely meet; but each thread has several.
 constexpr std::size_t most_proposals = 256, items_per_proposal = 256, proposals_per_thread = 4;
-// The number of rows that items of one rank are cut into: at most this many, with at least so many items
-// each.
+// Items of one rank are cut into rows: one for each `items_per_row` items of all ranks, at most `most_rows`.
 constexpr std::size_t most_rows = 256, items_per_row = 16;
 constexpr double ranks_of_lengths = 64;  // ranks for each unit of squared relative length
 
@@ -115,9 +114,9 @@ class Coarsening {
     edited_.prepare();
     for (unsigned pass = 0; pass < plain_passes && !report_.cancelled; ++pass)
       if (!contract_all(false)) break;
-    // Improvement makes room for more collapses: without this flag it would have all vertices tried again
-    // between the passes of a round. Repairs reach beyond the tets at a vertex, so in the end vertices where
-    // nothing has changed are tried, too.
+    // Whether a round begins with all vertices, not only with those at which something has changed. It does
+    // if improvement found nothing more and the round before removed few tets: repairs reach beyond the tets
+    // at a vertex, so changes farther away may have made more collapses possible.
     bool ask_all = false;
     for (unsigned round = 0; round < rounds && !report_.cancelled; ++round) {
       const bool settled = improve_all();
@@ -566,7 +565,7 @@ class Coarsening {
   std::vector<Index> touched_;           // tets that were made or changed
   std::vector<Index> touched_vertices_;  // vertices of removed tets
   std::vector<Index> examined_;          // corners of the tets that a trial tried to improve
-  std::vector<Index> looked_at_;         // vertices at whose tets the trials for a vertex looked
+  std::vector<Index> looked_at_;         // vertices whose tets the trials of one vertex examined
   std::vector<Index> star_;
   FailedRepairs failed_;
   std::vector<double> trial_qualities_;  // by tet, for tets that a trial changed

@@ -15,7 +15,8 @@ class CoarseningRule final : public AngleRule {
   enum class Mode {
     final,  ///< new tets keep the guarantee: they are thin or within the radius-edge bound
     trial,  ///< new tets need not keep the guarantee yet
-    force   ///< new tets only need a volume; quality ignores the last sentence above
+    force   ///< new tets only need positive volume; quality does not single out tets with an angle above the
+            ///< largest one, nor tets that the bounds on cells forbid
   };
 
   /// No operation makes an edge longer than this factor times the target length, unless the old edge was

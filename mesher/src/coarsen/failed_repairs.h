@@ -16,13 +16,13 @@ namespace collarmesh::remeshing::coarsening {
 /// none of that changes, they would fail again in the same way.
 class FailedRepairs {
  public:
-  /// Notes that all collapses of a vertex have failed now, and the vertices at whose tets they looked.
+  /// Records that all collapses of a vertex failed at this time, and the vertices whose tets they examined.
   void note(Index vertex, std::vector<Index> looked_at, std::uint32_t now) {
     sort_uniquely(looked_at);
     failures_.insert_or_assign(vertex, Failure{now, std::move(looked_at)});
   }
 
-  /// Returns the vertices at whose tets the trials looked if nothing has changed there since; otherwise
+  /// Returns the vertices whose tets the trials examined if nothing has changed there since; otherwise
   /// nothing.
   std::span<const Index> still_fails(Index vertex, const Changes& changes) const {
     const auto found = failures_.find(vertex);

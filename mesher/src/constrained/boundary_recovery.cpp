@@ -16,8 +16,9 @@ namespace {
 
 // Before an edge is removed, edges around it may be removed first, recursively to this depth.
 constexpr unsigned most_depth = 2;
-constexpr double most_errors = 512;       // rounding errors by which a point may be off its edge
-constexpr std::size_t most_rings = 1000;  // rings triangulated before edges around are removed first
+constexpr double most_errors = 512;  // rounding errors by which a point may be off its edge
+// After this many triangulated rings for one edge or facet, no other edges are removed first any more.
+constexpr std::size_t most_rings = 1000;
 // Limit of added points: `most_times` times the number of points of the complex, plus `some`.
 constexpr std::size_t most_times = 20, some = 1000;
 
@@ -222,7 +223,7 @@ bool BoundaryRecovery::reduce(const std::function<std::optional<int>()>& change)
   return false;
 }
 
-/// Makes an edge one of the mesh. Edges that need more changes than other edges wait until those are done.
+/// Recovers an edge, or divides it. Edges that need more changes wait until the others are done.
 void BoundaryRecovery::recover_edge(const EdgeToDo& edge) {
   const auto [a, b, depth] = edge;
   const InTheWayOfEdge obstacles(mesh_, a, b);
@@ -293,7 +294,7 @@ Index BoundaryRecovery::find_crossed(Index a, Index b, std::vector<CrossedFace>&
   return none;
 }
 
-/// Changes the mesh at the crossed faces. Returns whether it changed anything.
+/// Changes the mesh at faces that the edge crosses. Returns whether it changed anything.
 bool BoundaryRecovery::clear_edge(const std::vector<CrossedFace>& crossed, const Obstacles& obstacles,
                                   unsigned depth) {
   bool changed = false;

@@ -36,8 +36,7 @@ class LocalChanges {
   /// recursively to this depth.
   std::optional<int> remove_edge(Index a, Index b, unsigned depth, const Obstacles& obstacles, int most);
 
-  /// Sets the number of rings that may be triangulated before other edges are removed first; after that,
-  /// none.
+  /// Sets after how many more triangulated rings `remove_edge` stops removing other edges first.
   void set_budget(std::size_t rings) { budget_ = rings; }
 
   /// Inserts a point in or near some tetrahedra: replaces these, and as many neighbours as necessary, by

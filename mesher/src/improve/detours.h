@@ -44,8 +44,8 @@ class Detours {
     bool more_thin = false;  ///< more tets are thin than before the trial
     double worst = 0;        ///< smallest quality of the changed tets, at most the wanted quality
   };
-  /// How far a tet's first steps reach: operations at the tet itself; operations across its faces and edges,
-  /// too; or all of these, accepted even if more tets are thin and not all others are good afterwards.
+  /// Where the first steps for a tet are tried. at_tet: at the tet itself; beside: at the tets across its
+  /// faces and edges; last_resort: at all of these, accepted even if more tets are thin and some stay poor.
   enum class Effort : std::uint8_t { at_tet, beside, last_resort };
   /// By tet: the number of detours taken before it was last tried, plus 1; 0: not tried.
   using Asked = std::vector<std::uint32_t>;

@@ -13,7 +13,7 @@ namespace collarmesh::remeshing::improvement {
 namespace {
 
 constexpr double much_longer = 1.5;
-constexpr double least_divided = 1e-4;  // the least_divided quality of new tets
+constexpr double least_divided = 1e-4;  // least quality of new tets
 
 /// Returns the tet's longest edge on a curve if the tet has much shorter edges, else nothing.
 std::optional<std::array<Index, 2>> edge_to_divide(const TetComplex& complex, Index tet) {

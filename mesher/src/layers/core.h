@@ -66,8 +66,8 @@ class Core {
   const Execution& execution_;
   TetMesh mesh_;
   std::vector<Index> vertex_of_;  // by node of the front
-  std::vector<Index> node_of_;    // by vertex of the core that existed at first: node of the front; none
-  std::vector<double> reached_;   // by node of the front: its distance now
+  std::vector<Index> node_of_;    // by vertex of the initial core: its node of the front, or none
+  std::vector<double> reached_;   // by node of the front: its current distance
   std::unique_ptr<remeshing::EditableMesh> piece_;
   std::unique_ptr<remeshing::ThinShape> thin_;
   std::vector<std::array<Index, 4>> poor_at_first_;  // sorted corners

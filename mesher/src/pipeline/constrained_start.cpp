@@ -27,7 +27,7 @@ namespace {
 // A mesh with a larger share of tets that miss their bounds is not worth further work.
 constexpr std::size_t tets_per_poor = 50;
 
-/// Returns whether a thin tet or one of a collar has a larger angle than these may have.
+/// Returns whether a thin tet, or a tet in a collar, has a larger angle than thin tets may have.
 bool has_flat_tet(const TetMesh& mesh) {
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
     if (mesh.tet_thin[t] == 0 && mesh.tet_collar[t] == 0) continue;

@@ -273,8 +273,7 @@ void BlockRefinement::refine(Block block, const std::vector<WorkQueue::Entry>& e
     const Fate fate = destroy(item, block, worker);
     if (fate == Fate::waits)
       waiting.push_back({item.priority, queue.bucket_of(radius), item.entry});
-    else if (fate == Fate::destroyed && due(item))  // it yielded to another insertion, after which it still
-                                                    // exists
+    else if (fate == Fate::destroyed && due(item))  // another vertex was inserted, and the item still exists
       queue.push(item.priority, radius, item.entry);
   }
   for (WorkQueue::Priority priority = queue.first_priority(); priority < WorkQueue::priority_count;

@@ -16,8 +16,9 @@ struct CollarTriangle {
   bool several;             ///< its dual edge meets the collar surface more than once
   bool poor_alone = false;  ///< poor regardless of its neighbours
   bool poor = false;
-  Index bent_on = none;  ///< a smooth patch from which one of its edges deviates too far ...
-  Point bent_at = {};    ///< ... at its middle
+  /// A smooth patch that is too far from the triangle between one of its edges and the ball's centre; none.
+  Index bent_on = none;
+  Point bent_at = {};  ///< a point inside a side of that triangle
 };
 
 /// Collar triangles by their faces. Records of a removed cell are reused for the next cell in its slot.

@@ -74,10 +74,14 @@ class CurveChains {
   Index end_to_resolve(Index subsegment, const Candidate& candidate) const;
 
   bool due(const WorkQueue::Entry& entry) const { return is_there({entry.id, entry.stamp}); }
-  // To split a subsegment the loop first calls CollarCreator::create_at_subsegment. If that returns false, it
-  // calls `split_of`; then either `split_ahead`, or `drop_ball`, force_insert and `split_at`. If the place
-  // already has a vertex (`start` is none) and `can_join` returns true, the vertex joins the curve and
-  // `split_at` follows. If the candidate warps, `queue_again` follows.
+  // To split a subsegment the loop calls:
+  // 1. CollarCreator::create_at_subsegment; if that returns true, nothing more;
+  // 2. `split_of`; if that returns nothing, nothing more;
+  // 3. if the place already has a vertex (`start` is none): `can_join` and, if that returns true, `split_at`
+  //    after the vertex has joined the curve;
+  //    if the vertex is to be inserted later: `split_ahead`;
+  //    if the candidate warps: for an item of the queue `queue_again`, after the other point was inserted;
+  //    otherwise: `drop_ball`, force_insert and `split_at`.
   /// Returns where to split a subsegment. If its ball is at the floor, gives up and returns nothing.
   /// Precondition: the subsegment exists (`due`, or `encroached`).
   std::optional<Split> split_of(Index subsegment);

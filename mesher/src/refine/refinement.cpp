@@ -300,7 +300,7 @@ Index Refinement::force_insert(const Feature& feature) {
   return vertex;
 }
 
-// Returns whether the insertion has a purpose other than destroying skinny cells although a skinny cell
+// Returns whether this insertion serves another purpose than destroying skinny cells, while a skinny cell
 // waits.
 bool Refinement::too_early() {
   return working_on_ != WorkQueue::skinny_cells &&

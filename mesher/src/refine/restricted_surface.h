@@ -109,8 +109,8 @@ class RestrictedSurface {
   /// share.
   void cells_vanish(const ConflictZone& zone, Workspace& workspace);
   void cells_made(const ConflictZone& zone, Index vertex, Workspace& workspace);
-  /// Replaces these functions for a new cell if the zone's vertices know no part of the complex. The cell's
-  /// region is that of the cells that it replaces.
+  /// To be called for each new cell, in place of cells_vanish and cells_made, if no vertex of the zone has
+  /// nodes (SurfaceNodes). The cell's region is that of the cells that it replaces.
   void quiet_cell_made(Index cell, Index region) { labels_[cell] = {.region = region}; }
 
   /// Reports a new ball: checks whether it contains the places of this cell's triangles.
@@ -158,7 +158,7 @@ class RestrictedSurface {
   GrowingArray<Label> labels_;                // by cell
   GrowingArray<std::array<Index, 4>> marks_;  // by cell and corner: records of marked faces
   GrowingArray<Record> records_;
-  Workspace workspace_;  // for the loop
+  Workspace workspace_;  // the main loop's own
 };
 
 }  // namespace collarmesh

@@ -18,9 +18,9 @@ namespace collarmesh {
 /// kept at vertices, BlockRefinement must not have rounds with it, as with `has_field`.
 class Sizing {
  public:
-  /// The target edge length relative to a size that is given as a length. (In other meshers' meshes the
-  /// median edge exceeds the size by more.) Sizes given as a number of elements, across a gap or on a circle,
-  /// are not stretched.
+  /// Target edge length per unit of a size given as a length; in other meshers' meshes the median edge
+  /// exceeds the size by more. Sizes given as numbers of elements, across a gap or on a circle, are used as
+  /// they are.
   static constexpr double edge_per_size = 1.08;
   /// If the mesh will be coarsened, cells are left in gaps narrower than this share of the target edge
   /// length: in wider gaps a bounded ratio costs little, and angles are better.

@@ -20,7 +20,7 @@ namespace collarmesh {
 /// into blocks; all parts query it.
 class SurfaceNodes {
  public:
-  /// Gives every existing vertex the root. Keeps references to both arguments.
+  /// Gives every existing vertex the root node of the hierarchy. Keeps references to both arguments.
   SurfaceNodes(const Domain& domain, const RefinedMesh& mesh);
 
   const TriangleHierarchy& hierarchy() const { return hierarchy_; }
@@ -91,7 +91,7 @@ class SurfaceNodes {
   TriangleHierarchy hierarchy_;
   std::vector<Index> patch_below_;  // by node: the patch of all elements below, none if they differ
   GrowingArray<List> lists_;        // by vertex
-  Workspace workspace_;             // for the loop
+  Workspace workspace_;             // the main loop's own
 };
 
 }  // namespace collarmesh

@@ -96,7 +96,7 @@ void Operations::remove_edge(Index tet, unsigned i, unsigned j, Change& change,
     for (unsigned corner = 0; corner < 4; ++corner) {
       const Index opposite = t.corners[corner];
       if (opposite == a || opposite == b || t.faces[corner] == none) continue;
-      const bool ahead = opposite == ring_.link[k];  // it is the face to the next tet
+      const bool ahead = opposite == ring_.link[k];  // the face shared with the next tet of the ring
       const std::size_t at = ahead ? (k + 1) % m : k;
       if (kept.empty() || std::ranges::none_of(kept, [&](const auto& x) { return x.first == at; }))
         kept.emplace_back(at, t.faces[corner]);

@@ -74,7 +74,7 @@ class EditableMesh {
   /// Returns whether the triangles of this patch must stay, like those of periodic faces.
   bool keeps(Index patch) const { return !kept_.empty() && patch != none && kept_[patch]; }
 
-  /// Keeps the triangles of further patches, by patch.
+  /// From now on the triangles of further patches must stay, too. `patches`: whether they must, by patch.
   void keep_triangles_of(const std::vector<bool>& patches) {
     kept_.resize(patches.size(), false);
     for (std::size_t patch = 0; patch < patches.size(); ++patch)
@@ -97,8 +97,8 @@ class EditableMesh {
            std::ranges::all_of(tet.corners, [&](Index v) { return v < left_.size() && left_[v]; });
   }
 
-  /// Returns whether this collapse is still allowed, as other collapses on the same curve use up its spare
-  /// edges.
+  /// Returns whether this collapse is still allowed: other collapses on the same curve may have used up its
+  /// spare edges.
   bool curve_can_spare(const Change& change) const {
     return complex.mesh().features[change.vertex].dimension != 1 || curves.may_skip(change.vertex);
   }

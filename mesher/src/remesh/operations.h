@@ -47,8 +47,9 @@ class Operations {
   void split_edge(Index a, Index b, double least, Change& change);
   /// Inserts a vertex on such an edge even if the tets at it are better now.
   void split_edge_anyhow(Index a, Index b, double least, Change& change);
-  /// Inserts a vertex inside a region. It replaces a tet or one of its edges, and as many tets around as is
-  /// best, if all new tets are better than `least` and than `change`.
+  /// Inserts a vertex inside a region. Removes a tet or all tets at one of its edges, and as many around them
+  /// as make the worst new tet better, and fills the cavity from the vertex. Does so only if all new tets are
+  /// better than `least` and than `change`.
   void insert_in_cavity(Index tet, double least, Change& change);
   /// Inserts a vertex at this share of the length of an edge, inside a region or in a patch, or in the middle
   /// of an edge on a curve, with any number of tets there, if all new tets are better than `least`.

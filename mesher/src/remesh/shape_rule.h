@@ -121,8 +121,8 @@ class SliverRule final : public ShapeRule {
   double least_gain() const override { return least_gain_; }
   /// Sets `least_gain` for later operations.
   void set_least_gain(double share) { least_gain_ = share; }
-  /// Returns whether a tet of this quality has an angle above the largest one of thin tets, or none above
-  /// 0.06 degrees. False if no tet may be thin.
+  /// Returns whether a tet of this quality has an angle above the largest one of thin tets or one below 0.06
+  /// degrees, or is forbidden by the bounds on cells. False if no tet may be thin.
   bool is_blunt(double quality) const { return thin_ != nullptr && quality < beyond; }
 
  private:

@@ -40,9 +40,9 @@ class SmoothSurfaces {
   };
   /// Returns the point of a smooth patch that is nearest to p. A known point near p makes it faster.
   Nearest nearest(Index patch, const Point& p, double near = INFINITY) const;
-  /// From now on faces may be replaced by others beyond the tolerance that are no farther from the patch;
-  /// where the old ones are beyond all tolerances, by others at most `ratio` times as far: for meshes that
-  /// were not made within the tolerance. 0: never.
+  /// From now on accepts faces beyond the tolerance if they are no farther from the patch than the faces that
+  /// they replace, or at most `ratio` times as far if those are beyond all tolerances. For meshes that were
+  /// not made within the tolerance. 0: accepts none.
   void accept_distant(double ratio) { accepted_ratio_ = ratio; }
   /// Returns whether an edge is within the tolerance of a smooth patch, judged by samples.
   bool edge_is_near(Index patch, const Point& a, const Point& b) const {

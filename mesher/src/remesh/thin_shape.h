@@ -215,8 +215,8 @@ class ThinShape {
   }
 
  private:
-  // The sine of 1.7 degrees. If forced edges permit less, further attempts gain nothing. If they permit more,
-  // operations treat the tet as if its edges were not forced, although the bound is lower.
+  // The sine of 1.7 degrees. Where forced edges permit smaller angles only, operations judge a tet by what
+  // the edges permit. They judge all others as if no edge were forced, although their bound may be lower.
   static constexpr double deep = 0.03;
   // Largest squared margin that forced edges can give a tet.
   static constexpr double good_enough = 2;

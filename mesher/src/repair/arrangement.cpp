@@ -404,7 +404,7 @@ class Cutter {
   std::map<Index, Cuts> cuts_;                // by triangle
   // Data of the current triangle:
   std::vector<ExactPoint> inserted_;
-  std::vector<Index> ids_;  // of those points
+  std::vector<Index> ids_;  // numbers of these points in the draft; none: not added yet
 };
 
 void note_places(const Draft& draft, std::span<const Simplex> simplices,

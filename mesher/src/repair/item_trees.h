@@ -43,8 +43,8 @@ class ItemTrees {
   }
 
  private:
-  static constexpr std::size_t few = 8;  // a new large tree is built when later items are more than one in so
-                                         // many
+  // A new large tree is built when more than one triangle in `few` was added later.
+  static constexpr std::size_t few = 8;
 
   struct Tree {
     std::vector<Item> items;

@@ -48,7 +48,7 @@ using namespace repairing;
 constexpr std::size_t most_rounds = 6;
 // Borders are stitched over at most this share of the diagonal: wider gaps are intended.
 constexpr double widest_stitch = 1e-3;
-// If more than this share of the area is in open sheets, the result is no repair of a solid.
+// If more than this share of the area is in open sheets, which are dropped, soups count as enclosing nothing.
 constexpr double most_in_open_sheets = 0.5;
 constexpr double grain = 1e-3;  // merging distance of the arrangement, relative to the tolerance
 
@@ -287,7 +287,7 @@ class Repairer {
     keep_better_places(valid);
   }
 
-  // Moves facets that nearly coincide onto one plane. Reports moves that are no rounding.
+  // Moves facets that nearly coincide onto one plane. Reports moves larger than rounding.
   void flatten() {
     const FlattenReport flattened = flatten_axis_planes(draft_, tolerance_);
     constexpr double rounding = 1e-6;  // in tolerances

@@ -221,7 +221,7 @@ class FeatureCollapser {
     }
   }
 
-  // Of two points, the one of the lower rank moves.
+  // Ranks the points: of two points, the one of lower rank moves.
   void rank_points(const SmallOnes& small, const DraftPoints& points) {
     constexpr int of_vertex = 1000;
     rank_.assign(draft_.points.size(), 0);
@@ -240,7 +240,8 @@ class FeatureCollapser {
   bool in_patch(Index t) const { return draft_.origins[t].facet == in_narrow_patch; }
   bool is_feature(Index a, Index b) const { return features_.contains(edge_key(a, b)); }
 
-  // Changes triangles, flattest first, where no other change of this round is. Returns whether any changed.
+  // Changes narrow triangles, flattest first, except where this round has already changed something. Returns
+  // whether any changed.
   bool run_round() {
     std::vector<std::pair<double, Index>> found;
     find_narrow();

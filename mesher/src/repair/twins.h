@@ -10,8 +10,8 @@ namespace collarmesh::repairing {
 
 /// One of several triangles of a soup with the same corners.
 struct Twin {
-  bool odd;  ///< its corners are an odd permutation of the sorted ones: its orientation is opposite to that
-             ///< of an even one
+  bool odd;  ///< whether its corners are an odd permutation of the sorted ones; odd and even twins have
+             ///< opposite orientations
   Index triangle;
 
   friend bool operator==(const Twin& a, const Twin& b) = default;

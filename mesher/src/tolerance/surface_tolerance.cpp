@@ -23,8 +23,8 @@ namespace {
 // bend away from each other (a rod), and if they bend the same way (a shell); and relative to the width of
 // gaps. doc/architecture/tolerance.md has the measurements.
 constexpr double share_of_rod = 0.05, share_of_shell = 0.15, share_of_hole = 0.1, share_of_slot = 0.5;
-// The share of a region's volume that chords may remove or add, by the estimate below. If they would remove
-// less, the shares of its thickness may be larger by up to this factor.
+// Share of a region's volume that chords may remove or add, by the estimate below. Where they would change
+// it by less, the shares of its thickness grow by up to `largest_factor`.
 constexpr double share_of_volume = 0.015, largest_factor = 2;
 // The share of the volume below a patch in a wedge that chords may remove, if they would otherwise remove
 // more than `much_of_wedge`.

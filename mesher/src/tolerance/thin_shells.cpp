@@ -13,8 +13,8 @@ namespace collarmesh {
 
 namespace {
 
-// Numbers that cover the shells: squares with sides as long as the shells are thin must be this many, and
-// this many times the rectangles whose sides are chords.
+// Shells matter if covering them takes more than `least_squares` squares whose sides are the thickness, and
+// more than `least_ratio` times as many as with rectangles whose sides are the chords.
 constexpr double least_squares = 20'000, least_ratio = 30;
 
 /// Returns the distance to the opposite side of the wall or gap; infinite if there is none.
