@@ -88,12 +88,15 @@ TEST(Ladders, DivideCurvesAndTheFacesBesideThem) {
 }
 
 TEST(Ladders, LeaveOtherSurfacesAsTheyAre) {
-  for (const PolygonSoup& soup : {box(), box({0, 0, 0}, {20, 20, 0.01}), uv_sphere(6, 12, 24)}) {
+  const auto is_divided = [](const PolygonSoup& soup, double size) {
     const Plc plc = build_plc(std::vector{soup});
-    const Plc same = divided(plc, 2, 1e-6);
-    EXPECT_EQ(same.points, plc.points);
-    EXPECT_EQ(same.triangles.size(), plc.triangles.size());
-  }
+    return divided(plc, size, 1e-6).points != plc.points;
+  };
+  for (const PolygonSoup& soup : {box(), box({0, 0, 0}, {20, 20, 0.01}), uv_sphere(6, 12, 24)})
+    EXPECT_FALSE(is_divided(soup, 2));
+  // Strips 3.1 and 7.7 times as long as wide.
+  EXPECT_FALSE(is_divided(cylinder(1, 1.2, 16), 0.5));
+  EXPECT_TRUE(is_divided(cylinder(1, 3, 16), 0.5));
 }
 
 TEST(Ladders, LeaveStripsThatAreASmallPartOfTheSurface) {
