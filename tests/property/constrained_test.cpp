@@ -138,7 +138,8 @@ TEST(Constrained, TakesNoMorePointsWhereSheetsAreNearer) {
   }
 }
 
-// Edges of its needles can only be recovered by removing single faces after edges, and by points beside flat tets.
+// Edges of its needles can only be recovered by removing single faces after edges, and by points beside flat
+// tets.
 TEST(Constrained, RecoversAllEdgesOfNeedlesInTheCorpus) {
   const char* corpus = std::getenv("COLLARMESH_CORPUS");
   if (corpus == nullptr || *corpus == '\0') GTEST_SKIP() << "COLLARMESH_CORPUS names no folder";

@@ -368,8 +368,8 @@ std::array<std::pair<double, Index>, 2> BoundaryRecovery::places_beside(
       {{0.5 * (before + face.place), face.face.tet}, {0.5 * (face.place + behind), mesh_.beyond(face.face)}}};
 }
 
-/// Adds a point inside a tetrahedron that the edge crosses, so that the mesh can be changed there; or beside it,
-/// because tetrahedra between points in one plane are as thin as rounding errors and have no room inside.
+/// Adds a point inside a tetrahedron that the edge crosses, so that the mesh can be changed there; or beside
+/// it, because tetrahedra between points in one plane are as thin as rounding errors and have no room inside.
 bool BoundaryRecovery::add_room(const std::vector<CrossedFace>& crossed) {
   const auto add = [&](const CrossedFace& c, const Vector& off) {
     Point sum;
@@ -391,7 +391,8 @@ bool BoundaryRecovery::add_room(const std::vector<CrossedFace>& crossed) {
 /// Returns a vector normal to a crossed face, as long as the face's longest side.
 Vector BoundaryRecovery::across(const CrossedFace& c) const {
   const auto v = side_corners(c.corners, c.face.corner);
-  const std::array<Vector, 3> sides{mesh_.point(v[1]) - mesh_.point(v[0]), mesh_.point(v[2]) - mesh_.point(v[1]),
+  const std::array<Vector, 3> sides{mesh_.point(v[1]) - mesh_.point(v[0]),
+                                    mesh_.point(v[2]) - mesh_.point(v[1]),
                                     mesh_.point(v[0]) - mesh_.point(v[2])};
   const Vector normal = cross(sides[0], sides[1]);
   const double length = norm(normal);

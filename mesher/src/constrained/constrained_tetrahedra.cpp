@@ -178,7 +178,8 @@ ConstrainedTetrahedra recovered(const Plc& plc, const RecoveryWay& way, const Ex
 
 ConstrainedTetrahedra constrained_tetrahedra(const Plc& plc, const Execution& execution) {
   using constrained::RecoveryWay;
-  constexpr std::array<RecoveryWay, 3> ways{{{}, {.turns_first = true}, {.turns_first = true, .reversed = true}}};
+  constexpr std::array<RecoveryWay, 3> ways{
+      {{}, {.turns_first = true}, {.turns_first = true, .reversed = true}}};
   for (const RecoveryWay& way : ways) try {
       return constrained::recovered(plc, way, execution);
     } catch (const PlcError&) {
