@@ -8,6 +8,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <cstdlib>
 #include <map>
 #include <numeric>
 #include <string>
@@ -15,6 +16,7 @@
 #include <vector>
 
 #include "collarmesh/error.h"
+#include "collarmesh/io/soup_io.h"
 #include "collarmesh/pipeline.h"
 #include "collarmesh/plc_builder.h"
 #include "delaunay/predicates.h"
@@ -134,6 +136,18 @@ TEST(Constrained, TakesNoMorePointsWhereSheetsAreNearer) {
     expect_conforming(made.mesh);
     EXPECT_LE(made.mesh.tets.size(), 4 * plc.triangles.size()) << height;
   }
+}
+
+// Edges of its needles can only be recovered by removing single faces after edges, and by points beside flat
+// tets.
+TEST(Constrained, RecoversAllEdgesOfNeedlesInTheCorpus) {
+  const char* corpus = std::getenv("COLLARMESH_CORPUS");
+  if (corpus == nullptr || *corpus == '\0') GTEST_SKIP() << "COLLARMESH_CORPUS names no folder";
+  const Plc plc = build_plc(std::vector{io::read_soup(std::string(corpus) + "/cdt_bracket.off")});
+  const ConstrainedTetrahedra made = constrained_tetrahedra(plc);
+  ASSERT_FALSE(made.mesh.tets.empty());
+  expect_conforming(made.mesh);
+  EXPECT_LT(made.added_points, plc.points.size());
 }
 
 TEST(Constrained, IsCancelled) {

@@ -17,6 +17,8 @@ namespace {
 // Before an edge is removed, edges around it may be removed first, recursively to this depth.
 constexpr unsigned most_depth = 2;
 constexpr double most_errors = 512;  // rounding errors by which a point may be off its edge
+// Distances from a flat tetrahedron at which a point beside it is tried, as shares of the length of its side.
+constexpr double farthest_room = 0.1, nearest_room = 1e-6;
 // After this many triangulated rings for one edge or facet, no other edges are removed first any more.
 constexpr std::size_t most_rings = 1000;
 // Limit of added points: `most_times` times the number of points of the complex, plus `some`.
@@ -101,8 +103,12 @@ double share_to_plane(const Point& a, const Point& b, const Point& p, const Poin
 
 }  // namespace
 
-BoundaryRecovery::BoundaryRecovery(Tetrahedra& mesh, const Plc& plc)
-    : mesh_(mesh), plc_(plc), changes_(mesh, required_), most_added_(most_times * plc.points.size() + some) {
+BoundaryRecovery::BoundaryRecovery(Tetrahedra& mesh, const Plc& plc, RecoveryWay way)
+    : mesh_(mesh),
+      plc_(plc),
+      way_(way),
+      changes_(mesh, required_),
+      most_added_(most_times * plc.points.size() + some) {
   for (const Plc::Triangle& t : plc.triangles) add_facet(t.points, t.patch);
   for (Index c = 0; c < plc.curves.size(); ++c) {
     const auto& points = plc.curves[c].points;
@@ -110,6 +116,7 @@ BoundaryRecovery::BoundaryRecovery(Tetrahedra& mesh, const Plc& plc)
       require(points[i == 0 ? points.size() - 1 : i - 1], points[i]).curve = c;
   }
   make_planar_facets_delaunay();
+  if (way_.reversed) std::ranges::reverse(edges_to_do_);
 }
 
 /// Flips edges between facets in one plane, so that most of them are edges of Delaunay tetrahedra.
@@ -155,6 +162,12 @@ bool BoundaryRecovery::turn_edge(std::uint64_t key, double least_angles,
   for (const Index end : {a, b})
     for (const Index tip : {c, d}) changed.push_back(edge_key(end, tip));
   return true;
+}
+
+/// Flips an edge between two facets in one plane, unless that was tried before.
+bool BoundaryRecovery::turn_once(Index a, Index b) {
+  std::vector<std::uint64_t> around;
+  return turned_.insert(edge_key(a, b)).second && turn_edge(edge_key(a, b), 0, around);
 }
 
 BoundaryRecovery::RequiredEdge& BoundaryRecovery::require(Index a, Index b) {
@@ -239,10 +252,10 @@ void BoundaryRecovery::recover_edge(const EdgeToDo& edge) {
       edges_to_do_.push_back({a, b, depth + 1});
       return;
     }
+    if (way_.turns_first && turn_once(a, b)) return;
     const Index x = divide_at_crossing(a, b, crossed);
     if (x == none) {
-      std::vector<std::uint64_t> around;
-      if (turned_.insert(edge_key(a, b)).second && turn_edge(edge_key(a, b), 0, around)) return;
+      if (turn_once(a, b)) return;
       if (!add_room(crossed)) fail(a, "An edge");
       edges_to_do_.push_back({a, b, 0});
     } else {
@@ -303,7 +316,7 @@ bool BoundaryRecovery::clear_edge(const std::vector<CrossedFace>& crossed, const
   };
   for (const CrossedFace& c : crossed) {
     if (!is_there(c)) continue;
-    bool gone = depth == 0 && reduce([&] { return changes_.remove_face(c.face, obstacles); });
+    bool gone = reduce([&] { return changes_.remove_face(c.face, obstacles); });
     const auto v = side_corners(c.corners, c.face.corner);
     for (unsigned i = 0; i < 3 && !gone; ++i)
       gone = reduce([&] { return changes_.remove_edge(v[i], v[(i + 1) % 3], depth, obstacles, -1); });
@@ -355,16 +368,36 @@ std::array<std::pair<double, Index>, 2> BoundaryRecovery::places_beside(
       {{0.5 * (before + face.place), face.face.tet}, {0.5 * (face.place + behind), mesh_.beyond(face.face)}}};
 }
 
-/// Adds a point inside a tetrahedron that the edge crosses, so that the mesh can be changed there.
+/// Adds a point inside a tetrahedron that the edge crosses, so that the mesh can be changed there; or beside
+/// it, because tetrahedra between points in one plane are as thin as rounding errors and have no room inside.
 bool BoundaryRecovery::add_room(const std::vector<CrossedFace>& crossed) {
-  for (const CrossedFace& c : crossed) {
+  const auto add = [&](const CrossedFace& c, const Vector& off) {
     Point sum;
     for (const Index v : c.corners) sum = sum + mesh_.point(v);
-    if (changes_.insert(0.25 * sum, {c.face.tet}) == none) continue;
+    if (changes_.insert(0.25 * sum + off, {c.face.tet}) == none) return false;
     mesh_.keep();
     return true;
-  }
+  };
+  for (const CrossedFace& c : crossed)
+    if (add(c, {})) return true;
+  for (double share = farthest_room; share > nearest_room; share *= 0.1)
+    for (const CrossedFace& c : crossed) {
+      const Vector off = share * across(c);
+      if (add(c, off) || add(c, -1 * off)) return true;
+    }
   return false;
+}
+
+/// Returns a vector normal to a crossed face, as long as the face's longest side.
+Vector BoundaryRecovery::across(const CrossedFace& c) const {
+  const auto v = side_corners(c.corners, c.face.corner);
+  const std::array<Vector, 3> sides{mesh_.point(v[1]) - mesh_.point(v[0]),
+                                    mesh_.point(v[2]) - mesh_.point(v[1]),
+                                    mesh_.point(v[0]) - mesh_.point(v[2])};
+  const Vector normal = cross(sides[0], sides[1]);
+  const double length = norm(normal);
+  if (length == 0) return {};
+  return std::max({norm(sides[0]), norm(sides[1]), norm(sides[2])}) / length * normal;
 }
 
 void BoundaryRecovery::recover_facet(Index facet) {

@@ -22,6 +22,12 @@ struct Facet {
   bool alive = true;  ///< false: divided into other facets, which replace it
 };
 
+/// How features are recovered. Rounded points may make the recovery fail in one way but not in another.
+struct RecoveryWay {
+  bool turns_first = false;  ///< flip missing edges between facets in one plane before points divide them
+  bool reversed = false;     ///< recover the edges in the reverse order
+};
+
 /// Changes a mesh until it has the edges and triangles of a complex: by local changes of the tetrahedra that
 /// obstruct them and, if no change helps, by inserting a point at a crossing.
 /// Edges come first. Features do not cross, so a triangle whose edges exist can only be obstructed by edges
@@ -29,7 +35,7 @@ struct Facet {
 class BoundaryRecovery {
  public:
   /// Keeps both by reference. Precondition: the mesh's first points are those of the complex.
-  BoundaryRecovery(Tetrahedra& mesh, const Plc& plc);
+  BoundaryRecovery(Tetrahedra& mesh, const Plc& plc, RecoveryWay way = {});
 
   /// Recovers all features. Returns false if `go_on` returned false. Throws PlcError, with the place, if
   /// rounded points make recovery impossible.
@@ -65,6 +71,7 @@ class BoundaryRecovery {
   RequiredEdge& require(Index a, Index b);
   void make_planar_facets_delaunay();
   bool turn_edge(std::uint64_t key, double least_angles, std::vector<std::uint64_t>& changed);
+  bool turn_once(Index a, Index b);
   void add_facet(const std::array<Index, 3>& corners, Index patch);
   void remove_facet(Index facet);
   void divide_required(Index a, Index b, Index x);
@@ -75,6 +82,7 @@ class BoundaryRecovery {
   std::array<std::pair<double, Index>, 2> places_beside(const CrossedFace& face,
                                                         const std::vector<CrossedFace>& crossed) const;
   bool add_room(const std::vector<CrossedFace>& crossed);
+  Vector across(const CrossedFace& c) const;
   void recover_facet(Index facet);
   std::vector<Ends> find_piercing(const Facet& facet, const Obstacles& obstacles) const;
   void divide_facet(Index facet, const std::vector<Ends>& piercing);
@@ -83,6 +91,7 @@ class BoundaryRecovery {
 
   Tetrahedra& mesh_;
   const Plc& plc_;
+  RecoveryWay way_;
   std::unordered_set<std::uint64_t> required_;
   LocalChanges changes_;
   std::unordered_map<std::uint64_t, RequiredEdge> edges_;

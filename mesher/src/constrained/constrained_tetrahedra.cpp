@@ -159,20 +159,33 @@ class Extraction {
   std::vector<Index> number_;
 };
 
+/// Makes the tetrahedra in one way. Returns none if the run was cancelled.
+ConstrainedTetrahedra recovered(const Plc& plc, const RecoveryWay& way, const Execution& execution) {
+  Tetrahedra mesh(plc.points);
+  BoundaryRecovery recovery(mesh, plc, way);
+  std::size_t step = 0;
+  const bool ended = recovery.run([&] {
+    if (execution.cancelled()) return false;
+    return ++step % steps_between_reports != 0 || !execution.progress ||
+           execution.progress({"tetrahedralize", 0, mesh.point_count(), mesh.size()});
+  });
+  if (!ended) return {};
+  return {Extraction(mesh, recovery, plc).run(), recovery.added_points()};
+}
+
 }  // namespace
 }  // namespace constrained
 
 ConstrainedTetrahedra constrained_tetrahedra(const Plc& plc, const Execution& execution) {
-  constrained::Tetrahedra mesh(plc.points);
-  constrained::BoundaryRecovery recovery(mesh, plc);
-  std::size_t step = 0;
-  const bool ended = recovery.run([&] {
-    if (execution.cancelled()) return false;
-    return ++step % constrained::steps_between_reports != 0 || !execution.progress ||
-           execution.progress({"tetrahedralize", 0, mesh.point_count(), mesh.size()});
-  });
-  if (!ended) return {};
-  return {constrained::Extraction(mesh, recovery, plc).run(), recovery.added_points()};
+  using constrained::RecoveryWay;
+  constexpr std::array<RecoveryWay, 3> ways{
+      {{}, {.turns_first = true}, {.turns_first = true, .reversed = true}}};
+  for (const RecoveryWay& way : ways) try {
+      return constrained::recovered(plc, way, execution);
+    } catch (const PlcError&) {
+      if (&way == &ways.back()) throw;
+    }
+  return {};
 }
 
 }  // namespace collarmesh

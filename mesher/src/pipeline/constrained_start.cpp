@@ -158,7 +158,7 @@ void tetrahedralize(MeshJob& job) {
 
 void settle(MeshJob& job, Hope hope) {
   constexpr unsigned most_rounds = 6;
-  constexpr std::size_t few = 20;
+  constexpr std::size_t few = 20, within_reach = 50;
   if (job.refined_with.bounds.interior_node)
     return;  // interior nodes are complete; coarsening would remove
              // them
@@ -171,6 +171,8 @@ void settle(MeshJob& job, Hope hope) {
     if (count_misshapen(job, mesh) == 0) made.result.mesh = std::move(mesh);
     return;
   }
+  // Detours are not taken for more tets than this. While there are more, only rounds that gain much go on.
+  const std::size_t in_reach = within_reach + made.result.mesh.tets.size() / tets_per_poor;
   // Vertices that face each other fix more tets in less time than detours do.
   bool thoroughly = false;
   for (unsigned round = 0; round < most_rounds && least > 0; ++round) {
@@ -183,14 +185,17 @@ void settle(MeshJob& job, Hope hope) {
     const std::size_t poor = count_misshapen(job, mesh);
     if (poor >= least) {
       made.improvement = before;
-      if (thoroughly || (hope == Hope::good && least > few)) return;
+      if (thoroughly || (hope == Hope::good && least > few) || least > in_reach) return;
       thoroughly = true;
       continue;
     }
-    const bool goes_on = hope == Hope::any || poor <= few || 4 * poor <= 3 * least;
+    const bool gains_little = poor > few && 10 * poor > 9 * least;
+    const bool goes_on = hope == Hope::any ? !gains_little || (poor <= in_reach && !thoroughly)
+                                           : poor <= few || 4 * poor <= 3 * least;
     least = poor;
     made.result.mesh = std::move(mesh);
     if (!goes_on || (thoroughly && hope == Hope::good)) return;  // another way takes less time
+    thoroughly |= gains_little && hope == Hope::any;
   }
 }
 
