@@ -1,4 +1,5 @@
 #include "common/spatial_order.h"
+#include "common/groups.h"
 
 #include <gtest/gtest.h>
 
@@ -15,8 +16,6 @@
 
 #include "common/box_tree.h"
 #include "common/distance_tree.h"
-#include "common/order_by_group.h"
-#include "common/parallel_spatial_order.h"
 #include "location/triangle_hierarchy.h"
 
 namespace collarmesh::spatial_order_test {

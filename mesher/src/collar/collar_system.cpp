@@ -1,6 +1,5 @@
 #include "collar/collar_system.h"
 
-#include <algorithm>
 #include <cassert>
 #include <numeric>
 
@@ -20,7 +19,7 @@ CollarSystem::CollarSystem(const Plc& plc, std::span<const Point> points, std::s
   for (Index c = 0; c < plc.curves.size(); ++c)
     if (crease_curve_[c] && !plc.curves[c].closed)
       crease_vertices_.insert(crease_vertices_.end(), plc.curves[c].ends.begin(), plc.curves[c].ends.end());
-  std::sort(crease_vertices_.begin(), crease_vertices_.end());
+  std::ranges::sort(crease_vertices_);
   crease_vertices_.erase(std::unique(crease_vertices_.begin(), crease_vertices_.end()),
                          crease_vertices_.end());
   plant(plc, points);

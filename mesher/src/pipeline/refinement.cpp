@@ -1,7 +1,6 @@
 #include "pipeline/refinement.h"
 
 #include <algorithm>
-#include <cstddef>
 #include <optional>
 
 #include "common/thread_limit.h"

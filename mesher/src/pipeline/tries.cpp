@@ -9,7 +9,6 @@
 #include <new>
 #include <optional>
 #include <tuple>
-#include <utility>
 
 #include "check/findings.h"
 #include "check/guarantees.h"

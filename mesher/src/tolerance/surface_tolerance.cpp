@@ -11,6 +11,7 @@
 #include "collarmesh/shape_measures.h"
 #include "common/cells_at_vertices.h"
 #include "common/parallel_for.h"
+#include "common/segments.h"
 #include "tolerance/curvature.h"
 #include "tolerance/facing.h"
 #include "tolerance/thickness.h"
@@ -254,10 +255,8 @@ class LocalTolerance {
 
 template <class Better>
 double extreme_on(const SurfaceTolerance& tolerance, const Plc::Curve& curve, const Better& better) {
-  const std::size_t count = curve.points.size();
-  double extreme = tolerance.at_segment(curve.points[0], curve.points[1 % count]);
-  for (std::size_t i = 1; i + (curve.closed ? 0 : 1) < count; ++i)
-    extreme = better(extreme, tolerance.at_segment(curve.points[i], curve.points[(i + 1) % count]));
+  double extreme = tolerance.at_segment(curve.points[0], curve.points[1 % curve.points.size()]);
+  visit_segments(curve, [&](Index a, Index b) { extreme = better(extreme, tolerance.at_segment(a, b)); });
   return extreme;
 }
 
@@ -309,7 +308,7 @@ bool triangles_resolve(const Plc& plc, const Plc::Patch& patch, const SurfaceTol
                          n / norm(n),
                          norm(n) / length});
   }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.edge < b.edge; });
+  std::ranges::sort(sides, [](const Side& a, const Side& b) { return a.edge < b.edge; });
   for (std::size_t i = 1; i < sides.size(); ++i) {
     if (sides[i - 1].edge != sides[i].edge) continue;
     const double turn = std::acos(std::clamp(dot(sides[i - 1].normal, sides[i].normal), -1.0, 1.0));

@@ -1,7 +1,6 @@
 #include "tolerance/thin_places.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <vector>
 
