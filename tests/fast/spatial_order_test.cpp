@@ -1,5 +1,4 @@
 #include "common/spatial_order.h"
-#include "common/groups.h"
 
 #include <gtest/gtest.h>
 
@@ -16,6 +15,7 @@
 
 #include "common/box_tree.h"
 #include "common/distance_tree.h"
+#include "common/groups.h"
 #include "location/triangle_hierarchy.h"
 
 namespace collarmesh::spatial_order_test {

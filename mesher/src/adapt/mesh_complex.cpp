@@ -123,8 +123,9 @@ MeshSides::MeshSides(const TetMesh& mesh, const std::vector<Index>& given) {
       sides.push_back({side_corners(mesh.tets[first], uses[i].place), first, second,
                        listed ? uses[i + tets].place : none});
   }
-  std::ranges::sort(sides, {},
-                    [](const MeshSide& side) { return std::pair(side.behind, sorted(side.corners)); });
+  std::ranges::sort(sides, [](const MeshSide& a, const MeshSide& b) {
+    return a.behind != b.behind ? a.behind < b.behind : sorted(a.corners) < sorted(b.corners);
+  });
   component.resize(mesh.tets.size());
   for (Index t = 0; t < mesh.tets.size(); ++t) component[t] = connected.find(t);
 }

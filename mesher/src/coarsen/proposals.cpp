@@ -1,6 +1,7 @@
 #include "coarsen/proposals.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "common/contains.h"

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <utility>
+
 #include "common/sorted.h"
 
 namespace collarmesh {

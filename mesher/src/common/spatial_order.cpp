@@ -106,17 +106,20 @@ std::vector<SpatialKey> spatial_order_by_all_threads(std::span<const Point> poin
   const std::optional<double> scale = scale_of(bounds);
   std::vector<std::uint64_t> places(points.size(), 0);
   if (scale)
-    parallel_for_each(points.size(), [&](std::size_t i) { places[i] = place_in(bounds, *scale, points[i]); });
+    parallel_for_in_chunks(points.size(),
+                           [&](std::size_t i) { places[i] = place_in(bounds, *scale, points[i]); });
   const auto part_of = [&](std::size_t i) { return places[i] >> (bits - bits_of_parts); };
   const std::vector<Index> order = order_by_group(parts, points.size(), part_of);
   std::vector<SpatialKey> keys(points.size());
-  parallel_for_each(points.size(), [&](std::size_t i) { keys[i] = {places[order[i]], order[i]}; });
+  parallel_for_in_chunks(points.size(), [&](std::size_t i) { keys[i] = {places[order[i]], order[i]}; });
   if (!scale) return keys;
   parallel_for(parts, [&](std::size_t part) {
-    const auto part_of_key = [](const SpatialKey& key) { return key.place >> (bits - bits_of_parts); };
-    const auto first = std::ranges::lower_bound(keys, part, {}, part_of_key),
-               last = std::ranges::upper_bound(keys, part, {}, part_of_key);
-    if (first != last) sort_by_places({first, last}, points);
+    // Searches the items, not the keys, because other threads change the places of keys meanwhile.
+    const auto first = std::ranges::lower_bound(order, part, {}, part_of),
+               last = std::ranges::upper_bound(order, part, {}, part_of);
+    const auto begin = static_cast<std::size_t>(first - order.begin());
+    if (first != last)
+      sort_by_places(std::span(keys).subspan(begin, static_cast<std::size_t>(last - first)), points);
   });
   return keys;
 }

@@ -1,5 +1,6 @@
 #include "delaunay/triangulation.h"
 
+#include <algorithm>
 #include <cassert>
 #include <stdexcept>
 

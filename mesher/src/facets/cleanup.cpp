@@ -99,10 +99,9 @@ struct Twin {
 
 // Sorts triangles so that those with the same corners follow each other, in their original order.
 std::vector<Twin> sort_by_corners(const Draft& draft) {
-  std::vector<Twin> order(draft.triangles.size());
-  for (Index t = 0; t < order.size(); ++t) order[t] = {sorted(draft.triangles[t]), t};
-  sort_by_vertex(order, draft.points.size(), [](const Twin& twin) { return twin.key[0]; });
-  return order;
+  const auto twin = [&](std::size_t t) { return Twin{sorted(draft.triangles[t]), static_cast<Index>(t)}; };
+  return sorted_by_vertex(draft.triangles.size(), draft.points.size(), twin,
+                          [](const Twin& t) { return t.key[0]; });
 }
 
 // Removes the marked triangles and renumbers the claims on the remaining ones. Returns the number of removed

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/sort_uniquely.h"
 #include "facets/exact.h"
 #include "facets/plane_triangulation.h"
 
@@ -183,8 +184,7 @@ class FacetTriangulator {
     for (const auto& segment : facet.segments)
       corners_.insert(corners_.end(), segment.begin(), segment.end());
     corners_.insert(corners_.end(), facet.points.begin(), facet.points.end());
-    std::ranges::sort(corners_);
-    corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
+    sort_uniquely(corners_);
     std::vector<std::pair<PlaneKernel::Point_2, Index>> projected;
     for (const Index p : corners_) projected.emplace_back(project(draft_.points[p]), p);
     mesh.insert(projected.begin(), projected.end());

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "delaunay/predicates.h"
 #include "facets/exact.h"
@@ -36,8 +37,8 @@ bool coplanar_segments_meet(unsigned axis, const Point& a, const Point& b, const
          (cb == 0 && between(c, b, d));
 }
 
-// Exact decisions whether two simplices, as closed sets, meet. All corners are distinct points; triangles
-// have an area.
+// The following functions decide exactly whether two simplices, as closed sets, meet. All corners are
+// distinct points; triangles have an area.
 
 bool point_on_segment(const Point& p, const Point& a, const Point& b) {
   return collinear(a, b, p) && between(a, p, b);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <numeric>
 #include <queue>
 
@@ -108,7 +109,8 @@ class Improvement {
 
   void find_poor_of(const std::vector<Index>& tets) {
     std::vector<double> qualities(tets.size());
-    parallel_for_each(tets.size(), [&](std::size_t i) { qualities[i] = remedies_.poor_quality(tets[i]); });
+    parallel_for_in_chunks(tets.size(),
+                           [&](std::size_t i) { qualities[i] = remedies_.poor_quality(tets[i]); });
     poor_.clear();
     for (std::size_t i = 0; i < tets.size(); ++i)
       if (qualities[i] < INFINITY) poor_.push_back({qualities[i], tets[i], complex()[tets[i]].generation});

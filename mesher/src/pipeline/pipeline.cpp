@@ -1,7 +1,6 @@
 // The order of the stages. Builds a complex and tries meshes of it (`Tries`) until one keeps every guarantee;
 // each mesh goes through the stages of `MeshMaker::make`. The kept mesh is then divided and split.
 #include "collarmesh/pipeline.h"
-#include "check/split.h"
 
 #include <fmt/format.h>
 
@@ -10,6 +9,7 @@
 #include <thread>
 #include <utility>
 
+#include "check/split.h"
 #include "collarmesh/options.h"
 #include "collarmesh/partition.h"
 #include "collarmesh/usable_threads.h"

@@ -1,6 +1,7 @@
 #include "pipeline/refinement.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <optional>
 
 #include "common/thread_limit.h"

@@ -9,6 +9,7 @@
 #include <new>
 #include <optional>
 #include <tuple>
+#include <utility>
 
 #include "check/findings.h"
 #include "check/guarantees.h"

@@ -92,11 +92,11 @@ class PatchFans {
     return sides[0] == side ? sides[1] : sides[0];
   }
 
-  /// Returns how sharply a smooth patch folds in a fan around the point (degrees, see fold_angle); 180 if its
-  /// edges are at most as long as `noise`, because their directions are unreliable.
-  double fold(Index point, const Fan& fan, double noise) const {
-    const bool too_small =
-        std::ranges::any_of(fan.rim, [&](Index q) { return distance(points_[point], points_[q]) <= noise; });
+  /// Returns how sharply a smooth patch folds in a fan around the point (degrees, see fold_angle); 180 if one
+  /// of its edges is at most as long as `noise_length`, because its direction is unreliable.
+  double fold(Index point, const Fan& fan, double noise_length) const {
+    const bool too_small = std::ranges::any_of(
+        fan.rim, [&](Index q) { return distance(points_[point], points_[q]) <= noise_length; });
     return too_small || too_flat_to_fold(fan) ? 180 : fold_angle(fan.rays, fan.closed);
   }
 

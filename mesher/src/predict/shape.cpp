@@ -57,7 +57,7 @@ double Shape::strip_width(const Point& p, Index curve, const Vector& along, doub
       const Index other = border.curve[i];
       if (other == curve) return false;
       const auto [a, b, same] = border.segments->corners(i);
-      const double least = least_facing(curves_meet(curve, other));
+      const double least = least_facing(curves_meet(curve, other));  // as in the measurement of gaps
       return std::fabs(dot(along, b - a)) > least * norm(along) * norm(b - a);
     });
   }
@@ -69,6 +69,7 @@ double Shape::wall_width(const Point& p, Index triangle, double widest) const {
   const auto [a, b, c] = corners(triangle);
   const Vector normal = cross(b - a, c - a);
   if (!(norm(normal) > 0)) return widest;
+  const double least = least_facing(false);  // the same cosine as in the measurement of gaps
   double width = widest;
   std::vector<TriangleHierarchy::Crossing> crossings;
   for (unsigned side = 0; side < 2; ++side) {
@@ -81,7 +82,7 @@ double Shape::wall_width(const Point& p, Index triangle, double widest) const {
       if (other == triangle || patches_meet(patch, plc_.triangles[other].patch)) continue;
       const auto [d, e, f] = corners(other);
       const Vector n = cross(e - d, f - d);
-      if (std::fabs(dot(n, way)) < least_facing(false) * norm(n)) continue;
+      if (std::fabs(dot(n, way)) < least * norm(n)) continue;
       width = std::min(width, dot(d - p, n) / dot(n, way));
     }
   }
@@ -92,8 +93,10 @@ Shape::Border Shape::border_of(const Plc::Patch& patch) const {
   Border border;
   std::vector<std::array<Index, 3>> segments;
   for (const Index curve : patch.curves) {
-    for (const auto& segment : flat_triangles_of(plc_.curves[curve])) segments.push_back(segment);
-    border.curve.resize(segments.size(), curve);
+    visit_segments(plc_.curves[curve], [&](Index a, Index b) {
+      segments.push_back({a, b, b});
+      border.curve.push_back(curve);
+    });
   }
   border.segments = std::make_unique<TriangleHierarchy>(plc_.points, std::move(segments));
   return border;

@@ -161,7 +161,7 @@ void BlockRefinement::divide_vertices() {
   cuts_.resize(blocks - 1);
   cut(0, sample);
   owners_.resize(vertices);
-  parallel_for_each(vertices, [&](std::size_t i) {
+  parallel_for_in_chunks(vertices, [&](std::size_t i) {
     const auto v = static_cast<Index>(i);
     owners_[v] = may_belong_to_block(v) ? block_at(mesh_.point(v)) : Triangulation::no_owner;
   });
@@ -199,11 +199,15 @@ bool BlockRefinement::may_belong_to_block(Index vertex) const {
 std::vector<std::vector<WorkQueue::Entry>> BlockRefinement::deal(const std::vector<WorkQueue::Entry>& taken) {
   constexpr std::uint16_t gone = Triangulation::no_owner - 1;
   std::vector<std::uint16_t> owner(taken.size());
-  parallel_for_each(taken.size(), [&](std::size_t i) {
-    constexpr std::size_t ahead = 16;
-    if (i + ahead < taken.size())
-      mesh_.prefetch(of_cells(priority_) ? taken[i + ahead].id : cell_of(taken[i + ahead].id));
-    owner[i] = due({priority_, taken[i]}) ? owner_of(taken[i]) : gone;
+  // Less than usual, because there may be only a few thousand entries, which all threads should share.
+  constexpr std::size_t at_once = 1024;
+  parallel_for_ranges(taken.size(), at_once, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      constexpr std::size_t ahead = 16;
+      if (i + ahead < last)
+        mesh_.prefetch(of_cells(priority_) ? taken[i + ahead].id : cell_of(taken[i + ahead].id));
+      owner[i] = due({priority_, taken[i]}) ? owner_of(taken[i]) : gone;
+    }
   });
   std::vector<std::vector<WorkQueue::Entry>> entries(block_count());
   for (std::size_t i = 0; i < taken.size(); ++i)

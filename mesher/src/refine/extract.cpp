@@ -24,7 +24,7 @@ std::vector<Index> order_by_least_point(const std::vector<Index>& least_points, 
 template <class T>
 void permute(std::vector<T>& values, const std::vector<Index>& order) {
   std::vector<T> permuted(values.size());
-  parallel_for_each(values.size(), [&](std::size_t i) { permuted[i] = values[order[i]]; });
+  parallel_for_in_chunks(values.size(), [&](std::size_t i) { permuted[i] = values[order[i]]; });
   values = std::move(permuted);
 }
 
@@ -79,12 +79,12 @@ class Extraction {
   void add_points() {
     std::vector<Point> places;
     resize_by_all_threads(vertices_.size(), places);
-    parallel_for_each(places.size(), [&](std::size_t i) {
+    parallel_for_in_chunks(places.size(), [&](std::size_t i) {
       places[i] = refined_.domain.frame.outside(refined_.mesh.point(vertices_[i]));
     });
     const std::vector<SpatialKey> order = spatial_order_by_all_threads(places);
     resize_by_all_threads(places.size(), mesh_.points, mesh_.features);
-    parallel_for_each(places.size(), [&](std::size_t i) {
+    parallel_for_in_chunks(places.size(), [&](std::size_t i) {
       const Index v = vertices_[order[i].item];
       number_[v] = static_cast<Index>(i);
       mesh_.points[i] = places[order[i].item];
@@ -98,19 +98,20 @@ class Extraction {
     const std::size_t count = cells_.size() + refined_.stitched.tets.size();
     std::vector<Index> least;
     resize_by_all_threads(count, least);
-    parallel_for_each(count, [&](std::size_t t) {
+    parallel_for_in_chunks(count, [&](std::size_t t) {
       const auto& v = corners(static_cast<Index>(t));
       least[t] = std::min({number_[v[0]], number_[v[1]], number_[v[2]], number_[v[3]]});
     });
     const std::vector<Index> order = order_by_least_point(least, mesh_.points.size());
     const LargeBlock<Index> tet_of_cell(refined_.mesh.cell_capacity());
-    parallel_for_each(refined_.mesh.cell_capacity(), [&](std::size_t cell) { tet_of_cell[cell] = none; });
+    parallel_for_in_chunks(refined_.mesh.cell_capacity(),
+                           [&](std::size_t cell) { tet_of_cell[cell] = none; });
     resize_by_all_threads(count, mesh_.tets, mesh_.tet_region, mesh_.tet_tag, mesh_.tet_collar,
                           mesh_.tet_crease, mesh_.tet_thin, neighbours_);
-    parallel_for_each(count, [&](std::size_t t) {
+    parallel_for_in_chunks(count, [&](std::size_t t) {
       if (order[t] < cells_.size()) tet_of_cell[cells_[order[t]]] = static_cast<Index>(t);
     });
-    parallel_for_each(count, [&](std::size_t t) {
+    parallel_for_in_chunks(count, [&](std::size_t t) {
       constexpr std::size_t ahead = 16;
       if (t + ahead < count && order[t + ahead] < cells_.size())
         refined_.mesh.prefetch(cells_[order[t + ahead]]);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/thread_limit.h"
+#include "refine/aspect_ratios.h"
 
 namespace collarmesh {
 

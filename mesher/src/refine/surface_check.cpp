@@ -6,7 +6,7 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
-#include <compare>
+#include <tuple>
 
 #include "common/edge_key.h"
 #include "common/flat_table.h"
@@ -29,12 +29,14 @@ struct EdgeUse {
   Index patch;
   FaceId face;  // the triangle's face, or the subsegment
 
-  friend auto operator<=>(const EdgeUse&, const EdgeUse&) = default;
+  friend bool operator<(const EdgeUse& a, const EdgeUse& b) {
+    return std::tie(a.edge, a.patch, a.face) < std::tie(b.edge, b.patch, b.face);
+  }
   bool same_place(const EdgeUse& other) const { return edge == other.edge && patch == other.patch; }
 };
 
 bool has_use(const std::vector<EdgeUse>& sorted, const EdgeUse& wanted) {
-  const auto first = std::ranges::lower_bound(sorted, EdgeUse{wanted.edge, wanted.patch, 0});
+  const auto first = std::lower_bound(sorted.begin(), sorted.end(), EdgeUse{wanted.edge, wanted.patch, 0});
   return first != sorted.end() && first->same_place(wanted);
 }
 
@@ -115,7 +117,7 @@ bool SurfaceCheck::check_patch_topology(const std::vector<FaceId>& faces) {
       found = true;
     }
   });
-  std::ranges::sort(on_curves);
+  std::sort(on_curves.begin(), on_curves.end());
   const std::vector<bool> at_collars = vertices_at_collars();
   for (std::size_t i = 0, j = 0; i < uses.size(); i = j) {
     for (j = i; j < uses.size() && uses[j].same_place(uses[i]);) ++j;

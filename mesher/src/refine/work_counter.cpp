@@ -1,10 +1,6 @@
 #include "refine/work_counter.h"
 
 #include <algorithm>
-#include <atomic>
-#include <cmath>
-
-#include "common/parallel_for.h"
 
 namespace collarmesh {
 
@@ -13,16 +9,6 @@ namespace {
 // A hub has more features than these: as many as meet where eight boxes share a corner, or where their sides
 // share an edge.
 constexpr std::size_t most_at_vertex = 24, most_sheets_at_curve = 8;
-
-/// Replaces a value by a new one if `comes_first` prefers that. Several threads may call it at once.
-template <class ComesFirst>
-void replace_if(const ComesFirst& comes_first, double& place, double value) {
-  const std::atomic_ref<double> shared(place);
-  double found = shared.load(std::memory_order_relaxed);
-  while (comes_first(value, found) &&
-         !shared.compare_exchange_weak(found, value, std::memory_order_relaxed)) {
-  }
-}
 
 }  // namespace
 
@@ -66,33 +52,6 @@ void WorkCounter::fill(WorkCounts& counts) const {
   counts.largest_cavity_outside_hubs = largest_cavity_outside_hubs_;
   counts.peak_cells_per_vertex = peak_cells_per_vertex_;
   counts.before_quality = before_quality_;
-}
-
-AspectRatios aspect_ratios(const RefinedMesh& mesh, const std::function<bool(Index cell)>& counts) {
-  std::vector<double> squared_radius(mesh.vertex_count(), 0), squared_edge(mesh.vertex_count(), INFINITY);
-  const auto see_cell = [&](Index cell) {
-    const auto& v = mesh.corners(cell);
-    const double radius = counts(cell) ? mesh.squared_radius(cell) : INFINITY;
-    for (unsigned i = 0; i < 4; ++i) {
-      replace_if(std::greater<double>(), squared_radius[v[i]], radius);
-      for (unsigned j = i + 1; j < 4; ++j) {
-        const double length = squared_distance(mesh.point(v[i]), mesh.point(v[j]));
-        replace_if(std::less<double>(), squared_edge[v[i]], length);
-        replace_if(std::less<double>(), squared_edge[v[j]], length);
-      }
-    }
-  };
-  parallel_for_each(mesh.cell_capacity(), [&](std::size_t cell) {
-    if (mesh.alive(static_cast<Index>(cell))) see_cell(static_cast<Index>(cell));
-  });
-  AspectRatios ratios;
-  for (Index v = 0; v < mesh.vertex_count(); ++v) {
-    if (squared_radius[v] == INFINITY) continue;
-    const double ratio = 2 * std::sqrt(squared_radius[v] / squared_edge[v]);
-    ratios.smallest = ratios.smallest == 0 ? ratio : std::min(ratios.smallest, ratio);
-    ratios.largest = std::max(ratios.largest, ratio);
-  }
-  return ratios;
 }
 
 }  // namespace collarmesh

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <vector>
 
 #include "collarmesh/mesher.h"
@@ -34,15 +33,5 @@ class WorkCounter {
   std::size_t largest_cavity_outside_hubs_ = 0, before_quality_ = 0;
   double peak_cells_per_vertex_ = 0;
 };
-
-/// Extremes of R_v / r_v over mesh vertices (paper, section 1.2), where R_v is the radius of the smallest
-/// ball around v that contains its Voronoi cell, and r_v that of the largest ball around v inside the cell. 0
-/// if there are no vertices.
-struct AspectRatios {
-  double smallest = 0, largest = 0;
-};
-
-/// Returns the ratios of those vertices whose cells all count.
-AspectRatios aspect_ratios(const RefinedMesh& mesh, const std::function<bool(Index cell)>& counts);
 
 }  // namespace collarmesh

@@ -1,5 +1,6 @@
 #include "remesh/cell_bounds.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "collarmesh/plc_builder.h"
@@ -106,7 +107,7 @@ void mark_collar_cells(TetMesh& mesh, const Plc& plc, double crease_angle) {
   mesh.tet_crease.assign(mesh.tets.size(), 0);
   if (!creases.any()) return;
   const CreaseEdges edges(mesh, creases);
-  parallel_for_each(mesh.tets.size(), [&](std::size_t t) {
+  parallel_for_in_chunks(mesh.tets.size(), [&](std::size_t t) {
     const auto& corners = mesh.tets[t];
     const auto on_crease = std::ranges::find_if(corners, [&](Index v) { return creases.at(v); });
     if (on_crease == corners.end()) return;

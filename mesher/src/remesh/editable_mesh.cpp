@@ -1,5 +1,7 @@
 #include "remesh/editable_mesh.h"
 
+#include <algorithm>
+
 #include "delaunay/predicates.h"
 
 namespace collarmesh::remeshing {

@@ -1,5 +1,7 @@
 #include "remesh/tet_complex.h"
 
+#include <algorithm>
+
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/task_arena.h>
 
@@ -50,7 +52,7 @@ TetComplex::TetComplex(TetMesh& mesh, const KnownNeighbours& neighbours) : mesh_
   const bool has_balls = !mesh.collar_balls.empty(), alone = tbb::this_task_arena::max_concurrency() == 1;
   vertex_tet_.assign(mesh.points.size(), none);
   constexpr std::array<Index, 4> nothing{none, none, none, none};
-  parallel_for_each(mesh.tets.size(), [&](std::size_t t) {
+  parallel_for_in_chunks(mesh.tets.size(), [&](std::size_t t) {
     const auto& across = neighbours.empty() ? nothing : neighbours[t];
     tets_[t] = {
         mesh.tets[t], across, nothing, mesh.tet_region[t], 0, true, has_balls && mesh.tet_collar[t] != 0};
@@ -387,7 +389,7 @@ void TetComplex::write(TetMesh& mesh) const {
   TetMesh stored;
   resize_by_all_threads(alive.size(), stored.tets, stored.tet_region, stored.tet_tag, stored.tet_collar,
                         stored.tet_crease);
-  parallel_for_each(alive.size(), [&](std::size_t i) {
+  parallel_for_in_chunks(alive.size(), [&](std::size_t i) {
     const Index t = alive[i];
     stored.tets[i] = tets_[t].corners;
     stored.tet_region[i] = tets_[t].region;
@@ -426,7 +428,7 @@ void TetComplex::drop_lost_vertices(TetMesh& mesh) const {
   mesh.points.resize(kept);
   mesh.features.resize(kept);
   const auto renumber = [&](auto& cells) {
-    parallel_for_each(cells.size(), [&](std::size_t i) {
+    parallel_for_in_chunks(cells.size(), [&](std::size_t i) {
       for (Index& point : cells[i]) point = number[point];
     });
   };

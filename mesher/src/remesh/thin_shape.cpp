@@ -73,7 +73,7 @@ double ThinShape::forced_sine(const Corners& p, const std::array<Index, 4>& corn
 
 void mark_thin_tets(TetMesh& mesh, double radius_edge) {
   mesh.tet_thin.assign(mesh.tets.size(), 0);
-  parallel_for_each(mesh.tets.size(), [&](std::size_t t) {
+  parallel_for_in_chunks(mesh.tets.size(), [&](std::size_t t) {
     if (mesh.tet_collar[t] != 0) return;
     const auto& v = mesh.tets[t];
     const Corners p{mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]], mesh.points[v[3]]};

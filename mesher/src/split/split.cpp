@@ -1,5 +1,4 @@
 #include "collarmesh/split.h"
-#include "collarmesh/error.h"
 
 #include <fmt/format.h>
 
@@ -9,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "collarmesh/error.h"
 #include "common/cell_shapes.h"
 #include "common/face_finder.h"
 #include "common/group_names.h"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/sort_uniquely.h"
 #include "tolerance/facing.h"
 
 namespace collarmesh {
@@ -25,10 +26,7 @@ FeatureContacts::FeatureContacts(const Plc& plc)
   };
   for (const Plc::Curve& curve : plc.curves) note(curve.patches);
   for (const Plc::Vertex& vertex : plc.vertices) note(vertex.patches);
-  for (std::vector<Index>& patches : neighbours_) {
-    std::ranges::sort(patches);
-    patches.erase(std::unique(patches.begin(), patches.end()), patches.end());
-  }
+  for (std::vector<Index>& patches : neighbours_) sort_uniquely(patches);
 }
 
 bool FeatureContacts::touch(unsigned dimension, Index feature, unsigned other_dimension, Index other) const {

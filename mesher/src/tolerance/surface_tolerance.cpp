@@ -254,8 +254,8 @@ class LocalTolerance {
 };
 
 template <class Better>
-double extreme_on(const SurfaceTolerance& tolerance, const Plc::Curve& curve, const Better& better) {
-  double extreme = tolerance.at_segment(curve.points[0], curve.points[1 % curve.points.size()]);
+double extreme_on(const SurfaceTolerance& tolerance, const Plc::Curve& curve, double extreme,
+                  const Better& better) {
   visit_segments(curve, [&](Index a, Index b) { extreme = better(extreme, tolerance.at_segment(a, b)); });
   return extreme;
 }
@@ -342,11 +342,11 @@ SurfaceTolerance SurfaceTolerance::of_patches(const Plc& whole, std::span<const 
 }
 
 double SurfaceTolerance::least_on_curve(const Plc::Curve& curve) const {
-  return extreme_on(*this, curve, [](double a, double b) { return std::min(a, b); });
+  return extreme_on(*this, curve, INFINITY, [](double a, double b) { return std::min(a, b); });
 }
 
 double SurfaceTolerance::largest_on_curve(const Plc::Curve& curve) const {
-  return extreme_on(*this, curve, [](double a, double b) { return std::max(a, b); });
+  return extreme_on(*this, curve, 0, [](double a, double b) { return std::max(a, b); });
 }
 
 SurfaceTolerance default_tolerance(const Plc& plc, double size, int order) {

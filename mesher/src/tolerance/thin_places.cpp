@@ -1,6 +1,7 @@
 #include "tolerance/thin_places.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <vector>
 

@@ -1,0 +1,117 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "collarmesh/exact_geometry.h"
+#include "collarmesh/tet_mesh.h"
+#include "common/cells_at_vertices.h"
+#include "remesh/cell_bounds.h"
+#include "remesh/thin_shape.h"
+
+namespace collarmesh::projection {
+
+struct Bounds {
+  double radius_edge = 2;                        ///< bound for tets that are neither thin nor in collars
+  double collar_angle = 150;                     ///< largest dihedral angle in collars, degrees
+  const remeshing::ThinShape* thin = nullptr;    ///< null: no tet is thin
+  const remeshing::CellBounds* cells = nullptr;  ///< set if tets may be thin
+  /// Largest distance of faces and edges from the exact geometry, by patch and by curve, absolute.
+  std::vector<double> patch_sag, curve_sag;
+};
+
+/// Makes room for placed vertices: moves the corners of the tets that became invalid, inside their regions or
+/// along their exact features, until the tets are within their bounds again. Changes since the last `commit`
+/// can be undone.
+class Relaxation {
+ public:
+  /// Keeps a reference to the mesh. A tet that misses a bound at the beginning may still miss it, but not by
+  /// more.
+  Relaxation(TetMesh& mesh, const ExactGeometry& exact, const Bounds& bounds);
+
+  const CellsAtVertices& tets_at() const { return tets_at_; }
+  /// Returns the initial place of the vertex.
+  const Point& origin(Index vertex) const { return origins_[vertex]; }
+  remeshing::Corners corners_of(Index tet) const { return corners(tet, mesh_.points); }
+  /// Returns the initial corners of the tet.
+  remeshing::Corners origins_of(Index tet) const { return corners(tet, origins_); }
+  /// Returns the initial shortest edge at the vertex.
+  double shortest_edge(Index vertex) const;
+  /// Returns whether the tet has positive volume and is within its bound.
+  bool good(Index tet) const;
+
+  /// Returns whether a mesh edge of a curve has turned by less than 60 degrees. If it turned by more, a
+  /// vertex has passed its neighbour.
+  bool on_course(Index edge) const;
+  /// Returns whether all such edges at the vertex are on course.
+  bool keeps_course(Index vertex);
+
+  void put(Index vertex, const Point& place);
+  /// Sets whether `relax` may move a vertex. By default only vertices inside regions may move.
+  void set_free(Index vertex, bool is_free) { free_[vertex] = is_free; }
+
+  /// Moves vertices of spoilt tets sweep by sweep, each to a place where the worst tet around it is better.
+  /// Returns the tets that still miss a bound, among `tets` and all tets around moved vertices.
+  std::vector<Index> relax(std::vector<Index> tets);
+
+  void commit();
+  void roll_back();
+  /// Returns the number of commits, and whether commits after that number changed a tet at the vertex.
+  std::size_t commits() const { return commits_; }
+  bool changed_around(Index vertex, std::size_t since) const;
+
+ private:
+  using Corners = std::array<Point, 4>;
+
+  /// The target of a tet: its bound, or its initial shape if that was poorer.
+  struct Wanted {
+    double shape = -1;  // negative until computed
+    double ratio = 0;
+    double angle = 0;   // bound on its angles at creases
+    bool thin = false;  // whether its angles are bounded instead of its ratio
+  };
+
+  const Wanted& wanted(Index tet) const;
+  Corners corners(Index tet, const std::vector<Point>& points) const;
+  bool is_thin(Index tet, const Corners& p) const {
+    return bounds_.thin != nullptr && bounds_.thin->contains(p, mesh_.tets[tet]) && may_be_thin(tet, p);
+  }
+  bool may_be_thin(Index tet, const Corners& p) const {
+    return !bounds_.cells->forbid_thin_tets() || bounds_.cells->allow(p, mesh_.tets[tet]);
+  }
+  // Returns whether the tet is in a collar that was not coarsened: then only its obtuse angles are bounded.
+  bool in_ball(Index tet) const { return mesh_.tet_collar[tet] != 0 && !mesh_.collar_balls.empty(); }
+  double collar_score(Index tet, const Corners& p) const;
+  double score(Index tet, const Corners& p) const;
+  double angle_score(Index tet, const Corners& p) const;
+  double lack_of(Index tet, const Corners& p) const;
+  double lack_around(std::span<const Index> tets, Index vertex, const Point& place, double below) const;
+  bool improve(Index vertex);
+  bool in_vain(Index vertex) const;
+  std::optional<Point> on_feature(Index vertex, const Point& wish) const;
+  bool fits_features(Index vertex, const Point& place);
+  void find_features_around();
+  double sag_around(Index vertex) const;
+
+  TetMesh& mesh_;
+  const ExactGeometry& exact_;
+  Bounds bounds_;
+  CellsAtVertices tets_at_, faces_at_, edges_at_;
+  std::vector<Point> origins_;
+  std::vector<bool> free_;
+  mutable std::vector<Wanted> wanted_;  // by tet
+  std::vector<std::size_t> changed_;    // by vertex: the last commit that moved it; 0: none
+  std::size_t commits_ = 0;
+  // By vertex: its last move, and the last attempt without a better place, as numbers of all moves until
+  // then.
+  std::vector<std::size_t> moved_, stuck_;
+  std::size_t moves_ = 0;
+  std::vector<std::pair<double, Index>> worst_first_;
+  std::vector<Index> around_;
+  std::vector<std::pair<Index, Point>> log_;  // vertices and their previous places, in order
+};
+
+}  // namespace collarmesh::projection

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <functional>
+
+#include "refine/refined_mesh.h"
+
+namespace collarmesh {
+
+/// Extremes of R_v / r_v over mesh vertices (paper, section 1.2), where R_v is the radius of the smallest
+/// ball around v that contains its Voronoi cell, and r_v that of the largest ball around v inside the cell. 0
+/// if there are no vertices.
+struct AspectRatios {
+  double smallest = 0, largest = 0;
+};
+
+/// Returns the ratios of those vertices whose cells all count.
+AspectRatios aspect_ratios(const RefinedMesh& mesh, const std::function<bool(Index cell)>& counts);
+
+}  // namespace collarmesh
