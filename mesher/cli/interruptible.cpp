@@ -1,6 +1,6 @@
 #include "interruptible.h"
 
-#include "common/recorded_stage.h"
+#include "common/recorded_costs.h"
 #include "process/interrupt.h"
 #include "process/supervisor.h"
 

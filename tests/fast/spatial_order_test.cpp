@@ -15,8 +15,7 @@
 
 #include "common/box_tree.h"
 #include "common/distance_tree.h"
-#include "common/order_by_group.h"
-#include "common/parallel_spatial_order.h"
+#include "common/groups.h"
 #include "location/triangle_hierarchy.h"
 
 namespace collarmesh::spatial_order_test {

@@ -1,6 +1,7 @@
 #include "adapt/bring_to_size.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <utility>
 #include <vector>
 
@@ -45,10 +46,7 @@ class Bringing {
     for (unsigned round = 0; round < rounds && may_go_on(); ++round) {
       std::size_t changes = 0;
       for (unsigned pass = 0; pass < divisions && may_go_on(); ++pass) changes += divide();
-      relax([&](Relaxation& relaxation) {
-        relaxation.improve();
-        changes += relaxation.changes();
-      });
+      changes += relax([](Relaxation& relaxation) { relaxation.improve(); });
       if (static_cast<double>(changes) < least_share_of_round * static_cast<double>(mesh_.tets.size())) break;
     }
     if (may_go_on()) face_each_other();
@@ -60,8 +58,6 @@ class Bringing {
            (options_.max_vertices == 0 || mesh_.points.size() < options_.max_vertices);
   }
 
-  EditableMesh edited() { return {mesh_, plc_, options_.bounds, options_.edges_per_hole}; }
-
   /// Inserts vertices that face each other at tets that miss their bounds, and improves what remains, in
   /// rounds.
   void face_each_other() {
@@ -70,21 +66,31 @@ class Bringing {
   }
 
   std::size_t divide_crossing() {
-    EditableMesh piece = edited();
-    const std::size_t divided = EdgeDivision(piece, options_, sizes()).divide_crossing(execution_);
-    piece.store();
-    return divided;
+    return edit([&](EditableMesh& edited) {
+      return EdgeDivision(edited, options_, sizes()).divide_crossing(execution_);
+    });
   }
 
+  /// Returns the number of changes.
   template <class Stage>
-  void relax(const Stage& stage) {
-    EditableMesh piece = edited();
-    Relaxation relaxation(piece, options_, sizes(), execution_);
-    stage(relaxation);
-    piece.store();
+  std::size_t relax(const Stage& stage) {
+    return edit([&](EditableMesh& edited) {
+      Relaxation relaxation(edited, options_, sizes(), execution_);
+      stage(relaxation);
+      return relaxation.changes();
+    });
   }
 
  private:
+  /// Runs a stage on an editable copy of the mesh and stores the result. Returns the number of changes.
+  template <class Stage>
+  std::size_t edit(const Stage& stage) {
+    EditableMesh edited(mesh_, plc_, options_.bounds, options_.edges_per_hole);
+    const std::size_t changes = stage(edited);
+    edited.store();
+    return changes;
+  }
+
   std::vector<double> sizes() const { return coarsening::target_sizes(mesh_, plc_, options_); }
 
   /// Returns sizes that grow with the distance from edges shorter than the targets. Collapses have left these
@@ -117,11 +123,11 @@ class Bringing {
   /// them that are no longer needed. Nothing moves in between, so that vertices go on facing each other.
   void divide_thin() {
     for (unsigned pass = 0; pass < most_halvings && may_go_on(); ++pass) {
-      EditableMesh piece = edited();
-      EdgeDivision division(piece, options_, sizes());
-      division.divide_facing();
-      const std::size_t divided = division.divide_all(longest, options_.max_vertices, execution_);
-      piece.store();
+      const std::size_t divided = edit([&](EditableMesh& edited) {
+        EdgeDivision division(edited, options_, sizes());
+        division.divide_facing();
+        return division.divide_all(longest, options_.max_vertices, execution_);
+      });
       if (divided == 0) break;
       relax([](Relaxation& relaxation) { relaxation.contract_short(around); });
     }
@@ -144,11 +150,10 @@ class Bringing {
 
   /// Divides long edges. Returns how many.
   std::size_t divide() {
-    EditableMesh piece = edited();
-    const std::size_t divided =
-        EdgeDivision(piece, options_, graded_sizes()).divide_all(longest, options_.max_vertices, execution_);
-    piece.store();
-    return divided;
+    return edit([&](EditableMesh& edited) {
+      return EdgeDivision(edited, options_, graded_sizes())
+          .divide_all(longest, options_.max_vertices, execution_);
+    });
   }
 
   TetMesh& mesh_;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <numeric>
 #include <string>
 #include <string_view>
@@ -131,9 +130,7 @@ MeshSides::MeshSides(const TetMesh& mesh, const std::vector<Index>& given) {
   for (Index t = 0; t < mesh.tets.size(); ++t) component[t] = connected.find(t);
 }
 
-bool less(const Point& a, const Point& b) {
-  return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
-}
+std::array<double, 3> coordinates(const Point& p) { return {p.x, p.y, p.z}; }
 
 /// Finds points by their coordinates.
 class Places {
@@ -142,9 +139,7 @@ class Places {
   Places(const std::vector<Point>& points, const std::vector<Index>& given)
       : points_(points), order_(points.size()) {
     std::iota(order_.begin(), order_.end(), Index{0});
-    std::ranges::sort(order_, [&](Index a, Index b) {
-      return points_[a] != points_[b] ? less(points_[a], points_[b]) : a < b;
-    });
+    std::ranges::stable_sort(order_, {}, [&](Index i) { return coordinates(points_[i]); });
     for (std::size_t i = 1; i < order_.size(); ++i)
       if (const Index a = order_[i - 1], b = order_[i]; points_[a] == points_[b])
         refuse(PlcFault::Kind::duplicate_points,
@@ -154,8 +149,8 @@ class Places {
                {given[a], given[b]}, points_[a]);
   }
   Index find(const Point& p) const {
-    const auto found = std::lower_bound(order_.begin(), order_.end(), p,
-                                        [&](Index i, const Point& q) { return less(points_[i], q); });
+    const auto found = std::ranges::lower_bound(order_, coordinates(p), {},
+                                                [&](Index i) { return coordinates(points_[i]); });
     return found != order_.end() && points_[*found] == p ? *found : none;
   }
 
@@ -272,9 +267,7 @@ class ComplexBuilder {
     for (const MeshSide& side : found_.sides)
       for (unsigned i = 0; i < 3; ++i)
         uses.push_back({sorted(side.corners[i], side.corners[(i + 1) % 3]), tag_of(side)});
-    std::ranges::sort(uses, [](const EdgeUse& a, const EdgeUse& b) {
-      return a.ends != b.ends ? a.ends < b.ends : a.tag < b.tag;
-    });
+    std::ranges::sort(uses, {}, [](const EdgeUse& use) { return std::pair(use.ends, use.tag); });
     for (std::size_t i = 0, j = 0; i < uses.size(); i = j) {
       for (j = i; j < uses.size() && uses[j].ends == uses[i].ends;) ++j;
       if ((j - i != 2 || uses[i].tag != uses[j - 1].tag) && !std::ranges::binary_search(listed, uses[i].ends))
@@ -291,7 +284,7 @@ class ComplexBuilder {
     std::vector<bool> used(sides.size(), false);
     for (const Plc::Triangle& t : plc_.triangles) {
       const Triangle key = sorted(in_mesh(t));
-      const auto at = std::lower_bound(sides.begin(), sides.end(), std::pair(key, Index{0}));
+      const auto at = std::ranges::lower_bound(sides, std::pair(key, Index{0}));
       if (at == sides.end() || at->first != key) continue;
       side_of_.push_back(at->second);
       used[at->second] = true;
@@ -313,8 +306,7 @@ class ComplexBuilder {
     std::vector<Index> firsts;
     for (Index t = 0; t < mesh_.tets.size(); ++t)
       if (found_.component[t] == t) firsts.push_back(t);
-    std::ranges::stable_sort(firsts,
-                             [&](Index a, Index b) { return mesh_.tet_region[a] < mesh_.tet_region[b]; });
+    std::ranges::stable_sort(firsts, {}, [&](Index tet) { return mesh_.tet_region[tet]; });
     std::vector<Index> number(mesh_.tets.size(), 0);
     plc_.regions.resize(1);
     plc_.regions[0].name = "outside";

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <utility>
 
@@ -121,7 +120,7 @@ class Remeshing {
     mesh().edge_curve.assign(mesh().edges.size(), none);
     forget_numbers();
     mesh().features.clear();
-    std::fill(mesh().tet_region.begin(), mesh().tet_region.end(), none);
+    std::ranges::fill(mesh().tet_region, none);
     made_.plc = *complex_;
     control_.watch([&](const Execution& execution) {
       mesh() = checks::labelled(
@@ -328,8 +327,8 @@ class Remeshing {
   /// mesh from a file.
   void forget_numbers() {
     for (TetMesh::VertexFeature& feature : mesh().features) feature.feature = none;
-    std::fill(mesh().face_patch.begin(), mesh().face_patch.end(), none);
-    std::fill(mesh().edge_curve.begin(), mesh().edge_curve.end(), none);
+    std::ranges::fill(mesh().face_patch, none);
+    std::ranges::fill(mesh().edge_curve, none);
   }
 
   void partition_tets() {

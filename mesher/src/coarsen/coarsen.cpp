@@ -70,7 +70,7 @@ std::size_t proposals_at_once(std::size_t items) {
 // would be slower.
 template <class Item>
 std::vector<Item> in_order(std::vector<Item> items) {
-  std::ranges::stable_sort(items, [](const Item& a, const Item& b) { return a.rank < b.rank; });
+  std::ranges::stable_sort(items, {}, &Item::rank);
   const std::size_t rows = std::clamp<std::size_t>(items.size() / items_per_row, 1, most_rows);
   std::vector<Item> ordered;
   ordered.reserve(items.size());
@@ -196,9 +196,8 @@ class Coarsening {
     const std::size_t points = mesh().points.size();
     std::vector<ShortEdge> found;
     if (edges.size() < points / points_per_edge) {
-      std::ranges::sort(edges, [](const ShortEdge& a, const ShortEdge& b) {
-        return a.end != b.end ? a.end < b.end : a.squared_relative_length < b.squared_relative_length;
-      });
+      std::ranges::sort(
+          edges, {}, [](const ShortEdge& edge) { return std::pair(edge.end, edge.squared_relative_length); });
       for (const ShortEdge& edge : edges)
         if (found.empty() || found.back().end != edge.end) found.push_back(edge);
       return found;
@@ -405,7 +404,7 @@ class Coarsening {
         found.push_back({rank_of_quality(q), t, q});
     });
     const auto by_place = [](const Poor& a, const Poor& b) { return a.tet < b.tet; };
-    if (!std::is_sorted(all.begin(), all.end(), by_place)) std::ranges::sort(all, by_place);
+    if (!std::ranges::is_sorted(all, by_place)) std::ranges::sort(all, by_place);
     const std::vector<Poor> poor = in_order(std::move(all));
     last_sweep_ = ++changes_.now;
     bool any = false;
@@ -481,8 +480,8 @@ class Coarsening {
   // connected by faces.
   std::optional<std::vector<Index>> few_changed(std::uint32_t since) const {
     if (since < log_begins_) return std::nullopt;
-    const auto first = std::partition_point(log_.begin(), log_.end(),
-                                            [&](const Changed& changed) { return changed.when < since; });
+    const auto first =
+        std::ranges::partition_point(log_, [&](const Changed& changed) { return changed.when < since; });
     std::vector<Index> vertices;
     for (auto changed = first; changed != log_.end(); ++changed)
       if (complex().in_use(changed->vertex)) vertices.push_back(changed->vertex);

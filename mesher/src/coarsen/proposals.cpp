@@ -15,15 +15,6 @@ constexpr double repairable = 0.15;
 
 }  // namespace
 
-Proposer::Proposer(const EditableMesh& edited, const TetBounds& bounds, double radius_edge,
-                   std::span<const double> sizes, const Changes& changes)
-    : edited_(edited),
-      changes_(changes),
-      rule_(bounds, radius_edge, sizes),
-      operations_(edited, rule_),
-      stamps_(edited.complex.mesh().points.size(), 0),
-      stayed_(stamps_) {}
-
 // Finds the collapses of a vertex. Lengths rule out most neighbours, at less cost than shapes.
 void Proposer::contractions(Index vertex, bool repairs, VertexProposal& found) {
   found = {};

@@ -33,7 +33,13 @@ class Proposer {
 
   /// Keeps references to all but the number; `bounds` and `sizes` belong to the rule.
   Proposer(const EditableMesh& edited, const TetBounds& bounds, double radius_edge,
-           std::span<const double> sizes, const Changes& changes);
+           std::span<const double> sizes, const Changes& changes)
+      : edited_(edited),
+        changes_(changes),
+        rule_(bounds, radius_edge, sizes),
+        operations_(edited, rule_),
+        stamps_(edited.complex.mesh().points.size(), 0),
+        stayed_(stamps_) {}
   Proposer(const Proposer&) = delete;
   Proposer& operator=(const Proposer&) = delete;
 

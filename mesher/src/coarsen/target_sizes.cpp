@@ -117,7 +117,7 @@ class TargetSizes {
 }  // namespace
 
 void grade_sizes(const TetMesh& mesh, double growth, std::vector<double>& sizes) {
-  const auto [least, largest] = std::minmax_element(sizes.begin(), sizes.end());
+  const auto [least, largest] = std::ranges::minmax_element(sizes);
   if (least == sizes.end() || *least == *largest) return;
   const CellsAtVertices tets_at(mesh.tets, mesh.points.size());
   using Entry = std::pair<double, Index>;

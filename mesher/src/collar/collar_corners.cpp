@@ -44,8 +44,8 @@ std::vector<Point> CollarCorners::crossings(Index patch, const Circle& circle) c
     for (const double s : {middle - half, middle + half}) {
       const Point p = circle.centre + circle.radius * (std::cos(s) * u + std::sin(s) * v);
       if (!within(p, t, 0.1 * same_point * circle.radius)) continue;
-      if (std::none_of(found.begin(), found.end(),
-                       [&](const Point& q) { return distance(p, q) <= same_point * circle.radius; }))
+      if (std::ranges::none_of(found,
+                               [&](const Point& q) { return distance(p, q) <= same_point * circle.radius; }))
         found.push_back(p);
     }
   });
@@ -70,20 +70,17 @@ void CollarCorners::add_on_circle(const CollarLink& link, const CollarBall& a, c
       continue;
     }
     const auto same = [&](const Sheet& s) { return s.patch == patch; };
-    const auto first = std::find_if(sheets.begin(), sheets.end(), same);
+    const auto first = std::ranges::find_if(sheets, same);
     std::vector<Point> found = crossings(patch, circle);
-    if (found.size() == static_cast<std::size_t>(std::count_if(sheets.begin(), sheets.end(), same))) {
+    if (found.size() == static_cast<std::size_t>(std::ranges::count_if(sheets, same))) {
       if (first == sheets.begin() + static_cast<std::ptrdiff_t>(i))
         for (const Point& p : found) corners_.push_back({p, 2, patch});
       continue;
     }
     if (found.empty()) found.push_back(straight);
-    corners_.push_back({*std::min_element(found.begin(), found.end(),
-                                          [&](const Point& p, const Point& q) {
-                                            return squared_distance(p, straight) <
-                                                   squared_distance(q, straight);
-                                          }),
-                        2, patch});
+    const Point nearest =
+        *std::ranges::min_element(found, {}, [&](const Point& p) { return squared_distance(p, straight); });
+    corners_.push_back({nearest, 2, patch});
   }
 }
 
@@ -91,8 +88,8 @@ void CollarCorners::add_around(const CollarBall& ball) {
   const Plc::Vertex& vertex = plc_.vertices[ball.feature];
   const std::vector<Sheet> sheets = sheets_.at_vertex(ball.feature);
   for (const Index patch : vertex.patches) {
-    const bool has_border = std::any_of(vertex.curves.begin(), vertex.curves.end(),
-                                        [&](Index c) { return plc_.curve_on_patch(c, patch); });
+    const bool has_border =
+        std::ranges::any_of(vertex.curves, [&](Index c) { return plc_.curve_on_patch(c, patch); });
     if (plc_.patches[patch].planar || has_border) continue;
     // The points on the sphere in the directions that are farthest from each other.
     std::vector<Point> ring;
@@ -115,9 +112,7 @@ void CollarCorners::add_around(const CollarBall& ball) {
         for (const Point& q : chosen) nearest = std::min(nearest, squared_distance(p, q));
         return nearest;
       };
-      const auto farthest = std::max_element(ring.begin(), ring.end(), [&](const Point& p, const Point& q) {
-        return clearance(p) < clearance(q);
-      });
+      const auto farthest = std::ranges::max_element(ring, {}, clearance);
       if (clearance(*farthest) == 0) break;
       chosen.push_back(*farthest);
     }

@@ -1,10 +1,10 @@
 #include "collar/collar_system.h"
 
-#include <algorithm>
 #include <cassert>
 #include <numeric>
 
 #include "collar/collar_placement.h"
+#include "common/sort_uniquely.h"
 
 namespace collarmesh {
 
@@ -20,9 +20,7 @@ CollarSystem::CollarSystem(const Plc& plc, std::span<const Point> points, std::s
   for (Index c = 0; c < plc.curves.size(); ++c)
     if (crease_curve_[c] && !plc.curves[c].closed)
       crease_vertices_.insert(crease_vertices_.end(), plc.curves[c].ends.begin(), plc.curves[c].ends.end());
-  std::sort(crease_vertices_.begin(), crease_vertices_.end());
-  crease_vertices_.erase(std::unique(crease_vertices_.begin(), crease_vertices_.end()),
-                         crease_vertices_.end());
+  sort_uniquely(crease_vertices_);
   plant(plc, points);
 }
 

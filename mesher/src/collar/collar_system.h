@@ -81,9 +81,7 @@ class CollarSystem {
   const std::vector<CornerPoint>& corners() const { return corners_; }
   /// Returns the vertices that get a ball: those of creases and the ends of crease curves.
   const std::vector<Index>& crease_vertices() const { return crease_vertices_; }
-  bool is_crease_vertex(Index vertex) const {
-    return std::binary_search(crease_vertices_.begin(), crease_vertices_.end(), vertex);
-  }
+  bool is_crease_vertex(Index vertex) const { return std::ranges::binary_search(crease_vertices_, vertex); }
   bool is_crease_curve(Index curve) const { return !crease_curve_.empty() && crease_curve_[curve]; }
   /// Returns the ball at a crease vertex; none if there is no ball yet or the vertex is not a crease's.
   Index ball_at_vertex(Index vertex) const { return vertex_ball_.empty() ? none : vertex_ball_[vertex]; }

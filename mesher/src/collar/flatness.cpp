@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "common/sorted.h"
+
 namespace collarmesh {
 
 namespace {
@@ -34,8 +36,8 @@ Flatness::Flatness(const Plc& plc, const FeatureHierarchy& features, const Curve
 
 bool Flatness::matters_on(Index curve) const {
   const Plc::Curve& c = plc_.curves[curve];
-  return !c.straight || std::any_of(c.patches.begin(), c.patches.end(),
-                                    [&](Index patch) { return !plc_.patches[patch].planar; });
+  return !c.straight ||
+         std::ranges::any_of(c.patches, [&](Index patch) { return !plc_.patches[patch].planar; });
 }
 
 // Returns the largest radius with an allowed deviation. On a smooth feature the deviation grows with the
@@ -139,30 +141,28 @@ double Flatness::other_sheets(Index patch, const Point& centre, double reach,
     const auto& v = features_.element(element);
     const double d = squared_distance_to_triangle(centre, t[0], t[1], t[2]);
     if (d > reach * reach) return;
-    const auto has = [&](Index point) { return std::find(v.begin(), v.end(), point) != v.end(); };
+    const auto has = [&](Index point) { return std::ranges::find(v, point) != v.end(); };
     const bool here = has(points[0]) && has(points[1]);
     if (here) stack.push_back(found.size());
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t j = (i + 1) % 3;
       if (squared_distance_to_triangle(centre, t[i], t[j], t[j]) <= reach * reach)
-        sides.push_back({{std::min(v[i], v[j]), std::max(v[i], v[j])}, found.size()});
+        sides.push_back({sorted(v[i], v[j]), found.size()});
     }
     found.push_back({d, here});
   });
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    return a.key != b.key ? a.key < b.key : a.triangle < b.triangle;
-  });
+  std::ranges::sort(sides, {}, [](const Side& side) { return std::pair(side.key, side.triangle); });
   std::vector<std::pair<std::size_t, std::size_t>> neighbours;
   for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
     if (sides[i].key != sides[i + 1].key) continue;
     neighbours.push_back({sides[i].triangle, sides[i + 1].triangle});
     neighbours.push_back({sides[i + 1].triangle, sides[i].triangle});
   }
-  std::sort(neighbours.begin(), neighbours.end());
+  std::ranges::sort(neighbours);
   while (!stack.empty()) {
     const std::size_t t = stack.back();
     stack.pop_back();
-    for (auto it = std::lower_bound(neighbours.begin(), neighbours.end(), std::pair{t, std::size_t{0}});
+    for (auto it = std::ranges::lower_bound(neighbours, std::pair{t, std::size_t{0}});
          it != neighbours.end() && it->first == t; ++it) {
       if (found[it->second].reached) continue;
       found[it->second].reached = true;

@@ -1,6 +1,5 @@
 #include "common/distance_tree.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "common/distances.h"

@@ -6,6 +6,7 @@
 
 #include "collarmesh/geometry.h"
 #include "common/flat_table.h"
+#include "common/sorted.h"
 
 namespace collarmesh {
 
@@ -28,15 +29,11 @@ class PolygonFinder {
 
   /// Returns whether two polygons with the same corners have the same orientation.
   static bool alike(const Polygon& a, const Polygon& b) {
-    const auto at = static_cast<std::size_t>(std::find(b.begin(), b.end(), a[0]) - b.begin());
+    const auto at = static_cast<std::size_t>(std::ranges::find(b, a[0]) - b.begin());
     return b[(at + 1) % n] == a[1];
   }
 
  private:
-  static Polygon sorted(Polygon t) {
-    std::sort(t.begin(), t.end());
-    return t;
-  }
   Index& slot(const Polygon& key) {
     return find_slot(slots_, hash_of(key), [&](Index face) { return keys_[face] == key; });
   }

@@ -3,7 +3,6 @@
 #include <cassert>
 #include <cstddef>
 #include <type_traits>
-#include <utility>
 
 #include "common/large_pages.h"
 

@@ -1,6 +1,5 @@
 #include "common/layer_jacobians.h"
 
-#include <span>
 #include <vector>
 
 namespace collarmesh {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
 
 #include "collarmesh/geometry.h"
 
@@ -59,7 +58,7 @@ inline std::array<double, 4> jacobians_at_base(const PyramidCorners& p) {
 
 inline double least_jacobian(const PyramidCorners& p) {
   const auto all = jacobians_at_base(p);
-  return *std::min_element(all.begin(), all.end());
+  return *std::ranges::min_element(all);
 }
 
 /// Returns the volume of a linear pyramid, whose base is a bilinear surface.

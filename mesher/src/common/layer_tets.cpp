@@ -58,7 +58,7 @@ class MidNodes {
 
 /// Turns a quadrangle so that its smallest corner comes first.
 Quadrangle turned(Quadrangle q) {
-  std::rotate(q.begin(), std::min_element(q.begin(), q.end()), q.end());
+  std::rotate(q.begin(), std::ranges::min_element(q), q.end());
   return q;
 }
 
@@ -70,7 +70,7 @@ std::array<Index, 6> turned(const std::array<Index, 6>& prism) {
                                                               {3, 5, 4, 0, 2, 1},
                                                               {4, 3, 5, 1, 0, 2},
                                                               {5, 4, 3, 2, 1, 0}}};
-  const auto first = static_cast<std::size_t>(std::min_element(prism.begin(), prism.end()) - prism.begin());
+  const auto first = static_cast<std::size_t>(std::ranges::min_element(prism) - prism.begin());
   std::array<Index, 6> result{};
   for (std::size_t k = 0; k < 6; ++k) result[k] = prism[turns[first][k]];
   return result;
@@ -215,7 +215,7 @@ class WallSearch {
   /// Forgets the walls of cells that do not lie above one listed triangle.
   void keep_those_on_listed_faces() {
     for (const auto& face : mesh_.faces) listed_.push_back(sorted(face));
-    std::sort(listed_.begin(), listed_.end());
+    std::ranges::sort(listed_);
     std::vector<Index> doubtful;
     const auto see = [&](const auto& cell) {
       if (!has_wall(cell)) doubtful.insert(doubtful.end(), cell.begin(), cell.end());
@@ -230,10 +230,10 @@ class WallSearch {
   bool has_wall(std::array<Index, n> cell) const {
     for (Index& v : cell)
       if (walls_[v] != none) v = walls_[v];
-    std::sort(cell.begin(), cell.end());
+    std::ranges::sort(cell);
     const auto end = std::unique(cell.begin(), cell.end());
     if (end - cell.begin() != 3) return false;
-    return std::binary_search(listed_.begin(), listed_.end(), std::array{cell[0], cell[1], cell[2]});
+    return std::ranges::binary_search(listed_, std::array{cell[0], cell[1], cell[2]});
   }
 
   const TetMesh& mesh_;

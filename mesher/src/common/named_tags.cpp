@@ -33,18 +33,22 @@ std::set<Tag> tags_named(const std::string& text, std::size_t dimension, const T
   return tags;
 }
 
-std::string list_of_patches(const Plc& plc) {
+std::string list_of_patches(const std::set<Tag>& tags, const TagNames& names) {
   constexpr std::size_t longest = 100;
-  std::set<Tag> tags;
-  for (const Plc::Patch& patch : plc.patches) tags.insert(patch.tag);
   std::string list;
   for (const Tag tag : tags) {
     if (list.size() > longest) return list + ", ...";
-    const std::string* const name = plc.names.find(2, tag);
+    const std::string* const name = names.find(2, tag);
     list += fmt::format("{}{}{}", list.empty() ? "" : ", ", tag,
                         name == nullptr ? "" : fmt::format(" ({})", *name));
   }
   return list;
+}
+
+std::string list_of_patches(const Plc& plc) {
+  std::set<Tag> tags;
+  for (const Plc::Patch& patch : plc.patches) tags.insert(patch.tag);
+  return list_of_patches(tags, plc.names);
 }
 
 }  // namespace collarmesh

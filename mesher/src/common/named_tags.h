@@ -13,7 +13,9 @@ namespace collarmesh {
 /// "7", and for patches also "patch_7" and "Face7".
 std::set<Tag> tags_named(const std::string& text, std::size_t dimension, const TagNames& names);
 
-/// Returns the tags and names of a complex's patches, for a message; only the first ones if they are many.
+/// Returns these tags of patches with their names, for a message; only the first ones if they are many.
+std::string list_of_patches(const std::set<Tag>& tags, const TagNames& names);
+/// Returns such a list of all patches of a complex.
 std::string list_of_patches(const Plc& plc);
 
 }  // namespace collarmesh

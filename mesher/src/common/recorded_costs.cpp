@@ -13,8 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include "common/recorded_stage.h"
-
 namespace collarmesh::recorded_costs {
 
 namespace {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <string>
 #include <string_view>
 
 namespace collarmesh {
@@ -30,6 +31,19 @@ void begin_stage(std::string_view stage);
 
 /// Writes the table. The end of the program writes it as well, unless the process ends without cleaning up.
 void write();
+
+/// A part of a stage whose costs are recorded apart, as "STAGE: WORK".
+class StagePart {
+ public:
+  explicit StagePart(std::string_view work);
+  /// Continues the stage.
+  ~StagePart();
+  StagePart(const StagePart&) = delete;
+  StagePart& operator=(const StagePart&) = delete;
+
+ private:
+  std::string stage_;
+};
 
 }  // namespace recorded_costs
 

@@ -7,10 +7,10 @@
 
 namespace collarmesh {
 
-/// Resizes a vector. If it is large, threads of the caller's arena touch its pages first, because getting
+/// Resizes vectors. If one is large, threads of the caller's arena touch its pages first, because getting
 /// pages from the system takes longer than filling them with zeros.
-template <class Values>
-void resize_by_all_threads(Values& values, std::size_t count) {
+template <class Values, class... Others>
+void resize_by_all_threads(std::size_t count, Values& values, Others&... others) {
   using Value = typename Values::value_type;
   constexpr std::size_t small_page = 4096;
   if (values.capacity() < count) reserve_in_large_pages(values, count);
@@ -21,6 +21,7 @@ void resize_by_all_threads(Values& values, std::size_t count) {
       for (std::size_t i = first; i < last; i += small_page) bytes[i] = 0;
     });
   values.resize(count);
+  if constexpr (sizeof...(others) > 0) resize_by_all_threads(count, others...);
 }
 
 }  // namespace collarmesh

@@ -7,8 +7,7 @@
 #include <cmath>
 #include <optional>
 
-#include "common/order_by_group.h"
-#include "common/parallel_spatial_order.h"
+#include "common/groups.h"
 
 namespace collarmesh {
 
@@ -66,8 +65,7 @@ void put_in_order(std::span<SpatialKey> keys, std::span<const Point> points) {
   for (const SpatialKey& key : keys) bounds.add(points[key.item]);
   const std::optional<double> scale = scale_of(bounds);
   if (!scale) {
-    std::sort(keys.begin(), keys.end(),
-              [](const SpatialKey& a, const SpatialKey& b) { return a.item < b.item; });
+    std::ranges::sort(keys, {}, &SpatialKey::item);
     return;
   }
   for (SpatialKey& key : keys) key.place = place_in(bounds, *scale, points[key.item]);
@@ -108,23 +106,20 @@ std::vector<SpatialKey> spatial_order_by_all_threads(std::span<const Point> poin
   const std::optional<double> scale = scale_of(bounds);
   std::vector<std::uint64_t> places(points.size(), 0);
   if (scale)
-    parallel_for_ranges(points.size(), points_at_once, [&](std::size_t first, std::size_t last) {
-      for (std::size_t i = first; i < last; ++i) places[i] = place_in(bounds, *scale, points[i]);
-    });
+    parallel_for_in_chunks(points.size(),
+                           [&](std::size_t i) { places[i] = place_in(bounds, *scale, points[i]); });
   const auto part_of = [&](std::size_t i) { return places[i] >> (bits - bits_of_parts); };
   const std::vector<Index> order = order_by_group(parts, points.size(), part_of);
   std::vector<SpatialKey> keys(points.size());
-  parallel_for_ranges(points.size(), points_at_once, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) keys[i] = {places[order[i]], order[i]};
-  });
+  parallel_for_in_chunks(points.size(), [&](std::size_t i) { keys[i] = {places[order[i]], order[i]}; });
   if (!scale) return keys;
   parallel_for(parts, [&](std::size_t part) {
-    const auto before = [&](const SpatialKey& key, std::uint64_t p) {
-      return key.place >> (bits - bits_of_parts) < p;
-    };
-    const auto first = std::lower_bound(keys.begin(), keys.end(), part, before),
-               last = std::lower_bound(first, keys.end(), part + 1, before);
-    if (first != last) sort_by_places({first, last}, points);
+    // Searches the items, not the keys, because other threads change the places of keys meanwhile.
+    const auto first = std::ranges::lower_bound(order, part, {}, part_of),
+               last = std::ranges::upper_bound(order, part, {}, part_of);
+    const auto begin = static_cast<std::size_t>(first - order.begin());
+    if (first != last)
+      sort_by_places(std::span(keys).subspan(begin, static_cast<std::size_t>(last - first)), points);
   });
   return keys;
 }
@@ -134,8 +129,8 @@ std::size_t spatial_split(std::span<const SpatialKey> keys) {
   const std::uint64_t differing = keys.front().place ^ keys.back().place;
   if (differing == 0) return keys.size() / 2;
   const std::uint64_t upper_half = std::bit_floor(differing);
-  const auto first = std::partition_point(
-      keys.begin(), keys.end(), [&](const SpatialKey& key) { return (key.place & upper_half) == 0; });
+  const auto first = std::ranges::partition_point(
+      keys, [&](const SpatialKey& key) { return (key.place & upper_half) == 0; });
   return static_cast<std::size_t>(first - keys.begin());
 }
 

@@ -20,6 +20,8 @@ struct SpatialKey {
 /// range, all items are ordered by number. Cost: O(n) for every factor of 2^21 in the ratio of the extent to
 /// the least distance.
 std::vector<SpatialKey> spatial_order(std::span<const Point> points);
+/// Orders points like spatial_order, with the threads of the caller's arena.
+std::vector<SpatialKey> spatial_order_by_all_threads(std::span<const Point> points);
 
 /// Returns the item at which a hierarchy over ordered items splits them: the first one in the upper half of
 /// the smallest octree cell that holds them all, or the middle one if all are at one place. Precondition:

@@ -39,8 +39,8 @@ Triangulation::Triangulation(const Box& box) {
   for (FaceId a = 0; a < 4 * cell_capacity(); ++a)
     for (FaceId b = 0; b < a; ++b) {
       auto fa = face_vertices(a), fb = face_vertices(b);
-      std::sort(fa.begin(), fa.end());
-      std::sort(fb.begin(), fb.end());
+      std::ranges::sort(fa);
+      std::ranges::sort(fb);
       if (fa == fb) link(a, b);
     }
 }
@@ -192,15 +192,14 @@ Index Triangulation::conflicting_cell_around(Index vertex, const Point& p) {
       const FaceId face = face_id(cell, corner), beyond = mesh.opposite(face);
       if (beyond == no_face) continue;
       auto ours = mesh.face_vertices(face), theirs = mesh.face_vertices(beyond);
-      std::sort(ours.begin(), ours.end());
-      std::sort(theirs.begin(), theirs.end());
+      std::ranges::sort(ours);
+      std::ranges::sort(theirs);
       if (mesh.opposite(beyond) != face || ours != theirs ||
           mesh.in_conflict(cell, mesh.point(mesh.corners(cell_of(beyond))[corner_of(beyond)])))
         return false;
     }
   }
-  return std::all_of(zone.vertices.begin(), zone.vertices.end(),
-                     [&](Index v) { return mesh.alive(mesh.incident_cell(v)); });
+  return std::ranges::all_of(zone.vertices, [&](Index v) { return mesh.alive(mesh.incident_cell(v)); });
 }
 
 template <class NewCell>
@@ -287,8 +286,7 @@ void Triangulation::link_created_by_sorting(ConflictZone& zone) {
       edges.push_back({std::min(a, b), std::max(a, b), face_id(cell, f[k])});
     }
   }
-  std::sort(edges.begin(), edges.end(),
-            [](const Edge& x, const Edge& y) { return x.a != y.a ? x.a < y.a : x.b < y.b; });
+  std::ranges::sort(edges, [](const Edge& x, const Edge& y) { return x.a != y.a ? x.a < y.a : x.b < y.b; });
   for (std::size_t i = 0; i + 1 < edges.size(); i += 2) link(edges[i].face, edges[i + 1].face);
 }
 
@@ -399,7 +397,7 @@ void Triangulation::Block::incident_cells(Index vertex, std::vector<Index>& cell
 
 bool Triangulation::Block::owns(Index cell) const {
   const auto& corners = mesh_->cells_[cell].corners;
-  return std::all_of(corners.begin(), corners.end(), [&](Index v) { return (*owners_)[v] == number_; });
+  return std::ranges::all_of(corners, [&](Index v) { return (*owners_)[v] == number_; });
 }
 
 bool Triangulation::Block::find_conflict_zone(const Point& p, Index start, ConflictZone& zone) {

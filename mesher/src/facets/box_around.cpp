@@ -54,7 +54,7 @@ std::vector<PolygonSoup> with_box(std::span<const PolygonSoup> soups, const PlcO
     soup.vertices.resize(soup.points.size());
     std::iota(soup.vertices.begin(), soup.vertices.end(), Index{0});
   }
-  const bool any = std::any_of(all.begin(), all.end(), [](const auto& soup) { return !soup.points.empty(); });
+  const bool any = std::ranges::any_of(all, [](const auto& soup) { return !soup.points.empty(); });
   if (any) all.push_back(box_soup(bounds_of(soups), options.box_margin, unused_tag(soups)));
   return all;
 }

@@ -2,11 +2,15 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "common/disjoint_sets.h"
+#include "common/face_finder.h"
+#include "common/sort_by_vertex.h"
+#include "common/sort_uniquely.h"
+#include "common/sorted.h"
 #include "facets/exact.h"
 
 namespace collarmesh::facets {
@@ -14,8 +18,6 @@ namespace collarmesh::facets {
 namespace {
 
 using Edge = std::array<Index, 2>;
-
-Edge edge_key(Index a, Index b) { return a < b ? Edge{a, b} : Edge{b, a}; }
 
 // Groups of collinear triangles: triangles of a group share edges, so they lie on one line. Their edges are
 // cut at every point of the group in between.
@@ -26,7 +28,7 @@ class CollinearGroups {
     for (Index i = 0; i < flat.size(); ++i)
       for (unsigned side = 0; side < 3; ++side) {
         const Corners& t = draft.triangles[flat[i]];
-        const auto [at, added] = group_of_edge_.try_emplace(edge_key(t[side], t[(side + 1) % 3]), i);
+        const auto [at, added] = group_of_edge_.try_emplace(sorted(t[side], t[(side + 1) % 3]), i);
         if (!added) sets.unite(at->second, i);
       }
     for (auto& [edge, group] : group_of_edge_) group = sets.find(group);
@@ -34,21 +36,18 @@ class CollinearGroups {
       auto& group = points_[sets.find(i)];
       group.insert(group.end(), draft.triangles[flat[i]].begin(), draft.triangles[flat[i]].end());
     }
-    for (auto& group : points_) {
-      std::sort(group.begin(), group.end());
-      group.erase(std::unique(group.begin(), group.end()), group.end());
-    }
+    for (auto& group : points_) sort_uniquely(group);
   }
 
   /// Returns the points that cut the edge from a to b, in order from a.
   std::vector<Index> cuts(Index a, Index b) const {
     std::vector<Index> result;
-    const auto at = group_of_edge_.find(edge_key(a, b));
+    const auto at = group_of_edge_.find(sorted(a, b));
     if (at == group_of_edge_.end()) return result;
     const auto& p = draft_.points;
     for (const Index c : points_[at->second])
       if (c != a && c != b && between(p[a], p[c], p[b])) result.push_back(c);
-    std::sort(result.begin(), result.end(), [&](Index c, Index d) { return between(p[a], p[c], p[d]); });
+    std::ranges::sort(result, [&](Index c, Index d) { return between(p[a], p[c], p[d]); });
     return result;
   }
 
@@ -94,34 +93,15 @@ struct Twin {
   Index triangle;
 
   friend bool operator<(const Twin& a, const Twin& b) {
-    return a.key != b.key ? a.key < b.key : a.triangle < b.triangle;
+    return std::tie(a.key, a.triangle) < std::tie(b.key, b.triangle);
   }
 };
 
-// Sorts triangles so that those with the same corners follow each other, in their original order: a counting
-// sort by the lowest corner, then a sort within each group.
+// Sorts triangles so that those with the same corners follow each other, in their original order.
 std::vector<Twin> sort_by_corners(const Draft& draft) {
-  std::vector<Index> next(draft.points.size() + 1, 0);
-  for (const Corners& t : draft.triangles) ++next[*std::min_element(t.begin(), t.end()) + 1];
-  std::partial_sum(next.begin(), next.end(), next.begin());
-  std::vector<Twin> order(draft.triangles.size());
-  for (Index t = 0; t < order.size(); ++t) {
-    Twin twin{draft.triangles[t], t};
-    std::sort(twin.key.begin(), twin.key.end());
-    order[next[twin.key[0]]++] = twin;
-  }
-  auto first = order.begin();
-  for (std::size_t point = 0; point < draft.points.size(); ++point) {
-    const auto last = order.begin() + next[point];
-    std::sort(first, last);
-    first = last;
-  }
-  return order;
-}
-
-bool same_orientation(const Corners& a, const Corners& b) {
-  const auto at = static_cast<std::size_t>(std::find(b.begin(), b.end(), a[0]) - b.begin());
-  return b[(at + 1) % 3] == a[1];
+  const auto twin = [&](std::size_t t) { return Twin{sorted(draft.triangles[t]), static_cast<Index>(t)}; };
+  return sorted_by_vertex(draft.triangles.size(), draft.points.size(), twin,
+                          [](const Twin& t) { return t.key[0]; });
 }
 
 // Removes the marked triangles and renumbers the claims on the remaining ones. Returns the number of removed
@@ -189,7 +169,7 @@ void merge_twins_across_soups(Draft& draft) {
     const Tag tag = draft.origins[kept].tag;
     if (origin.tag != tag) replaced.insert({origin.tag, tag});
     if (!origin.oriented && !draft.soup_is_complex[origin.soup]) continue;
-    const bool alike = same_orientation(draft.triangles[kept], draft.triangles[dropped]);
+    const bool alike = FaceFinder::alike(draft.triangles[kept], draft.triangles[dropped]);
     draft.claims.push_back({alike ? back_side(kept) : front_side(kept), origin.soup});
   }
   draft.cleanup.shared_triangles += compact(draft, removed);

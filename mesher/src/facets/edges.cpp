@@ -11,7 +11,7 @@ namespace {
 void sort_few(std::span<std::pair<Index, Index>> pairs) {
   constexpr std::size_t few = 16;
   if (pairs.size() > few) {
-    std::sort(pairs.begin(), pairs.end());
+    std::ranges::sort(pairs);
     return;
   }
   for (std::size_t i = 1; i < pairs.size(); ++i) {

@@ -3,8 +3,6 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Exact_rational.h>
 
-#include <cmath>
-
 namespace collarmesh::facets {
 
 namespace {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/sort_uniquely.h"
 #include "facets/exact.h"
 #include "facets/plane_triangulation.h"
 
@@ -94,9 +95,9 @@ class FacetTriangulator {
       deviation = d;
       worst = p;
     };
-    for (const auto& loop : facet.loops) std::for_each(loop.begin(), loop.end(), measure);
-    for (const auto& segment : facet.segments) std::for_each(segment.begin(), segment.end(), measure);
-    std::for_each(facet.points.begin(), facet.points.end(), measure);
+    for (const auto& loop : facet.loops) std::ranges::for_each(loop, measure);
+    for (const auto& segment : facet.segments) std::ranges::for_each(segment, measure);
+    std::ranges::for_each(facet.points, measure);
     const double limit = std::max(draft_.planar_tolerance, draft_.rounding());
     if (deviation <= limit) {
       draft_.largest_deviation = std::max(draft_.largest_deviation, deviation);
@@ -183,8 +184,7 @@ class FacetTriangulator {
     for (const auto& segment : facet.segments)
       corners_.insert(corners_.end(), segment.begin(), segment.end());
     corners_.insert(corners_.end(), facet.points.begin(), facet.points.end());
-    std::sort(corners_.begin(), corners_.end());
-    corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
+    sort_uniquely(corners_);
     std::vector<std::pair<PlaneKernel::Point_2, Index>> projected;
     for (const Index p : corners_) projected.emplace_back(project(draft_.points[p]), p);
     mesh.insert(projected.begin(), projected.end());
@@ -201,8 +201,7 @@ class FacetTriangulator {
   }
 
   std::size_t position(Index point) const {
-    return static_cast<std::size_t>(std::lower_bound(corners_.begin(), corners_.end(), point) -
-                                    corners_.begin());
+    return static_cast<std::size_t>(std::ranges::lower_bound(corners_, point) - corners_.begin());
   }
 
   // Marks the faces outside the facet by their `info`.
@@ -259,8 +258,7 @@ class FacetTriangulator {
 class FacetHoles {
  public:
   explicit FacetHoles(const PolygonSoup& soup) : holes_(soup.facet_holes) {
-    std::stable_sort(holes_.begin(), holes_.end(),
-                     [](const auto& a, const auto& b) { return a.facet < b.facet; });
+    std::ranges::stable_sort(holes_, [](const auto& a, const auto& b) { return a.facet < b.facet; });
   }
   /// Returns the hole points of a facet. Call it with increasing facets.
   std::vector<Point> take(Index facet) {

@@ -35,8 +35,8 @@ void Faults::add(PlcFault::Kind kind, std::string message, std::vector<Index> po
 void Faults::raise() const {
   if (faults_.empty()) return;
   std::vector<PlcFault> sorted = faults_;
-  std::stable_sort(sorted.begin(), sorted.end(),
-                   [](const PlcFault& a, const PlcFault& b) { return rank(a.kind) < rank(b.kind); });
+  std::ranges::stable_sort(sorted,
+                           [](const PlcFault& a, const PlcFault& b) { return rank(a.kind) < rank(b.kind); });
   const std::size_t others = std::accumulate(counts_.begin(), counts_.end(), std::size_t{0}) - 1;
   std::string message = sorted.front().message;
   if (others > 0) message += fmt::format(" ({} other fault{} found.)", others, others == 1 ? "" : "s");

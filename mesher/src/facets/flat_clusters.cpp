@@ -50,7 +50,7 @@ class ClusterFinder {
       for_each_neighbour(t, [&](Index side) { grows_[t] = grows_[t] || joins(side, t, t); });
       if (grows_[t]) order.push_back(t);
     }
-    std::sort(order.begin(), order.end(), [this](Index a, Index b) { return precedes(a, b); });
+    std::ranges::sort(order, [this](Index a, Index b) { return precedes(a, b); });
     for (const Index t : order)
       if (result_.seed[t] == none) grow(t);
     for (Index t = 0; t < areas_.size(); ++t) {

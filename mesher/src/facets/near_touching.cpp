@@ -15,6 +15,7 @@
 #include "common/box_frame.h"
 #include "common/box_tree.h"
 #include "common/distances.h"
+#include "common/segments.h"
 
 namespace collarmesh::facets {
 
@@ -47,8 +48,7 @@ struct Nearest {
 
 bool have_common(const std::vector<Index>& a, const std::vector<Index>& b) {
   const auto &few = a.size() < b.size() ? a : b, &many = a.size() < b.size() ? b : a;
-  return std::any_of(few.begin(), few.end(),
-                     [&](Index i) { return std::binary_search(many.begin(), many.end(), i); });
+  return std::ranges::any_of(few, [&](Index i) { return std::ranges::binary_search(many, i); });
 }
 
 class NearTouchingFinder {
@@ -58,11 +58,8 @@ class NearTouchingFinder {
       const Index p = plc.vertices[v].point;
       elements_.push_back({{p, p, p}, 1, 0, v});
     }
-    for (Index c = 0; c < plc.curves.size(); ++c) {
-      const auto& p = plc.curves[c].points;
-      for (std::size_t i = 0; i + 1 < p.size() + (plc.curves[c].closed ? 1 : 0); ++i)
-        elements_.push_back({{p[i], p[(i + 1) % p.size()], p[i]}, 2, 1, c});
-    }
+    for (Index c = 0; c < plc.curves.size(); ++c)
+      visit_segments(plc.curves[c], [&](Index a, Index b) { elements_.push_back({{a, b, a}, 2, 1, c}); });
     for (const Plc::Triangle& t : plc.triangles)
       elements_.push_back(
           {t.points, 3, 2, t.patch, axes_of(at(t.points[0]), at(t.points[1]), at(t.points[2]))});
@@ -147,7 +144,7 @@ class NearTouchingFinder {
   // Returns whether b surely keeps its distance from a triangle. Boxes of needles overlap by the million, so
   // a quick test pays off.
   bool apart(const Element& a, const Element& b) const {
-    return a.size == 3 && std::any_of(a.axes.begin(), a.axes.end(), [&](const Vector& axis) {
+    return a.size == 3 && std::ranges::any_of(a.axes, [&](const Vector& axis) {
              double low = INFINITY, high = -INFINITY, low_of_a = 0, high_of_a = 0;
              for (unsigned i = 1; i < a.size; ++i) {
                const double along = dot(axis, at(a.points[i]) - at(a.points[0]));
@@ -174,11 +171,10 @@ class NearTouchingFinder {
       const auto& ends = plc_.curves[a.feature].ends;
       if (b.dimension == 1) {
         const auto& others = plc_.curves[b.feature].ends;
-        return std::any_of(ends.begin(), ends.end(), [&](Index v) {
-          return v != none && std::find(others.begin(), others.end(), v) != others.end();
-        });
+        return std::ranges::any_of(
+            ends, [&](Index v) { return v != none && std::ranges::find(others, v) != others.end(); });
       }
-      return plc_.curve_on_patch(a.feature, b.feature) || std::any_of(ends.begin(), ends.end(), [&](Index v) {
+      return plc_.curve_on_patch(a.feature, b.feature) || std::ranges::any_of(ends, [&](Index v) {
                return v != none && plc_.vertex_on_patch(v, b.feature);
              });
     }

@@ -87,7 +87,7 @@ std::optional<std::vector<LineCaster::Crossing>> LineCaster::cast(const Point& p
     return std::array<Point, 3>{draft_.corner(c.triangle, 0), draft_.corner(c.triangle, 1),
                                 draft_.corner(c.triangle, 2)};
   };
-  std::sort(crossings.begin(), crossings.end(), [&](const Crossing& c, const Crossing& d) {
+  std::ranges::sort(crossings, [&](const Crossing& c, const Crossing& d) {
     const int order = compare_crossings(p, q, corners(c), corners(d));
     return order != 0 ? order < 0 : c.triangle < d.triangle;
   });

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "common/box_frame.h"
+#include "common/sort_uniquely.h"
 
 namespace collarmesh::facets {
 
@@ -16,8 +17,7 @@ std::vector<Simplex> collect(const Draft& draft, const EdgeTable& edges) {
   std::vector<std::array<Index, 2>> loose;
   for (const Segment& s : draft.segments)
     if (edges.find(s.a, s.b) == none) loose.push_back({std::min(s.a, s.b), std::max(s.a, s.b)});
-  std::sort(loose.begin(), loose.end());
-  loose.erase(std::unique(loose.begin(), loose.end()), loose.end());
+  sort_uniquely(loose);
   for (const auto& [a, b] : loose) simplices.push_back({{a, b, none}, 2});
   for (const Index p : draft.loose_points) simplices.push_back({{p, none, none}, 1});
   return simplices;

@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <tuple>
 
 #include "common/disjoint_sets.h"
 
@@ -106,12 +107,10 @@ DisjointSets find_close(const std::vector<Point>& points, const Box& bounds, dou
   const auto count = static_cast<Index>(points.size());
   std::vector<std::pair<double, Index>> order(count);
   for (Index p = 0; p < count; ++p) order[p] = {dot(direction, points[p] - centre), p};
-  std::sort(order.begin(), order.end(), [&](const auto& a, const auto& b) {
+  std::ranges::sort(order, [&](const auto& a, const auto& b) {
     if (a.first != b.first) return a.first < b.first;
     const Point &p = points[a.second], &q = points[b.second];
-    if (p.x != q.x) return p.x < q.x;
-    if (p.y != q.y) return p.y < q.y;
-    return p.z != q.z ? p.z < q.z : a.second < b.second;
+    return std::tie(p.x, p.y, p.z, a.second) < std::tie(q.x, q.y, q.z, b.second);
   });
 
   DisjointSets sets(count);

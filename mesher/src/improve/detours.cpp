@@ -36,9 +36,6 @@ bool is_better(const std::vector<double>& now, const std::vector<double>& before
 
 }  // namespace
 
-Detours::Detours(EditableMesh& edited, Remedies& remedies, Operations& operations, std::size_t most_trials)
-    : edited_(edited), remedies_(remedies), operations_(operations), most_trials_(most_trials) {}
-
 bool Detours::exhausted() const {
   return blunt_ >= most_blunt || trials_ >= std::min(most_trials_, first_trials + trials_per_detour * taken_);
 }

@@ -19,7 +19,8 @@ namespace collarmesh::remeshing::improvement {
 class Detours {
  public:
   /// Keeps all by reference. Starts no detour after `most_trials` operations, but completes the current tet.
-  Detours(EditableMesh& edited, Remedies& remedies, Operations& operations, std::size_t most_trials);
+  Detours(EditableMesh& edited, Remedies& remedies, Operations& operations, std::size_t most_trials)
+      : edited_(edited), remedies_(remedies), operations_(operations), most_trials_(most_trials) {}
 
   /// Takes detours for these tets and, where the number of vertices may change, for poor tets that detours
   /// leave. Takes the worst tet first; tries operations at the tet itself, then beside it; tries again after

@@ -26,7 +26,6 @@ namespace {
 constexpr std::size_t tets_per_proposal = 2000;
 constexpr std::size_t most_proposals = 1024;
 constexpr std::size_t steps_between_reports = 1024;
-constexpr std::size_t tets_at_once = 4096;  // tets in a chunk of one thread
 // The least relative gain of a move. Tets at walls stay poor however often their vertices move a little, so
 // small gains do not pay. In detours, which work on few tets, they may help.
 constexpr double least_gain = 0.02, least_gain_in_detours = 1e-3;
@@ -110,9 +109,8 @@ class Improvement {
 
   void find_poor_of(const std::vector<Index>& tets) {
     std::vector<double> qualities(tets.size());
-    parallel_for_ranges(tets.size(), tets_at_once, [&](std::size_t first, std::size_t last) {
-      for (std::size_t i = first; i < last; ++i) qualities[i] = remedies_.poor_quality(tets[i]);
-    });
+    parallel_for_in_chunks(tets.size(),
+                           [&](std::size_t i) { qualities[i] = remedies_.poor_quality(tets[i]); });
     poor_.clear();
     for (std::size_t i = 0; i < tets.size(); ++i)
       if (qualities[i] < INFINITY) poor_.push_back({qualities[i], tets[i], complex()[tets[i]].generation});

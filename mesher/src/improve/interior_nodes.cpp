@@ -1,6 +1,5 @@
 #include "improve/improve_edited.h"
 
-#include <algorithm>
 #include <vector>
 
 #include "common/cell_shapes.h"

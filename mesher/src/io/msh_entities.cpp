@@ -12,6 +12,7 @@
 #include "common/note_last.h"
 #include "common/parallel_for.h"
 #include "common/sort_uniquely.h"
+#include "io/cell_nodes.h"
 #include "io/cell_partitions.h"
 
 namespace collarmesh::io {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "collarmesh/error.h"
+#include "io/cell_nodes.h"
 #include "io/label_names.h"
 #include "io/tet_mesh_formats.h"
 #include "io/vtk_grid.h"

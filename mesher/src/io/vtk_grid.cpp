@@ -12,6 +12,7 @@
 
 #include "common/large_pages.h"
 #include "common/parallel_for.h"
+#include "io/cell_nodes.h"
 #include "io/cell_orientation.h"
 #include "io/cell_partitions.h"
 #include "io/complete_mesh.h"

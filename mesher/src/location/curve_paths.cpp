@@ -23,8 +23,8 @@ double CurvePaths::wrapped(Index curve, double parameter) const {
 
 std::size_t CurvePaths::segment(Index curve, double parameter) const {
   const auto& lengths = lengths_[curve];
-  const auto after = static_cast<std::size_t>(
-      std::upper_bound(lengths.begin(), lengths.end(), wrapped(curve, parameter)) - lengths.begin());
+  const auto after = static_cast<std::size_t>(std::ranges::upper_bound(lengths, wrapped(curve, parameter)) -
+                                              lengths.begin());
   return std::clamp<std::size_t>(after, 1, lengths.size() - 1) - 1;
 }
 

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "collarmesh/geometry.h"

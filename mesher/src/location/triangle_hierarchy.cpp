@@ -158,8 +158,8 @@ void TriangleHierarchy::crossings(const SegmentBundle& bundle, std::span<const I
               if (direction != 0) found.push_back({segment, {number, direction}});
             }
           });
-  std::stable_sort(found.begin(), found.end(),
-                   [](const BundleCrossing& a, const BundleCrossing& b) { return a.segment < b.segment; });
+  std::ranges::stable_sort(
+      found, [](const BundleCrossing& a, const BundleCrossing& b) { return a.segment < b.segment; });
 }
 
 int TriangleHierarchy::crossing(const Point& p, const Point& q, Index triangle) const {

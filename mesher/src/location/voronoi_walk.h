@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cmath>
 #include <vector>
 
 #include "delaunay/triangulation.h"
@@ -15,7 +14,21 @@ class VoronoiWalk {
 
   /// Returns the vertex whose cell contains p. Walks from `from` to a nearer neighbour as long as there is
   /// one.
-  Index nearest(const Point& p, Index from);
+  Index nearest(const Point& p, Index from) {
+    double best = squared_distance(p, mesh_.point(from));
+    for (;;) {
+      mesh_.adjacent_vertices(from, adjacent_);
+      Index next = from;
+      for (const Index v : adjacent_) {
+        const double d = squared_distance(p, mesh_.point(v));
+        if (d >= best) continue;
+        best = d;
+        next = v;
+      }
+      if (next == from) return from;
+      from = next;
+    }
+  }
 
   /// Visits the vertices whose cells meet B(x, r), and few others, breadth first from the vertex whose cell
   /// contains x. The visitor may make the ball smaller: `squared_radius` is read again for every vertex.

@@ -27,7 +27,7 @@ std::optional<OptionValue> read_number(std::string_view text) {
 }
 
 std::optional<OptionValue> read_word(const Option& option, const std::string& text) {
-  const auto word = std::find(option.words.begin(), option.words.end(), text);
+  const auto word = std::ranges::find(option.words, text);
   if (word == option.words.end()) return std::nullopt;
   return std::holds_alternative<bool>(option.get({})) ? OptionValue(word == option.words.begin()) : text;
 }
@@ -192,7 +192,7 @@ std::optional<std::size_t> read_bytes(std::string_view text) {
 
 std::string Option::key() const {
   std::string key = name;
-  std::replace(key.begin(), key.end(), '-', '_');
+  std::ranges::replace(key, '-', '_');
   return key;
 }
 
@@ -208,10 +208,10 @@ bool Option::fits(const OptionValue& value) const {
   if (const auto* count = std::get_if<std::uint64_t>(&value))
     return is_in_range(*this, static_cast<double>(*count));
   if (const auto* word = std::get_if<std::string>(&value); word != nullptr && kind() == Kind::choice)
-    return std::find(words.begin(), words.end(), *word) != words.end();
+    return std::ranges::find(words, *word) != words.end();
   if (const auto* sizes = std::get_if<std::map<Tag, double>>(&value))
-    return std::all_of(sizes->begin(), sizes->end(),
-                       [](const auto& size) { return size.second > 0 && std::isfinite(size.second); });
+    return std::ranges::all_of(
+        *sizes, [](const auto& size) { return size.second > 0 && std::isfinite(size.second); });
   return true;
 }
 

@@ -42,7 +42,7 @@ struct At {
   static void set(const Option& option, RunOptions& options, const OptionValue& given) {
     Type& value = of(options);
     if constexpr (std::is_enum_v<Type> && has_words) {
-      const auto word = std::find(option.words.begin(), option.words.end(), std::get<std::string>(given));
+      const auto word = std::ranges::find(option.words, std::get<std::string>(given));
       value = static_cast<Type>(word - option.words.begin());
     } else if constexpr (std::is_enum_v<Type>) {
       value = static_cast<Type>(std::get<bool>(given));

@@ -92,8 +92,8 @@ class Levelling {
   }
 
   Part with_room() const {
-    const auto found = std::find_if(members_.begin(), members_.end(),
-                                    [&](const std::vector<Tet>& each) { return each.size() < most_; });
+    const auto found =
+        std::ranges::find_if(members_, [&](const std::vector<Tet>& each) { return each.size() < most_; });
     return static_cast<Part>(found - members_.begin());
   }
 
@@ -105,7 +105,7 @@ class Levelling {
     for (const Tet tet : members(from)) {
       const auto others = beside(tet);
       const auto of = [&](Part part) {
-        return std::count_if(others.begin(), others.end(), [&](Tet other) { return part_of(other) == part; });
+        return std::ranges::count_if(others, [&](Tet other) { return part_of(other) == part; });
       };
       const auto cost = std::pair(of(to) == 0, of(from) - of(to));
       if (std::pair(cost, tet) < std::pair(best_cost, best)) {

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <span>
 #include <tuple>
-#include <utility>
 #include <vector>
 
 #include "collarmesh/tet_mesh.h"
@@ -24,7 +23,7 @@ void for_each_shared_face(const TetMesh& mesh, const Found& found) {
   std::vector<std::size_t> ends(mesh.points.size() + 1, 0);
   const auto sorted_face = [&](std::size_t tet, const std::array<std::size_t, 3>& face) {
     std::array<Index, 3> corners{mesh.tets[tet][face[0]], mesh.tets[tet][face[1]], mesh.tets[tet][face[2]]};
-    std::sort(corners.begin(), corners.end());
+    std::ranges::sort(corners);
     return corners;
   };
   for (std::size_t t = 0; t < mesh.tets.size(); ++t)
@@ -39,7 +38,7 @@ void for_each_shared_face(const TetMesh& mesh, const Found& found) {
   std::size_t begin = 0;
   for (std::size_t v = 0; v + 1 < ends.size(); begin = ends[v++]) {
     const auto group = std::span(sides).subspan(begin, ends[v] - begin);
-    std::sort(group.begin(), group.end(), [](const Side& a, const Side& b) {
+    std::ranges::sort(group, [](const Side& a, const Side& b) {
       return std::tie(a.middle, a.largest, a.tet) < std::tie(b.middle, b.largest, b.tet);
     });
     for (std::size_t i = 0; i + 1 < group.size(); ++i)

@@ -25,7 +25,7 @@ std::vector<Near> nearest_patches(const Plc& plc, const Point& where) {
         std::min(patches[t.patch].first,
                  squared_distance_to_triangle(where, plc.points[a], plc.points[b], plc.points[c]));
   }
-  std::sort(patches.begin(), patches.end());
+  std::ranges::sort(patches);
   return patches;
 }
 

@@ -37,8 +37,8 @@ void require_tags(const std::map<Tag, double>& sizes, const Features& features, 
 void refuse_replaced_patches(const std::map<Tag, double>& sizes, const Plc& plc) {
   for (const auto& [gone, stays] : plc.cleanup.replaced_tags) {
     const auto found = sizes.find(gone);
-    const bool there = std::any_of(plc.patches.begin(), plc.patches.end(),
-                                   [gone = gone](const Plc::Patch& patch) { return patch.tag == gone; });
+    const bool there = std::ranges::any_of(
+        plc.patches, [gone = gone](const Plc::Patch& patch) { return patch.tag == gone; });
     if (found != sizes.end() && !there)
       throw OptionError(fmt::format(
           "patch-size {}={}: patch {} lies on patch {} of another part, whose number both have; use {}", gone,

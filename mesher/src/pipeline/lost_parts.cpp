@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <set>
 #include <utility>
 #include <vector>
@@ -32,7 +31,7 @@ std::vector<Body> bodies_of(const Plc& plc) {
       bodies[region].area += 0.5 * norm(cross(b - a, c - a));
   }
   if (!bodies.empty()) bodies.erase(bodies.begin());  // the outside
-  std::sort(bodies.begin(), bodies.end(), [](const Body& a, const Body& b) { return a.volume > b.volume; });
+  std::ranges::sort(bodies, std::ranges::greater(), &Body::volume);
   return bodies;
 }
 
@@ -66,7 +65,7 @@ std::string lost_bodies(const Plc& finer, const Plc& coarser, double tolerance) 
 // Returns a sentence if a tag is in `after` but not in `before`, else nothing.
 std::string lost_beyond(const std::vector<Tag>& before, const std::vector<Tag>& after, const char* what) {
   for (const Tag tag : after)
-    if (std::find(before.begin(), before.end(), tag) == before.end())
+    if (std::ranges::find(before, tag) == before.end())
       return fmt::format("nothing of {} {} would be left", what, tag);
   return {};
 }

@@ -12,7 +12,6 @@
 #include "periodic/make_periodic.h"
 #include "periodic/tolerance_across.h"
 #include "pipeline/certification.h"
-#include "pipeline/exact_shape.h"
 #include "pipeline/periodic_faces.h"
 #include "pipeline/reshaping.h"
 #include "pipeline/vertex_bound.h"
@@ -28,6 +27,26 @@ bool misses_volumes_only(const CheckReport& check) {
   return !check.findings.empty() && std::ranges::all_of(check.findings, [](const Finding& f) {
     return f.guarantee == guarantee::volume_kept || f.guarantee == guarantee::thickness_kept;
   });
+}
+
+/// Moves the vertices of a complete mesh onto the exact geometry, if there is any.
+void project(MeshJob& job) {
+  if (!job.exact() || job.made.result.status != MeshStatus::complete) return;
+  job.control.begin("project", 0.8, 0.83);
+  const ProjectOptions options{.bounds = job.bounds(), .threads = job.options.mesh.threads};
+  job.made.projection =
+      project_boundary(job.made.result.mesh, *job.plc, job.options.exact, options, job.execution());
+  job.trace("project", job.made.result.mesh);
+}
+
+/// Adds mid-edge nodes and curves the cells, if the options ask for second order.
+void raise_order(MeshJob& job) {
+  if (job.options.order == 1) return;
+  job.control.begin("second order", 0.83, 0.86);
+  const SecondOrderOptions options{
+      .exact = job.options.exact, .bounds = job.bounds(), .threads = job.options.mesh.threads};
+  job.made.second_order = make_second_order(job.made.result.mesh, *job.plc, options, job.execution());
+  if (job.made.second_order.cancelled) job.control.stop();
 }
 
 }  // namespace

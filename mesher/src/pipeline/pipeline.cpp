@@ -9,10 +9,10 @@
 #include <thread>
 #include <utility>
 
+#include "check/split.h"
 #include "collarmesh/options.h"
 #include "collarmesh/partition.h"
 #include "collarmesh/usable_threads.h"
-#include "pipeline/division.h"
 #include "pipeline/mesh_job.h"
 #include "pipeline/tries.h"
 #include "pipeline/wall_layers.h"
@@ -85,6 +85,27 @@ auto run_shells(Input& input, MeshJob& job) {
   return made;
 }
 
+/// Divides the tets of the kept mesh among ranks, if the options ask for it.
+void divide(MeshJob& job) {
+  if (job.given.partitions == 0) return;
+  job.control.begin("partition", 0.96, 1);
+  partition(job.made.result.mesh, job.given.partitions);
+  job.control.stop_if_asked();
+}
+
+/// Gives both sides of the patches to be split separate nodes, and checks that. The mesh was certified before
+/// the split.
+void split_patches(MeshJob& job) {
+  if (!job.given.split.any()) return;
+  job.control.begin("split", 0.98, 1);
+  TetMesh& mesh = job.made.result.mesh;
+  const checks::SplitMeasures before = checks::measure_before_split(mesh);
+  if (job.exact()) mesh.group_names = GroupNames::cad;  // so that the sides get such names
+  job.made.split = split(mesh, job.options.split);
+  checks::check_split(mesh, job.made.split->interfaces.sides, before, job.made.check);
+  job.control.stop_if_asked();
+}
+
 /// Makes a mesh by calling `mesh`, then runs the stages that run once, for the kept mesh. If the run ended
 /// early, there is no mesh.
 template <class Mesh>
@@ -92,8 +113,8 @@ void run_stages(MeshJob& job, const Mesh& mesh) {
   try {
     mesh();
     pipeline::add_layers(job);
-    pipeline::divide(job);
-    pipeline::split_patches(job);
+    divide(job);
+    split_patches(job);
   } catch (const Ended&) {
     job.made.result.mesh = {};
   }

@@ -63,10 +63,9 @@ bool plain_sizes(const PipelineOptions& options) {
   RunOptions given{options};
   given.mesh.region_size.clear();
   const RunOptions defaults;
-  return !options.mesh.size_field &&
-         std::none_of(option_table().begin(), option_table().end(), [&](const Option& option) {
-           return option.finer && option.get(given) != option.get(defaults);
-         });
+  return !options.mesh.size_field && std::ranges::none_of(option_table(), [&](const Option& option) {
+    return option.finer && option.get(given) != option.get(defaults);
+  });
 }
 
 double expected_by_features(const Plc& plc, const MeshOptions& options) {

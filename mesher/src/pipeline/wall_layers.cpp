@@ -77,8 +77,7 @@ void keep_straightened(const checks::WallGeometry& before, const checks::WallGeo
     kept.edge = now.mid_nodes[i].edge;
     made.straightened.push_back(kept);
   }
-  std::sort(made.straightened.begin(), made.straightened.end(),
-            [](const auto& a, const auto& b) { return a.point < b.point; });
+  std::ranges::sort(made.straightened, [](const auto& a, const auto& b) { return a.point < b.point; });
 }
 
 /// Returns a warning if layers cover little; empty otherwise.
@@ -86,8 +85,8 @@ std::string warning_of(const LayersReport& layers) {
   constexpr double enough = 0.8;
   if (layers.coverage() >= enough) return {};
   std::string text = fmt::format("layers cover only {:.1f}% of the walls", 100 * layers.coverage());
-  const auto most = std::max_element(
-      layers.reductions.begin(), layers.reductions.end(),
+  const auto most = std::ranges::max_element(
+      layers.reductions,
       [](const LayersReport::Reduction& a, const LayersReport::Reduction& b) { return a.nodes < b.nodes; });
   if (most != layers.reductions.end())
     text += fmt::format(", at {} nodes because {}", most->nodes, most->why);
@@ -104,7 +103,7 @@ void certify_with_layers(MeshJob& job) {
       job.execution());
   std::vector<std::string> notes = std::move(made.notes);
   for (std::string& note : now.notes)
-    if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(std::move(note));
+    if (std::ranges::find(notes, note) == notes.end()) notes.push_back(std::move(note));
   now.notes = std::move(notes);
   made = std::move(now);
   if (std::string warning = warning_of(*job.made.layers); !warning.empty())

@@ -6,6 +6,7 @@
 
 #include "collarmesh/options.h"
 #include "collarmesh/plc_builder.h"
+#include "common/sort_uniquely.h"
 #include "facets/box_around.h"
 #include "facets/cleanup.h"
 #include "facets/facet_triangulation.h"
@@ -140,11 +141,6 @@ void add_patches(Draft& draft, const Regions& regions, const std::vector<Index>&
   }
 }
 
-void sort_unique(std::vector<Index>& list) {
-  std::sort(list.begin(), list.end());
-  list.erase(std::unique(list.begin(), list.end()), list.end());
-}
-
 // Links patches to their curves and vertices. Precondition: curves have their patches and vertices their
 // curves.
 void link_patches(const Draft& draft, Plc& plc) {
@@ -156,7 +152,7 @@ void link_patches(const Draft& draft, Plc& plc) {
     for (const Index point : t.points)
       if (vertex_at[point] != none) plc.vertices[vertex_at[point]].patches.push_back(t.patch);
   for (Index v = 0; v < plc.vertices.size(); ++v) {
-    sort_unique(plc.vertices[v].patches);
+    sort_uniquely(plc.vertices[v].patches);
     for (const Index p : plc.vertices[v].patches) plc.patches[p].vertices.push_back(v);
   }
 }

@@ -17,8 +17,7 @@ constexpr double angle_rounding = 1e-6;
 
 std::vector<Crease> below(std::vector<Crease> angles, double threshold) {
   std::erase_if(angles, [&](const Crease& c) { return c.angle >= threshold - angle_rounding; });
-  std::stable_sort(angles.begin(), angles.end(),
-                   [](const Crease& a, const Crease& b) { return a.angle < b.angle; });
+  std::ranges::stable_sort(angles, {}, &Crease::angle);
   return angles;
 }
 

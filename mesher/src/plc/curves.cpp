@@ -90,8 +90,7 @@ class CurveFinder {
     DisjointSets fans(3 * triangles.size());
     const auto corner_at = [&](Index side, Index point) {
       const Index t = side / 3;
-      return 3 * t + static_cast<Index>(std::find(triangles[t].begin(), triangles[t].end(), point) -
-                                        triangles[t].begin());
+      return 3 * t + static_cast<Index>(std::ranges::find(triangles[t], point) - triangles[t].begin());
     };
     for (Index e = 0; e < edges_.size(); ++e)
       for (const Index side : edges_.sides(e).subspan(1))

@@ -76,9 +76,7 @@ std::vector<FeatureSegment> find_segments(const Draft& draft, const EdgeTable& e
   for (const Segment& s : draft.segments)
     named.push_back({std::min(s.a, s.b), std::max(s.a, s.b), edges.find(s.a, s.b), s.tag,
                      draft.soup_gives_features[s.soup]});
-  std::stable_sort(named.begin(), named.end(), [](const FeatureSegment& s, const FeatureSegment& t) {
-    return std::array{s.edge, s.a, s.b} < std::array{t.edge, t.a, t.b};
-  });
+  std::ranges::stable_sort(named, {}, [](const FeatureSegment& s) { return std::array{s.edge, s.a, s.b}; });
   named.erase(std::unique(named.begin(), named.end(),
                           [](const auto& s, const auto& t) { return s.a == t.a && s.b == t.b; }),
               named.end());

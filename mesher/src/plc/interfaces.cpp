@@ -57,11 +57,11 @@ class InterfaceFinder {
     for (const Index t : triangles)
       for (unsigned i = 0; i < 3; ++i) {
         const auto sides = edges_.sides(edges_.edge_of(3 * t + i));
-        const auto count = std::count_if(sides.begin(), sides.end(),
-                                         [&](Index side) { return clusters_.seed[side / 3] == seed; });
+        const auto count =
+            std::ranges::count_if(sides, [&](Index side) { return clusters_.seed[side / 3] == seed; });
         if (count == 1) result.push_back(edges_.edge_of(3 * t + i));
       }
-    std::sort(result.begin(), result.end());
+    std::ranges::sort(result);
     return result;
   }
 

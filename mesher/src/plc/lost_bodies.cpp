@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 #include <set>
+#include <tuple>
 
 #include "common/disjoint_sets.h"
 #include "facets/faults.h"
@@ -22,15 +23,13 @@ struct Body {
   Index facets = 0;
 };
 
-bool before(const Point& p, const Point& q) {
-  if (p.x != q.x) return p.x < q.x;
-  return p.y != q.y ? p.y < q.y : p.z < q.z;
-}
-
 void unite_equal_points(const std::vector<Point>& points, DisjointSets& sets) {
   std::vector<Index> order(points.size());
   std::iota(order.begin(), order.end(), Index{0});
-  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return before(points[a], points[b]); });
+  std::ranges::sort(order, {}, [&](Index i) {
+    const Point& p = points[i];
+    return std::tuple(p.x, p.y, p.z);
+  });
   for (std::size_t i = 1; i < order.size(); ++i)
     if (points[order[i - 1]] == points[order[i]]) sets.unite(order[i - 1], order[i]);
 }
@@ -67,14 +66,14 @@ class TrianglesByPlace {
  public:
   explicit TrianglesByPlace(const Plc& plc) : plc_(plc), order_(plc.triangles.size()) {
     std::iota(order_.begin(), order_.end(), Index{0});
-    std::sort(order_.begin(), order_.end(), [this](Index a, Index b) { return x(a) < x(b); });
+    std::ranges::sort(order_, {}, [this](Index triangle) { return x(triangle); });
   }
 
   bool any_in(Box box, double around) const {
     const Vector margin{around, around, around};
     box.min = box.min - margin;
     box.max = box.max + margin;
-    auto at = std::partition_point(order_.begin(), order_.end(), [&](Index t) { return x(t) < box.min.x; });
+    auto at = std::ranges::partition_point(order_, [&](Index t) { return x(t) < box.min.x; });
     for (; at != order_.end() && x(*at) <= box.max.x; ++at)
       if (std::all_of(plc_.triangles[*at].points.begin(), plc_.triangles[*at].points.end(),
                       [&](Index p) { return holds(box, plc_.points[p]); }))

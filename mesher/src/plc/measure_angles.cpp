@@ -1,17 +1,145 @@
 // Measures the angles between the features of a complex (paper, Definition 1).
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <map>
+#include <span>
+#include <vector>
 
+#include "common/cells_at_vertices.h"
 #include "common/segments.h"
-#include "plc/fans.h"
+#include "facets/edges.h"
+#include "plc/angles.h"
 
 namespace collarmesh::plc {
 
 using namespace facets;
 
 namespace {
+
+/// The triangles of one patch around a point, bounded by segments.
+struct Fan {
+  Index patch = none;
+  bool closed = false;
+  std::vector<Index> rim;    ///< the other ends of the triangles' edges at the point, in order
+  std::vector<Vector> rays;  ///< unit vectors towards them
+
+  std::size_t sector_count() const { return closed ? rim.size() : rim.size() - 1; }
+  Sector sector(std::size_t i) const { return {rays[i], rays[(i + 1) % rays.size()]}; }
+};
+
+// A fan is too flat to fold if the cosines between all its normals and the first one exceed this.
+constexpr double flat_fan_cosine = 0.866;
+
+std::vector<Corners> corners_of(const std::vector<Plc::Triangle>& triangles) {
+  std::vector<Corners> corners;
+  corners.reserve(triangles.size());
+  for (const Plc::Triangle& t : triangles) corners.push_back(t.points);
+  return corners;
+}
+
+bool too_flat_to_fold(const Fan& fan) {
+  Vector first{};
+  for (std::size_t i = 0; i < fan.sector_count(); ++i) {
+    const Sector s = fan.sector(i);
+    const Vector n = cross(s.u, s.v);
+    if (i == 0) first = n / norm(n);
+    if (dot(first, n) < flat_fan_cosine * norm(n)) return false;
+  }
+  return true;
+}
+
+/// The triangles of each patch around its points, divided by segments.
+class PatchFans {
+ public:
+  /// Keeps points and patches by reference. Segments are pairs of points in any order.
+  PatchFans(std::span<const Point> points, const std::vector<Plc::Triangle>& triangles,
+            const std::vector<Plc::Patch>& patches, std::span<const std::array<Index, 2>> segments)
+      : points_(points),
+        patches_(patches),
+        triangles_(corners_of(triangles)),
+        edges_(triangles_, points.size()),
+        is_segment_(edges_.size(), false) {
+    patch_of_.reserve(triangles.size());
+    for (const Plc::Triangle& t : triangles) patch_of_.push_back(t.patch);
+    for (const auto& [a, b] : segments)
+      if (const Index e = edges_.find(a, b); e != none) is_segment_[e] = true;
+    triangles_at_ = {triangles_, points_.size()};
+    visited_.assign(3 * triangles_.size(), false);
+  }
+
+  const std::vector<Corners>& triangles() const { return triangles_; }
+  const EdgeTable& edges() const { return edges_; }
+  Index patch_of(Index side) const { return patch_of_[side / 3]; }
+
+  /// Returns the fans around a point, of smooth patches only or of all.
+  std::vector<Fan> at(Index point, bool smooth_only) {
+    std::vector<Fan> fans;
+    const auto corner_of = [&](Index t) {
+      return 3 * t + (triangles_[t][0] == point ? 0 : triangles_[t][1] == point ? 1 : 2);
+    };
+    for (const Index t : triangles_at_[point]) {
+      const Index start = corner_of(t);
+      if (visited_[start] || (smooth_only && patches_[patch_of(start)].planar)) continue;
+      fans.push_back(make_fan(start));
+    }
+    for (const Index t : triangles_at_[point]) visited_[corner_of(t)] = false;
+    return fans;
+  }
+  /// Returns the side of the same edge in the neighbouring triangle of the patch; none at a segment.
+  Index across(Index side) const {
+    const Index edge = edges_.edge_of(side);
+    const auto sides = edges_.sides(edge);
+    if (is_segment_[edge] || sides.size() != 2) return none;
+    return sides[0] == side ? sides[1] : sides[0];
+  }
+
+  /// Returns how sharply a smooth patch folds in a fan around the point (degrees, see fold_angle); 180 if one
+  /// of its edges is at most as long as `noise_length`, because its direction is unreliable.
+  double fold(Index point, const Fan& fan, double noise_length) const {
+    const bool too_small = std::ranges::any_of(
+        fan.rim, [&](Index q) { return distance(points_[point], points_[q]) <= noise_length; });
+    return too_small || too_flat_to_fold(fan) ? 180 : fold_angle(fan.rays, fan.closed);
+  }
+
+ private:
+  Fan make_fan(Index start) {
+    Index first = start;
+    for (Index c = previous_corner(start); c != none && c != start; c = previous_corner(c)) first = c;
+    Fan fan;
+    fan.patch = patch_of(start);
+    fan.closed = previous_corner(first) != none;
+    const Index p = triangles_[start / 3][start % 3];
+    Index last = first;
+    for (Index c = first; c != none && !visited_[c]; c = next_corner(c)) {
+      visited_[c] = true;
+      last = c;
+      fan.rim.push_back(triangles_[c / 3][(c % 3 + 1) % 3]);
+    }
+    if (!fan.closed) fan.rim.push_back(triangles_[last / 3][(last % 3 + 2) % 3]);
+    if (!fan.closed && fan.rim.size() > 2 && fan.rim.front() == fan.rim.back()) {
+      // If a segment ends inside the patch, its two sides are one ray.
+      fan.rim.pop_back();
+      fan.closed = true;
+    }
+    for (const Index q : fan.rim)
+      fan.rays.push_back((points_[q] - points_[p]) / distance(points_[p], points_[q]));
+    return fan;
+  }
+  // Returns the corner that follows (counterclockwise) or precedes this one in its fan.
+  Index next_corner(Index corner) const { return across(corner - corner % 3 + (corner % 3 + 2) % 3); }
+  Index previous_corner(Index corner) const {
+    const Index side = across(corner);
+    return side == none ? none : side - side % 3 + (side % 3 + 1) % 3;
+  }
+
+  std::span<const Point> points_;
+  const std::vector<Plc::Patch>& patches_;
+  std::vector<Corners> triangles_;
+  std::vector<Index> patch_of_;  // by triangle
+  EdgeTable edges_;
+  std::vector<bool> is_segment_;  // by edge
+  CellsAtVertices triangles_at_;
+  std::vector<bool> visited_;  // corners that already are in a fan
+};
 
 // An edge has no reliable direction if it is shorter than this many planar tolerances; a triangle, if it is
 // lower.
@@ -123,8 +251,7 @@ class AngleFinder {
       if (height(seen[next]) > noise_length()) return seen[next];
       for (Index side = 3 * seen[next]; side < 3 * seen[next] + 3; ++side) {
         const Index other = fans_.across(side);
-        if (other != none && std::find(seen.begin(), seen.end(), other / 3) == seen.end())
-          seen.push_back(other / 3);
+        if (other != none && std::ranges::find(seen, other / 3) == seen.end()) seen.push_back(other / 3);
       }
     }
     return triangle;
@@ -175,10 +302,10 @@ class AngleFinder {
   }
 
   static bool has_ray(const Fan& fan, Index point) {
-    return std::find(fan.rim.begin(), fan.rim.end(), point) != fan.rim.end();
+    return std::ranges::find(fan.rim, point) != fan.rim.end();
   }
   static bool have_common_ray(const Fan& f, const Fan& g) {
-    return std::any_of(f.rim.begin(), f.rim.end(), [&](Index p) { return has_ray(g, p); });
+    return std::ranges::any_of(f.rim, [&](Index p) { return has_ray(g, p); });
   }
 
   void measure_folds(Index p, Index v, const std::vector<Fan>& fans) {
@@ -208,10 +335,6 @@ class AngleFinder {
   std::vector<std::vector<Ray>> rays_;  // by vertex
   std::vector<Crease> result_;
 };
-
-}  // namespace
-
-namespace {
 
 // If all normals are within this cosine of one of them, the triangles are within 30 degrees of each other:
 // their fan is too flat to fold.
@@ -261,9 +384,8 @@ std::vector<Index> find_folds(std::span<const Point> points, const Plc& plc,
   PatchFans fans(points, plc.triangles, plc.patches, ends);
   std::erase_if(folds, [&](Index p) {
     const std::vector<Fan> around = fans.at(p, true);
-    return std::none_of(around.begin(), around.end(), [&](const Fan& fan) {
-      return fans.fold(p, fan, noise * plc.planar_tolerance) < folded;
-    });
+    return std::ranges::none_of(
+        around, [&](const Fan& fan) { return fans.fold(p, fan, noise * plc.planar_tolerance) < folded; });
   });
   return folds;
 }

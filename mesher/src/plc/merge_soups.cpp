@@ -27,7 +27,7 @@ class RepeatedFacets {
   bool add(const MergedFacet& facet) {
     std::vector<Index> key;
     for (const auto& polygon : facet.polygons) key.insert(key.end(), polygon.begin(), polygon.end());
-    std::sort(key.begin(), key.end());
+    std::ranges::sort(key);
     return seen_.insert(std::move(key)).second;
   }
 
@@ -59,8 +59,7 @@ class Merger {
     const PolygonSoup& soup = soups_[s];
     if (result_.name.empty()) result_.name = soup.name;
     result_.tag_names.add(soup.tag_names);
-    report_.unused_points +=
-        static_cast<Index>(std::count(map_.merged[s].begin(), map_.merged[s].end(), none));
+    report_.unused_points += static_cast<Index>(std::ranges::count(map_.merged[s], none));
     std::vector<Index> number(soup.facet_count(), none);
     has_hole_.assign(soup.facet_count(), false);
     for (const auto& hole : soup.facet_holes) has_hole_[hole.facet] = true;

@@ -5,15 +5,15 @@
 namespace collarmesh {
 
 bool Plc::vertex_on_patch(Index vertex, Index patch) const {
-  return std::binary_search(vertices[vertex].patches.begin(), vertices[vertex].patches.end(), patch);
+  return std::ranges::binary_search(vertices[vertex].patches, patch);
 }
 
 bool Plc::curve_on_patch(Index curve, Index patch) const {
-  return std::binary_search(curves[curve].patches.begin(), curves[curve].patches.end(), patch);
+  return std::ranges::binary_search(curves[curve].patches, patch);
 }
 
 bool Plc::vertex_on_curve(Index vertex, Index curve) const {
-  return std::binary_search(vertices[vertex].curves.begin(), vertices[vertex].curves.end(), curve);
+  return std::ranges::binary_search(vertices[vertex].curves, curve);
 }
 
 }  // namespace collarmesh

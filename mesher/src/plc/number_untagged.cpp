@@ -15,8 +15,8 @@ bool has_facet_tags(const PolygonSoup& soup) {
 }
 
 bool has_segment_tags(const PolygonSoup& soup) {
-  return std::any_of(soup.segments.begin(), soup.segments.end(),
-                     [](const PolygonSoup::Segment& segment) { return segment.tag != 0; });
+  return std::ranges::any_of(soup.segments,
+                             [](const PolygonSoup::Segment& segment) { return segment.tag != 0; });
 }
 
 /// Gives the smallest unused numbers to features without a tag.
@@ -35,8 +35,8 @@ void number(std::vector<Feature>& features) {
 }  // namespace
 
 void number_untagged(std::span<const PolygonSoup> soups, Plc& plc) {
-  plc.numbered_patches = std::none_of(soups.begin(), soups.end(), has_facet_tags);
-  plc.numbered_curves = std::none_of(soups.begin(), soups.end(), has_segment_tags);
+  plc.numbered_patches = std::ranges::none_of(soups, has_facet_tags);
+  plc.numbered_curves = std::ranges::none_of(soups, has_segment_tags);
   if (plc.numbered_patches) number(plc.patches);
   if (plc.numbered_curves) number(plc.curves);
 }

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <optional>
 #include <vector>
 
@@ -86,10 +85,7 @@ class PointPlacer {
     std::vector<Index> sides;
     for (const Index side : largest_)
       if (side != none) sides.push_back(side);
-    std::sort(sides.begin(), sides.end(), [this](Index a, Index b) {
-      const double area_a = area(a / 2), area_b = area(b / 2);
-      return area_a != area_b ? area_a > area_b : a < b;
-    });
+    std::ranges::sort(sides, {}, [this](Index side) { return std::pair(-area(side / 2), side); });
     return sides;
   }
 
@@ -113,8 +109,8 @@ class PointPlacer {
       if (side % 2 == 0) direction = -1.0 * direction;
       const auto crossings = caster_.cast(at - reach * direction, at + reach * direction);
       if (!crossings) continue;
-      const auto here = std::find_if(crossings->begin(), crossings->end(),
-                                     [t](const auto& crossing) { return crossing.triangle == t; });
+      const auto here =
+          std::ranges::find_if(*crossings, [t](const auto& crossing) { return crossing.triangle == t; });
       if (here == crossings->end() || here + 1 == crossings->end()) continue;
       const Point p = crossing_point((here + 1)->triangle, at, direction);
       if (distance(at, p) <= longest) continue;

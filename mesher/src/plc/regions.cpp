@@ -289,10 +289,7 @@ class RegionFinder {
     std::vector<Index> order;
     for (Index i = 0; i < list_.size(); ++i)
       if (list_[i].region != 0) order.push_back(i);
-    std::sort(order.begin(), order.end(), [&](Index a, Index b) {
-      const auto rank = [](const Chamber& c) { return std::pair(c.owner, c.first_triangle); };
-      return rank(list_[a]) < rank(list_[b]);
-    });
+    std::ranges::sort(order, {}, [&](Index i) { return std::pair(list_[i].owner, list_[i].first_triangle); });
     for (Index n = 0; n < order.size(); ++n) {
       list_[order[n]].region = n + 1;
       region_of_chamber_[chambers_.find(list_[order[n]].inner_shell)] = n + 1;
@@ -344,8 +341,8 @@ class RegionFinder {
   }
 
   void warn_of_hole(const PlacedPoint& p) {
-    const auto hole = std::find_if(holes_.begin(), holes_.end(),
-                                   [&](const PlacedPoint& h) { return h.chamber == p.chamber; });
+    const auto hole =
+        std::ranges::find_if(holes_, [&](const PlacedPoint& h) { return h.chamber == p.chamber; });
     if (hole == holes_.end())
       warn(p.point.point,
            fmt::format("{} lies in a cavity and has no effect; move it inside a region, turn the "

@@ -5,6 +5,20 @@
 
 namespace collarmesh {
 
+namespace {
+
+template <class Summary>
+std::vector<Summary> named(std::map<Tag, Summary> by_tag, std::size_t dimension, const TagNames& names) {
+  std::vector<Summary> summaries;
+  for (auto& [tag, summary] : by_tag) {
+    if (const std::string* name = names.find(dimension, tag)) summary.name = *name;
+    summaries.push_back(std::move(summary));
+  }
+  return summaries;
+}
+
+}  // namespace
+
 std::vector<PatchSummary> summarize_patches(const Plc& plc) {
   std::map<Tag, PatchSummary> by_tag;
   for (const Plc::Patch& patch : plc.patches) {
@@ -23,12 +37,7 @@ std::vector<PatchSummary> summarize_patches(const Plc& plc) {
     }
     ++summary.count;
   }
-  std::vector<PatchSummary> summaries;
-  for (auto& [tag, summary] : by_tag) {
-    if (const std::string* name = plc.names.find(2, tag)) summary.name = *name;
-    summaries.push_back(std::move(summary));
-  }
-  return summaries;
+  return named(std::move(by_tag), 2, plc.names);
 }
 
 std::vector<CurveSummary> summarize_curves(const Plc& plc) {
@@ -48,12 +57,7 @@ std::vector<CurveSummary> summarize_curves(const Plc& plc) {
     });
     ++summary.count;
   }
-  std::vector<CurveSummary> summaries;
-  for (auto& [tag, summary] : by_tag) {
-    if (const std::string* name = plc.names.find(1, tag)) summary.name = *name;
-    summaries.push_back(std::move(summary));
-  }
-  return summaries;
+  return named(std::move(by_tag), 1, plc.names);
 }
 
 }  // namespace collarmesh

@@ -5,22 +5,16 @@
 #include <numbers>
 #include <utility>
 
+#include "common/segments.h"
+#include "tolerance/facing.h"
+
 namespace collarmesh::prediction {
 
 namespace {
 
-// The same cosines as in the measurement of gaps (tolerance/facing.cpp).
-constexpr double least_facing = 0.5, least_facing_of_neighbours = 0.966;
-
-std::vector<std::array<Index, 3>> triangles_of(const Plc& plc) {
-  std::vector<std::array<Index, 3>> triangles;
-  for (const Plc::Triangle& triangle : plc.triangles) triangles.push_back(triangle.points);
-  return triangles;
-}
-
 std::vector<DistanceTree::Triangle> corners_of(const Plc& plc) {
   std::vector<DistanceTree::Triangle> corners;
-  for (const auto& [a, b, c] : triangles_of(plc))
+  for (const auto& [a, b, c] : corners_of_triangles(plc))
     corners.push_back({plc.points[a], plc.points[b], plc.points[c]});
   return corners;
 }
@@ -31,7 +25,7 @@ Shape::Shape(const Plc& plc)
     : plc_(plc),
       radii_(curvature_sizes(plc, 2 * std::numbers::pi)),  // radii: the sizes for one element per radian
       angles_(solid_angles(plc)),
-      surface_(plc.points, triangles_of(plc)),
+      surface_(plc.points, corners_of_triangles(plc)),
       tree_(corners_of(plc)),
       locator_(plc) {
   for (const Plc::Patch& patch : plc.patches) borders_.push_back(border_of(patch));
@@ -63,7 +57,7 @@ double Shape::strip_width(const Point& p, Index curve, const Vector& along, doub
       const Index other = border.curve[i];
       if (other == curve) return false;
       const auto [a, b, same] = border.segments->corners(i);
-      const double least = curves_meet(curve, other) ? least_facing_of_neighbours : least_facing;
+      const double least = least_facing(curves_meet(curve, other));  // as in the measurement of gaps
       return std::fabs(dot(along, b - a)) > least * norm(along) * norm(b - a);
     });
   }
@@ -75,6 +69,7 @@ double Shape::wall_width(const Point& p, Index triangle, double widest) const {
   const auto [a, b, c] = corners(triangle);
   const Vector normal = cross(b - a, c - a);
   if (!(norm(normal) > 0)) return widest;
+  const double least = least_facing(false);  // the same cosine as in the measurement of gaps
   double width = widest;
   std::vector<TriangleHierarchy::Crossing> crossings;
   for (unsigned side = 0; side < 2; ++side) {
@@ -87,7 +82,7 @@ double Shape::wall_width(const Point& p, Index triangle, double widest) const {
       if (other == triangle || patches_meet(patch, plc_.triangles[other].patch)) continue;
       const auto [d, e, f] = corners(other);
       const Vector n = cross(e - d, f - d);
-      if (std::fabs(dot(n, way)) < least_facing * norm(n)) continue;
+      if (std::fabs(dot(n, way)) < least * norm(n)) continue;
       width = std::min(width, dot(d - p, n) / dot(n, way));
     }
   }
@@ -98,12 +93,10 @@ Shape::Border Shape::border_of(const Plc::Patch& patch) const {
   Border border;
   std::vector<std::array<Index, 3>> segments;
   for (const Index curve : patch.curves) {
-    const auto& points = plc_.curves[curve].points;
-    for (std::size_t i = 0; i < segment_count(curve); ++i) {
-      const Index next = points[(i + 1) % points.size()];
-      segments.push_back({points[i], next, next});
+    visit_segments(plc_.curves[curve], [&](Index a, Index b) {
+      segments.push_back({a, b, b});
       border.curve.push_back(curve);
-    }
+    });
   }
   border.segments = std::make_unique<TriangleHierarchy>(plc_.points, std::move(segments));
   return border;
@@ -111,14 +104,14 @@ Shape::Border Shape::border_of(const Plc::Patch& patch) const {
 
 bool Shape::curves_meet(Index curve, Index other) const {
   const auto &a = plc_.curves[curve].ends, &b = plc_.curves[other].ends;
-  return std::any_of(a.begin(), a.end(), [&](Index v) { return v != none && (v == b[0] || v == b[1]); });
+  return std::ranges::any_of(a, [&](Index v) { return v != none && (v == b[0] || v == b[1]); });
 }
 
 // Returns whether the patches meet in a curve: if so, the region between them is a wedge, not a wall.
 bool Shape::patches_meet(Index patch, Index other) const {
   if (patch == other) return false;
   const auto &a = plc_.patches[patch].curves, &b = plc_.patches[other].curves;
-  return std::any_of(a.begin(), a.end(), [&](Index c) { return std::binary_search(b.begin(), b.end(), c); });
+  return std::ranges::any_of(a, [&](Index c) { return std::ranges::binary_search(b, c); });
 }
 
 }  // namespace collarmesh::prediction

@@ -48,7 +48,7 @@ class Wheel {
 
   /// Returns the sum of the angles within regions, radians, and the number of their wedges.
   std::pair<double, int> inside() {
-    std::sort(spokes_.begin(), spokes_.end());
+    std::ranges::sort(spokes_);
     std::pair<double, int> sum{0, 0};
     for (std::size_t i = 0; i < spokes_.size(); ++i) {
       const bool last = i + 1 == spokes_.size();
@@ -105,7 +105,7 @@ SolidAngles solid_angles(const Plc& plc) {
     bool has_edges = false;
     for (const Index c : vertex.curves) {
       const auto& [sum, count] = wedges[c];
-      const int ends = static_cast<int>(std::count(plc.curves[c].ends.begin(), plc.curves[c].ends.end(), v));
+      const int ends = static_cast<int>(std::ranges::count(plc.curves[c].ends, v));
       angle += ends * (sum - std::numbers::pi * count);
       has_edges = has_edges || ends > 0;
     }

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <deque>
-#include <utility>
 #include <vector>
 
 #include "predict/graded_size.h"

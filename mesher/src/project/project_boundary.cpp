@@ -202,8 +202,7 @@ class BoundaryProjection {
   template <std::size_t n>
   bool move_farthest_back(const std::array<Index, n>& vertices, std::vector<Index>& around) {
     const auto moved = [&](Index p) { return distance(mesh_.points[p], room_.origin(p)); };
-    const Index farthest =
-        *std::ranges::max_element(vertices, [&](Index a, Index b) { return moved(a) < moved(b); });
+    const Index farthest = *std::ranges::max_element(vertices, {}, moved);
     if (moved(farthest) == 0) return false;
     if (const Index slot = slot_of_[farthest]; slot != none) set_done(slot, false);
     go_back(farthest, around);

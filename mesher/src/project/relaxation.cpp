@@ -293,7 +293,7 @@ bool Relaxation::keeps_course(Index vertex) {
   return std::ranges::all_of(edges, [&](Index edge) { return on_course(edge); });
 }
 
-// Updates faces and edges on smooth features after vertices slid along them.
+// Returns whether faces and edges at the vertex still fit their features if it moves to this place.
 bool Relaxation::fits_features(Index vertex, const Point& place) {
   if (mesh_.features[vertex].dimension == 3) return true;
   find_features_around();

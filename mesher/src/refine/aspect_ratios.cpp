@@ -38,10 +38,8 @@ AspectRatios aspect_ratios(const RefinedMesh& mesh, const std::function<bool(Ind
       }
     }
   };
-  constexpr std::size_t at_once = 8192;
-  parallel_for_ranges(mesh.cell_capacity(), at_once, [&](std::size_t first, std::size_t last) {
-    for (std::size_t cell = first; cell < last; ++cell)
-      if (mesh.alive(static_cast<Index>(cell))) see_cell(static_cast<Index>(cell));
+  parallel_for_in_chunks(mesh.cell_capacity(), [&](std::size_t cell) {
+    if (mesh.alive(static_cast<Index>(cell))) see_cell(static_cast<Index>(cell));
   });
   AspectRatios ratios;
   for (Index v = 0; v < mesh.vertex_count(); ++v) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <limits>
 
 #include "common/parallel_for.h"
@@ -162,12 +161,9 @@ void BlockRefinement::divide_vertices() {
   cuts_.resize(blocks - 1);
   cut(0, sample);
   owners_.resize(vertices);
-  constexpr std::size_t at_once = 4096;
-  parallel_for_ranges(vertices, at_once, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      const auto v = static_cast<Index>(i);
-      owners_[v] = may_belong_to_block(v) ? block_at(mesh_.point(v)) : Triangulation::no_owner;
-    }
+  parallel_for_in_chunks(vertices, [&](std::size_t i) {
+    const auto v = static_cast<Index>(i);
+    owners_[v] = may_belong_to_block(v) ? block_at(mesh_.point(v)) : Triangulation::no_owner;
   });
 }
 
@@ -203,6 +199,7 @@ bool BlockRefinement::may_belong_to_block(Index vertex) const {
 std::vector<std::vector<WorkQueue::Entry>> BlockRefinement::deal(const std::vector<WorkQueue::Entry>& taken) {
   constexpr std::uint16_t gone = Triangulation::no_owner - 1;
   std::vector<std::uint16_t> owner(taken.size());
+  // Less than usual, because there may be only a few thousand entries, which all threads should share.
   constexpr std::size_t at_once = 1024;
   parallel_for_ranges(taken.size(), at_once, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
@@ -333,8 +330,7 @@ BlockRefinement::Fate BlockRefinement::destroy(const WorkQueue::Item& item, Bloc
 // the complex, the new cells get the region of the old ones.
 bool BlockRefinement::insert(const Candidate& candidate, Block block, Worker& worker) {
   ConflictZone& zone = worker.zone;
-  const bool quiet =
-      std::none_of(zone.vertices.begin(), zone.vertices.end(), [&](Index v) { return nodes_.any_at(v); });
+  const bool quiet = std::ranges::none_of(zone.vertices, [&](Index v) { return nodes_.any_at(v); });
   const Index region = surface_.region(zone.cells[0]);
   if (!quiet) {
     if (!surface_.has_room(zone, block.surface)) return false;

@@ -12,12 +12,6 @@ constexpr double seconds_between_reports = 0.1;
 
 }  // namespace
 
-Budget::Budget(const MeshOptions& options, const Execution& execution, Outcome& outcome)
-    : options_(options),
-      execution_(execution),
-      outcome_(outcome),
-      started_(std::chrono::steady_clock::now()) {}
-
 bool Budget::spent(const Usage& now) {
   constexpr const char* more =
       "raise {} or size; if this is far more than expected, look at the input there, or wrap it (repair "

@@ -21,7 +21,11 @@ class Budget {
   };
 
   /// Keeps all by reference. Starts the clock.
-  Budget(const MeshOptions& options, const Execution& execution, Outcome& outcome);
+  Budget(const MeshOptions& options, const Execution& execution, Outcome& outcome)
+      : options_(options),
+        execution_(execution),
+        outcome_(outcome),
+        started_(std::chrono::steady_clock::now()) {}
 
   /// Returns whether a budget is spent or the caller has cancelled; then sets the outcome.
   bool spent(const Usage& now);

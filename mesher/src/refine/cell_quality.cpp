@@ -35,21 +35,6 @@ Shape shape_of(const RefinedMesh& mesh, const std::array<Index, 4>& v) {
 
 }  // namespace
 
-CellQuality::CellQuality(const Domain& domain, const RefinedMesh& mesh, const CollarCells& collar_cells,
-                         const RestrictedSurface& surface, const GradedSizes& sizes,
-                         const FacingSheets& facing_sheets, RandomOffsets& random, WorkQueue& queue)
-    : domain_(domain),
-      mesh_(mesh),
-      collar_cells_(collar_cells),
-      surface_(surface),
-      sizes_(sizes),
-      facing_sheets_(facing_sheets),
-      random_(random),
-      queue_(queue),
-      leaves_narrow_cells_(domain.options.narrow_cells != NarrowCells::bounded) {
-  if (domain_.options.vertex_ratio > 0) shortest_edge_.resize(mesh_.vertex_count(), INFINITY);
-}
-
 void CellQuality::judge(Index cell, WorkQueue& queue, bool leaves_narrow_cells) const {
   if (collar_cells_.inside(cell)) return judge_in_collar(cell, queue);
   const Index region = surface_.region(cell);

@@ -25,7 +25,18 @@ class CellQuality {
   /// Keeps all by reference.
   CellQuality(const Domain& domain, const RefinedMesh& mesh, const CollarCells& collar_cells,
               const RestrictedSurface& surface, const GradedSizes& sizes, const FacingSheets& facing_sheets,
-              RandomOffsets& random, WorkQueue& queue);
+              RandomOffsets& random, WorkQueue& queue)
+      : domain_(domain),
+        mesh_(mesh),
+        collar_cells_(collar_cells),
+        surface_(surface),
+        sizes_(sizes),
+        facing_sheets_(facing_sheets),
+        random_(random),
+        queue_(queue),
+        leaves_narrow_cells_(domain.options.narrow_cells != NarrowCells::bounded) {
+    if (domain_.options.vertex_ratio > 0) shortest_edge_.resize(mesh_.vertex_count(), INFINITY);
+  }
 
   /// Returns a candidate that destroys a cell, if there is one. Not thread-safe.
   std::optional<Candidate> candidate(Index cell) { return candidate(cell, random_); }

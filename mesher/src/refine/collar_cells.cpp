@@ -13,15 +13,14 @@ constexpr std::size_t most_nearby_balls = 24;
 }  // namespace
 
 bool CollarCells::any_near(const ConflictZone& zone) const {
-  return !collars_.empty() &&
-         std::any_of(zone.vertices.begin(), zone.vertices.end(), [&](Index v) { return near(v); });
+  return !collars_.empty() && std::ranges::any_of(zone.vertices, [&](Index v) { return near(v); });
 }
 
 bool CollarCells::holds(const std::array<Index, 3>& vertices, const Point& p) const {
   if (!near(vertices[0])) return false;
-  if (last_vertex_ == none || std::find(vertices.begin(), vertices.end(), last_vertex_) == vertices.end())
+  if (last_vertex_ == none || std::ranges::find(vertices, last_vertex_) == vertices.end())
     return collars_.ball_containing(p) != none;
-  return std::any_of(balls_.begin(), balls_.end(), [&](Index ball) { return collars_.contains(ball, p); });
+  return std::ranges::any_of(balls_, [&](Index ball) { return collars_.contains(ball, p); });
 }
 
 void CollarCells::fit_mesh() {
@@ -44,8 +43,8 @@ void CollarCells::cells_made(const ConflictZone& zone, Index vertex) {
   for (const Index cell : zone.created) {
     const Point& centre = mesh_.circumcentre(cell);
     const auto holds_centre = [&](Index ball) { return collars_.contains(ball, centre); };
-    const bool held = all_known ? std::any_of(balls_.begin(), balls_.end(), holds_centre)
-                                : collars_.ball_containing(centre) != none;
+    const bool held =
+        all_known ? std::ranges::any_of(balls_, holds_centre) : collars_.ball_containing(centre) != none;
     inside_[cell] = held ? 1 : 0;
   }
 }

@@ -8,22 +8,6 @@
 
 namespace collarmesh {
 
-CollarCreator::CollarCreator(const Domain& domain, const RefinedMesh& mesh, const SurfaceNodes& nodes,
-                             const GradedSizes& sizes, CollarSystem& collars, CollarCells& collar_cells,
-                             RestrictedSurface& surface, UnresolvedPoints& points, CurveChains& curves,
-                             OpenCreases& open_creases, std::function<bool(std::size_t)> stopped)
-    : domain_(domain),
-      mesh_(mesh),
-      nodes_(nodes),
-      sizes_(sizes),
-      collars_(collars),
-      collar_cells_(collar_cells),
-      surface_(surface),
-      points_(points),
-      curves_(curves),
-      open_creases_(open_creases),
-      stopped_(std::move(stopped)) {}
-
 void CollarCreator::start() {
   CollarOptions options;
   options.size = [this](const Feature& feature, const Point& p) { return target_size(feature, p); };
@@ -113,7 +97,7 @@ bool CollarCreator::is_isolated(Index curve) {
   std::size_t& isolated = isolated_[curve];
   for (; isolated < chain.links.size(); ++isolated) {
     const Subsegment* s = curves_.find(chain.links[isolated]);
-    if (s != nullptr && !std::all_of(s->ends.begin(), s->ends.end(), isolated_at)) break;
+    if (s != nullptr && !std::ranges::all_of(s->ends, isolated_at)) break;
   }
   return isolated == chain.links.size();
 }
@@ -130,7 +114,7 @@ bool CollarCreator::create_at_subsegment(Index subsegment) {
 
 bool CollarCreator::create_remaining() {
   std::vector<Index> curves = open_creases_.curves();
-  std::sort(curves.begin(), curves.end());
+  std::ranges::sort(curves);
   for (const Index curve : curves) create_on_curve(curve, BallReason::curve_left);
   return !curves.empty();
 }

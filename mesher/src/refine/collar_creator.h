@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "collar/collar_placement.h"
@@ -30,7 +31,18 @@ class CollarCreator {
   CollarCreator(const Domain& domain, const RefinedMesh& mesh, const SurfaceNodes& nodes,
                 const GradedSizes& sizes, CollarSystem& collars, CollarCells& collar_cells,
                 RestrictedSurface& surface, UnresolvedPoints& points, CurveChains& curves,
-                OpenCreases& open_creases, std::function<bool(std::size_t)> stopped);
+                OpenCreases& open_creases, std::function<bool(std::size_t)> stopped)
+      : domain_(domain),
+        mesh_(mesh),
+        nodes_(nodes),
+        sizes_(sizes),
+        collars_(collars),
+        collar_cells_(collar_cells),
+        surface_(surface),
+        points_(points),
+        curves_(curves),
+        open_creases_(open_creases),
+        stopped_(std::move(stopped)) {}
 
   /// Starts the creation. Precondition: the vertices of the complex are the first unresolved points, in their
   /// order. If stopped, the system stays incomplete.

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "common/sort_uniquely.h"
+
 namespace collarmesh {
 
 namespace {
@@ -12,11 +14,6 @@ constexpr std::size_t triangles_between_stops = 64;
 constexpr double on_sphere = 1e-6;
 // A cell whose volume is below this share of its longest edge cubed is flat.
 constexpr double flat_volume = 1e-7;
-
-void sort_and_make_unique(std::vector<Index>& values) {
-  std::sort(values.begin(), values.end());
-  values.erase(std::unique(values.begin(), values.end()), values.end());
-}
 
 // Visits the faces around an edge of a cell; all of them unless the edge lies on the hull.
 template <class Visit>
@@ -38,18 +35,6 @@ void visit_faces_around(const RefinedMesh& mesh, Index cell, Index a, Index b, c
 }
 
 }  // namespace
-
-CollarReview::CollarReview(const RefinedMesh& mesh, CollarSystem& collars, CollarCells& cells,
-                           const RestrictedSurface& surface, const CollarCreator& creator,
-                           CollarSurface& collar_surface, WorkQueue& queue, std::function<bool()> stopped)
-    : mesh_(mesh),
-      collars_(collars),
-      cells_(cells),
-      surface_(surface),
-      creator_(creator),
-      collar_surface_(collar_surface),
-      queue_(queue),
-      stopped_(std::move(stopped)) {}
 
 void CollarReview::cells_made(const ConflictZone& zone) {
   changed_ = true;
@@ -97,7 +82,7 @@ void CollarReview::start() {
   for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell) {
     if (!mesh_.alive(cell)) continue;
     const auto& v = mesh_.corners(cell);
-    if (std::any_of(v.begin(), v.end(), [&](Index i) { return cells_.near(i); })) touch(cell);
+    if (std::ranges::any_of(v, [&](Index i) { return cells_.near(i); })) touch(cell);
   }
 }
 
@@ -110,7 +95,7 @@ std::vector<Index> CollarReview::take_touched() {
   std::vector<Index> cells;
   cells.swap(touched_cells_);
   std::erase_if(cells, [&](Index cell) { return !mesh_.alive(cell) || touched_[cell] == 0; });
-  sort_and_make_unique(cells);
+  sort_uniquely(cells);
   for (const Index cell : cells) touched_[cell] = 0;
   return cells;
 }
@@ -126,7 +111,7 @@ void CollarReview::take_in_flat_cells(std::vector<Index>& cells) {
   };
   for (const Index cell : cells)
     if (cells_.inside(cell)) add_neighbours(cell);
-  sort_and_make_unique(candidates);
+  sort_uniquely(candidates);
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const Index cell = candidates[i], ball = ball_to_take_in(cell);
     if (ball == none) continue;
@@ -134,15 +119,14 @@ void CollarReview::take_in_flat_cells(std::vector<Index>& cells) {
     cells.push_back(cell);
     add_neighbours(cell);
   }
-  sort_and_make_unique(cells);
+  sort_uniquely(cells);
 }
 
 // Returns the ball to whose collar a flat cell is added; none if it stays outside.
 Index CollarReview::ball_to_take_in(Index cell) {
   if (cells_.inside(cell) || surface_.region(cell) == 0) return none;
   const auto& v = mesh_.corners(cell);
-  if (std::any_of(v.begin(), v.end(),
-                  [&](Index i) { return !cells_.near(i) || mesh_.feature(i).dimension == 3; }))
+  if (std::ranges::any_of(v, [&](Index i) { return !cells_.near(i) || mesh_.feature(i).dimension == 3; }))
     return none;
   const Point &a = mesh_.point(v[0]), &b = mesh_.point(v[1]), &c = mesh_.point(v[2]), &d = mesh_.point(v[3]);
   const double longest = std::max({squared_distance(a, b), squared_distance(a, c), squared_distance(a, d)});
@@ -153,7 +137,7 @@ Index CollarReview::ball_to_take_in(Index cell) {
     const auto t = collar_surface_.triangle(face_id(cell, corner));
     if (!t) continue;
     const CollarBall& ball = collars_.balls()[t->ball];
-    if (std::all_of(v.begin(), v.end(), [&](Index i) {
+    if (std::ranges::all_of(v, [&](Index i) {
           return std::fabs(distance(mesh_.point(i), ball.centre) - ball.radius) < on_sphere * ball.radius;
         }))
       return t->ball;
@@ -192,7 +176,7 @@ bool CollarReview::judge_changed_triangles(const std::vector<Index>& cells) {
       });
   }
   for (const Index cell : cells) touched_[cell] = 0;
-  sort_and_make_unique(changed);
+  sort_uniquely(changed);
   for (const FaceId face : changed) {
     CollarTriangle& t = *triangles_.find(face, mesh_.generation(cell_of(face)));
     const auto v = mesh_.face_vertices(face);
@@ -244,7 +228,7 @@ void CollarReview::find_exposed_vertices(const std::vector<Index>& cells) {
       if (ball != ball_at_.end()) exposed_.push_back(v);
     }
   }
-  sort_and_make_unique(exposed_);
+  sort_uniquely(exposed_);
 }
 
 // Returns the cells of regions outside the collar that have the vertex.
@@ -263,7 +247,7 @@ void CollarReview::queue_exposed_vertices() {
 }
 
 void CollarReview::queue_poor_triangles() {
-  sort_and_make_unique(poor_);
+  sort_uniquely(poor_);
   for (const FaceId face : std::exchange(poor_, {})) {
     const CollarTriangle* t = known_triangle(face);
     if (t == nullptr || t->face != face || !t->poor) continue;
@@ -292,7 +276,7 @@ std::optional<Candidate> CollarReview::candidate_towards(Index outside, Index ve
   const Index b = ball_at_.at(vertex);
   const CollarBall& ball = collars_.balls()[b];
   const auto& v = mesh_.corners(outside);
-  const auto corner = static_cast<unsigned>(std::find(v.begin(), v.end(), vertex) - v.begin());
+  const auto corner = static_cast<unsigned>(std::ranges::find(v, vertex) - v.begin());
   const Vector d = mesh_.circumcentre(outside) - ball.centre;
   return collar_surface_.repair({face_id(outside, corner), mesh_.generation(outside), b,
                                  ball.centre + ball.radius / norm(d) * d, false});

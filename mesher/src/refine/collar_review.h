@@ -3,6 +3,7 @@
 #include <functional>
 #include <optional>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "refine/collar_surface.h"
@@ -25,7 +26,15 @@ class CollarReview {
   /// no more balls will come.
   CollarReview(const RefinedMesh& mesh, CollarSystem& collars, CollarCells& cells,
                const RestrictedSurface& surface, const CollarCreator& creator, CollarSurface& collar_surface,
-               WorkQueue& queue, std::function<bool()> stopped);
+               WorkQueue& queue, std::function<bool()> stopped)
+      : mesh_(mesh),
+        collars_(collars),
+        cells_(cells),
+        surface_(surface),
+        creator_(creator),
+        collar_surface_(collar_surface),
+        queue_(queue),
+        stopped_(std::move(stopped)) {}
 
   /// Reviews the surface. Returns false if nothing was queued: either no fault can be repaired, or the last
   /// queued items changed nothing. Precondition: the queue is empty.

@@ -42,7 +42,7 @@ bool CollarSurface::on_crease(Index vertex) const {
 // Returns whether a smooth patch may fold here, at a curve inside it: a tet between its two sides is then not
 // flat.
 bool CollarSurface::at_fold(std::span<const Index> corners) const {
-  return std::any_of(corners.begin(), corners.end(), [&](Index v) {
+  return std::ranges::any_of(corners, [&](Index v) {
     if (mesh_.feature(v).dimension != 1) return false;
     const auto& patches = domain_.plc.curves[mesh_.feature(v).index].patches;
     return patches.size() == 1 && !domain_.plc.patches[patches[0]].planar;
@@ -54,7 +54,7 @@ std::vector<CollarTriangle> CollarSurface::triangles() {
   for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell) {
     if (!mesh_.alive(cell) || cells_.inside(cell)) continue;
     const auto& v = mesh_.corners(cell);
-    if (std::none_of(v.begin(), v.end(), [&](Index i) { return cells_.near(i); })) continue;
+    if (std::ranges::none_of(v, [&](Index i) { return cells_.near(i); })) continue;
     for (unsigned corner = 0; corner < 4; ++corner)
       if (const auto t = triangle(face_id(cell, corner))) triangles.push_back(*t);
   }
@@ -77,7 +77,7 @@ std::optional<CollarTriangle> CollarSurface::triangle(FaceId outer) {
   const auto v = mesh_.face_vertices(outer);
   const Point p = mesh_.circumcentre(cell_of(outer)), q = mesh_.circumcentre(cell_of(inner));
   balls_.clear();
-  if (std::all_of(v.begin(), v.end(), [&](Index i) { return cells_.near(i); }))
+  if (std::ranges::all_of(v, [&](Index i) { return cells_.near(i); }))
     collars_.balls_on_segment(p, q, balls_);
   if (balls_.empty()) {
     off_.resize(mesh_.cell_capacity(), 0);
@@ -99,7 +99,7 @@ std::optional<CollarTriangle> CollarSurface::triangle(FaceId outer) {
     const double half = std::sqrt(std::max(0.0, (ball.radius * ball.radius - off) / length));
     parts.push_back({middle - half, middle + half, index});
   }
-  std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.from < b.from; });
+  std::ranges::sort(parts, {}, &Part::from);
   double covered = parts[0].to;
   bool several = !inside;
   for (const Part& part : parts) {
@@ -233,9 +233,9 @@ bool CollarSurface::crosses_patch(const CollarBall& ball, Index a, Index b) {
     return dot(plane.normal, p - origin) * dot(plane.normal, q - origin) > 0;
   };
   const auto patches = patches_through(ball);
-  if (near && std::all_of(patches.begin(), patches.end(), on_one_side)) return false;
+  if (near && std::ranges::all_of(patches, on_one_side)) return false;
   nodes_.crossings(p, q, crossings_);
-  return std::any_of(crossings_.begin(), crossings_.end(), [&](const auto& crossing) {
+  return std::ranges::any_of(crossings_, [&](const auto& crossing) {
     const Index patch = domain_.plc.triangles[crossing.triangle].patch;
     const bool a_on = mesh_.on_patch(a, patch), b_on = mesh_.on_patch(b, patch);
     if (a_on == b_on) return !a_on;

@@ -128,10 +128,8 @@ double CurveChains::bisecting_parameter(Index c, const Point& a, const Point& b,
                                         double to) const {
   const auto nearer_to_a = [&](const Point& p) { return squared_distance(p, b) - squared_distance(p, a); };
   const auto& lengths = domain_.paths.lengths(c);
-  auto first =
-      static_cast<std::size_t>(std::upper_bound(lengths.begin(), lengths.end(), from) - lengths.begin());
-  auto last =
-      static_cast<std::size_t>(std::lower_bound(lengths.begin(), lengths.end(), to) - lengths.begin());
+  auto first = static_cast<std::size_t>(std::ranges::upper_bound(lengths, from) - lengths.begin());
+  auto last = static_cast<std::size_t>(std::ranges::lower_bound(lengths, to) - lengths.begin());
   double low = from, high = to;
   while (first < last) {
     const std::size_t middle = (first + last) / 2;
@@ -268,7 +266,7 @@ bool CurveChains::leaves_chord(const Chained& chained, double sagitta) const {
     return squared_distance_to_segment(p, a, b) > sagitta * sagitta;
   };
   const auto& lengths = domain_.paths.lengths(s.curve);
-  const auto first = std::upper_bound(lengths.begin(), lengths.end(), s.parameters[0]);
+  const auto first = std::ranges::upper_bound(lengths, s.parameters[0]);
   const auto last = std::lower_bound(first, lengths.end(), s.parameters[1]);
   return leaves(s.centre) || std::any_of(first, last, [&](double parameter) {
            return leaves(domain_.paths.point(s.curve, parameter));
@@ -364,8 +362,7 @@ void CurveChains::split_at(const Split& split, Index vertex) {
       return from < split.parameter && split.parameter < to;
     };
     const auto& ends = chain_ends_[split.candidate.feature.index];
-    const auto found =
-        std::find_if(ends.begin(), ends.end(), [&](Index s) { return s != none && has_place(s); });
+    const auto found = std::ranges::find_if(ends, [&](Index s) { return s != none && has_place(s); });
     if (found == ends.end()) return;
     piece = *found;
   }

@@ -5,11 +5,11 @@
 #include <utility>
 
 #include "common/found_in_ranges.h"
+#include "common/groups.h"
 #include "common/large_pages.h"
-#include "common/order_by_group.h"
 #include "common/parallel_for.h"
-#include "common/parallel_spatial_order.h"
 #include "common/resize_by_all_threads.h"
+#include "common/spatial_order.h"
 #include "common/thread_limit.h"
 
 namespace collarmesh {
@@ -24,10 +24,7 @@ std::vector<Index> order_by_least_point(const std::vector<Index>& least_points, 
 template <class T>
 void permute(std::vector<T>& values, const std::vector<Index>& order) {
   std::vector<T> permuted(values.size());
-  constexpr std::size_t at_once = 8192;
-  parallel_for_ranges(values.size(), at_once, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) permuted[i] = values[order[i]];
-  });
+  parallel_for_in_chunks(values.size(), [&](std::size_t i) { permuted[i] = values[order[i]]; });
   values = std::move(permuted);
 }
 
@@ -52,8 +49,6 @@ class Extraction {
   }
 
  private:
-  static constexpr std::size_t at_once = 8192;  // cells in a chunk of one thread
-
   // Finds the cells of regions outside collars; stitched tets come after them.
   void find_tets() {
     std::vector<std::uint8_t> used(refined_.mesh.vertex_count(), 0);
@@ -83,22 +78,18 @@ class Extraction {
   // Adds points along a curve through space, so that near points are near in memory.
   void add_points() {
     std::vector<Point> places;
-    resize_by_all_threads(places, vertices_.size());
-    parallel_for_ranges(places.size(), at_once, [&](std::size_t first, std::size_t last) {
-      for (std::size_t i = first; i < last; ++i)
-        places[i] = refined_.domain.frame.outside(refined_.mesh.point(vertices_[i]));
+    resize_by_all_threads(vertices_.size(), places);
+    parallel_for_in_chunks(places.size(), [&](std::size_t i) {
+      places[i] = refined_.domain.frame.outside(refined_.mesh.point(vertices_[i]));
     });
     const std::vector<SpatialKey> order = spatial_order_by_all_threads(places);
-    resize_by_all_threads(mesh_.points, places.size());
-    resize_by_all_threads(mesh_.features, places.size());
-    parallel_for_ranges(places.size(), at_once, [&](std::size_t first, std::size_t last) {
-      for (std::size_t i = first; i < last; ++i) {
-        const Index v = vertices_[order[i].item];
-        number_[v] = static_cast<Index>(i);
-        mesh_.points[i] = places[order[i].item];
-        const Feature& f = refined_.mesh.feature(v);
-        mesh_.features[i] = {f.dimension, f.dimension == 3 ? none : f.index};
-      }
+    resize_by_all_threads(places.size(), mesh_.points, mesh_.features);
+    parallel_for_in_chunks(places.size(), [&](std::size_t i) {
+      const Index v = vertices_[order[i].item];
+      number_[v] = static_cast<Index>(i);
+      mesh_.points[i] = places[order[i].item];
+      const Feature& f = refined_.mesh.feature(v);
+      mesh_.features[i] = {f.dimension, f.dimension == 3 ? none : f.index};
     });
   }
 
@@ -106,41 +97,30 @@ class Extraction {
   void add_tets() {
     const std::size_t count = cells_.size() + refined_.stitched.tets.size();
     std::vector<Index> least;
-    resize_by_all_threads(least, count);
-    parallel_for_ranges(count, at_once, [&](std::size_t first, std::size_t last) {
-      for (std::size_t t = first; t < last; ++t) {
-        const auto& v = corners(static_cast<Index>(t));
-        least[t] = std::min({number_[v[0]], number_[v[1]], number_[v[2]], number_[v[3]]});
-      }
+    resize_by_all_threads(count, least);
+    parallel_for_in_chunks(count, [&](std::size_t t) {
+      const auto& v = corners(static_cast<Index>(t));
+      least[t] = std::min({number_[v[0]], number_[v[1]], number_[v[2]], number_[v[3]]});
     });
     const std::vector<Index> order = order_by_least_point(least, mesh_.points.size());
     const LargeBlock<Index> tet_of_cell(refined_.mesh.cell_capacity());
-    parallel_for_ranges(refined_.mesh.cell_capacity(), at_once, [&](std::size_t first, std::size_t last) {
-      std::fill(&tet_of_cell[first], &tet_of_cell[first] + (last - first), none);
+    parallel_for_in_chunks(refined_.mesh.cell_capacity(),
+                           [&](std::size_t cell) { tet_of_cell[cell] = none; });
+    resize_by_all_threads(count, mesh_.tets, mesh_.tet_region, mesh_.tet_tag, mesh_.tet_collar,
+                          mesh_.tet_crease, mesh_.tet_thin, neighbours_);
+    parallel_for_in_chunks(count, [&](std::size_t t) {
+      if (order[t] < cells_.size()) tet_of_cell[cells_[order[t]]] = static_cast<Index>(t);
     });
-    resize_by_all_threads(mesh_.tets, count);
-    resize_by_all_threads(mesh_.tet_region, count);
-    resize_by_all_threads(mesh_.tet_tag, count);
-    resize_by_all_threads(mesh_.tet_collar, count);
-    resize_by_all_threads(mesh_.tet_crease, count);
-    resize_by_all_threads(mesh_.tet_thin, count);
-    resize_by_all_threads(neighbours_, count);
-    parallel_for_ranges(count, at_once, [&](std::size_t first, std::size_t last) {
-      for (std::size_t t = first; t < last; ++t)
-        if (order[t] < cells_.size()) tet_of_cell[cells_[order[t]]] = static_cast<Index>(t);
-    });
-    parallel_for_ranges(count, at_once, [&](std::size_t first, std::size_t last) {
-      for (std::size_t t = first; t < last; ++t) {
-        constexpr std::size_t ahead = 16;
-        if (t + ahead < last && order[t + ahead] < cells_.size())
-          refined_.mesh.prefetch(cells_[order[t + ahead]]);
-        const auto& v = corners(order[t]);
-        mesh_.tets[t] = {number_[v[0]], number_[v[1]], number_[v[2]], number_[v[3]]};
-        if (order[t] < cells_.size())
-          set_cell(t, cells_[order[t]], tet_of_cell);
-        else
-          set_stitched(t, refined_.stitched.tets[order[t] - cells_.size()]);
-      }
+    parallel_for_in_chunks(count, [&](std::size_t t) {
+      constexpr std::size_t ahead = 16;
+      if (t + ahead < count && order[t + ahead] < cells_.size())
+        refined_.mesh.prefetch(cells_[order[t + ahead]]);
+      const auto& v = corners(order[t]);
+      mesh_.tets[t] = {number_[v[0]], number_[v[1]], number_[v[2]], number_[v[3]]};
+      if (order[t] < cells_.size())
+        set_cell(t, cells_[order[t]], tet_of_cell);
+      else
+        set_stitched(t, refined_.stitched.tets[order[t] - cells_.size()]);
     });
   }
 

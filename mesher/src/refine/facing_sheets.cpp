@@ -99,8 +99,8 @@ bool FacingSheets::faces(Index vertex, Index patch, const Vector& normal) const 
   if (v.dimension == 0) return true;
   if (v.dimension == 1) {
     const auto& ends = domain_.plc.curves[v.index].ends;
-    return std::none_of(ends.begin(), ends.end(),
-                        [&](Index end) { return end != none && domain_.plc.vertex_on_patch(end, patch); });
+    return std::ranges::none_of(
+        ends, [&](Index end) { return end != none && domain_.plc.vertex_on_patch(end, patch); });
   }
   const Plc::Patch& other = domain_.plc.patches[v.index];
   if (other.planar) return std::fabs(dot(normal, other.normal)) > least_facing;

@@ -5,18 +5,9 @@
 #include <utility>
 
 #include "common/edge_key.h"
-#include "refine/elements.h"
+#include "common/segments.h"
 
 namespace collarmesh {
-
-GapExplorer::GapExplorer(const Domain& domain, const RefinedMesh& mesh, const SurfaceNodes& nodes)
-    : plc_(domain.plc),
-      points_(domain.points),
-      mesh_(mesh),
-      nodes_(nodes),
-      witnesses_(plc_.vertices.size() + plc_.curves.size()) {
-  find_borders();
-}
 
 void GapExplorer::find_borders() {
   std::vector<Index> vertex_at(points_.size(), none);
@@ -107,11 +98,11 @@ bool GapExplorer::reaches_into(Index cell, const std::array<Index, 3>& points,
                                std::span<const CollarBall> except) {
   cut_to_cell(cell, points_[points[0]], points_[points[1]], points_[points[2]]);
   const auto holds_polygon = [&](const CollarBall& ball) {
-    return std::all_of(polygon_.begin(), polygon_.end(), [&](const Point& p) {
+    return std::ranges::all_of(polygon_, [&](const Point& p) {
       return squared_distance(p, ball.centre) < ball.radius * ball.radius;
     });
   };
-  return !polygon_.empty() && std::none_of(except.begin(), except.end(), holds_polygon);
+  return !polygon_.empty() && std::ranges::none_of(except, holds_polygon);
 }
 
 // Cuts the triangle by the planes between the vertex and its neighbours, until nothing is left or all planes

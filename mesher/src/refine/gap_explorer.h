@@ -19,7 +19,14 @@ namespace collarmesh {
 class GapExplorer final : public GapSize {
  public:
   /// Keeps all by reference.
-  GapExplorer(const Domain& domain, const RefinedMesh& mesh, const SurfaceNodes& nodes);
+  GapExplorer(const Domain& domain, const RefinedMesh& mesh, const SurfaceNodes& nodes)
+      : plc_(domain.plc),
+        points_(domain.points),
+        mesh_(mesh),
+        nodes_(nodes),
+        witnesses_(plc_.vertices.size() + plc_.curves.size()) {
+    find_borders();
+  }
 
   /// Makes the next query start near this mesh vertex. Each query starts near the last one.
   void start_near(Index vertex) { near_ = vertex; }

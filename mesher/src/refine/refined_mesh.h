@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -19,7 +20,9 @@ namespace collarmesh {
 class RefinedMesh {
  public:
   /// Makes a mesh of the corners of a box. Keeps the complex by reference.
-  RefinedMesh(const Plc& plc, const Box& box);
+  RefinedMesh(const Plc& plc, const Box& box) : plc_(plc), triangulation_(box), walk_(triangulation_) {
+    features_.resize(vertex_count(), Feature{3, none});
+  }
 
   const Triangulation& triangulation() const { return triangulation_; }
 
@@ -53,7 +56,17 @@ class RefinedMesh {
     return f.dimension == 0 && plc_.vertex_on_patch(f.index, patch);
   }
   /// Returns whether all these vertices lie on one patch.
-  bool on_one_patch(std::span<const Index> vertices) const;
+  bool on_one_patch(std::span<const Index> vertices) const {
+    for (const Index v : vertices)
+      if (features_[v].dimension == 3) return false;
+    const auto contains_all = [&](Index patch) {
+      return std::ranges::all_of(vertices, [&](Index v) { return on_patch(v, patch); });
+    };
+    const Feature& f = features_[vertices[0]];
+    if (f.dimension == 2) return contains_all(f.index);
+    const auto& patches = f.dimension == 0 ? plc_.vertices[f.index].patches : plc_.curves[f.index].patches;
+    return std::ranges::any_of(patches, contains_all);
+  }
 
   void incident_cells(Index vertex, std::vector<Index>& cells) const {
     triangulation_.incident_cells(vertex, cells);
@@ -68,7 +81,14 @@ class RefinedMesh {
     triangulation_.find_conflict_zone(p, start, zone);
   }
   /// Returns the vertex whose Voronoi cell contains p. `near` is a vertex not far away, if one is known.
-  Index nearest_vertex(const Point& p, Index near = none) const;
+  Index nearest_vertex(const Point& p, Index near = none) const {
+    if (vertex_count() > 8) return walk_.nearest(p, near == none ? last_vertex() : near);
+    // At first the only vertices are the corners of the box, which are cospherical and not all neighbours.
+    Index nearest = 0;
+    for (Index corner = 1; corner < 8; ++corner)
+      if (squared_distance(p, point(corner)) < squared_distance(p, point(nearest))) nearest = corner;
+    return nearest;
+  }
   /// Visits vertices like VoronoiWalk::visit_ball.
   template <class Visit>
   void visit_ball(const Point& x, Index nearest, const double& squared_radius, const Visit& visit) const {

@@ -409,7 +409,7 @@ std::size_t Refinement::ripped_out() const {
   }
   for (const auto& tet : stitching_.result().tets)
     for (const Index v : tet.corners) where[v] = kept;
-  return static_cast<std::size_t>(std::count(where.begin(), where.end(), ripped));
+  return static_cast<std::size_t>(std::ranges::count(where, ripped));
 }
 
 }  // namespace collarmesh

@@ -15,14 +15,6 @@ constexpr Index unlabelled = none;
 
 }  // namespace
 
-RestrictedSurface::RestrictedSurface(const Domain& domain, const RefinedMesh& mesh, const SurfaceNodes& nodes,
-                                     const CollarCells& collar_cells)
-    : domain_(domain), mesh_(mesh), nodes_(nodes), collar_cells_(collar_cells) {
-  labels_.resize(mesh_.cell_capacity());
-  marks_.resize(mesh_.cell_capacity());
-  for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell) label_from_outside(cell, workspace_);
-}
-
 std::vector<FaceId> RestrictedSurface::marked_faces() const {
   return found_in_ranges<FaceId>(mesh_.cell_capacity(), [&](std::size_t i, std::vector<FaceId>& faces) {
     const auto cell = static_cast<Index>(i);
@@ -132,8 +124,8 @@ void RestrictedSurface::recall_crossings(FaceId face, Workspace& w) const {
   w.crossings_.clear();
   if (!is_marked(face)) return;
   const FaceId other = mesh_.opposite(face);
-  const auto crossed = std::find_if(w.crossed_faces_.begin(), w.crossed_faces_.end(),
-                                    [&](const auto& f) { return f.face == face || f.face == other; });
+  const auto crossed = std::ranges::find_if(w.crossed_faces_,
+                                            [&](const auto& f) { return f.face == face || f.face == other; });
   for (std::size_t i = crossed->first; i < crossed->end; ++i) {
     auto [triangle, direction] = w.dual_crossings_[i].crossing;
     w.crossings_.push_back({triangle, crossed->face == face ? direction : -direction});
@@ -214,7 +206,7 @@ void RestrictedSurface::mark_border_faces(const ConflictZone& zone, Index vertex
 
 void RestrictedSurface::cells_vanish(const ConflictZone& zone, Workspace& w) {
   const auto has_marks = [&](Index cell) { return labels_[cell].marked != 0; };
-  if (std::none_of(zone.cells.begin(), zone.cells.end(), has_marks)) return;
+  if (std::ranges::none_of(zone.cells, has_marks)) return;
   // The record of a border face stays, because the cell beyond uses it, too.
   for (const FaceId border : zone.border)
     labels_[cell_of(border)].marked &= static_cast<std::uint8_t>(~(1U << corner_of(border)));
@@ -247,8 +239,7 @@ void RestrictedSurface::cells_made(const ConflictZone& zone, Index vertex) {
 void RestrictedSurface::cells_made(const ConflictZone& zone, Index vertex, Workspace& w) {
   label_created_cells(zone, vertex, w);
   mark_border_faces(zone, vertex, w);
-  assert(std::all_of(zone.created.begin(), zone.created.end(),
-                     [&](Index cell) { return consistent(*this, mesh_, cell); }));
+  assert(std::ranges::all_of(zone.created, [&](Index cell) { return consistent(*this, mesh_, cell); }));
 }
 
 void RestrictedSurface::fit_mesh() {

@@ -44,7 +44,12 @@ class RestrictedSurface {
  public:
   /// Labels the cells that the mesh has. Keeps all by reference.
   RestrictedSurface(const Domain& domain, const RefinedMesh& mesh, const SurfaceNodes& nodes,
-                    const CollarCells& collar_cells);
+                    const CollarCells& collar_cells)
+      : domain_(domain), mesh_(mesh), nodes_(nodes), collar_cells_(collar_cells) {
+    labels_.resize(mesh_.cell_capacity());
+    marks_.resize(mesh_.cell_capacity());
+    for (Index cell = 0; cell < mesh_.cell_capacity(); ++cell) label_from_outside(cell, workspace_);
+  }
 
   Index region(Index cell) const { return labels_[cell].region; }
   /// Returns the marked faces of a cell. Bit i: the face opposite corner i.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "common/sorted.h"
+
 namespace collarmesh {
 
 namespace {
@@ -16,12 +18,6 @@ struct FaceUse {
   std::array<Index, 3> face;  // counterclockwise as seen from outside its tet
   Index region;               // region of the tet
 };
-
-FaceUse face_use(const std::array<Index, 3>& face, Index region) {
-  FaceUse use{face, face, region};
-  std::sort(use.key.begin(), use.key.end());
-  return use;
-}
 
 }  // namespace
 
@@ -47,9 +43,8 @@ void RipAndStitch::stitch() {
 // Adds a tet. If the review has given up, a triangle may have the centre of its own ball as a corner. Makes
 // no cell of such a triangle, so the collar stays open there.
 void RipAndStitch::add(const Stitched::Tet& tet) {
-  std::array<Index, 4> sorted = tet.corners;
-  std::sort(sorted.begin(), sorted.end());
-  if (std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end())
+  const std::array<Index, 4> corners = sorted(tet.corners);
+  if (std::ranges::adjacent_find(corners) == corners.end())
     stitched_.tets.push_back(tet);
   else
     stitched_.open.push_back(tet.corners[0]);
@@ -63,12 +58,11 @@ Tag RipAndStitch::crease_tag(Index ball) const {
 void RipAndStitch::stitch_books(const std::vector<CollarTriangle>& triangles) {
   std::vector<std::pair<std::array<Index, 2>, Index>> curve_between;  // sorted balls, curve; sorted
   for (const auto& [balls, curve, parameters] : collars_.links())
-    curve_between.push_back({{std::min(balls[0], balls[1]), std::max(balls[0], balls[1])}, curve});
-  std::sort(curve_between.begin(), curve_between.end());
+    curve_between.push_back({sorted(balls[0], balls[1]), curve});
+  std::ranges::sort(curve_between);
   const auto tag_between = [&](Index a, Index b) {
-    const std::array<Index, 2> balls{std::min(a, b), std::max(a, b)};
-    const auto found =
-        std::lower_bound(curve_between.begin(), curve_between.end(), std::pair{balls, Index{0}});
+    const std::array<Index, 2> balls = sorted(a, b);
+    const auto found = std::ranges::lower_bound(curve_between, std::pair{balls, Index{0}});
     // Triangles of balls that are not consecutive meet only if the review has given up.
     if (found == curve_between.end() || found->first != balls) return crease_tag(a);
     return domain_.plc.curves[found->second].tag;
@@ -85,10 +79,10 @@ void RipAndStitch::stitch_books(const std::vector<CollarTriangle>& triangles) {
     const auto v = mesh_.face_vertices(t.face);
     for (unsigned k = 0; k < 3; ++k) {
       const Index a = v[k], b = v[(k + 1) % 3];
-      sides.push_back({{std::min(a, b), std::max(a, b)}, {a, b}, t.ball, region});
+      sides.push_back({sorted(a, b), {a, b}, t.ball, region});
     }
   }
-  std::stable_sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.key < b.key; });
+  std::ranges::stable_sort(sides, {}, &Side::key);
   for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
     const Side &s = sides[i], &other = sides[i + 1];
     if (s.key != other.key || s.ball == other.ball) continue;
@@ -103,15 +97,17 @@ void RipAndStitch::stitch_books(const std::vector<CollarTriangle>& triangles) {
 // region.
 void RipAndStitch::stitch_faces(const std::vector<CollarTriangle>& triangles) {
   std::vector<FaceUse> uses;
+  const auto add_use = [&](const std::array<Index, 3>& face, Index region) {
+    uses.push_back({sorted(face), face, region});
+  };
   for (const auto& tet : stitched_.tets)
     for (const auto& f : opposite_places)
-      uses.push_back(face_use({tet.corners[f[0]], tet.corners[f[1]], tet.corners[f[2]]}, tet.region));
+      add_use({tet.corners[f[0]], tet.corners[f[1]], tet.corners[f[2]]}, tet.region);
   for (const CollarTriangle& t : triangles) {
     const Index region = surface_.region(cell_of(t.face));
-    if (region != 0 && !t.several) uses.push_back(face_use(mesh_.face_vertices(t.face), region));
+    if (region != 0 && !t.several) add_use(mesh_.face_vertices(t.face), region);
   }
-  std::stable_sort(uses.begin(), uses.end(),
-                   [](const FaceUse& a, const FaceUse& b) { return a.key < b.key; });
+  std::ranges::stable_sort(uses, {}, &FaceUse::key);
   for (std::size_t i = 0, j = 0; i < uses.size(); i = j) {
     for (j = i; j < uses.size() && uses[j].key == uses[i].key;) ++j;
     const Index beyond = j - i > 1 ? uses[i + 1].region : 0;
@@ -153,7 +149,7 @@ Index RipAndStitch::patch_between(const std::array<Index, 3>& corners, Index a, 
   const auto separates = [&](Index patch) {
     const auto& r = domain_.plc.patches[patch].regions;
     return ((r[0] == a && r[1] == b) || (r[0] == b && r[1] == a)) &&
-           std::all_of(corners.begin(), corners.end(), [&](Index v) { return mesh_.on_patch(v, patch); });
+           std::ranges::all_of(corners, [&](Index v) { return mesh_.on_patch(v, patch); });
   };
   std::vector<Index> possible;
   for (const Index corner : corners) {
@@ -168,15 +164,14 @@ Index RipAndStitch::patch_between(const std::array<Index, 3>& corners, Index a, 
     const Feature& v = mesh_.feature(corners[0]);
     const auto& patches =
         v.dimension == 0 ? domain_.plc.vertices[v.index].patches : domain_.plc.curves[v.index].patches;
-    std::copy_if(patches.begin(), patches.end(), std::back_inserter(possible), separates);
+    std::ranges::copy_if(patches, std::back_inserter(possible), separates);
   }
   if (possible.empty() || (possible.size() == 1 && a != b)) return possible.empty() ? none : possible[0];
   const Point middle = centroid(corners);
   const auto distance_to = [&](Index patch) {
     return squared_distance(middle, collars_.features().nearest_point({2, patch}, middle));
   };
-  const Index nearest = *std::min_element(possible.begin(), possible.end(),
-                                          [&](Index x, Index y) { return distance_to(x) < distance_to(y); });
+  const Index nearest = *std::ranges::min_element(possible, {}, distance_to);
   return a != b || lies_on(corners, nearest) ? nearest : none;
 }
 

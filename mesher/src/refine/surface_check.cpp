@@ -6,11 +6,12 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
-#include <numeric>
+#include <tuple>
 
 #include "common/edge_key.h"
 #include "common/flat_table.h"
 #include "common/found_in_ranges.h"
+#include "common/sort_by_vertex.h"
 #include "tolerance/triangle_within_tolerance.h"
 
 namespace collarmesh {
@@ -29,9 +30,7 @@ struct EdgeUse {
   FaceId face;  // the triangle's face, or the subsegment
 
   friend bool operator<(const EdgeUse& a, const EdgeUse& b) {
-    if (a.edge != b.edge) return a.edge < b.edge;
-    if (a.patch != b.patch) return a.patch < b.patch;
-    return a.face < b.face;
+    return std::tie(a.edge, a.patch, a.face) < std::tie(b.edge, b.patch, b.face);
   }
   bool same_place(const EdgeUse& other) const { return edge == other.edge && patch == other.patch; }
 };
@@ -39,22 +38,6 @@ struct EdgeUse {
 bool has_use(const std::vector<EdgeUse>& sorted, const EdgeUse& wanted) {
   const auto first = std::lower_bound(sorted.begin(), sorted.end(), EdgeUse{wanted.edge, wanted.patch, 0});
   return first != sorted.end() && first->same_place(wanted);
-}
-
-// Sorts by the lower ends with a counting sort, then within each group.
-void sort_by_edge(std::vector<EdgeUse>& uses, std::size_t vertex_count) {
-  std::vector<std::size_t> next(vertex_count + 1, 0);
-  for (const EdgeUse& use : uses) ++next[(use.edge >> 32) + 1];
-  std::partial_sum(next.begin(), next.end(), next.begin());
-  std::vector<EdgeUse> sorted(uses.size());
-  for (const EdgeUse& use : uses) sorted[next[use.edge >> 32]++] = use;
-  auto first = sorted.begin();
-  for (std::size_t v = 0; v < vertex_count; ++v) {
-    const auto last = sorted.begin() + static_cast<std::ptrdiff_t>(next[v]);
-    std::sort(first, last);
-    first = last;
-  }
-  uses.swap(sorted);
 }
 
 }  // namespace
@@ -124,7 +107,7 @@ bool SurfaceCheck::check_patch_topology(const std::vector<FaceId>& faces) {
     const Index patch = surface_.patch(face);
     for (unsigned i = 0; i < 3; ++i) uses.push_back({edge_key(v[i], v[(i + 1) % 3]), patch, face});
   }
-  sort_by_edge(uses, mesh_.vertex_count());
+  sort_by_vertex(uses, mesh_.vertex_count(), [](const EdgeUse& use) { return use.edge >> 32; });
   bool found = false;
   curves_.visit([&](Index s, const Subsegment& subsegment) {
     for (const Index patch : domain_.plc.curves[subsegment.curve].patches) {
@@ -313,7 +296,7 @@ std::vector<Index> SurfaceCheck::cells_on_surface() const {
     const auto cell = static_cast<Index>(i);
     if (!mesh_.alive(cell) || surface_.region(cell) == 0 || collar_cells_.inside(cell)) return;
     const auto& corners = mesh_.corners(cell);
-    if (std::all_of(corners.begin(), corners.end(), [&](Index v) { return mesh_.feature(v).dimension < 3; }))
+    if (std::ranges::all_of(corners, [&](Index v) { return mesh_.feature(v).dimension < 3; }))
       cells.push_back(cell);
   });
 }
@@ -326,9 +309,8 @@ bool SurfaceCheck::flat_on_patch(Index cell) const {
   bool found = false;
   surface_.visit_marked(cell, [&](FaceId face) {
     const Index patch = surface_.patch(face);
-    found = found ||
-            ((domain_.plc.patches[patch].planar || without_volume) &&
-             std::all_of(corners.begin(), corners.end(), [&](Index v) { return mesh_.on_patch(v, patch); }));
+    found = found || ((domain_.plc.patches[patch].planar || without_volume) &&
+                      std::ranges::all_of(corners, [&](Index v) { return mesh_.on_patch(v, patch); }));
   });
   return found;
 }

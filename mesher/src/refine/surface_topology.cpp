@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "common/disjoint_sets.h"
+#include "common/sort_by_vertex.h"
 #include "common/sorted.h"
 
 namespace collarmesh {
@@ -31,23 +32,7 @@ struct Side {
 struct CurveEdge {
   std::array<Index, 2> ends;  // mesh vertices, sorted
   Index curve;
-
-  friend bool operator<(const CurveEdge& a, const CurveEdge& b) { return a.ends < b.ends; }
 };
-
-// Sorts by mesh vertices first: there are many vertices, and few entries for each.
-template <class T, class VertexOf>
-void sort_by_vertex(std::vector<T>& values, std::size_t vertices, const VertexOf& vertex_of) {
-  std::vector<Index> end(vertices + 1, 0);
-  for (const T& value : values) ++end[vertex_of(value) + 1];
-  for (std::size_t v = 1; v <= vertices; ++v) end[v] += end[v - 1];
-  std::vector<T> grouped(values.size());
-  for (const T& value : values) grouped[end[vertex_of(value)]++] = value;
-  const auto first = grouped.begin();
-  for (std::size_t v = 0, begin = 0; v < vertices; begin = end[v++])
-    std::sort(first + static_cast<std::ptrdiff_t>(begin), first + static_cast<std::ptrdiff_t>(end[v]));
-  values.swap(grouped);
-}
 
 std::vector<Side> sorted_sides(const std::vector<SurfaceTriangle>& triangles, std::size_t vertices) {
   std::vector<Side> sides;
@@ -76,14 +61,14 @@ void SurfaceTopology::count_curve_sides() {
     segments.push_back({sorted(points[0], points[1]), c});
     curve_sides_.emplace_back(domain_.plc.curves[c].patches.size(), 0);
   }
-  std::sort(segments.begin(), segments.end());
+  std::ranges::sort(segments, {}, &CurveEdge::ends);
   for (const Plc::Triangle& t : domain_.plc.triangles)
     for (unsigned i = 0; i < 3; ++i) {
       const std::array<Index, 2> side = sorted(t.points[i], t.points[(i + 1) % 3]);
-      const auto found = std::lower_bound(segments.begin(), segments.end(), CurveEdge{side, none});
+      const auto found = std::ranges::lower_bound(segments, side, {}, &CurveEdge::ends);
       if (found == segments.end() || found->ends != side) continue;
       const auto& patches = domain_.plc.curves[found->curve].patches;
-      const auto patch = std::lower_bound(patches.begin(), patches.end(), t.patch);
+      const auto patch = std::ranges::lower_bound(patches, t.patch);
       if (patch != patches.end() && *patch == t.patch)
         ++curve_sides_[found->curve][static_cast<std::size_t>(patch - patches.begin())];
     }
@@ -91,7 +76,7 @@ void SurfaceTopology::count_curve_sides() {
 
 std::size_t SurfaceTopology::sides_at(Index curve, Index patch) const {
   const auto& patches = domain_.plc.curves[curve].patches;
-  const auto found = std::lower_bound(patches.begin(), patches.end(), patch);
+  const auto found = std::ranges::lower_bound(patches, patch);
   return curve_sides_[curve][static_cast<std::size_t>(found - patches.begin())];
 }
 
@@ -109,14 +94,14 @@ bool SurfaceTopology::check() {
   });
   for (const auto& edge : stitching_.result().edges)
     curve_edges.push_back({sorted(edge.corners[0], edge.corners[1]), edge.curve});
-  std::sort(curve_edges.begin(), curve_edges.end());
+  std::ranges::sort(curve_edges, {}, &CurveEdge::ends);
   const std::vector<Side> sides = sorted_sides(triangles, mesh_.vertex_count());
   DisjointSets fans(3 * triangles.size());
   std::vector<Index> wrong_at(mesh_.vertex_count(), none);  // by vertex: a patch that is wrong there
   for (const Index v : stitching_.result().open)
     wrong_at[v] = mesh_.feature(v).dimension == 2 ? mesh_.feature(v).index : none;
   const auto expected = [&](const Side& side) -> std::size_t {
-    const auto edge = std::lower_bound(curve_edges.begin(), curve_edges.end(), CurveEdge{side.ends, none});
+    const auto edge = std::ranges::lower_bound(curve_edges, side.ends, {}, &CurveEdge::ends);
     if (edge == curve_edges.end() || edge->ends != side.ends ||
         !domain_.plc.curve_on_patch(edge->curve, side.patch))
       return 2;
@@ -144,7 +129,7 @@ bool SurfaceTopology::check() {
   for (const SurfaceTriangle& t : triangles) {
     if (t.face == no_face || surface_.notes(t.face).given_up) continue;
     const auto is_wrong = [&](Index v) { return wrong_at[v] == t.patch || !mesh_.on_patch(v, t.patch); };
-    if (std::none_of(t.corners.begin(), t.corners.end(), is_wrong)) continue;
+    if (std::ranges::none_of(t.corners, is_wrong)) continue;
     triangles_.split(t.face);
     found = true;
   }

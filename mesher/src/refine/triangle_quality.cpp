@@ -61,7 +61,7 @@ std::optional<Candidate> TriangleQuality::candidate_beside(FaceId face, RandomOf
 bool TriangleQuality::has_vertex_on_another_sheet(FaceId face) const {
   if (surface_.triangle(face).resolved_vertices) return false;
   const auto v = mesh_.face_vertices(face);
-  return std::any_of(v.begin(), v.end(), [&](Index vertex) {
+  return std::ranges::any_of(v, [&](Index vertex) {
     return mesh_.feature(vertex).dimension < 3 && !mesh_.on_patch(vertex, surface_.patch(face));
   });
 }

@@ -34,7 +34,7 @@ void WorkCounter::note_round(const LargestZone& largest) {
 
 // Returns whether the zone lies at a hub: a vertex there is connected with everything near it.
 bool WorkCounter::at_hub(const ConflictZone& zone) const {
-  return std::any_of(zone.vertices.begin(), zone.vertices.end(), [&](Index v) {
+  return std::ranges::any_of(zone.vertices, [&](Index v) {
     const Feature& feature = mesh_.feature(v);
     return (feature.dimension == 0 && vertex_is_hub_[feature.index]) ||
            (feature.dimension == 1 && curve_is_hub_[feature.index]);

@@ -17,7 +17,6 @@ constexpr double least_cosine_of_forced = -0.92;
 // they will move onto exact geometry, the reserve is subtracted, too.
 constexpr double narrower = 0.98;
 constexpr std::uint8_t star = 1, book = 2;
-constexpr std::size_t cells_at_once = 4096;
 
 double signed_square_of_cosine(double degrees) {
   return signed_square(std::cos(degrees * std::numbers::pi / 180));
@@ -50,15 +49,16 @@ class CreaseEdges {
     for (unsigned i = 0; i < 4; ++i)
       for (unsigned j = 0; j < i; ++j) {
         const std::array<Index, 2> ends = sorted(corners[i], corners[j]);
-        const auto edge = std::lower_bound(edges_.begin(), edges_.end(), ends,
-                                           [](const auto& e, const auto& key) { return e.first < key; });
+        const auto edge = std::ranges::lower_bound(edges_, ends, {}, &Edge::first);
         if (edge != edges_.end() && edge->first == ends) return &edge->second;
       }
     return nullptr;
   }
 
  private:
-  std::vector<std::pair<std::array<Index, 2>, Tag>> edges_;  // ends of the edge and tag of the curve, sorted
+  using Edge = std::pair<std::array<Index, 2>, Tag>;  // its ends, and the tag of its curve
+
+  std::vector<Edge> edges_;  // sorted
 };
 
 }  // namespace
@@ -107,15 +107,13 @@ void mark_collar_cells(TetMesh& mesh, const Plc& plc, double crease_angle) {
   mesh.tet_crease.assign(mesh.tets.size(), 0);
   if (!creases.any()) return;
   const CreaseEdges edges(mesh, creases);
-  parallel_for_ranges(mesh.tets.size(), cells_at_once, [&](std::size_t first, std::size_t last) {
-    for (std::size_t t = first; t < last; ++t) {
-      const auto& corners = mesh.tets[t];
-      const auto on_crease = std::ranges::find_if(corners, [&](Index v) { return creases.at(v); });
-      if (on_crease == corners.end()) continue;
-      const Tag* const tag = edges.tag_in(corners);
-      mesh.tet_collar[t] = tag != nullptr ? book : star;
-      mesh.tet_crease[t] = tag != nullptr ? *tag : tag_of(plc, mesh.features[*on_crease]);
-    }
+  parallel_for_in_chunks(mesh.tets.size(), [&](std::size_t t) {
+    const auto& corners = mesh.tets[t];
+    const auto on_crease = std::ranges::find_if(corners, [&](Index v) { return creases.at(v); });
+    if (on_crease == corners.end()) return;
+    const Tag* const tag = edges.tag_in(corners);
+    mesh.tet_collar[t] = tag != nullptr ? book : star;
+    mesh.tet_crease[t] = tag != nullptr ? *tag : tag_of(plc, mesh.features[*on_crease]);
   });
 }
 

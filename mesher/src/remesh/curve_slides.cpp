@@ -61,7 +61,7 @@ void CurveSlides::find_places(Index curve, std::vector<Index>& vertices,
     const double step = distance(mesh_.points[v], hierarchy.corners(at)[0]);
     places_[v].parameter = std::min(lengths[at] + step, lengths[at + 1]);
   }
-  std::ranges::sort(vertices, [&](Index a, Index b) { return places_[a].parameter < places_[b].parameter; });
+  std::ranges::sort(vertices, {}, [&](Index v) { return places_[v].parameter; });
   const bool closed = plc_.curves[curve].closed;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     auto& neighbours = places_[vertices[i]].neighbours;

@@ -34,7 +34,7 @@ std::vector<bool> EditableMesh::patches_to_keep(const Plc& plc, const TetMesh& m
     kept.resize(plc.patches.size(), false);
     for (std::size_t patch = 0; patch < kept.size(); ++patch)
       for (const auto* tags : {&faces.first, &faces.second})
-        if (std::binary_search(tags->begin(), tags->end(), plc.patches[patch].tag)) kept[patch] = true;
+        if (std::ranges::binary_search(*tags, plc.patches[patch].tag)) kept[patch] = true;
   }
   return kept;
 }

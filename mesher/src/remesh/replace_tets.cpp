@@ -76,8 +76,8 @@ class Replacing {
     for (const auto& [i, j] : cell_shapes::corner_pairs)
       if (on_no_smooth_patch(corners[i], corners[j])) edges.push_back({corners[i], corners[j]});
     const auto& points = complex().mesh().points;
-    std::ranges::sort(edges, [&](const auto& a, const auto& b) {
-      return squared_distance(points[a[0]], points[a[1]]) > squared_distance(points[b[0]], points[b[1]]);
+    std::ranges::sort(edges, std::ranges::greater(), [&](const std::array<Index, 2>& ends) {
+      return squared_distance(points[ends[0]], points[ends[1]]);
     });
     return edges;
   }

@@ -1,15 +1,13 @@
 #include "remesh/tet_complex.h"
 
+#include <algorithm>
+
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/task_arena.h>
-
-#include <algorithm>
-#include <cassert>
 
 #include "common/found_in_ranges.h"
 #include "common/groups.h"
 #include "common/index_set.h"
-#include "common/large_pages.h"
 #include "common/note_last.h"
 #include "common/parallel_for.h"
 #include "common/resize_by_all_threads.h"
@@ -29,8 +27,6 @@ bool has_face(const std::array<Index, 4>& tet, const std::array<Index, 3>& face)
   return std::ranges::count_if(tet, [&](Index v) { return v == face[0] || v == face[1] || v == face[2]; }) ==
          3;
 }
-
-constexpr std::size_t stored_at_once = 8192;  // tets in a chunk of one thread
 
 // Mark deleted faces and edges until `store`.
 constexpr std::array<Index, 3> lost_face{none, none, none};
@@ -52,19 +48,16 @@ void drop(const Cell& lost, std::vector<Cell>& cells, std::vector<Of>&... of_cel
 }  // namespace
 
 TetComplex::TetComplex(TetMesh& mesh, const KnownNeighbours& neighbours) : mesh_(mesh) {
-  resize_by_all_threads(tets_, mesh.tets.size());
-  resize_by_all_threads(origin_, mesh.tets.size());
+  resize_by_all_threads(mesh.tets.size(), tets_, origin_);
   const bool has_balls = !mesh.collar_balls.empty(), alone = tbb::this_task_arena::max_concurrency() == 1;
   vertex_tet_.assign(mesh.points.size(), none);
   constexpr std::array<Index, 4> nothing{none, none, none, none};
-  parallel_for_ranges(mesh.tets.size(), stored_at_once, [&](std::size_t first, std::size_t last) {
-    for (std::size_t t = first; t < last; ++t) {
-      const auto& across = neighbours.empty() ? nothing : neighbours[t];
-      tets_[t] = {
-          mesh.tets[t], across, nothing, mesh.tet_region[t], 0, true, has_balls && mesh.tet_collar[t] != 0};
-      origin_[t] = static_cast<Index>(t);
-      for (const Index v : mesh.tets[t]) note_last(vertex_tet_[v], static_cast<Index>(t), alone);
-    }
+  parallel_for_in_chunks(mesh.tets.size(), [&](std::size_t t) {
+    const auto& across = neighbours.empty() ? nothing : neighbours[t];
+    tets_[t] = {
+        mesh.tets[t], across, nothing, mesh.tet_region[t], 0, true, has_balls && mesh.tet_collar[t] != 0};
+    origin_[t] = static_cast<Index>(t);
+    for (const Index v : mesh.tets[t]) note_last(vertex_tet_[v], static_cast<Index>(t), alone);
   });
   stamps_.assign(tets_.size(), 0);
   link(!neighbours.empty());
@@ -394,21 +387,16 @@ void TetComplex::write(TetMesh& mesh) const {
     if (tets_[t].alive) found.push_back(static_cast<Index>(t));
   });
   TetMesh stored;
-  resize_by_all_threads(stored.tets, alive.size());
-  resize_by_all_threads(stored.tet_region, alive.size());
-  resize_by_all_threads(stored.tet_tag, alive.size());
-  resize_by_all_threads(stored.tet_collar, alive.size());
-  resize_by_all_threads(stored.tet_crease, alive.size());
-  parallel_for_ranges(alive.size(), stored_at_once, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      const Index t = alive[i];
-      stored.tets[i] = tets_[t].corners;
-      stored.tet_region[i] = tets_[t].region;
-      stored.tet_tag[i] = mesh.tet_tag[origin_[t]];
-      const bool collar = tets_[t].collar;
-      stored.tet_collar[i] = collar ? mesh.tet_collar[origin_[t]] : std::uint8_t{0};
-      stored.tet_crease[i] = collar ? mesh.tet_crease[origin_[t]] : Tag{0};
-    }
+  resize_by_all_threads(alive.size(), stored.tets, stored.tet_region, stored.tet_tag, stored.tet_collar,
+                        stored.tet_crease);
+  parallel_for_in_chunks(alive.size(), [&](std::size_t i) {
+    const Index t = alive[i];
+    stored.tets[i] = tets_[t].corners;
+    stored.tet_region[i] = tets_[t].region;
+    stored.tet_tag[i] = mesh.tet_tag[origin_[t]];
+    const bool collar = tets_[t].collar;
+    stored.tet_collar[i] = collar ? mesh.tet_collar[origin_[t]] : std::uint8_t{0};
+    stored.tet_crease[i] = collar ? mesh.tet_crease[origin_[t]] : Tag{0};
   });
   mesh.tets = std::move(stored.tets);
   mesh.tet_region = std::move(stored.tet_region);
@@ -440,9 +428,8 @@ void TetComplex::drop_lost_vertices(TetMesh& mesh) const {
   mesh.points.resize(kept);
   mesh.features.resize(kept);
   const auto renumber = [&](auto& cells) {
-    parallel_for_ranges(cells.size(), stored_at_once, [&](std::size_t first, std::size_t last) {
-      for (std::size_t i = first; i < last; ++i)
-        for (Index& point : cells[i]) point = number[point];
+    parallel_for_in_chunks(cells.size(), [&](std::size_t i) {
+      for (Index& point : cells[i]) point = number[point];
     });
   };
   renumber(mesh.tets);

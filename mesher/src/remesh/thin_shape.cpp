@@ -73,15 +73,12 @@ double ThinShape::forced_sine(const Corners& p, const std::array<Index, 4>& corn
 
 void mark_thin_tets(TetMesh& mesh, double radius_edge) {
   mesh.tet_thin.assign(mesh.tets.size(), 0);
-  constexpr std::size_t at_once = 4096;
-  parallel_for_ranges(mesh.tets.size(), at_once, [&](std::size_t first, std::size_t last) {
-    for (std::size_t t = first; t < last; ++t) {
-      if (mesh.tet_collar[t] != 0) continue;
-      const auto& v = mesh.tets[t];
-      const Corners p{mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]], mesh.points[v[3]]};
-      if (!well_within(p, radius_edge) && measure(p[0], p[1], p[2], p[3]).radius_edge > radius_edge)
-        mesh.tet_thin[t] = 1;
-    }
+  parallel_for_in_chunks(mesh.tets.size(), [&](std::size_t t) {
+    if (mesh.tet_collar[t] != 0) return;
+    const auto& v = mesh.tets[t];
+    const Corners p{mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]], mesh.points[v[3]]};
+    if (!well_within(p, radius_edge) && measure(p[0], p[1], p[2], p[3]).radius_edge > radius_edge)
+      mesh.tet_thin[t] = 1;
   });
 }
 

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
-#include <utility>
 #include <vector>
 
 #include "collarmesh/plc.h"

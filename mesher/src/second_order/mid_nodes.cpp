@@ -28,7 +28,7 @@ MeshEdges::MeshEdges(const TetMesh& mesh) : first_node_(static_cast<Index>(mesh.
 }
 
 Index MeshEdges::node(Index a, Index b) const {
-  const auto found = std::lower_bound(keys_.begin(), keys_.end(), edge_key(a, b));
+  const auto found = std::ranges::lower_bound(keys_, edge_key(a, b));
   assert(found != keys_.end() && *found == edge_key(a, b));
   return first_node_ + static_cast<Index>(found - keys_.begin());
 }

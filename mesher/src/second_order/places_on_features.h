@@ -1,7 +1,5 @@
 #pragma once
 
-#include <optional>
-
 #include "collarmesh/exact_geometry.h"
 #include "common/flat_features.h"
 #include "location/feature_shapes.h"

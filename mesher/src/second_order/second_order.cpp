@@ -277,8 +277,7 @@ class Curving {
     for (Index m = 0; m < moves_.size(); ++m)
       if (moves_[m].share < 1 && norm(moves_[m].way) > 0) drawn.push_back(m);
     const auto left = [this](Index m) { return (1 - moves_[m].share) * norm(moves_[m].way); };
-    std::ranges::sort(drawn,
-                      [&](Index a, Index b) { return left(a) != left(b) ? left(a) > left(b) : a < b; });
+    std::ranges::sort(drawn, {}, [&](Index m) { return std::pair(-left(m), m); });
     for (const Index m : drawn) {
       if (execution_.cancelled()) return;
       if (norm(moves_[m].way) > farthest * length_of(moves_[m].edge)) continue;

@@ -120,7 +120,7 @@ class SampledSizes {
       const Grid::Cell cell = grid->cell_of(p);
       const std::array<double, 8> corners = grid->corners_of(cell);
       const double side = grid->longest_side();
-      if (side <= *std::min_element(corners.begin(), corners.end()) || side <= finest * longest_)
+      if (side <= *std::ranges::min_element(corners) || side <= finest * longest_)
         return between(corners, cell.shares);
       grid = &finer(*grid, cell);
     }

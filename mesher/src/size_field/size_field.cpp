@@ -32,7 +32,7 @@ const std::array<std::string, 5> kinds{"ball", "box", "cylinder", "curves", "pat
 void allow_only(const Json& object, const std::string& place, const std::vector<std::string>& keys) {
   if (!object.is_object()) fail(place, fmt::format("expected an object with {}", fmt::join(keys, ", ")));
   for (const auto& [key, value] : object.items())
-    if (std::find(keys.begin(), keys.end(), key) == keys.end())
+    if (std::ranges::find(keys, key) == keys.end())
       fail(place, fmt::format("'{}' is not known; use {}", key, fmt::join(keys, ", ")));
 }
 
@@ -219,8 +219,7 @@ SizeField size_field_from_json(const std::string& text, const Plc& plc,
   if (!list.is_array()) fail("sources", "expected a list");
   for (std::size_t i = 0; i < list.size(); ++i) {
     const std::string place = fmt::format("sources[{}]", i);
-    if (std::count_if(kinds.begin(), kinds.end(), [&](const auto& kind) { return list[i].contains(kind); }) >
-        1)
+    if (std::ranges::count_if(kinds, [&](const auto& kind) { return list[i].contains(kind); }) > 1)
       fail(place, fmt::format("expected one of {}; make several sources of it", fmt::join(kinds, ", ")));
     std::vector<std::string> keys(kinds.begin(), kinds.end());
     keys.insert(keys.end(), {"size", "growth", "within"});

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "common/cell_shapes.h"
 #include "common/disjoint_sets.h"
 #include "common/tet_sides.h"
 
@@ -16,7 +17,7 @@ namespace {
 /// Returns whether a node lies on the side opposite a corner.
 bool is_at_side(std::uint8_t place, unsigned corner) {
   if (place < 4) return place != corner;
-  const auto& [a, b] = mid_node_ends[place - 4U];
+  const auto& [a, b] = cell_shapes::tet_edges[place - 4U];
   return a != corner && b != corner;
 }
 
@@ -31,10 +32,10 @@ class Star {
       for (unsigned corner = 0; corner < 4; ++corner)
         if (is_at_side(members[i].place, corner)) {
           Key key = side_corners(mesh.tets[members[i].tet], corner);
-          std::sort(key.begin(), key.end());
+          std::ranges::sort(key);
           sides.emplace_back(key, i);
         }
-    std::sort(sides.begin(), sides.end());
+    std::ranges::sort(sides);
     for (std::size_t k = 1; k < sides.size(); ++k) {
       if (sides[k].first != sides[k - 1].first) continue;
       whole_.unite(sides[k].second, sides[k - 1].second);
@@ -57,10 +58,8 @@ class Star {
     }
     std::vector<Sector> order;
     for (auto& [root, sector] : by_root) order.push_back(std::move(sector));
-    std::sort(order.begin(), order.end(), [](const Sector& a, const Sector& b) {
-      return std::tuple(a.whole, a.region, a.members.front().tet) <
-             std::tuple(b.whole, b.region, b.members.front().tet);
-    });
+    std::ranges::sort(order, {},
+                      [](const Sector& s) { return std::tuple(s.whole, s.region, s.members.front().tet); });
     std::vector<std::vector<NodeOfTet>> result;
     for (std::size_t s = 1; s < order.size(); ++s)
       if (order[s].whole == order[s - 1].whole) result.push_back(std::move(order[s].members));
@@ -78,9 +77,7 @@ class Star {
 void for_each_further_sector(const TetMesh& mesh, std::vector<NodeOfTet> nodes,
                              const std::function<bool(const Key&)>& is_split,
                              const std::function<void(Index, const std::vector<NodeOfTet>&)>& copy) {
-  std::sort(nodes.begin(), nodes.end(), [](const NodeOfTet& a, const NodeOfTet& b) {
-    return std::tie(a.node, a.tet) < std::tie(b.node, b.tet);
-  });
+  std::ranges::sort(nodes, {}, [](const NodeOfTet& n) { return std::pair(n.node, n.tet); });
   for (std::size_t first = 0, last = 0; first < nodes.size(); first = last) {
     while (last < nodes.size() && nodes[last].node == nodes[first].node) ++last;
     const std::span<const NodeOfTet> members = std::span(nodes).subspan(first, last - first);

@@ -26,8 +26,4 @@ void for_each_further_sector(const TetMesh& mesh, std::vector<NodeOfTet> nodes,
                              const std::function<bool(const Key&)>& is_split,
                              const std::function<void(Index, const std::vector<NodeOfTet>&)>& copy);
 
-/// The corners of a tet between which each of its six mid-edge nodes lies.
-inline constexpr std::array<std::array<std::uint8_t, 2>, 6> mid_node_ends{
-    {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
-
 }  // namespace collarmesh::splitting

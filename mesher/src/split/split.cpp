@@ -8,17 +8,85 @@
 #include <set>
 #include <utility>
 
+#include "collarmesh/error.h"
+#include "common/cell_shapes.h"
 #include "common/face_finder.h"
 #include "common/group_names.h"
 #include "common/layer_tets.h"
+#include "common/named_tags.h"
 #include "common/tet_sides.h"
-#include "split/cohesive.h"
-#include "split/patch_choice.h"
 #include "split/sectors.h"
 
 namespace collarmesh {
 
 namespace {
+
+/// A patch or triangle that may be split: its tag and the regions on its sides.
+struct Candidate {
+  Tag tag = 0;
+  std::array<Index, 2> regions{0, 0};
+
+  bool is_internal() const { return regions[0] != 0 && regions[1] != 0; }
+  bool is_interface() const { return is_internal() && regions[0] != regions[1]; }
+};
+
+std::string internal_patches(const TagNames& names, const std::vector<Candidate>& all) {
+  std::set<Tag> tags;
+  for (const Candidate& candidate : all)
+    if (candidate.is_internal()) tags.insert(candidate.tag);
+  return tags.empty() ? "there are none" : "they are " + list_of_patches(tags, names);
+}
+
+/// The internal patches that the options name.
+class PatchChoice {
+ public:
+  /// Finds the patches. Throws OptionError for a name that no internal patch has.
+  PatchChoice(const SplitOptions& options, const TagNames& names, const std::vector<Candidate>& all)
+      : keep_apart_(options.keep_apart) {
+    for (const std::string& text : options.patches) {
+      const std::set<Tag> tags = tags_named(text, 2, names);
+      const auto named = [&](const Candidate& candidate) { return tags.contains(candidate.tag); };
+      if (std::ranges::none_of(all, named))
+        throw OptionError(fmt::format("split: no patch is called '{}'; patches inside can be split, {}", text,
+                                      internal_patches(names, all)));
+      if (std::ranges::none_of(all, [&](const Candidate& each) { return named(each) && each.is_internal(); }))
+        throw OptionError(
+            fmt::format("split: patch '{}' lies on the boundary; patches inside can be split, {}", text,
+                        internal_patches(names, all)));
+      tags_.insert(tags.begin(), tags.end());
+    }
+    if (keep_apart_ && std::ranges::none_of(all, [](const Candidate& each) { return each.is_interface(); }))
+      throw OptionError("keep-apart: no two regions touch, so there is nothing to keep apart");
+  }
+
+  bool contains(const Candidate& candidate) const {
+    return (keep_apart_ && candidate.is_interface()) ||
+           (candidate.is_internal() && tags_.contains(candidate.tag));
+  }
+
+ private:
+  bool keep_apart_;
+  std::set<Tag> tags_;
+};
+
+/// A triangle of the minus side and the coincident one of the plus side, as faces of the mesh.
+struct SidePair {
+  Index minus, plus;
+};
+
+/// Fills each pair with a prism of zero thickness.
+void add_prisms(const TetMesh& mesh, const std::vector<SidePair>& pairs, Interfaces& interfaces) {
+  for (const SidePair& pair : pairs) {
+    const auto [a, b, c] = mesh.faces[pair.minus];
+    const auto [p, r, q] = mesh.faces[pair.plus];  // counterclockwise as seen from its own side
+    interfaces.prisms.push_back({a, b, c, p, q, r});
+    interfaces.prism_tag.push_back(mesh.face_tag[pair.minus]);
+    if (mesh.order() == 1) continue;
+    const auto [ab, bc, ca] = mesh.face_mid_nodes[pair.minus];
+    const auto [rp, qr, pq] = mesh.face_mid_nodes[pair.plus];
+    interfaces.prism_mid_nodes.push_back({ab, bc, ca, pq, qr, rp});
+  }
+}
 
 using namespace splitting;
 
@@ -54,7 +122,7 @@ class Splitter {
  private:
   Candidate candidate(Index face) const { return {mesh_.face_tag[face], mesh_.face_regions[face]}; }
   bool is_marked(const auto& corners) const {
-    return std::any_of(corners.begin(), corners.end(), [&](Index v) { return marked_[v]; });
+    return std::ranges::any_of(corners, [&](Index v) { return marked_[v]; });
   }
 
   void choose() {
@@ -132,8 +200,8 @@ class Splitter {
   }
   Index mid_node_in(Index tet, Index a, Index b) const {
     const auto i = place_of(a, mesh_.tets[tet]), j = place_of(b, mesh_.tets[tet]);
-    for (std::size_t k = 0; k < mid_node_ends.size(); ++k)
-      if (const auto& [p, q] = mid_node_ends[k]; (p == i && q == j) || (p == j && q == i))
+    for (std::size_t k = 0; k < cell_shapes::tet_edges.size(); ++k)
+      if (const auto& [p, q] = cell_shapes::tet_edges[k]; (p == i && q == j) || (p == j && q == i))
         return mids_[tet][k];
     return none;
   }
@@ -256,7 +324,7 @@ class Splitter {
     std::map<Index, std::vector<EdgeNodes>> found;
     for (Index t = 0; t < mesh_.tets.size() && !listed.empty(); ++t) {
       if (!is_marked(mesh_.tets[t])) continue;
-      for (const auto& [i, j] : mid_node_ends) {
+      for (const auto& [i, j] : cell_shapes::tet_edges) {
         const Index a = mesh_.tets[t][i], b = mesh_.tets[t][j];
         const auto edge = listed.find({std::min(a, b), std::max(a, b)});
         if (edge == listed.end()) continue;
@@ -264,14 +332,14 @@ class Splitter {
         const EdgeNodes nodes{corner_in(t, from), corner_in(t, to),
                               mesh_.order() == 2 ? mid_node_in(t, from, to) : none};
         std::vector<EdgeNodes>& all = found[edge->second];
-        if (std::find(all.begin(), all.end(), nodes) == all.end()) all.push_back(nodes);
+        if (std::ranges::find(all, nodes) == all.end()) all.push_back(nodes);
       }
     }
     for (auto& [edge, all] : found) store(edge, all);
   }
 
   void store(Index edge, std::vector<EdgeNodes>& all) {
-    std::sort(all.begin(), all.end());
+    std::ranges::sort(all);
     for (std::size_t k = 0; k < all.size(); ++k) {
       const auto& [a, b, middle] = all[k];
       if (k == 0) {

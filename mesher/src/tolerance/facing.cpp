@@ -1,7 +1,5 @@
 #include "tolerance/facing.h"
 
-#include <algorithm>
-
 namespace collarmesh {
 
 namespace {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/sort_uniquely.h"
 #include "tolerance/facing.h"
 
 namespace collarmesh {
@@ -25,10 +26,7 @@ FeatureContacts::FeatureContacts(const Plc& plc)
   };
   for (const Plc::Curve& curve : plc.curves) note(curve.patches);
   for (const Plc::Vertex& vertex : plc.vertices) note(vertex.patches);
-  for (std::vector<Index>& patches : neighbours_) {
-    std::sort(patches.begin(), patches.end());
-    patches.erase(std::unique(patches.begin(), patches.end()), patches.end());
-  }
+  for (std::vector<Index>& patches : neighbours_) sort_uniquely(patches);
 }
 
 bool FeatureContacts::touch(unsigned dimension, Index feature, unsigned other_dimension, Index other) const {
@@ -44,7 +42,7 @@ bool FeatureContacts::touch(unsigned dimension, Index feature, unsigned other_di
   }
   if (other_dimension == 2 && plc_.curve_on_patch(feature, other)) return true;
   const auto& ends = plc_.curves[feature].ends;
-  return std::any_of(ends.begin(), ends.end(), [&](Index end) {
+  return std::ranges::any_of(ends, [&](Index end) {
     if (end == none) return false;
     if (other_dimension == 2) return plc_.vertex_on_patch(end, other);
     const auto& others = plc_.curves[other].ends;
@@ -53,7 +51,7 @@ bool FeatureContacts::touch(unsigned dimension, Index feature, unsigned other_di
 }
 
 bool FeatureContacts::patches_touch(Index a, Index b) const {
-  return std::binary_search(neighbours_[a].begin(), neighbours_[a].end(), b) ||
+  return std::ranges::binary_search(neighbours_[a], b) ||
          (at_hub_[a] && at_hub_[b] && are_neighbours(plc_, a, b));
 }
 

@@ -41,14 +41,10 @@ bool NarrowPlaces::across(Index a, Index b) const {
   if (forced_.forces(a, b)) return true;
   if (in_creases_.empty() || std::max(a, b) >= features_.size()) return false;
   const std::vector<Feature> of_a = all_that_contain(features_[a]), of_b = all_that_contain(features_[b]);
-  const auto contains_both = [&](const Feature& f) {
-    return std::find(of_b.begin(), of_b.end(), f) != of_b.end();
-  };
-  if (std::any_of(of_a.begin(), of_a.end(), contains_both)) return false;
-  return std::any_of(of_a.begin(), of_a.end(), [&](const Feature& f) {
-    return std::any_of(of_b.begin(), of_b.end(), [&](const Feature& g) {
-      return in_creases_.contains({f, g});
-    });
+  const auto contains_both = [&](const Feature& f) { return std::ranges::find(of_b, f) != of_b.end(); };
+  if (std::ranges::any_of(of_a, contains_both)) return false;
+  return std::ranges::any_of(of_a, [&](const Feature& f) {
+    return std::ranges::any_of(of_b, [&](const Feature& g) { return in_creases_.contains({f, g}); });
   });
 }
 

@@ -11,6 +11,7 @@
 #include "collarmesh/shape_measures.h"
 #include "common/cells_at_vertices.h"
 #include "common/parallel_for.h"
+#include "common/segments.h"
 #include "tolerance/curvature.h"
 #include "tolerance/facing.h"
 #include "tolerance/thickness.h"
@@ -253,11 +254,9 @@ class LocalTolerance {
 };
 
 template <class Better>
-double extreme_on(const SurfaceTolerance& tolerance, const Plc::Curve& curve, const Better& better) {
-  const std::size_t count = curve.points.size();
-  double extreme = tolerance.at_segment(curve.points[0], curve.points[1 % count]);
-  for (std::size_t i = 1; i + (curve.closed ? 0 : 1) < count; ++i)
-    extreme = better(extreme, tolerance.at_segment(curve.points[i], curve.points[(i + 1) % count]));
+double extreme_on(const SurfaceTolerance& tolerance, const Plc::Curve& curve, double extreme,
+                  const Better& better) {
+  visit_segments(curve, [&](Index a, Index b) { extreme = better(extreme, tolerance.at_segment(a, b)); });
   return extreme;
 }
 
@@ -309,7 +308,7 @@ bool triangles_resolve(const Plc& plc, const Plc::Patch& patch, const SurfaceTol
                          n / norm(n),
                          norm(n) / length});
   }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.edge < b.edge; });
+  std::ranges::sort(sides, [](const Side& a, const Side& b) { return a.edge < b.edge; });
   for (std::size_t i = 1; i < sides.size(); ++i) {
     if (sides[i - 1].edge != sides[i].edge) continue;
     const double turn = std::acos(std::clamp(dot(sides[i - 1].normal, sides[i].normal), -1.0, 1.0));
@@ -343,11 +342,11 @@ SurfaceTolerance SurfaceTolerance::of_patches(const Plc& whole, std::span<const 
 }
 
 double SurfaceTolerance::least_on_curve(const Plc::Curve& curve) const {
-  return extreme_on(*this, curve, [](double a, double b) { return std::min(a, b); });
+  return extreme_on(*this, curve, INFINITY, [](double a, double b) { return std::min(a, b); });
 }
 
 double SurfaceTolerance::largest_on_curve(const Plc::Curve& curve) const {
-  return extreme_on(*this, curve, [](double a, double b) { return std::max(a, b); });
+  return extreme_on(*this, curve, 0, [](double a, double b) { return std::max(a, b); });
 }
 
 SurfaceTolerance default_tolerance(const Plc& plc, double size, int order) {

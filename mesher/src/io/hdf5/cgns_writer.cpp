@@ -3,6 +3,7 @@
 // kind of cells; the faces of a section on the boundary are also a boundary condition, whose family has the
 // name.
 #include <fmt/format.h>
+#include <hdf5.h>
 
 #include <algorithm>
 #include <array>

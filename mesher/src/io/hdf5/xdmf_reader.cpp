@@ -1,6 +1,7 @@
 // Reads XDMF as collarmesh, meshio and dolfinx write it: a uniform grid of tetrahedra with its values in HDF5
 // or in the text, and the tagged faces and edges in files beside it, NAME_faces.xdmf and NAME_edges.xdmf.
 #include <fmt/format.h>
+#include <hdf5.h>
 
 #include <algorithm>
 #include <filesystem>

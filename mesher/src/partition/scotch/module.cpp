@@ -1,6 +1,4 @@
 // Calls Scotch (www.labri.fr/perso/pelegrin/scotch) for ../partition.cpp.
-#include <cstdint>
-#include <cstdio>
 
 #include <scotch.h>
 
