@@ -19,7 +19,7 @@
 #include "files/surface_files.h"
 #include "files/trace_files.h"
 #include "help_text.h"
-#include "io/file_bytes.h"
+#include "io/file_format.h"
 #include "man_page.h"
 #include "option_values.h"
 #include "process/console.h"

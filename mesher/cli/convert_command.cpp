@@ -16,7 +16,7 @@
 #include "files/input_files.h"
 #include "files/surface_files.h"
 #include "interruptible.h"
-#include "io/file_bytes.h"
+#include "io/file_format.h"
 #include "mesh_command.h"
 #include "process/console.h"
 #include "process/interrupt.h"

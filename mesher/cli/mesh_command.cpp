@@ -18,7 +18,7 @@
 #include "files/surface_files.h"
 #include "files/trace_files.h"
 #include "interruptible.h"
-#include "io/file_bytes.h"
+#include "io/file_format.h"
 #include "option_warnings.h"
 #include "process/console.h"
 #include "process/interrupt.h"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "io/file_bytes.h"
+#include "io/file_format.h"
 #include "report/conversion_report.h"
 
 namespace collarmesh::cli {

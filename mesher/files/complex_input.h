@@ -46,7 +46,8 @@ struct InputReading {
 InputReading reading_of(const RunOptions& options, const std::string& format = {});
 
 /// Does the same for the input of a mesh: triangles of CAD shapes are as fine as its sizes ask for. Meshes of
-/// surfaces do not need finer ones, which only keep volumes. Keeps the options by reference.
+/// surfaces do not need finer ones, which only keep volumes. The result refers to `options`, which must
+/// outlive it.
 InputReading reading_for_mesh(const RunOptions& options, const std::string& format = {});
 
 /// The files of one complex: surfaces, complexes and CAD shapes, which are triangulated here.

@@ -4,7 +4,7 @@
 
 #include "collarmesh/error.h"
 #include "common/module_function.h"
-#include "io/file_bytes.h"
+#include "io/file_format.h"
 
 namespace collarmesh::files {
 

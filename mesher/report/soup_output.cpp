@@ -4,7 +4,7 @@
 
 #include "collarmesh/error.h"
 #include "collarmesh/merge_soups.h"
-#include "io/file_bytes.h"
+#include "io/file_format.h"
 #include "report/conversion_report.h"
 #include "report/report.h"
 

@@ -53,6 +53,14 @@ TEST(IoTetMesh, RoundTripOfMsh) {
   expect_same(round_trip(mesh, "a.msh"), mesh);
 }
 
+TEST(IoTetMesh, FormatsAreNamedInAnyCase) {
+  const TemporaryFolder folder;
+  const TetMesh mesh = sample_mesh(3);
+  io::write_tet_mesh(folder.file("a"), mesh, ".MSH");
+  expect_same(io::read_tet_mesh(folder.file("a"), ".Msh"), mesh);
+  EXPECT_TRUE(io::is_tet_mesh_format("a", ".MSH"));
+}
+
 TEST(IoTetMesh, RoundTripOfMedit) {
   const TetMesh mesh = sample_mesh(3);
   expect_same(round_trip(mesh, "a.mesh"), as_medit_keeps_it(mesh));

@@ -5,8 +5,8 @@ import dataclasses
 from PySide import QtCore, QtGui
 
 from . import mesh_properties, numbers_typed, preferences, widgets
-from .compatibility import value_of
 from .fold import Fold
+from .objects import value_of
 from .quantity_field import QuantityField
 from .translations import translate
 

@@ -68,8 +68,8 @@ def on(surface, part, settings):
     sizes = numpy.full(len(places), settings.size or diagonal * size_presets.DEFAULT_PART_OF_DIAGONAL)
     if not shape.isNull():
         for number, size in settings.solid_sizes.items():
-            its = _on_solid(surface, shape, number)
-            sizes[its] = numpy.minimum(size, sizes[its])
+            inside = _on_solid(surface, shape, number)
+            sizes[inside] = numpy.minimum(size, sizes[inside])
         growth = settings.gradation or GROWTH
         for kind, wanted in (("Face", settings.face_sizes), ("Edge", settings.edge_sizes)):
             for number, size in wanted.items():

@@ -8,6 +8,8 @@ import FreeCAD
 import ObjectsFem
 from femmesh import meshtools
 
+from .objects import type_of
+
 
 class Stateless:
     """A proxy that saves nothing."""
@@ -43,17 +45,6 @@ def add_mesh_object(document, name):
 def shape_property(mesh_object):
     """Returns the property that links the meshed object: `Shape` from FreeCAD 1.0 on, `Part` before."""
     return "Shape" if "Shape" in mesh_object.PropertiesList else "Part"
-
-
-def type_of(obj):
-    """Returns the `Type` of an object's proxy; "" if it has none."""
-    return getattr(getattr(obj, "Proxy", None), "Type", "")
-
-
-def value_of(obj, name):
-    """Returns a property's value, of a quantity in millimetres or degrees; 0 without the property."""
-    value = getattr(obj, name, 0)
-    return getattr(value, "Value", value)
 
 
 def meshed_object(mesh_object):
@@ -103,11 +94,6 @@ def size_by_place(obj):
     lengths = [getattr(obj, f"Box{name}").Value for name in ("Length", "Width", "Height")]
     corner = FreeCAD.Placement(obj.BoxCenter - FreeCAD.Vector(*lengths) / 2, FreeCAD.Rotation())
     return "Box", *sizes, {**dict(zip(("Length", "Width", "Height"), lengths)), "Placement": corner}
-
-
-def key_of(obj):
-    """Returns the names of an object's document and of the object, which identify it while it exists."""
-    return obj.Document.Name, obj.Name
 
 
 def mesh_objects(document):

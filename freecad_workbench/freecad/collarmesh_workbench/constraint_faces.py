@@ -8,6 +8,7 @@ import numpy
 import Part
 
 from . import compatibility, elements, inputs, planar_pieces, views
+from .objects import type_of
 from .program import MesherError
 from .translations import doc, translate
 
@@ -31,7 +32,7 @@ class Proxy(compatibility.Stateless):
 
 
 def is_ours(obj):
-    return compatibility.type_of(obj) == TYPE
+    return type_of(obj) == TYPE
 
 
 def can_be_made(mesh_object):
@@ -48,8 +49,8 @@ def of(mesh_object):
 def make(mesh_object):
     """Returns the object with the faces; makes it if necessary. Raises MesherError."""
     if not can_be_made(mesh_object):
-        raise MesherError(translate("collarmesh", "{label}: only a mesh of triangles needs faces for constraints, and it must "
-                                                  "be made first."), label=mesh_object.Label)
+        raise MesherError(translate("collarmesh", "{label}: only a mesh of triangles needs faces for constraints, and "
+                                                  "it must be made first."), label=mesh_object.Label)
     there = of(mesh_object)
     if there is not None:
         return there

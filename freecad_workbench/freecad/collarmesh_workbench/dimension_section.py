@@ -4,6 +4,7 @@ from PySide import QtCore, QtGui
 
 from . import compatibility, mesh_properties, open_shape, widgets
 from .groups import analysis_of
+from .objects import type_of
 from .translations import translate
 
 
@@ -64,7 +65,7 @@ def missing_section(mesh_object, dimension):
     """Returns the object that FEM needs for such elements if the analysis lacks it; "" for none."""
     analysis = analysis_of(mesh_object)
     members = [] if analysis is None else analysis.Group
-    if dimension == 3 or any(compatibility.type_of(each) == f"Fem::ElementGeometry{dimension}D" for each in members):
+    if dimension == 3 or any(type_of(each) == f"Fem::ElementGeometry{dimension}D" for each in members):
         return ""
     if dimension == 1:
         return translate("collarmesh", "The analysis needs a beam cross section (FEM: Beam cross section).")

@@ -10,6 +10,7 @@ import FreeCAD
 from femmesh import meshtools
 
 from . import compatibility, contacts, elements, inputs, mesh_properties
+from .objects import type_of
 from .translations import translate
 
 KINDS = {"Solid": "Volume", "Face": "Face", "Edge": "Edge"}
@@ -27,7 +28,7 @@ def analysis_of(mesh_object):
 
 def materials_of(analysis):
     return [each for each in (analysis.Group if analysis else ())
-            if each.Name and compatibility.type_of(each) == "Fem::MaterialCommon"]
+            if each.Name and type_of(each) == "Fem::MaterialCommon"]
 
 
 def elements_of(fem_mesh, part, subshapes):

@@ -78,9 +78,10 @@ def write_triangles(mesh, path):
     sections = [("MeshFormat", ["2.2 0 8"])]
     if names:
         sections.append(("PhysicalNames", [len(names), *(f'2 {n} "{name}"' for n, name in names.items())]))
-    sections.append(("Nodes", [len(points), *(f"{i} {p.x!r} {p.y!r} {p.z!r}" for i, p in enumerate(points, 1))]))
-    sections.append(("Elements", [len(triangles), *(f"{i} 2 2 {n} {n} {a + 1} {b + 1} {c + 1}" for i, (n, (a, b, c))
-                                                    in enumerate(zip(numbers, triangles), 1))]))
+    nodes = (f"{i} {p.x!r} {p.y!r} {p.z!r}" for i, p in enumerate(points, 1))
+    elements = (f"{i} 2 2 {n} {n} {a + 1} {b + 1} {c + 1}"
+                for i, (n, (a, b, c)) in enumerate(zip(numbers, triangles), 1))
+    sections += [("Nodes", [len(points), *nodes]), ("Elements", [len(triangles), *elements])]
     with open(path, "w", encoding="ascii") as file:
         for name, lines in sections:
-            print(f"${name}", *lines, f"$End{name}", sep="\n", file=file)
+            file.write("\n".join((f"${name}", *map(str, lines), f"$End{name}", "")))

@@ -3,6 +3,7 @@
 import Part
 
 from . import compatibility, inputs, size_objects, views
+from .objects import type_of
 from .program import MesherError
 from .translations import doc, translate
 
@@ -40,7 +41,7 @@ class Layers(compatibility.WithProperties):
 
 
 def is_ours(obj):
-    return compatibility.type_of(obj) == TYPE
+    return type_of(obj) == TYPE
 
 
 def make(mesh_object, name="BoundaryLayers"):
@@ -68,8 +69,8 @@ def words_of(mesh_object):
 def word_of(obj, part):
     faces, solids = subshapes(obj, part)
     if len(solids) > 1:
-        raise MesherError(translate("collarmesh", "{label}: layers are on both sides of a face, or inside one solid; {count} "
-                                                  "are chosen."), label=obj.Label, count=len(solids))
+        raise MesherError(translate("collarmesh", "{label}: layers are on both sides of a face, or inside one solid; "
+                                                  "{count} are chosen."), label=obj.Label, count=len(solids))
     settings = [f"growth={checked(obj, 'Growth', 1, MOST_GROWTH)!r}", f"count={checked(obj, 'Count', 1, MOST_LAYERS)}"]
     if obj.Thickness.Value > 0:
         settings.append(f"thickness={obj.Thickness.Value!r}")

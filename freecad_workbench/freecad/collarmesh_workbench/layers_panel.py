@@ -47,8 +47,8 @@ class LayersPanel(EditPanel):
 
     def _add_faces(self, layout):
         label = widgets.label(text=translate(
-            "collarmesh", "Faces with layers: type their names, or select them in the 3D view and add them. With a solid among "
-            "them, layers are inside that solid only."))
+            "collarmesh", "Faces with layers: type their names, or select them in the 3D view and add them. With a "
+            "solid among them, layers are inside that solid only."))
         self.faces = QtGui.QLineEdit()
         self.faces.setObjectName("collarmesh_layers_faces")
         self.faces.setPlaceholderText(translate("collarmesh", "all outer faces"))

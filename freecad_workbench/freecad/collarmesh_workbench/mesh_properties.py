@@ -3,6 +3,7 @@
 import re
 
 from . import compatibility, layer_objects, preferences, size_objects
+from .objects import type_of, value_of
 from .program import MesherError, Settings
 from .translations import doc, translate
 
@@ -56,7 +57,7 @@ REFINEMENTS = {"Solid": "solid_sizes", "Face": "face_sizes", "Edge": "edge_sizes
 
 
 def is_ours(obj):
-    return compatibility.type_of(obj) == TYPE
+    return type_of(obj) == TYPE
 
 
 def add_properties(obj):
@@ -97,7 +98,7 @@ def settings_of(obj):
     """Returns the Settings that the object's properties represent. Raises MesherError."""
     values = {}
     for _kind, name, field, _group, _text in PROPERTIES:
-        value = compatibility.value_of(obj, name)
+        value = value_of(obj, name)
         values[field] = list(value) if isinstance(value, (list, tuple)) else value
     settings = Settings(
         order=ORDERS.index(obj.ElementOrder) + 1,
@@ -126,7 +127,7 @@ def apply_settings(obj, settings):
 def add_refinement(region, part, settings):
     """Adds the sizes of a mesh region object. If several objects give a size to a sub-shape, the smallest
     counts."""
-    size = compatibility.value_of(region, "CharacteristicLength")
+    size = value_of(region, "CharacteristicLength")
     if not size:
         return
     for linked, names in region.References:

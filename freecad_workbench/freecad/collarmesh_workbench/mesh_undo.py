@@ -10,7 +10,7 @@ import time
 import FreeCAD
 
 from . import elements, groups, mesh_properties, up_to_date
-from .compatibility import key_of
+from .objects import key_of
 from .translations import doc
 
 NUMBER = "MeshNumber"

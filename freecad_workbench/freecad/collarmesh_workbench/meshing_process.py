@@ -13,8 +13,8 @@ import FreeCADGui
 from PySide import QtCore, QtGui
 
 from . import compatibility, elements, mesh_object, mesh_undo, processes, up_to_date
-from .compatibility import key_of
 from .later import later
+from .objects import key_of
 from .program import MesherError, Progress
 from .time_left import TimeLeft
 from .translations import translate

@@ -15,7 +15,7 @@ def shown(text):
 
 
 def grouped(count):
-    """Returns a whole number as text, with spaces between thousands."""
+    """Returns a number, rounded to a whole one, with thin spaces between thousands."""
     return f"{count:,.0f}".replace(",", "\u202f")
 
 

@@ -116,7 +116,8 @@ def find_program(preferred=""):
             if shutil.which(candidate):
                 return shutil.which(candidate)
             raise MesherError(
-                translate("collarmesh", "The mesher {path} is no program; correct its path in the preferences."), path=candidate)
+                translate("collarmesh", "The mesher {path} is no program; correct its path in the preferences."),
+                path=candidate)
     addon = pathlib.Path(__file__).resolve().parents[2]
     candidates = [addon / "bin" / "collarmesh", "collarmesh", addon.parent / "build" / "release" / "bin" / "collarmesh"]
     if len(addon.parents) > 3:  # an installed add-on is in WHERE/share/freecad/Mod/collarmesh, and the program in WHERE/bin
@@ -124,8 +125,8 @@ def find_program(preferred=""):
     for candidate in map(str, candidates):
         if shutil.which(candidate):
             return shutil.which(candidate)
-    raise MesherError(translate("collarmesh", "The program collarmesh is not found: install it so that it is on the PATH, "
-                                              "or name its path in the preferences."))
+    raise MesherError(translate("collarmesh", "The program collarmesh is not found: install it so that it is on the "
+                                              "PATH, or name its path in the preferences."))
 
 
 @dataclasses.dataclass

@@ -77,8 +77,9 @@ def _displacements(obj):
                               for number, vector in zip(result.NodeNumbers, result.DisplacementVectors) if number in places}
     path = file_of_result(obj)
     if path is None:
-        raise MesherError(translate("collarmesh", "The analysis of {label} has no result with displacements: solve it first."),
-                          label=obj.Label)
+        raise MesherError(
+            translate("collarmesh", "The analysis of {label} has no result with displacements: solve it first."),
+            label=obj.Label)
     try:
         read = importCcxFrdResults.read_frd_result(str(path))
     except Exception as fault:  # FreeCAD's reader raises whatever its parsing meets

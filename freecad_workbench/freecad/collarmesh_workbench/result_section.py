@@ -82,17 +82,17 @@ def counts_text(report):
     counts = translate("collarmesh", "<b>{tets}</b> tetrahedra, <b>{nodes}</b> nodes, <b>{faces}</b> faces")
     layers = "<br>" + layers_text(report["layers"]) if report.get("layers") else ""
     angles = translate("collarmesh", "dihedral angles from {smallest}° to {largest}°, in {time}")
-    return (counts.format(tets=grouped(mesh["tets"]), nodes=grouped(mesh["points"]), faces=grouped(mesh["faces"])) + "<br>"
-            + angles.format(smallest=shown(f"{mesh['min_dihedral']:.1f}"), largest=shown(f"{mesh['max_dihedral']:.1f}"),
-                            time=time) + layers)
+    return (counts.format(tets=grouped(mesh["tets"]), nodes=grouped(mesh["points"]), faces=grouped(mesh["faces"]))
+            + "<br>" + angles.format(smallest=shown(f"{mesh['min_dihedral']:.1f}"),
+                                     largest=shown(f"{mesh['max_dihedral']:.1f}"), time=time) + layers)
 
 
 def layers_text(layers):
     """Returns the counts of elements in boundary layers, and what these cover, as text."""
-    text = translate("collarmesh", "Layers: <b>{prisms}</b> prisms, {pyramids} pyramids and {tets} tetrahedra cover {percent}% of "
-                                   "the faces")
-    return text.format(prisms=grouped(layers["prisms"]), pyramids=grouped(layers["pyramids"]), tets=grouped(layers["tets"]),
-                       percent=shown(f"{100 * layers['coverage']:.1f}"))
+    text = translate("collarmesh", "Layers: <b>{prisms}</b> prisms, {pyramids} pyramids and {tets} tetrahedra cover "
+                                   "{percent}% of the faces")
+    return text.format(prisms=grouped(layers["prisms"]), pyramids=grouped(layers["pyramids"]),
+                       tets=grouped(layers["tets"]), percent=shown(f"{100 * layers['coverage']:.1f}"))
 
 
 def filled_text(areas):

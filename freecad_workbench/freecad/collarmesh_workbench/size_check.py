@@ -21,6 +21,6 @@ def check(settings, sources, part):
                 translate("collarmesh", "{label}: a size of {size:g} mm makes no sense, it has to be more than 0."),
                 label=label, size=size)
         if size < LEAST * diagonal:
-            raise MesherError(translate("collarmesh", "{label}: {size:g} mm is less than a hundred thousandth of the part, "
-                                                      "which is {diagonal:.4g} mm large. Choose a larger size."),
+            raise MesherError(translate("collarmesh", "{label}: {size:g} mm is less than a hundred thousandth of the "
+                                                      "part, which is {diagonal:.4g} mm large. Choose a larger size."),
                               label=label, size=size, diagonal=diagonal)

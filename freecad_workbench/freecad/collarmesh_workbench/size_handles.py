@@ -100,7 +100,8 @@ class Handles:
             if root is not None:
                 style = coin.SoPickStyle()
                 style.style = coin.SoPickStyle.UNPICKABLE
-                root.insertChild(style, 1 if each is self.object else 0)  # its own node begins with the handles
+                # after the handles' node, so that they stay pickable
+                root.insertChild(style, 1 if each is self.object else 0)
                 self._hidden_from_mouse.append((root, style))
 
     def remove(self):

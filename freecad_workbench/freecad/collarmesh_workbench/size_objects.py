@@ -6,6 +6,7 @@ import FreeCAD
 import Part
 
 from . import compatibility, contacts, extent, inputs, views
+from .objects import type_of
 from .program import MesherError
 from .translations import doc, translate
 
@@ -145,8 +146,9 @@ class Distance(Size):
                 translate("collarmesh", "{label}: {name} is no face and no edge."),
                 translate("collarmesh", "{label}: {part} has no {name} any more; choose its faces and edges again.")):
             if kind == "Edge" and contacts.is_seam(shape, shape.Edges[number - 1]):
-                raise MesherError(translate("collarmesh", "{label}: {name} is the seam of a face, which the mesh does not have; "
-                                                          "choose the face."), label=obj.Label, name=f"{kind}{number}")
+                raise MesherError(
+                    translate("collarmesh", "{label}: {name} is the seam of a face, which the mesh does not have; "
+                                            "choose the face."), label=obj.Label, name=f"{kind}{number}")
         if not references(obj):
             raise MesherError(translate("collarmesh", "{label} has no faces and edges; choose some, or delete it."),
                               label=obj.Label)
@@ -171,7 +173,7 @@ def kind_and_number(name):
     return (match[1], int(match[2])) if match else ("", 0)
 
 
-def subshapes(obj, part, kinds, if_of_other, if_of_other_kind, if_gone):
+def subshapes(obj, part, kinds, other_part, other_kind, gone):
     """Yields the kind and the number of each sub-shape in an object's references. Raises MesherError with one of the
     texts for one that is not of the part, not of these kinds, or no longer there."""
     shape = inputs.shape_of(part)
@@ -179,11 +181,11 @@ def subshapes(obj, part, kinds, if_of_other, if_of_other_kind, if_gone):
         kind, number = kind_and_number(name)
         wrong = ""
         if linked is not part:
-            wrong = if_of_other
+            wrong = other_part
         elif kind not in kinds:
-            wrong = if_of_other_kind
+            wrong = other_kind
         elif number > len(getattr(shape, kind + "s")):
-            wrong = if_gone
+            wrong = gone
         if wrong:
             raise MesherError(wrong, label=obj.Label, other=linked.Label, part=part.Label,
                               name=name or translate("collarmesh", "the whole object"))
@@ -196,7 +198,8 @@ PROPERTY = "MeshSizeList"  # property of a mesh object
 
 def kind_of(obj):
     """Returns the object's key in KINDS; None for other objects."""
-    return next((kind for kind, proxy in KINDS.items() if proxy.Type == compatibility.type_of(obj)), None)
+    its_type = type_of(obj)
+    return next((kind for kind, proxy in KINDS.items() if proxy.Type == its_type), None)
 
 
 def make(mesh_object, kind, size=0, name=""):
@@ -210,8 +213,9 @@ def make(mesh_object, kind, size=0, name=""):
     part = compatibility.meshed_object(mesh_object)
     if part is not None:
         proxy.place(obj, part)
-        whole = mesh_object.CharacteristicLengthMax.Value or extent.bounding_box(part).DiagonalLength / 20
-        size = size or whole / 4
+        if not size:
+            own_size = mesh_object.CharacteristicLengthMax.Value or extent.bounding_box(part).DiagonalLength / 20
+            size = own_size / 4
     obj.Size = size
     setattr(mesh_object, PROPERTY, [*getattr(mesh_object, PROPERTY), obj])
     views.show(proxy.Type, obj)

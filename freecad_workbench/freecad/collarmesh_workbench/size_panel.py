@@ -112,7 +112,8 @@ class SizePanel(EditPanel):
 
     def _add_hint(self, layout):
         layout.addWidget(widgets.label(text=translate(
-            "collarmesh", "Drag the handles in the 3D view. To turn it, close this panel and choose Transform in its context menu.")))
+            "collarmesh", "Drag the handles in the 3D view. To turn it, close this panel and choose Transform in its "
+            "context menu.")))
 
     def _add_handles(self):
         self.object.recompute()

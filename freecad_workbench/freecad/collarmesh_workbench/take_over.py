@@ -6,7 +6,7 @@ import math
 import ObjectsFem
 
 from . import compatibility, extent, inputs, layer_objects, mesh_object, mesh_properties, size_objects, up_to_date
-from .compatibility import value_of
+from .objects import type_of, value_of
 from .program import MesherError
 from .translations import doc, translate
 
@@ -35,7 +35,7 @@ def can_be_taken_over(obj):
 
 def mesher_of(obj):
     """Returns Gmsh, Netgen, or "" for other objects."""
-    kind = compatibility.type_of(obj)
+    kind = type_of(obj)
     if kind == "Fem::FemMeshGmsh":
         return "Gmsh"
     if kind == "Fem::FemMeshNetgen" or obj.TypeId == "Fem::FemMeshShapeNetgenObject":
@@ -130,13 +130,13 @@ def note_on(names, text):
 
 def take_netgen(old, new):
     part = compatibility.meshed_object(new)
-    largest = value_of(old, "MaxSize")
+    largest = value_of(old, "MaxSize", 0)
     if part is None or largest < extent.bounding_box(part).DiagonalLength:
         new.CharacteristicLengthMax = largest
-    new.CharacteristicLengthMin = value_of(old, "MinSize")
+    new.CharacteristicLengthMin = value_of(old, "MinSize", 0)
     new.ElementOrder = mesh_properties.ORDERS[bool(getattr(old, "SecondOrder", False))]
-    radius = value_of(old, "NbSegsPerRadius") or value_of(old, "CurvatureSafety")
-    growth, along_radius = FINENESS.get(getattr(old, "Fineness", ""), (value_of(old, "GrowthRate"), radius))
+    radius = value_of(old, "NbSegsPerRadius", 0) or value_of(old, "CurvatureSafety", 0)
+    growth, along_radius = FINENESS.get(getattr(old, "Fineness", ""), (value_of(old, "GrowthRate", 0), radius))
     new.Gradation = growth
     new.MeshSizeFromCurvature = round(2 * math.pi * along_radius)
     return []

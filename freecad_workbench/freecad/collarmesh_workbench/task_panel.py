@@ -12,6 +12,7 @@ from .advanced_section import AdvancedSection, in_panel_words
 from .contacts_section import ContactsSection
 from .dimension_section import DimensionSection
 from .later import later
+from .objects import key_of
 from .order_section import OrderSection
 from .places_list import PlacesList
 from .program import MesherError
@@ -309,7 +310,7 @@ class MeshTaskPanel:
         is_wanted = not self.object.ViewObject.Proxy.is_new or self.object.FemMesh.NodeCount or self.run is not None
         self._close()
         if not is_wanted:
-            key = compatibility.key_of(self.object)
+            key = key_of(self.object)
             later(lambda: new_mesh.take_back(*key))  # after the panel is closed
         return True
 

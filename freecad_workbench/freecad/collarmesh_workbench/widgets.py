@@ -26,7 +26,10 @@ def stack(owner, *parts):
     layout = QtGui.QVBoxLayout(owner)
     layout.setContentsMargins(0, 0, 0, 0)
     for part in parts:
-        (layout.addLayout if isinstance(part, QtGui.QLayout) else layout.addWidget)(part)
+        if isinstance(part, QtGui.QLayout):
+            layout.addLayout(part)
+        else:
+            layout.addWidget(part)
     return layout
 
 

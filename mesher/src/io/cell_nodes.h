@@ -22,9 +22,9 @@ struct PerKind : std::array<Item, cell_kinds> {
   }
 };
 
-/// Returns the mid-edge nodes of a cell as a list: edges have a number, other cells an array.
+/// Returns the mid-edge nodes of a cell as a span: edges have a number, other cells an array.
 template <class Nodes>
-auto listed(Nodes& nodes) {
+auto as_span(Nodes& nodes) {
   if constexpr (std::is_same_v<std::remove_const_t<Nodes>, Index>)
     return std::span<Nodes, 1>(&nodes, 1);
   else
@@ -40,7 +40,7 @@ class CellNodes {
     CellNodes result;
     for (const Index v : cell) result.add(v);
     if (!middle.empty())
-      for (const Index v : listed(middle[i])) result.add(v);
+      for (const Index v : as_span(middle[i])) result.add(v);
     return result;
   }
 
@@ -210,12 +210,15 @@ inline std::vector<Tag> all_tags(const TetMesh& mesh, std::size_t dimension) {
   });
   return tags;
 }
+
 /// Replaces the nodes of a cell of either order.
 inline void set_cell(CellKind kind, std::size_t i, const CellNodes& nodes, TetMesh& mesh) {
   with_cells(mesh, kind, [&](auto& cells, auto& middle) {
     const auto corners = cells[i].size();
     std::copy_n(nodes.begin(), corners, cells[i].begin());
-    if (nodes.size() > corners) std::copy(nodes.begin() + corners, nodes.end(), listed(middle[i]).begin());
+    if (nodes.size() <= corners) return;
+    const auto mids = as_span(middle[i]);
+    std::copy_n(nodes.begin() + corners, mids.size(), mids.begin());
   });
 }
 /// Appends a cell of either order to a mesh that is being read.
@@ -223,8 +226,9 @@ inline void add_cell(CellKind kind, const CellNodes& nodes, TetMesh& mesh) {
   with_cells(mesh, kind, [&](auto& cells, auto& middle) {
     const auto corners = cells.emplace_back().size();
     std::copy_n(nodes.begin(), corners, cells.back().begin());
-    if (nodes.size() > corners)
-      std::copy(nodes.begin() + corners, nodes.end(), listed(middle.emplace_back()).begin());
+    if (nodes.size() <= corners) return;
+    const auto mids = as_span(middle.emplace_back());
+    std::copy_n(nodes.begin() + corners, mids.size(), mids.begin());
   });
 }
 

@@ -90,7 +90,7 @@ void complete_mid_nodes(const std::string& path, TetMesh& mesh) {
       if (middle.size() == cells.size()) return;
       if (!nodes) nodes.emplace(path, mesh);
       for (const auto& cell : cells) {
-        const auto mid_nodes = listed(middle.emplace_back());
+        const auto mid_nodes = as_span(middle.emplace_back());
         for (std::size_t e = 0; e < mid_nodes.size(); ++e)
           mid_nodes[e] = nodes->find(cell[e], cell[(e + 1) % cell.size()]);
       }

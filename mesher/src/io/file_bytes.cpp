@@ -11,7 +11,6 @@
 #include <system_error>
 
 #include "collarmesh/error.h"
-#include "common/lower_case.h"
 
 namespace collarmesh::io {
 
@@ -45,10 +44,6 @@ std::string read_bytes(const std::string& path) {
     bytes.append(block.data(), got);
   if (std::ferror(file.get())) fail(path);
   return bytes;
-}
-
-std::string format_of(const std::string& path, std::string_view format) {
-  return lower_case(format.empty() ? std::filesystem::path(path).extension().string() : format);
 }
 
 }  // namespace collarmesh::io

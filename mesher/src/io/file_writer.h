@@ -5,13 +5,13 @@
 #include <string>
 #include <string_view>
 
-#include "io/byte_reader.h"
+#include "io/number_bytes.h"
 #include "io/text_buffer.h"
 #include "io/unfinished_file.h"
 
 namespace collarmesh::io {
 
-/// Writes a text file that appears under its name when it is complete, or not at all. Throws WriteError with
+/// Writes a file that appears under its name when it is complete, or not at all. Throws WriteError with
 /// the path and the system's reason.
 class FileWriter {
  public:

@@ -4,7 +4,7 @@
 
 #include "collarmesh/error.h"
 #include "io/abaqus_interfaces.h"
-#include "io/file_bytes.h"
+#include "io/file_format.h"
 
 namespace collarmesh::io {
 

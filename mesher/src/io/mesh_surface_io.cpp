@@ -11,7 +11,7 @@
 
 #include "collarmesh/error.h"
 #include "common/disjoint_sets.h"
-#include "io/file_bytes.h"
+#include "io/file_format.h"
 #include "io/tet_mesh_formats.h"
 
 namespace collarmesh::io {

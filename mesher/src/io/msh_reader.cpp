@@ -224,40 +224,43 @@ struct EntityOfBlock {
   std::size_t dimension;
   int number;
 };
-/// Reads the entity of a block. `old`: of version 4.0, where its number comes first.
+/// Reads the entity of a block. In version 4.0 its number comes first.
 template <class Values>
-EntityOfBlock read_entity_of_block(Values& values, bool old) {
-  const int first = old ? values.integer("the number of an entity") : 0;
+EntityOfBlock read_entity_of_block(Values& values, bool is_version_40) {
+  const int first = is_version_40 ? values.integer("the number of an entity") : 0;
   const std::size_t dimension = read_dimension(values);
-  return {dimension, old ? first : values.integer("the number of an entity")};
+  return {dimension, is_version_40 ? first : values.integer("the number of an entity")};
 }
 
-/// Reads nodes. `old`: of version 4.0, where the place of each follows its number.
+/// Reads nodes. In version 4.0 the place of each follows its number.
 template <class Values>
-void read_nodes(Values values, bool old, Contents& contents) {
+void read_nodes(Values values, bool is_version_40, Contents& contents) {
   const Index blocks = values.count("the number of blocks", 4);
   const Index total = values.count("the number of nodes", 4);
-  if (!old) {
+  if (!is_version_40) {
     values.number("the smallest number of a node");
     values.number("the largest number of a node");
   }
   contents.nodes.reserve(total);
   for (Index b = 0; b < blocks; ++b) {
-    const EntityOfBlock of = read_entity_of_block(values, old);
-    const int entity = whole_entity(contents, of.dimension, of.number);
+    const EntityOfBlock entity_of_block = read_entity_of_block(values, is_version_40);
+    const int entity = whole_entity(contents, entity_of_block.dimension, entity_of_block.number);
     const int parametric = values.integer("the flag for parametric nodes");
     const Index n = values.count("the number of nodes of a block", 4);
     const auto read_place = [&](Node& node) {
       node.point = values.point("a coordinate of a node");
-      for (std::size_t k = 0; parametric != 0 && k < of.dimension; ++k) values.real("a parameter of a node");
+      for (std::size_t k = 0; parametric != 0 && k < entity_of_block.dimension; ++k)
+        values.real("a parameter of a node");
     };
     const std::size_t first = contents.nodes.size();
     for (Index i = 0; i < n; ++i) {
-      contents.nodes.push_back(
-          {values.number("the number of a node"), {}, static_cast<std::uint8_t>(of.dimension), entity});
-      if (old) read_place(contents.nodes.back());
+      contents.nodes.push_back({values.number("the number of a node"),
+                                {},
+                                static_cast<std::uint8_t>(entity_of_block.dimension),
+                                entity});
+      if (is_version_40) read_place(contents.nodes.back());
     }
-    if (!old)
+    if (!is_version_40)
       for (std::size_t i = first; i < contents.nodes.size(); ++i) read_place(contents.nodes[i]);
   }
   if (contents.nodes.size() != total)
@@ -299,23 +302,25 @@ void read_cells_of_block(Values& values, const GmshType* type, int entity, Tag t
 }
 
 template <class Values>
-void read_elements(Values values, bool old, Contents& contents) {
+void read_elements(Values values, bool is_version_40, Contents& contents) {
   const Index blocks = values.count("the number of blocks", 4);
   const Index total = values.count("the number of elements", 2);
-  if (!old) {
+  if (!is_version_40) {
     values.number("the smallest number of an element");
     values.number("the largest number of an element");
   }
   std::size_t found = 0;
   for (Index b = 0; b < blocks; ++b) {
-    const EntityOfBlock of = read_entity_of_block(values, old);
+    const EntityOfBlock entity_of_block = read_entity_of_block(values, is_version_40);
     const GmshType* type = find_type(values, values.integer("the type of elements"));
     const Index n = values.count("the number of elements of a block", 2);
     found += n;
-    read_cells_of_block(values, type, of.number, tag_of_entity(contents, of.dimension, of.number), n,
+    read_cells_of_block(values, type, entity_of_block.number,
+                        tag_of_entity(contents, entity_of_block.dimension, entity_of_block.number), n,
                         contents);
   }
-  if (!old && found != total) values.fail(fmt::format("expected {} elements, found {}", total, found));
+  if (!is_version_40 && found != total)
+    values.fail(fmt::format("expected {} elements, found {}", total, found));
 }
 
 /// Reads links of surfaces that have a matrix.
@@ -484,8 +489,8 @@ void with_values(const std::string& path, const MshSection& section, const MshFo
 
 void read_section(const std::string& path, const MshSection& section, const MshFormat& format,
                   Contents& contents) {
-  const bool old = format.version == 4.0;
-  const int point_numbers = old ? 6 : 3;
+  const bool is_version_40 = format.version == 4.0;
+  const int point_numbers = is_version_40 ? 6 : 3;
   const auto with_any = [&](auto read) { with_values<MshBinary>(path, section, format, read); };
   const auto with_version_2 = [&](auto read) { with_values<MshBinary2>(path, section, format, read); };
   if (section.name == "PhysicalNames")
@@ -499,11 +504,11 @@ void read_section(const std::string& path, const MshSection& section, const MshF
   else if (section.name == "Nodes" && format.version < 4)
     with_version_2([&](auto values) { read_nodes_2(values, contents); });
   else if (section.name == "Nodes")
-    with_any([&](auto values) { read_nodes(values, old, contents); });
+    with_any([&](auto values) { read_nodes(values, is_version_40, contents); });
   else if (section.name == "Elements" && format.version < 4)
     with_version_2([&](auto values) { read_elements_2(values, contents); });
   else if (section.name == "Elements")
-    with_any([&](auto values) { read_elements(values, old, contents); });
+    with_any([&](auto values) { read_elements(values, is_version_40, contents); });
   else if (section.name == "Periodic" && format.version > 4)
     with_any([&](auto values) { read_periodic(values, contents); });
   else if (section.name == "ElementData" && !format.binary)
@@ -576,9 +581,7 @@ void add_periodic(const Contents& contents, TetMesh& mesh) {
           pair[0] != none && pair[1] != none)
         faces->nodes.push_back(pair);
   }
-  for (TetMesh::PeriodicFaces& faces : mesh.periodic) {
-    sort_uniquely(faces.nodes);
-  }
+  for (TetMesh::PeriodicFaces& faces : mesh.periodic) sort_uniquely(faces.nodes);
 }
 
 /// Makes the mesh. Nodes and cells come in the order of their numbers.

@@ -1,7 +1,6 @@
 #include "io/msh_sections.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "common/is_finite.h"
 

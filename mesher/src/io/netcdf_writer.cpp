@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "collarmesh/error.h"
+#include "io/number_bytes.h"
 
 namespace collarmesh::io {
 

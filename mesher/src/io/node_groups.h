@@ -24,9 +24,7 @@ inline Groups nodes_by_tag(const TetMesh& mesh, std::size_t dimension) {
     for (std::size_t i = 0; i < tags.size(); ++i)
       for (const Index v : nodes_of(kind)(mesh, i)) groups[tags[i]].push_back(v + 1);
   });
-  for (auto& [tag, nodes] : groups) {
-    sort_uniquely(nodes);
-  }
+  for (auto& [tag, nodes] : groups) sort_uniquely(nodes);
   return groups;
 }
 
@@ -35,8 +33,9 @@ inline Groups volumes_by_tag(const TetMesh& mesh, std::size_t first) {
   Groups groups;
   for_each_kind(mesh, 3, [&](CellKind kind) {
     const std::vector<Tag>& tags = tags_of(mesh, kind);
+    const std::size_t first_of_kind = first + count_before(mesh, kind);
     for (std::size_t i = 0; i < tags.size(); ++i)
-      groups[tags[i]].push_back(static_cast<Index>(count_before(mesh, kind) + i + first));
+      groups[tags[i]].push_back(static_cast<Index>(first_of_kind + i));
   });
   return groups;
 }

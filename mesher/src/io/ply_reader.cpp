@@ -11,6 +11,7 @@
 
 #include "io/byte_reader.h"
 #include "io/file_bytes.h"
+#include "io/number_bytes.h"
 #include "io/soup_formats.h"
 #include "io/text_scanner.h"
 

@@ -1,6 +1,5 @@
 // Stanford's polygon format (.ply), binary, little endian, in 64-bit numbers. Segments are edges; the tag
 // of a face is a property, if there is any.
-#include <array>
 #include <bit>
 #include <string_view>
 

@@ -42,15 +42,15 @@ const std::vector<std::int64_t>& numbers(const NamedPiece& named, const VtkPiece
       named.path, name));
 }
 
-/// A point or a cell: its number in the whole mesh, its piece, and its place there.
+/// A point or a cell: its number in the whole mesh, its piece, and its index there.
 struct PieceMember {
   std::int64_t number;
-  std::size_t piece, place;
+  std::size_t piece, index;
 };
 
 void sort_by_number(std::vector<PieceMember>& members) {
   std::sort(members.begin(), members.end(), [](const PieceMember& a, const PieceMember& b) {
-    return std::tie(a.number, a.piece, a.place) < std::tie(b.number, b.piece, b.place);
+    return std::tie(a.number, a.piece, a.index) < std::tie(b.number, b.piece, b.index);
   });
 }
 
@@ -66,70 +66,70 @@ void join_arrays(const std::vector<NamedPiece>& pieces, const std::vector<PieceM
     if (!everywhere || name == vtk_point_ids || name == vtk_cell_ids || name == vtk_ghosts) continue;
     auto& values = (whole.*arrays)[std::string(name)];
     for (const PieceMember& member : members)
-      values.push_back((pieces[member.piece].piece.*arrays).find(name)->second[member.place]);
+      values.push_back((pieces[member.piece].piece.*arrays).find(name)->second[member.index]);
   }
 }
 
 /// Merges points of several pieces with the same number.
 void join_points(std::vector<NamedPiece>& pieces, VtkPiece& whole) {
-  std::vector<PieceMember> places;
+  std::vector<PieceMember> members;
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     const VtkPiece& piece = pieces[k].piece;
     const auto& ids = numbers(pieces[k], piece.point_data, vtk_point_ids, piece.points.size());
-    for (std::size_t i = 0; i < ids.size(); ++i) places.push_back({ids[i], k, i});
+    for (std::size_t i = 0; i < ids.size(); ++i) members.push_back({ids[i], k, i});
     pieces[k].point_of.resize(piece.points.size());
   }
-  sort_by_number(places);
+  sort_by_number(members);
   std::vector<PieceMember> kept;
-  for (const PieceMember& place : places) {
-    const Point& p = pieces[place.piece].piece.points[place.place];
-    if (kept.empty() || kept.back().number != place.number) {
-      kept.push_back(place);
+  for (const PieceMember& member : members) {
+    const Point& p = pieces[member.piece].piece.points[member.index];
+    if (kept.empty() || kept.back().number != member.number) {
+      kept.push_back(member);
       whole.points.push_back(p);
     } else if (p != whole.points.back()) {
       throw ReadError(fmt::format("{}: point {} is at ({}, {}, {}), but in another piece at ({}, {}, {})",
-                                  pieces[place.piece].path, place.number, p.x, p.y, p.z,
+                                  pieces[member.piece].path, member.number, p.x, p.y, p.z,
                                   whole.points.back().x, whole.points.back().y, whole.points.back().z));
     }
-    pieces[place.piece].point_of[place.place] = static_cast<std::int64_t>(whole.points.size()) - 1;
+    pieces[member.piece].point_of[member.index] = static_cast<std::int64_t>(whole.points.size()) - 1;
   }
   join_arrays(pieces, kept, vtk_point_arrays, &VtkPiece::point_data, whole);
 }
 
 /// Joins cells in the order of their numbers.
 void join_cells(const std::vector<NamedPiece>& pieces, VtkPiece& whole) {
-  std::vector<PieceMember> places;
+  std::vector<PieceMember> members;
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     const VtkPiece& piece = pieces[k].piece;
     const auto& ids = numbers(pieces[k], piece.cell_data, vtk_cell_ids, piece.types.size());
     const auto ghosts = piece.cell_data.find(vtk_ghosts);
     for (std::size_t i = 0; i < ids.size(); ++i)
-      if (ghosts == piece.cell_data.end() || ghosts->second[i] == 0) places.push_back({ids[i], k, i});
+      if (ghosts == piece.cell_data.end() || ghosts->second[i] == 0) members.push_back({ids[i], k, i});
   }
-  sort_by_number(places);
-  for (std::size_t i = 1; i < places.size(); ++i)
-    if (places[i].number == places[i - 1].number)
+  sort_by_number(members);
+  for (std::size_t i = 1; i < members.size(); ++i)
+    if (members[i].number == members[i - 1].number)
       throw ReadError(fmt::format("{}: cell {} occurs twice, and neither is marked as a ghost",
-                                  pieces[places[i].piece].path, places[i].number));
-  for (const PieceMember& place : places) {
-    const auto& [path, piece, point_of] = pieces[place.piece];
+                                  pieces[members[i].piece].path, members[i].number));
+  for (const PieceMember& member : members) {
+    const auto& [path, piece, point_of] = pieces[member.piece];
     const auto size = static_cast<std::int64_t>(piece.connectivity.size());
-    const std::int64_t begin = place.place == 0 ? 0 : piece.ends[place.place - 1],
-                       end = piece.ends[place.place];
+    const std::int64_t begin = member.index == 0 ? 0 : piece.ends[member.index - 1],
+                       end = piece.ends[member.index];
     if (begin < 0 || end < begin || end > size)
-      throw ReadError(fmt::format("{}: cell {} has the corners {} to {}, but there are {}", path, place.place,
-                                  begin, end, size));
+      throw ReadError(fmt::format("{}: cell {} has the corners {} to {}, but there are {}", path,
+                                  member.index, begin, end, size));
     for (std::int64_t at = begin; at < end; ++at) {
       const std::int64_t corner = piece.connectivity[static_cast<std::size_t>(at)];
       if (corner < 0 || corner >= static_cast<std::int64_t>(point_of.size()))
         throw ReadError(fmt::format("{}: cell {} has the corner {}, but there are {} points", path,
-                                    place.place, corner, point_of.size()));
+                                    member.index, corner, point_of.size()));
       whole.connectivity.push_back(point_of[static_cast<std::size_t>(corner)]);
     }
     whole.ends.push_back(static_cast<std::int64_t>(whole.connectivity.size()));
-    whole.types.push_back(piece.types[place.place]);
+    whole.types.push_back(piece.types[member.index]);
   }
-  join_arrays(pieces, places, vtk_cell_arrays, &VtkPiece::cell_data, whole);
+  join_arrays(pieces, members, vtk_cell_arrays, &VtkPiece::cell_data, whole);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <iterator>
 #include <span>
 #include <string>
 #include <string_view>
@@ -76,16 +77,19 @@ class Cutter {
   void find_points(Members& members, bool first) const {
     std::vector<Index>& points = members.points;
     for (const CellKind kind : all_cell_kinds)
-      for (const Index cell : members.cells[kind])
-        std::ranges::copy(nodes_of(kind)(mesh_, cell), std::back_inserter(points));
+      for (const Index cell : members.cells[kind]) {
+        const CellNodes nodes = nodes_of(kind)(mesh_, cell);
+        points.insert(points.end(), nodes.begin(), nodes.end());
+      }
     if (first) add_loose_points(points);
     sort_uniquely(points);
   }
 
   TetMesh cut(const Members& members) {
     for (std::size_t i = 0; i < members.points.size(); ++i) local_[members.points[i]] = static_cast<Index>(i);
-    const std::vector<Index>&tets = members.cells[CellKind::tet], &faces = members.cells[CellKind::triangle],
-          &edges = members.cells[CellKind::edge];
+    const std::vector<Index>& tets = members.cells[CellKind::tet];
+    const std::vector<Index>& faces = members.cells[CellKind::triangle];
+    const std::vector<Index>& edges = members.cells[CellKind::edge];
     TetMesh part;
     part.group_names = mesh_.group_names;
     part.names = mesh_.names;
@@ -135,9 +139,10 @@ class Cutter {
 /// Returns the numbers of cells: tets, then faces, then edges.
 VtkArray cell_ids(const TetMesh& mesh, const Members& members) {
   std::vector<std::int64_t> ids;
-  for (const CellKind kind : all_cell_kinds)
-    for (const Index cell : members.cells[kind])
-      ids.push_back(static_cast<std::int64_t>(count_before(mesh, kind) + cell));
+  for (const CellKind kind : all_cell_kinds) {
+    const std::size_t before = count_before(mesh, kind);
+    for (const Index cell : members.cells[kind]) ids.push_back(static_cast<std::int64_t>(before + cell));
+  }
   return {std::string(vtk_cell_ids), std::move(ids)};
 }
 

@@ -2,13 +2,14 @@
 // tags have no place in it.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <string_view>
 
 #include "collarmesh/error.h"
 #include "io/file_writer.h"
+#include "io/number_bytes.h"
 #include "io/one_polygon.h"
 #include "io/soup_formats.h"
 
@@ -17,7 +18,11 @@ namespace collarmesh::io {
 namespace {
 
 void write_point(FileWriter& out, const Point& p) {
-  for (const double c : {p.x, p.y, p.z}) out.append_bytes(static_cast<float>(c), std::endian::little);
+  std::array<char, 12> bytes;
+  auto at = bytes.begin();
+  for (const double c : {p.x, p.y, p.z})
+    at = std::ranges::copy(bytes_of(static_cast<float>(c), std::endian::little), at).out;
+  out << std::string_view(bytes.data(), bytes.size());
 }
 
 }  // namespace

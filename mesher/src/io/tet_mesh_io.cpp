@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "collarmesh/error.h"
-#include "io/file_bytes.h"
+#include "io/file_format.h"
 #include "io/tet_mesh_formats.h"
 
 namespace collarmesh::io {

@@ -2,7 +2,6 @@
 // exist.
 #include <fmt/format.h>
 
-#include <array>
 #include <cmath>
 #include <filesystem>
 #include <span>

@@ -16,7 +16,7 @@ struct TetgenNodeHeader {
 };
 TetgenNodeHeader read_tetgen_node_header(TextScanner& scan);
 
-/// Returns whether lines end with a marker. A missing flag is 0.
+/// Reads the flag that says whether lines end with a marker; false if it is missing.
 bool read_tetgen_marker_flag(TextScanner& scan);
 
 /// Returns the number of the first point, 0 or 1. Tags stay empty without markers.

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/byte_reader.h"
+#include "io/number_bytes.h"
 
 /// Values of VTK's XML formats as they are stored outside the XML: blocks of bytes, raw or base64,
 /// compressed or not.

@@ -25,8 +25,12 @@ namespace {
 constexpr std::int64_t vtk_vertex = 1;
 
 /// VTK's types of cells, by order.
-constexpr PerKind<std::array<std::uint8_t, 2>> vtk_types{
-    {{{10, 24}, {13, 26}, {14, 27}, {5, 22}, {9, 23}, {3, 21}}}};
+constexpr PerKind<std::array<std::uint8_t, 2>> vtk_types{{{{10, 24},    // tets
+                                                           {13, 26},    // prisms
+                                                           {14, 27},    // pyramids
+                                                           {5, 22},     // triangles
+                                                           {9, 23},     // quadrangles
+                                                           {3, 21}}}};  // edges
 
 /// Makes one value per cell.
 template <class T, class OfCell>

@@ -1,7 +1,5 @@
 // VTK's legacy format for unstructured grids, version 3.0, binary (big endian); "VTK File Formats"
 // (VTK User's Guide). vtk_grid.h describes the arrays.
-#include <algorithm>
-#include <array>
 #include <bit>
 #include <string_view>
 #include <variant>

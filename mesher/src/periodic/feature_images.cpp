@@ -29,9 +29,7 @@ Features features_of(const std::vector<Index>& patches, const Plc& plc) {
     of.vertices.insert(of.vertices.end(), p.vertices.begin(), p.vertices.end());
     of.curves.insert(of.curves.end(), p.curves.begin(), p.curves.end());
   }
-  for (auto* features : {&of.vertices, &of.curves}) {
-    sort_uniquely(*features);
-  }
+  for (auto* features : {&of.vertices, &of.curves}) sort_uniquely(*features);
   return of;
 }
 

@@ -9,7 +9,7 @@
 
 namespace collarmesh::io {
 
-/// Writes a mesh by the extension of `path`, or as `format` (an extension with its dot, lower case) says.
+/// Writes a mesh by the extension of `path`, or as `format` (an extension with its dot, in any case) says.
 /// Writes each file under another name and renames it, so a reader never sees half a file. The sources of the
 /// formats say which data each of them keeps (src/io/*_writer.cpp). Throws WriteError, also for ghost cells,
 /// prisms and pyramids where the format has no place for them.

@@ -30,8 +30,12 @@ namespace {
 constexpr std::size_t longest_name = 32;
 
 /// CGNS' types of elements, by order.
-constexpr PerKind<std::array<std::int32_t, 2>> cgns_types{
-    {{{10, 11}, {14, 15}, {12, 21}, {5, 6}, {7, 8}, {3, 4}}}};
+constexpr PerKind<std::array<std::int32_t, 2>> cgns_types{{{{10, 11},   // tets
+                                                            {14, 15},   // prisms
+                                                            {12, 21},   // pyramids
+                                                            {5, 6},     // triangles
+                                                            {7, 8},     // quadrangles
+                                                            {3, 4}}}};  // edges
 
 /// Returns properties with which links keep their order.
 hid_t ordered(hid_t kind) {

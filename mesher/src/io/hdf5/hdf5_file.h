@@ -15,12 +15,20 @@ namespace collarmesh::io {
 /// Returns HDF5's type of numbers in memory.
 template <class Number>
 hid_t native_type() {
-  if constexpr (std::is_same_v<Number, char>) return H5T_NATIVE_CHAR;
-  if constexpr (std::is_same_v<Number, std::uint8_t>) return H5T_NATIVE_UINT8;
-  if constexpr (std::is_same_v<Number, std::int32_t>) return H5T_NATIVE_INT32;
-  if constexpr (std::is_same_v<Number, std::int64_t>) return H5T_NATIVE_INT64;
-  if constexpr (std::is_same_v<Number, float>) return H5T_NATIVE_FLOAT;
-  if constexpr (std::is_same_v<Number, double>) return H5T_NATIVE_DOUBLE;
+  if constexpr (std::is_same_v<Number, char>) {
+    return H5T_NATIVE_CHAR;
+  } else if constexpr (std::is_same_v<Number, std::uint8_t>) {
+    return H5T_NATIVE_UINT8;
+  } else if constexpr (std::is_same_v<Number, std::int32_t>) {
+    return H5T_NATIVE_INT32;
+  } else if constexpr (std::is_same_v<Number, std::int64_t>) {
+    return H5T_NATIVE_INT64;
+  } else if constexpr (std::is_same_v<Number, float>) {
+    return H5T_NATIVE_FLOAT;
+  } else {
+    static_assert(std::is_same_v<Number, double>);
+    return H5T_NATIVE_DOUBLE;
+  }
 }
 
 /// Closes the HDF5 object that it holds.

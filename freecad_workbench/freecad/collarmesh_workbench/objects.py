@@ -1,0 +1,18 @@
+"""What objects of a document have."""
+
+
+def type_of(obj):
+    """Returns the `Type` of an object's proxy; "" if it has none."""
+    return getattr(getattr(obj, "Proxy", None), "Type", "")
+
+
+def value_of(obj, name, *default):
+    """Returns a property's value, of a quantity in millimetres or degrees; without the property, `default`. Raises
+    AttributeError if none is given."""
+    value = getattr(obj, name, *default)
+    return getattr(value, "Value", value)
+
+
+def key_of(obj):
+    """Returns the names of an object's document and of the object, which identify it while it exists."""
+    return obj.Document.Name, obj.Name
