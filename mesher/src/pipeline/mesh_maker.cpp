@@ -34,6 +34,7 @@ bool misses_volumes_only(const CheckReport& check) {
 
 void MeshMaker::make(const Plc& plc, std::uint64_t seed) {
   set_up(plc, seed);
+  if (take_rods()) return;
   if (may_be_better_constrained()) {
     if (!refines_with_few_vertices() &&
         take_constrained(plc, "its curved walls or gaps are far thinner than the elements", Lengths::kept))
@@ -76,6 +77,25 @@ void MeshMaker::set_up(const Plc& plc, std::uint64_t seed) {
   if (job_.budget.most() > 0) options.mesh.max_vertices = job_.budget.most();
   options.mesh.seed = seed;
   job_.refined_with = options_of_refinement(job_, narrow_cells_);
+}
+
+/// Uses tetrahedra between rings of vertices if all bodies are thin rods and every guarantee holds.
+bool MeshMaker::take_rods() {
+  if (no_rods_ == job_.plc || job_.start != Start::automatic || !may_have_rods(job_)) return false;
+  PipelineResult before = std::exchange(job_.made, {});
+  if (fill_rods(job_)) {
+    project(job_);
+    raise_order(job_);
+    certify(job_, tolerance(*job_.plc));
+    if (job_.made.guarantees_hold()) {
+      is_constrained_ = true;
+      job_.made.check.notes.push_back("made of rings around rods that are far thinner than the elements");
+      return true;
+    }
+  }
+  no_rods_ = job_.plc;
+  job_.made = std::move(before);
+  return false;
 }
 
 /// Returns whether a refinement probably makes many times the elements that are needed. Cylinders that nearly
@@ -203,6 +223,7 @@ std::optional<PipelineResult> MeshMaker::from_constrained(const Plc& plc, const 
 void MeshMaker::take_new_complex() {
   tolerance_.reset();
   nearer_.reset();
+  no_rods_ = nullptr;
   hopeless_ = nullptr;
 }
 
@@ -213,6 +234,14 @@ void MeshMaker::move_to(const Plc& plc) {
 }
 
 void MeshMaker::come_nearer(const Plc& plc, double share) { nearer_ = tolerance(plc, 1).scaled(share); }
+
+void MeshMaker::come_nearer(const Plc& plc, const std::vector<double>& shares) {
+  const SurfaceTolerance whole = tolerance(plc, 1);
+  std::vector<double> triangles(plc.triangles.size());
+  for (Index t = 0; t < triangles.size(); ++t)
+    triangles[t] = shares[plc.triangles[t].patch] * whole.at_triangle(t);
+  nearer_ = SurfaceTolerance(plc, std::move(triangles), whole.largest());
+}
 
 const SurfaceTolerance& MeshMaker::tolerance(const Plc& plc) {
   if (!tolerance_) tolerance_ = tolerance(plc, static_cast<int>(job_.given.order));

@@ -83,10 +83,12 @@ void Tries::mesh(const Plc& plc) {
     maker_.make_anyhow(plc, why);
   }
   try_seeds(plc);
+  keep_volumes(plc);
 }
 
 void Tries::mesh_repaired(SoupPipelineResult& all) {
   mesh_any_repaired(all);
+  keep_volumes(all.plc);
   maker_.move_to(all.plc);  // later stages and the options need it
 }
 
@@ -378,6 +380,53 @@ double Tries::share_for_volumes() const {
     keep(input.shells[i], mesh.shells[i]);
   if (missed(guarantee::thickness_kept)) share = least;
   return share;
+}
+
+/// Returns the largest relative deviation of a region's volume. Multiplies the shares of the smooth patches
+/// around each region by what brings its volume, if it is off by more than the limit of warnings, within it.
+double Tries::largest_loss(const Plc& plc, std::vector<double>* shares) const {
+  constexpr double aim = 0.7, least = 0.25;
+  const ShapeMeasures &input = job_.made.check.of_input, &mesh = job_.made.check.of_mesh;
+  double largest = 0;
+  for (Index r = 1; r < std::min(input.volumes.size(), mesh.volumes.size()); ++r) {
+    if (!(input.volumes[r] > 0)) continue;
+    const double off = std::fabs(mesh.volumes[r] / input.volumes[r] - 1);
+    largest = std::max(largest, off);
+    if (shares == nullptr || off <= volume_warned_of) continue;
+    const double share = std::max(least, aim * volume_warned_of / off);
+    for (Index p = 0; p < plc.patches.size(); ++p)
+      if (std::ranges::count(plc.patches[p].regions, r) == 1)
+        (*shares)[p] = std::min((*shares)[p], share);
+  }
+  return largest;
+}
+
+/// Makes the mesh again, nearer to the surfaces of regions whose volumes call for a warning. What chords take
+/// from one side of a wall and add on the other cancels only in part, which no estimate from the complex
+/// tells beforehand. Keeps the mesh with the better volumes.
+void Tries::keep_volumes(const Plc& plc) {
+  constexpr unsigned rounds = 2;
+  constexpr std::size_t most_tets = 100'000;
+  const PipelineOptions& given = job_.given;
+  PipelineResult& made = job_.made;
+  if (given.order != 1 || given.start == Start::constrained || given.mesh.bounds.distance > 0 ||
+      given.mesh.bounds.tolerance || given.layers.any() || given.periodic.any())
+    return;
+  std::vector<double> nearer(plc.patches.size(), 1);
+  for (unsigned round = 0; round < rounds; ++round) {
+    std::vector<double> shares(plc.patches.size(), 1);
+    const double loss = largest_loss(plc, &shares);
+    if (!made.guarantees_hold() || loss <= volume_warned_of || made.result.mesh.tets.size() > most_tets)
+      return;
+    for (std::size_t p = 0; p < nearer.size(); ++p) nearer[p] *= shares[p];
+    maker_.come_nearer(plc, nearer);
+    if (find_better(true, [&] {
+          maker_.make(plc, given.mesh.seed);
+          if (largest_loss(plc, nullptr) >= loss) throw Hopeless();
+        }))
+      made.check.notes.push_back(
+          fmt::format("made nearer to smooth surfaces, because a region's volume was off by {:.2g}%", 100 * loss));
+  }
 }
 
 template <class Way>

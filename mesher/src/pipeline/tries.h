@@ -50,6 +50,8 @@ class Tries {
   bool take_constrained(const Plc& plc);
   void try_narrow_places_otherwise(const Plc& plc);
   double share_for_volumes() const;
+  double largest_loss(const Plc& plc, std::vector<double>* shares) const;
+  void keep_volumes(const Plc& plc);
 
   /// Tries another way to make a mesh. The present result stays unless it has no mesh or the new one keeps
   /// every guarantee.
