@@ -449,20 +449,28 @@ class Rod {
     return true;
   }
 
+  bool is_bent() const {
+    constexpr double straight = 1e-6;
+    return std::ranges::any_of(sections_, [&](const Section& section) {
+      return norm(section.along - sections_.front().along) > straight;
+    });
+  }
+
   /// Returns whether the patch is as near to the chords around the rod as the tolerance asks, in some of the
   /// sections.
   bool chords_keep_tolerance() const {
     constexpr std::size_t looked_at = 40, places = 4;
-    const double piece = full_turn / static_cast<double>(in_ring_);
+    const double piece = full_turn / static_cast<double>(in_ring_),
+                 share = is_bent() ? share_measured - share_along : share_measured;
     for (std::size_t i = 1; i + 1 < sections_.size(); i += sections_.size() / looked_at + 1) {
       const Section& section = sections_[i];
-      const auto at = [&](double share) { return hit(section.centre, turned(section, piece * share)).at; };
+      const auto at = [&](double pieces) { return hit(section.centre, turned(section, piece * pieces)).at; };
       for (std::size_t k = 0; k < in_ring_; ++k) {
         const auto from = static_cast<double>(k);
         const Point a = at(from), b = at(from + 1);
         for (std::size_t place = 1; place < places; ++place) {
           const Point p = at(from + static_cast<double>(place) / places);
-          if (norm(cross(p - a, b - a)) > share_measured * section.tolerance * distance(a, b)) return false;
+          if (norm(cross(p - a, b - a)) > share * section.tolerance * distance(a, b)) return false;
         }
       }
     }

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 
 #include "check/guarantees.h"
 #include "collarmesh/error.h"
+#include "common/disjoint_sets.h"
 #include "common/thread_limit.h"
 #include "periodic/make_periodic.h"
 #include "periodic/tolerance_across.h"
@@ -28,6 +30,19 @@ bool misses_volumes_only(const CheckReport& check) {
   return !check.findings.empty() && std::ranges::all_of(check.findings, [](const Finding& f) {
     return f.guarantee == guarantee::volume_kept || f.guarantee == guarantee::thickness_kept;
   });
+}
+
+/// Returns sets of the two smooth patches of walls, layers and shells. Chords on both sides of these cancel
+/// only if they are equally long.
+DisjointSets sides_of_walls(const Plc& plc) {
+  std::vector<std::vector<Index>> smooth(plc.regions.size());
+  for (Index p = 0; p < plc.patches.size(); ++p)
+    if (const auto& regions = plc.patches[p].regions; !plc.patches[p].planar && regions[0] != regions[1])
+      for (const Index r : regions) smooth[r].push_back(p);
+  DisjointSets walls(plc.patches.size());
+  for (Index r = 1; r < plc.regions.size(); ++r)
+    if (smooth[r].size() == 2) walls.unite(smooth[r][0], smooth[r][1]);
+  return walls;
 }
 
 }  // namespace
@@ -236,11 +251,30 @@ void MeshMaker::move_to(const Plc& plc) {
 void MeshMaker::come_nearer(const Plc& plc, double share) { nearer_ = tolerance(plc, 1).scaled(share); }
 
 void MeshMaker::come_nearer(const Plc& plc, const std::vector<double>& shares) {
-  const SurfaceTolerance whole = tolerance(plc, 1);
+  constexpr double as_near = 1.2;  // ratio of the tolerances of two sides that count as equal
+  const SurfaceTolerance base = nearer_ ? *nearer_ : tolerance(plc, 1);
+  struct Wall {
+    double least = INFINITY, most = 0;
+    bool comes_nearer = false;
+  };
+  DisjointSets sides = sides_of_walls(plc);
+  std::vector<Wall> walls(plc.patches.size());
+  for (Index p = 0; p < plc.patches.size(); ++p) {
+    if (plc.patches[p].planar) continue;
+    auto& [least, most, comes_nearer] = walls[sides.find(p)];
+    least = std::min(least, base.largest_on_patch(p));
+    most = std::max(most, base.largest_on_patch(p));
+    comes_nearer |= shares[p] < 1;
+  }
   std::vector<double> triangles(plc.triangles.size());
-  for (Index t = 0; t < triangles.size(); ++t)
-    triangles[t] = shares[plc.triangles[t].patch] * whole.at_triangle(t);
-  nearer_ = SurfaceTolerance(plc, std::move(triangles), whole.largest());
+  for (Index t = 0; t < triangles.size(); ++t) {
+    const Index patch = plc.triangles[t].patch;
+    const auto& [least, most, comes_nearer] = walls[sides.find(patch)];
+    triangles[t] = base.at_triangle(t);
+    if (!comes_nearer || plc.patches[patch].planar) continue;
+    triangles[t] = most > as_near * least ? std::min(triangles[t], least) : shares[patch] * triangles[t];
+  }
+  nearer_ = SurfaceTolerance(plc, std::move(triangles), base.largest());
 }
 
 const SurfaceTolerance& MeshMaker::tolerance(const Plc& plc) {

@@ -57,7 +57,8 @@ class MeshMaker {
 
   /// Multiplies the surface tolerance of first order by this share in further meshes of this complex.
   void come_nearer(const Plc& plc, double share);
-  /// Does so with one share for each patch.
+  /// Multiplies the tolerance by a share for each patch. Where the sides of a wall have unequal tolerances,
+  /// they get the smaller one instead.
   void come_nearer(const Plc& plc, const std::vector<double>& shares);
 
   void set_narrow_cells(NarrowCells cells) { narrow_cells_ = cells; }

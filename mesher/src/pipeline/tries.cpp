@@ -382,8 +382,8 @@ double Tries::share_for_volumes() const {
   return share;
 }
 
-/// Returns the largest relative deviation of a region's volume. Multiplies the shares of the smooth patches
-/// around each region by what brings its volume, if it is off by more than the limit of warnings, within it.
+/// Returns the largest relative deviation of a region's volume. Lowers the shares of the patches around each
+/// region whose volume is off by more than the limit of warnings to those that may bring it within the limit.
 double Tries::largest_loss(const Plc& plc, std::vector<double>* shares) const {
   constexpr double aim = 0.7, least = 0.25;
   const ShapeMeasures &input = job_.made.check.of_input, &mesh = job_.made.check.of_mesh;
@@ -412,14 +412,12 @@ void Tries::keep_volumes(const Plc& plc) {
   if (given.order != 1 || given.start == Start::constrained || given.mesh.bounds.distance > 0 ||
       given.mesh.bounds.tolerance || given.layers.any() || given.periodic.any())
     return;
-  std::vector<double> nearer(plc.patches.size(), 1);
   for (unsigned round = 0; round < rounds; ++round) {
     std::vector<double> shares(plc.patches.size(), 1);
     const double loss = largest_loss(plc, &shares);
     if (!made.guarantees_hold() || loss <= volume_warned_of || made.result.mesh.tets.size() > most_tets)
       return;
-    for (std::size_t p = 0; p < nearer.size(); ++p) nearer[p] *= shares[p];
-    maker_.come_nearer(plc, nearer);
+    maker_.come_nearer(plc, shares);
     if (find_better(true, [&] {
           maker_.make(plc, given.mesh.seed);
           if (largest_loss(plc, nullptr) >= loss) throw Hopeless();
