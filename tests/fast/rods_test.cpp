@@ -92,7 +92,7 @@ TEST(Rods, MayBeSeveralBodies) {
 }
 
 TEST(Rods, MayBeBentAndClosed) {
-  const Plc plc = build_plc(std::vector{ring(3, 0.05, 48, 240)});
+  const Plc plc = build_plc(std::vector{ring(3, 0.05, 48, 480)});
   const auto mesh = rods_of(plc);
   ASSERT_TRUE(mesh);
   expect_good(plc, *mesh, 0.02);

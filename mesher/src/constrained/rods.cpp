@@ -26,12 +26,12 @@ constexpr double roundest = 1.25;
 // and a piece of the axis is below 150 degrees.
 constexpr double apart = 6.2;
 // Shares of the tolerance for chords around the rod and for edges along a bent one.
-constexpr double share_around = 0.75, share_along = 0.2;
+constexpr double share_around = 0.75, share_along = 0.1;
 constexpr std::size_t fewest_in_ring = 8, most_in_ring = 24;
 // The smallest angle of tets, a little above the bound on thin tets, degrees.
 constexpr double least_angle = 8.2;
 // Share of the tolerance that the patch may be away from chords around the rod where it is looked at.
-constexpr double share_measured = 0.95;
+constexpr double share_measured = 0.95, share_measured_of_bent = 0.6;
 constexpr std::size_t rays_of_section = 16, most_sections = 200'000, fewest_rings_of_loop = 8;
 constexpr double step_in_radii = 1, rays_per_radius = 8;
 
@@ -461,7 +461,7 @@ class Rod {
   bool chords_keep_tolerance() const {
     constexpr std::size_t looked_at = 40, places = 4;
     const double piece = full_turn / static_cast<double>(in_ring_),
-                 share = is_bent() ? share_measured - share_along : share_measured;
+                 share = is_bent() ? share_measured_of_bent : share_measured;
     for (std::size_t i = 1; i + 1 < sections_.size(); i += sections_.size() / looked_at + 1) {
       const Section& section = sections_[i];
       const auto at = [&](double pieces) { return hit(section.centre, turned(section, piece * pieces)).at; };
