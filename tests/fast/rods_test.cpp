@@ -100,7 +100,9 @@ TEST(Rods, MayBeBentAndClosed) {
 }
 
 TEST(Rods, AreThinRoundAndAlone) {
-  const auto is_rod = [](const std::vector<PolygonSoup>& soups) { return rods_of(build_plc(soups)).has_value(); };
+  const auto is_rod = [](const std::vector<PolygonSoup>& soups) {
+    return rods_of(build_plc(soups)).has_value();
+  };
   EXPECT_FALSE(is_rod({cylinder(0.6, 20, 48)}));
   EXPECT_FALSE(is_rod({cylinder(0.05, 0.3, 48)}));
   EXPECT_FALSE(is_rod({box()}));

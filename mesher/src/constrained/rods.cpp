@@ -35,8 +35,9 @@ constexpr double share_measured = 0.95, share_measured_of_bent = 0.6;
 constexpr std::size_t rays_of_section = 16, most_sections = 200'000, fewest_rings_of_loop = 8;
 constexpr double step_in_radii = 1, rays_per_radius = 8;
 
-/// Returns the largest distance of rings with this many vertices, in radii. The angle at an edge from the axis to
-/// a ring, between the planes through the axis and through the next vertex of the ring, is the smallest one.
+/// Returns the largest distance of rings with this many vertices, in radii. The angle at an edge from the
+/// axis to a ring, between the planes through the axis and through the next vertex of the ring, is the
+/// smallest one.
 double largest_spacing(std::size_t in_ring) {
   const double chord = 2 * std::sin(std::numbers::pi / static_cast<double>(in_ring)),
                slope = std::tan(least_angle * std::numbers::pi / 180) / chord, rest = slope * slope - 0.25;
@@ -54,8 +55,8 @@ struct Section {
   Point centre;
   Vector along, across;
   double radius = 0, tolerance = 0;
-  double spacing = 0;   // the distance of rings
-  double rings = 0;     // the number of rings up to here
+  double spacing = 0;  // the distance of rings
+  double rings = 0;    // the number of rings up to here
 };
 
 /// A planar end of a rod.
@@ -88,9 +89,7 @@ class Rod {
   }
 
   /// Adds the tets, faces and edges.
-  void add_to(TetMesh& mesh) const {
-    Filling(*this, mesh).run();
-  }
+  void add_to(TetMesh& mesh) const { Filling(*this, mesh).run(); }
 
  private:
   /// Numbers the vertices of a rod in a mesh, and adds its elements.
@@ -155,8 +154,7 @@ class Rod {
     }
     /// Adds the tets between a ring and a piece of the axis.
     void add_around(Index before, Index after, std::size_t ring) {
-      for (std::size_t k = 0; k < ring_size(); ++k)
-        add_tet(before, after, at(ring, k), at(ring, k + 1));
+      for (std::size_t k = 0; k < ring_size(); ++k) add_tet(before, after, at(ring, k), at(ring, k + 1));
     }
     void add_end(std::size_t end) {
       const auto& [patch, curve, place, outward] = rod_.ends_[end];
@@ -212,7 +210,8 @@ class Rod {
         centre = centre + distance(a, b) / 2 * (a + b);
         length += distance(a, b);
       }
-      ends_.push_back({p, plane.curves[0], centre / length, plane.regions[0] == region_ ? plane.normal : -1 * plane.normal});
+      ends_.push_back({p, plane.curves[0], centre / length,
+                       plane.regions[0] == region_ ? plane.normal : -1 * plane.normal});
     }
     return true;
   }
@@ -274,7 +273,8 @@ class Rod {
       double least = INFINITY, most = 0, radius = 0;
       section.tolerance = INFINITY;
       for (std::size_t k = 0; k < rays_of_section; ++k) {
-        const Hit there = hit(section.centre, turned(section, full_turn * static_cast<double>(k) / rays_of_section));
+        const Hit there =
+            hit(section.centre, turned(section, full_turn * static_cast<double>(k) / rays_of_section));
         if (there.triangle == none) return false;
         sum = sum + (there.at - section.centre);
         radius += there.distance / rays_of_section;
@@ -332,7 +332,8 @@ class Rod {
     section.centre = ends_[end].centre;
     section.along = end == 0 ? -1 * ends_[end].outward : ends_[end].outward;
     const std::vector<Index>& vertices = plc_.patches[ends_[end].patch].vertices;
-    const Index first = vertices.empty() ? plc_.curves[ends_[end].curve].points[0] : plc_.vertices[vertices[0]].point;
+    const Index first =
+        vertices.empty() ? plc_.curves[ends_[end].curve].points[0] : plc_.vertices[vertices[0]].point;
     const Vector to = plc_.points[first] - section.centre;
     section.across = unit_of(to - dot(to, section.along) * section.along);
     return section;
@@ -406,8 +407,8 @@ class Rod {
     if (is_loop()) sections_[last].along = sections_[0].along;
     if (!is_loop())
       for (const std::size_t i : {std::size_t{0}, last - 1})
-        if (dot(unit_of(sections_[i + 1].centre - sections_[i].centre),
-                sections_[i == 0 ? 0 : last].along) < least_cosine_at_ends)
+        if (dot(unit_of(sections_[i + 1].centre - sections_[i].centre), sections_[i == 0 ? 0 : last].along) <
+            least_cosine_at_ends)
           return false;
     aim_ = sections_[last].across;
     for (std::size_t i = 1; i <= last; ++i) {

@@ -8,12 +8,12 @@
 
 namespace collarmesh {
 
-/// Returns tetrahedra of a complex all of whose bodies are thin rods: straight or bent bodies of round section
-/// that one smooth patch and two planar ends bound, or one smooth patch alone, as a ring. Returns nothing for
-/// other complexes, and if no ring of vertices around a rod keeps the tolerance. Rings of vertices lie on the
-/// patch, some radii apart but not farther than `size`, with a vertex on the axis between any two. So few tets
-/// keep their angles. Rods are thin if their radius is less than half of the size. Cost: near linear in the
-/// triangles plus the length of rods in radii.
+/// Returns tetrahedra of a complex all of whose bodies are thin rods: straight or bent bodies of round
+/// section that one smooth patch and two planar ends bound, or one smooth patch alone, as a ring. Returns
+/// nothing for other complexes, and if no ring of vertices around a rod keeps the tolerance. Rings of
+/// vertices lie on the patch, some radii apart but not farther than `size`, with a vertex on the axis between
+/// any two. So few tets keep their angles. Rods are thin if their radius is less than half of the size. Cost:
+/// near linear in the triangles plus the length of rods in radii.
 std::optional<TetMesh> tetrahedra_of_rods(const Plc& plc, const SurfaceTolerance& tolerance, double size);
 
 }  // namespace collarmesh

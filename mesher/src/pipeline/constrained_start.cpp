@@ -56,7 +56,8 @@ bool has_one_size(const MeshOptions& asked) {
 /// Returns whether ladders may help: in shells far thinner than the size, if one size is asked for
 /// everywhere, because the rungs are divided to that size and not further.
 bool may_have_ladders(const MeshJob& job, double size) {
-  return has_one_size(job.options.mesh) && !job.given.periodic.any() && has_thin_shells(*job.plc, *job.refined_with.bounds.tolerance, size);
+  return has_one_size(job.options.mesh) && !job.given.periodic.any() &&
+         has_thin_shells(*job.plc, *job.refined_with.bounds.tolerance, size);
 }
 
 /// Returns whether a number of vertices exceeds the limit that was given.
@@ -141,9 +142,8 @@ bool keeps_lengths(const TetMesh& mesh, double size) {
 bool may_have_rods(const MeshJob& job) {
   const MeshOptions& asked = job.options.mesh;
   const Bounds& bounds = asked.bounds;
-  return may_start_constrained(job.given) && has_one_size(asked) &&
-         asked.profile == Profile::standard && !job.given.layers.any() && !bounds.interior_node &&
-         !bounds.thin_in_narrow_places_only;
+  return may_start_constrained(job.given) && has_one_size(asked) && asked.profile == Profile::standard &&
+         !job.given.layers.any() && !bounds.interior_node && !bounds.thin_in_narrow_places_only;
 }
 
 bool fill_rods(MeshJob& job) {

@@ -395,8 +395,7 @@ double Tries::largest_loss(const Plc& plc, std::vector<double>* shares) const {
     if (shares == nullptr || off <= volume_warned_of) continue;
     const double share = std::max(least, aim * volume_warned_of / off);
     for (Index p = 0; p < plc.patches.size(); ++p)
-      if (std::ranges::count(plc.patches[p].regions, r) == 1)
-        (*shares)[p] = std::min((*shares)[p], share);
+      if (std::ranges::count(plc.patches[p].regions, r) == 1) (*shares)[p] = std::min((*shares)[p], share);
   }
   return largest;
 }
@@ -422,8 +421,8 @@ void Tries::keep_volumes(const Plc& plc) {
           maker_.make(plc, given.mesh.seed);
           if (largest_loss(plc, nullptr) >= loss) throw Hopeless();
         }))
-      made.check.notes.push_back(
-          fmt::format("made nearer to smooth surfaces, because a region's volume was off by {:.2g}%", 100 * loss));
+      made.check.notes.push_back(fmt::format(
+          "made nearer to smooth surfaces, because a region's volume was off by {:.2g}%", 100 * loss));
   }
 }
 
