@@ -15,6 +15,7 @@ import shutil
 import sys
 import tempfile
 import zipfile
+from xml.sax.saxutils import escape
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.append(str(HERE.parent / "packaging"))
@@ -34,12 +35,8 @@ def metadata(site=SITE, maintainer=MAINTAINER, email=EMAIL, day=""):
         if count != 1:
             raise SystemExit(f"package.xml has {count} times {pattern}")
     for before, after in ((SITE, site), (MAINTAINER, maintainer), (EMAIL, email)):
-        text = text.replace(before, escaped(after))
+        text = text.replace(before, escape(after, {'"': "&quot;"}))
     return text
-
-
-def escaped(text):
-    return text.replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;")
 
 
 def lay_out(folder, **details):

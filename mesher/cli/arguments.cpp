@@ -19,6 +19,7 @@
 #include "files/surface_files.h"
 #include "files/trace_files.h"
 #include "help_text.h"
+#include "io/file_bytes.h"
 #include "man_page.h"
 #include "option_values.h"
 #include "process/console.h"
@@ -32,6 +33,12 @@
 namespace collarmesh::cli {
 
 namespace {
+
+template <class... Values>
+[[noreturn]] void reject(const std::string& option, fmt::format_string<Values...> message,
+                         Values&&... values) {
+  throw CLI::ValidationError(option, fmt::format(message, std::forward<Values>(values)...));
+}
 
 std::string known_formats() {
   return list(files::surface_formats()) + " or " + list(io::written_tet_mesh_formats());
@@ -66,8 +73,7 @@ CLI::Option* add(CLI::App& app, const Option& option, RunOptions& options) {
             names, [&] { option.set(options, true); }, option.help)
         ->group(option.group);
   const auto read = [&option, &options, name](const std::string& text) {
-    if (!option.read(text, options))
-      throw CLI::ValidationError(name, fmt::format("'{}' is not {}", text, option.fitting()));
+    if (!option.read(text, options)) reject(name, "'{}' is not {}", text, option.fitting());
   };
   const auto read_all = [read](const std::vector<std::string>& texts) {
     for (const std::string& text : texts) read(text);
@@ -91,11 +97,17 @@ bool is_meshing_group(const std::string& group) {
   return group.starts_with("Size") || group == "Quality" || group == "Elements";
 }
 
-void add_output_format(CLI::App& app, std::string& format, const std::string& when) {
-  app.add_option("--format", format, "Format of the output, an extension such as vtu or msh2" + when)
-      ->transform(format_name(all_formats()))
+void add_format(CLI::App& app, const std::string& option, std::string& format, const std::string& help,
+                const std::vector<std::string>& formats) {
+  app.add_option(option, format, help)
+      ->transform(format_name(formats))
       ->type_name("FORMAT")
       ->default_str("by extension");
+}
+
+void add_output_format(CLI::App& app, std::string& format, const std::string& when) {
+  add_format(app, "--format", format, "Format of the output, an extension such as vtu or msh2" + when,
+             all_formats());
 }
 
 void add_mesh_options(CLI::App& app, MeshArguments& a) {
@@ -120,10 +132,8 @@ void add_conversion_files(CLI::App& app, MeshArguments& a, const std::string& in
       ->required()
       ->type_name("FILE");
   add_output_format(app, a.output_format, "; needed for -");
-  app.add_option("--input-format", a.input_format, "Format of the inputs, an extension; needed for -")
-      ->transform(format_name(all_formats()))
-      ->type_name("FORMAT")
-      ->default_str("by extension");
+  add_format(app, "--input-format", a.input_format, "Format of the inputs, an extension; needed for -",
+             all_formats());
 }
 
 CLI::App* add_convert_command(CLI::App& app, MeshArguments& a) {
@@ -151,10 +161,7 @@ CLI::App* add_remesh_command(CLI::App& app, RemeshArguments& a) {
   remesh->add_option("-o,--output", a.output, "The mesh to write: " + list(io::written_tet_mesh_formats()))
       ->type_name("FILE");
   add_output_format(*remesh, a.output_format, "");
-  remesh->add_option("--input-format", a.input_format, "Of the mesh")
-      ->transform(format_name(io::read_tet_mesh_formats()))
-      ->type_name("FORMAT")
-      ->default_str("by extension");
+  add_format(*remesh, "--input-format", a.input_format, "Of the mesh", io::read_tet_mesh_formats());
   add_options(*remesh, Option::remesh, a);
   return remesh;
 }
@@ -217,10 +224,9 @@ std::vector<std::string> all_inputs(const MeshArguments& a) {
 void check_second_output(const char* option, const std::string& file, const MeshArguments& a) {
   if (file.empty()) return;
   if (files::may_write(a.output, a.output_format, file))
-    throw CLI::ValidationError(option, "names a file of --output; choose another");
+    reject(option, "names a file of --output; choose another");
   const std::string lost = files::overwritten({file}, all_inputs(a), a.input_format);
-  if (!lost.empty())
-    throw CLI::ValidationError(option, fmt::format("would overwrite {}; choose another", lost));
+  if (!lost.empty()) reject(option, "would overwrite {}; choose another", lost);
 }
 
 /// Rejects an output that would replace an input or another output.
@@ -228,44 +234,42 @@ void check_outputs(const MeshArguments& a) {
   const std::string in_the_way =
       files::overwritten(files::files_written(a.output, a.output_format), all_inputs(a), a.input_format);
   if (!in_the_way.empty())
-    throw CLI::ValidationError(
-        "--output",
-        fmt::format("'{}' would overwrite {}; choose another name or folder", a.output, in_the_way));
+    reject("--output", "'{}' would overwrite {}; choose another name or folder", a.output, in_the_way);
   std::vector<std::string> others;
   for (const std::string& report : a.reports) {
     check_second_output("--report", report, a);
     if (!files::overwritten({report}, others, {}).empty())
-      throw CLI::ValidationError("--report", fmt::format("names {} twice; choose another", report));
+      reject("--report", "names {} twice; choose another", report);
     others.push_back(report);
   }
   check_second_output("--cell-decomposition", a.cell_decomposition, a);
   if (!a.cell_decomposition.empty() && !files::overwritten({a.cell_decomposition}, others, {}).empty())
-    throw CLI::ValidationError("--cell-decomposition", "names the file of --report; choose another");
+    reject("--cell-decomposition", "names the file of --report; choose another");
   check_second_output("--trace", files::trace_file(a.trace_folder), a);
 }
 
-bool is_among(const std::string& path, const std::string& format, const std::vector<std::string>& formats) {
-  return std::find(formats.begin(), formats.end(), report::format_of(path, format)) != formats.end();
+std::string format_of_output(const MeshArguments& a) { return io::format_of(a.output, a.output_format); }
+
+bool output_is_among(const std::vector<std::string>& formats, const MeshArguments& a) {
+  return std::find(formats.begin(), formats.end(), format_of_output(a)) != formats.end();
 }
 
 /// Rejects partitions for formats that do not keep them. `from_mesh`: the input is a mesh, which may be
 /// partitioned already.
 void check_partitions(const MeshArguments& a, bool from_mesh) {
-  if (a.partitions > 0 && !is_among(a.output, a.output_format, io::formats_with_partitions()))
-    throw CLI::ValidationError("--partitions", fmt::format("{} has no place for partitions; use {}",
-                                                           report::format_of(a.output, a.output_format),
-                                                           list(io::formats_with_partitions())));
+  if (a.partitions > 0 && !output_is_among(io::formats_with_partitions(), a))
+    reject("--partitions", "{} has no place for partitions; use {}", format_of_output(a),
+           list(io::formats_with_partitions()));
   if (!a.cell_decomposition.empty() && !io::is_tet_mesh_format(a.output, a.output_format))
-    throw CLI::ValidationError("--cell-decomposition", "needs a mesh, but the output is a surface");
+    reject("--cell-decomposition", "needs a mesh, but the output is a surface");
   if (!a.cell_decomposition.empty() && a.partitions == 0 && !from_mesh)
-    throw CLI::ValidationError("--cell-decomposition", "is of partitions; say how many with --partitions");
+    reject("--cell-decomposition", "is of partitions; say how many with --partitions");
   if (a.ghost_cells == GhostCells::off) return;
-  if (!is_among(a.output, a.output_format, io::formats_with_ghost_cells()))
-    throw CLI::ValidationError("--ghost-cells", fmt::format("{} has no place for ghost cells; use {}",
-                                                            report::format_of(a.output, a.output_format),
-                                                            list(io::formats_with_ghost_cells())));
+  if (!output_is_among(io::formats_with_ghost_cells(), a))
+    reject("--ghost-cells", "{} has no place for ghost cells; use {}", format_of_output(a),
+           list(io::formats_with_ghost_cells()));
   if (a.partitions == 0 && !from_mesh)
-    throw CLI::ValidationError("--ghost-cells", "is of partitions; say how many with --partitions");
+    reject("--ghost-cells", "is of partitions; say how many with --partitions");
 }
 
 }  // namespace
@@ -273,7 +277,7 @@ void check_partitions(const MeshArguments& a, bool from_mesh) {
 void add_run_options(CLI::App& app, MeshArguments& a) { add_options(app, Option::mesh, a); }
 
 void check_run_arguments(const MeshArguments& a) {
-  if (a.verbose && a.quiet) throw CLI::ValidationError("--quiet", "contradicts --verbose; use one of them");
+  if (a.verbose && a.quiet) reject("--quiet", "contradicts --verbose; use one of them");
   check_outputs(a);
   try {
     validate(a);
@@ -288,58 +292,48 @@ namespace {
 void check_mesh_arguments(const MeshArguments& a);
 
 void check_batch(const MeshArguments& a) {
-  if (!a.output.empty()) throw CLI::ValidationError("--batch", "contradicts --output; use one of them");
+  if (!a.output.empty()) reject("--batch", "contradicts --output; use one of them");
   if (!a.cell_decomposition.empty())
-    throw CLI::ValidationError("--batch",
-                               "makes several meshes, but there is one --cell-decomposition; leave it out");
+    reject("--batch", "makes several meshes, but there is one --cell-decomposition; leave it out");
   if (!a.trace_folder.empty())
-    throw CLI::ValidationError("--batch", "makes several meshes, but there is one --trace; leave it out");
+    reject("--batch", "makes several meshes, but there is one --trace; leave it out");
   if (a.output_format == ".polymesh")
-    throw CLI::ValidationError("--format", "needs a folder for each mesh; mesh the parts one by one");
+    reject("--format", "needs a folder for each mesh; mesh the parts one by one");
   for (const std::string& report : a.reports)
     if (report != "json" && report != "html")
-      throw CLI::ValidationError("--report",
-                                 fmt::format("'{}' is not json or html, as --batch asks for", report));
+      reject("--report", "'{}' is not json or html, as --batch asks for", report);
   if (const std::string both = parts_of_one_name(a); !both.empty())
-    throw CLI::ValidationError("--batch", fmt::format("would write one mesh of {}; rename one", both));
+    reject("--batch", "would write one mesh of {}; rename one", both);
   for (const std::string& input : a.inputs) check_mesh_arguments(part_of_batch(a, input));
 }
 
 void check_output_of_lines(const MeshArguments& a) {
-  if (!is_among(a.output, a.output_format, io::formats_of_surfaces()))
-    throw CLI::ValidationError(
-        "--output",
-        fmt::format("'{}' {} no place for lines alone; use {}", a.output,
-                    io::is_tet_mesh_format(a.output, a.output_format) ? "has" : "is a format with",
-                    list(io::formats_of_surfaces())));
+  if (!output_is_among(io::formats_of_surfaces(), a))
+    reject("--output", "'{}' {} no place for lines alone; use {}", a.output,
+           io::is_tet_mesh_format(a.output, a.output_format) ? "has" : "is a format with",
+           list(io::formats_of_surfaces()));
 }
 
 void check_output_of_surfaces(const MeshArguments& a) {
   const bool is_surface = files::is_surface_format(a.output, a.output_format);
-  if (!is_surface && !is_among(a.output, a.output_format, io::formats_of_surfaces()))
-    throw CLI::ValidationError(
-        "--output",
-        fmt::format("'{}' {} no place for triangles alone; use {} or {}", a.output,
-                    io::is_tet_mesh_format(a.output, a.output_format) ? "has" : "is a format with",
-                    list(io::formats_of_surfaces()), list(files::surface_formats())));
-  if (a.triangle_elements != TriangleElements::shell &&
-      report::format_of(a.output, a.output_format) != ".inp")
-    throw CLI::ValidationError("--triangle-elements",
-                               fmt::format("'{}' cannot store types of elements; use .inp", a.output));
+  if (!is_surface && !output_is_among(io::formats_of_surfaces(), a))
+    reject("--output", "'{}' {} no place for triangles alone; use {} or {}", a.output,
+           io::is_tet_mesh_format(a.output, a.output_format) ? "has" : "is a format with",
+           list(io::formats_of_surfaces()), list(files::surface_formats()));
+  if (a.triangle_elements != TriangleElements::shell && format_of_output(a) != ".inp")
+    reject("--triangle-elements", "'{}' cannot store types of elements; use .inp", a.output);
   if (is_surface && a.order == 2)
-    throw CLI::ValidationError("--order", fmt::format("{} has no elements of second order; use --order 1",
-                                                      report::format_of(a.output, a.output_format)));
+    reject("--order", "{} has no elements of second order; use --order 1", format_of_output(a));
 }
 
 /// Rejects layers of prisms, before anything is meshed, if the output format cannot hold them.
 void check_output_of_layers(const MeshArguments& a) {
   const std::vector<std::string> formats = io::formats_with_layers(a.order);
   if (!a.layers.any() || a.layers.tets || !io::is_tet_mesh_format(a.output, a.output_format) ||
-      is_among(a.output, a.output_format, formats))
+      output_is_among(formats, a))
     return;
-  throw CLI::ValidationError(
-      "--layers", fmt::format("'{}' has no place for prisms{}; use {}, or add --layers-tets", a.output,
-                              a.order == 2 ? " of second order" : "", list(formats)));
+  reject("--layers", "'{}' has no place for prisms{}; use {}, or add --layers-tets", a.output,
+         a.order == 2 ? " of second order" : "", list(formats));
 }
 
 void check_mesh_arguments(const MeshArguments& a) {
@@ -350,54 +344,50 @@ void check_mesh_arguments(const MeshArguments& a) {
   }
   if (a.output.empty()) throw CLI::RequiredError("--output, the mesh to write,");
   if (a.output == "-")
-    throw CLI::ValidationError(
-        "--output",
-        "- is standard output, to which convert writes: collarmesh convert IN... -o - --format vtu");
+    reject("--output",
+           "- is standard output, to which convert writes: collarmesh convert IN... -o - --format vtu");
   if (a.dimension == 1) {
     check_output_of_lines(a);
   } else if (a.dimension == 2) {
     check_output_of_surfaces(a);
   } else if (!io::is_tet_mesh_format(a.output, a.output_format)) {
-    throw CLI::ValidationError("--output", fmt::format("'{}' {}; use {}", a.output, extension_list(a.output),
-                                                       list(io::written_tet_mesh_formats())));
+    reject("--output", "'{}' {}; use {}", a.output, extension_list(a.output),
+           list(io::written_tet_mesh_formats()));
   }
   check_output_of_layers(a);
-  if (a.order == 2 && is_among(a.output, a.output_format, io::formats_of_first_order()))
-    throw CLI::ValidationError("--order", fmt::format("{} has no elements of second order; use --order 1",
-                                                      report::format_of(a.output, a.output_format)));
+  if (a.order == 2 && output_is_among(io::formats_of_first_order(), a))
+    reject("--order", "{} has no elements of second order; use --order 1", format_of_output(a));
   check_partitions(a, false);
   check_run_arguments(a);
 }
 
 void check_standard_input(const MeshArguments& a) {
   const auto dashes = std::count(a.inputs.begin(), a.inputs.end(), "-");
-  if (dashes > 1) throw CLI::ValidationError("IN", "standard input (-) can be read once only");
-  if (dashes > 0 && a.input_format.empty())
-    throw CLI::ValidationError("--input-format", "is needed for standard input (-)");
+  if (dashes > 1) reject("IN", "standard input (-) can be read once only");
+  if (dashes > 0 && a.input_format.empty()) reject("--input-format", "is needed for standard input (-)");
 }
 
 void check_repair_arguments(const RepairArguments& a) {
   if (!files::is_surface_format(a.output, a.output_format))
-    throw CLI::ValidationError("--output",
-                               fmt::format("'{}' {}; use {}, or name one with --format", a.output,
-                                           extension_list(a.output), list(files::surface_formats())));
+    reject("--output", "'{}' {}; use {}, or name one with --format", a.output, extension_list(a.output),
+           list(files::surface_formats()));
   if (a.output == "-" && a.json)
-    throw CLI::ValidationError("--json", "has no place on standard output beside the file; use --report");
+    reject("--json", "has no place on standard output beside the file; use --report");
   if (!a.reports.empty() && report::is_html(a.reports.front()))
-    throw CLI::ValidationError("--report", "is JSON here; pages (.html) are made of meshes");
+    reject("--report", "is JSON here; pages (.html) are made of meshes");
   check_standard_input(a);
   check_outputs(a);
 }
 
 void check_convert_arguments(const MeshArguments& a) {
   if (a.output_format.empty() && !files::is_surface_format(a.output) && !io::is_tet_mesh_format(a.output))
-    throw CLI::ValidationError("--output", fmt::format("'{}' {}; use {}, or name one with --format", a.output,
-                                                       extension_list(a.output), known_formats()));
+    reject("--output", "'{}' {}; use {}, or name one with --format", a.output, extension_list(a.output),
+           known_formats());
   check_standard_input(a);
   check_output_of_layers(a);
   check_partitions(a, io::is_tet_mesh_format(a.inputs.front(), a.input_format));
   if (a.output == "-" && files::is_of_several_files(a.output_format))
-    throw CLI::ValidationError("--format", "writes several files, so the output cannot be standard output");
+    reject("--format", "writes several files, so the output cannot be standard output");
   check_run_arguments(a);
 }
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "files/check_against.h"
 #include "files/input_files.h"
 #include "interruptible.h"
@@ -21,22 +23,16 @@ ExitCode check_command(const CheckArguments& arguments) {
   for (Point& p : mesh.points) p = p / arguments.scale;
   for (TetMesh::PeriodicFaces& faces : mesh.periodic)
     faces.motion.shift = faces.motion.shift / arguments.scale;
-  const auto distance = [&](double diagonal) {
+  files::InputReading reading = files::reading_of(arguments);
+  reading.distance = [&](double diagonal) {
     return arguments.mesh.bounds.distance > 0 ? arguments.mesh.bounds.distance
                                               : default_distance(0, diagonal, mesh.order());
   };
-  const auto tolerance = [&](const Plc& plc) {
-    return tolerance_of(plc, arguments.mesh.bounds, 0, mesh.order());
-  };
-  files::ComplexInput input(
-      arguments.inputs,
-      interruptible({{},
-                     distance,
-                     mesh.tets.empty() ? std::function<SurfaceTolerance(const Plc&)>() : tolerance,
-                     arguments.overlap,
-                     arguments.mesh.threads,
-                     arguments.names,
-                     arguments.given_names}));
+  if (!mesh.tets.empty())
+    reading.tolerance = [&](const Plc& plc) {
+      return tolerance_of(plc, arguments.mesh.bounds, 0, mesh.order());
+    };
+  files::ComplexInput input(arguments.inputs, interruptible(std::move(reading)));
   Execution execution;
   execution.cancel = &process::interrupt_flag();
   const CheckReport report = files::check_against(mesh, input, arguments, execution);

@@ -16,6 +16,7 @@
 #include "files/input_files.h"
 #include "files/surface_files.h"
 #include "interruptible.h"
+#include "io/file_bytes.h"
 #include "mesh_command.h"
 #include "process/console.h"
 #include "process/interrupt.h"
@@ -88,8 +89,7 @@ void convert_mesh(const MeshArguments& a, TetMesh& mesh) {
   process::StagedFile::commit({&file, decomposition ? &*decomposition : nullptr});
   tell_unless_quiet(
       a, report::tet_mesh_text(a.output, mesh) + report::partitions_text(measure_partitions(mesh)));
-  tell_unless_quiet(a,
-                    report::losses_text(report::lost_by(report::format_of(a.output, a.output_format), mesh)));
+  tell_unless_quiet(a, report::losses_text(report::lost_by(io::format_of(a.output, a.output_format), mesh)));
 }
 
 /// Repairs the soups so that they form a complex that encloses something; throws PlcError if that is
@@ -117,11 +117,7 @@ ExitCode convert_command(const ConvertArguments& a) {
     return ExitCode::success;
   }
   if (!to_surface) return mesh_command(a);
-  files::ComplexInput input(a.inputs, interruptible({.format = a.input_format,
-                                                     .overlap = a.overlap,
-                                                     .threads = a.mesh.threads,
-                                                     .names = a.names,
-                                                     .given_names = a.given_names}));
+  files::ComplexInput input(a.inputs, interruptible(files::reading_of(a, a.input_format)));
   if (a.repairs) repair(a, input);
   write_soup(a, input.soups());
   return ExitCode::success;

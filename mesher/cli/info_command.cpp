@@ -70,11 +70,7 @@ std::vector<Prediction> predictions(const InfoArguments& arguments, const Plc& p
 
 void print_complex(const InfoArguments& arguments) {
   const auto begin = std::chrono::steady_clock::now();
-  files::ComplexInput input(arguments.inputs, interruptible({.format = {},
-                                                             .overlap = arguments.overlap,
-                                                             .threads = arguments.mesh.threads,
-                                                             .names = arguments.names,
-                                                             .given_names = arguments.given_names}));
+  files::ComplexInput input(arguments.inputs, interruptible(files::reading_of(arguments)));
   const Plc plc = build_any(input, arguments);
   process::stop_if_interrupted();
   const double read = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

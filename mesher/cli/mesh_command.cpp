@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <deque>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 
 #include "collarmesh/error.h"
@@ -19,6 +18,7 @@
 #include "files/surface_files.h"
 #include "files/trace_files.h"
 #include "interruptible.h"
+#include "io/file_bytes.h"
 #include "option_warnings.h"
 #include "process/console.h"
 #include "process/interrupt.h"
@@ -192,12 +192,9 @@ struct Shown {
 /// Writes a report. `shown` is for pages.
 void write_report(const std::string& path, const MeshArguments& arguments, const report::MeshRun& run,
                   const std::optional<Shown>& shown) {
-  std::ofstream file(path);
   const nlohmann::ordered_json report = report::run_json(arguments, run);
-  file << (report::is_html(path) ? report::html_report(report, shown->mesh, shown->trace)
-                                 : report::json_text(report, 1) + '\n');
-  file.close();
-  if (!file) throw WriteError(fmt::format("{}: cannot be written; is the disk full?", path));
+  process::write_text(path, report::is_html(path) ? report::html_report(report, shown->mesh, shown->trace)
+                                                  : report::json_text(report, 1) + '\n');
 }
 
 void write_files(const MeshArguments& arguments, Stages& stages, report::MeshRun& run) {
@@ -267,20 +264,12 @@ void tell_of(const MeshArguments& arguments, const report::MeshRun& run) {
   process::tell("{}", report::run_text(arguments, run));
   if (arguments.tell_losses)
     process::tell("{}", report::losses_text(report::lost_by(
-                            report::format_of(arguments.output, arguments.output_format), run.result.mesh)));
+                            io::format_of(arguments.output, arguments.output_format), run.result.mesh)));
 }
 
 std::unique_ptr<files::ComplexInput> read_inputs(const MeshArguments& arguments) {
-  const auto distance = [&](double diagonal) { return distance_of(arguments, diagonal); };
-  const auto tolerance = [&](const Plc& plc) {
-    return tolerance_of(plc, arguments.mesh.bounds, arguments.mesh.size, static_cast<int>(arguments.order));
-  };
-  // Meshes of surfaces do not need finer triangles of CAD faces, which only keep volumes.
   return std::make_unique<files::ComplexInput>(
-      arguments.inputs,
-      interruptible({arguments.input_format, distance,
-                     arguments.dimension < 3 ? std::function<SurfaceTolerance(const Plc&)>() : tolerance,
-                     arguments.overlap, arguments.mesh.threads, arguments.names, arguments.given_names}));
+      arguments.inputs, interruptible(files::reading_for_mesh(arguments, arguments.input_format)));
 }
 
 MadeMesh make_mesh(const MeshArguments& arguments) {

@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "collarmesh/io/tet_mesh_io.h"
+#include "common/lower_case.h"
 
 namespace collarmesh::cli {
 
@@ -17,12 +18,6 @@ template <class Number>
 bool read_whole(const std::string& text, Number& number) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   return error == std::errc() && end == text.data() + text.size();
-}
-
-std::string lower(std::string text) {
-  for (char& c : text)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + ('a' - 'A'));
-  return text;
 }
 
 }  // namespace
@@ -50,7 +45,7 @@ CLI::Validator whole_number() {
 CLI::Validator format_name(const std::vector<std::string>& extensions) {
   return CLI::Validator(
       [extensions](std::string& text) {
-        text = lower(text);
+        text = lower_case(text);
         if (!text.starts_with('.')) text = '.' + text;
         const std::string missing = io::missing_library({}, text);
         if (!missing.empty()) return missing;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "io/file_bytes.h"
 #include "report/conversion_report.h"
 
 namespace collarmesh::cli {
@@ -68,10 +69,10 @@ std::vector<std::string> option_warnings(const MeshArguments& a, const Plc& plc)
                     "mesh follows these; without this option, curved faces stay curved.",
                     a.complex.planar_tolerance, plc.largest_deviation));
   if (!(a.names.empty() && a.given_names.empty()) &&
-      !report::keeps_names(report::format_of(a.output, a.output_format)))
+      !report::keeps_names(io::format_of(a.output, a.output_format)))
     warnings.push_back(fmt::format("{}: {} has no place for names; numbers are kept.",
                                    a.names.empty() ? "--name" : "--names",
-                                   report::format_of(a.output, a.output_format)));
+                                   io::format_of(a.output, a.output_format)));
   return warnings;
 }
 

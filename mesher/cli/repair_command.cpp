@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <optional>
 
 #include "collarmesh/error.h"
@@ -39,13 +38,6 @@ std::string read_again(const std::string& path, const RepairArguments& a) {
   return {};
 }
 
-void write_report(const std::string& path, const nlohmann::ordered_json& report) {
-  std::ofstream file(path);
-  file << report::json_text(report, 1) << '\n';
-  file.close();
-  if (!file) throw WriteError(fmt::format("{}: cannot be written; is the disk full?", path));
-}
-
 std::string repairs_text(const RepairReport& report, const RepairArguments& a) {
   if (report.repaired || a.quiet) return report::repair_text(report, a.quiet);
   return "valid: nothing had to be repaired, the input is written as it is\n";
@@ -59,11 +51,7 @@ ExitCode repair_command(const RepairArguments& a) {
   process::require_writable(a.output, files::files_written(a.output, a.output_format));
   for (const std::string& report : a.reports) process::require_writable(report);
   process::note_stage({.stage = "read"});
-  files::ComplexInput input(a.inputs, interruptible({.format = a.input_format,
-                                                     .overlap = a.overlap,
-                                                     .threads = a.mesh.threads,
-                                                     .names = a.names,
-                                                     .given_names = a.given_names}));
+  files::ComplexInput input(a.inputs, interruptible(files::reading_of(a, a.input_format)));
   process::note_stage({.stage = "complex"});
   const Plc plc = input.build(a.complex, a.repair);
   process::stop_if_interrupted();
@@ -80,7 +68,8 @@ ExitCode repair_command(const RepairArguments& a) {
   std::optional<process::StagedFile> report;
   if (!a.reports.empty()) {
     report.emplace(a.reports.front());
-    report->write([&](const std::string& path) { write_report(path, told); });
+    report->write(
+        [&](const std::string& path) { process::write_text(path, report::json_text(told, 1) + "\n"); });
   }
   process::StagedFile::commit({&surface, report ? &*report : nullptr});
   process::tell("{}{}{}{}", report::warnings_text(plc), repairs_text(input.repaired(), a),

@@ -15,6 +15,7 @@
 #include "collarmesh/error.h"
 #include "collarmesh/name_features.h"
 #include "collarmesh/noise.h"
+#include "common/sort_uniquely.h"
 #include "files/cad_labels.h"
 #include "files/exact_measures.h"
 #include "files/input_files.h"
@@ -88,6 +89,26 @@ auto all_of(const RepairOptions& options) {
 }
 
 }  // namespace
+
+InputReading reading_of(const RunOptions& options, const std::string& format) {
+  InputReading reading;
+  reading.format = format;
+  reading.overlap = options.overlap;
+  reading.threads = options.mesh.threads;
+  reading.names = options.names;
+  reading.given_names = options.given_names;
+  return reading;
+}
+
+InputReading reading_for_mesh(const RunOptions& options, const std::string& format) {
+  InputReading reading = reading_of(options, format);
+  reading.distance = [&options](double diagonal) { return distance_of(options, diagonal); };
+  if (options.dimension == 3)
+    reading.tolerance = [&options](const Plc& plc) {
+      return tolerance_of(plc, options.mesh.bounds, options.mesh.size, static_cast<int>(options.order));
+    };
+  return reading;
+}
 
 ComplexInput::ComplexInput(const std::vector<std::string>& paths, InputReading reading)
     : reading_(std::move(reading)), cad_(reading_.guard) {
@@ -183,8 +204,7 @@ Plc ComplexInput::without_small_features(Plc plc, const PlcOptions& options, con
 void ComplexInput::add_replaced_faces(Plc& plc) const {
   std::vector<std::pair<Tag, Tag>>& all = plc.cleanup.replaced_tags;
   std::ranges::copy(cad_.replaced_faces(), std::back_inserter(all));
-  std::sort(all.begin(), all.end());
-  all.erase(std::unique(all.begin(), all.end()), all.end());
+  sort_uniquely(all);
 }
 
 const brep::CadLabels* ComplexInput::labels() const {

@@ -42,6 +42,13 @@ struct InputReading {
   std::function<void()> stop = [] {};         ///< called between steps; may throw to end the work
 };
 
+/// Returns the settings for reading that the options of a run give.
+InputReading reading_of(const RunOptions& options, const std::string& format = {});
+
+/// Does the same for the input of a mesh: triangles of CAD shapes are as fine as its sizes ask for. Meshes of
+/// surfaces do not need finer ones, which only keep volumes. Keeps the options by reference.
+InputReading reading_for_mesh(const RunOptions& options, const std::string& format = {});
+
 /// The files of one complex: surfaces, complexes and CAD shapes, which are triangulated here.
 class ComplexInput {
  public:

@@ -8,6 +8,7 @@
 
 #include "collarmesh/error.h"
 #include "io/abaqus_periodic.h"
+#include "io/file_bytes.h"
 #include "io/tet_mesh_formats.h"
 
 namespace collarmesh::files {
@@ -15,13 +16,6 @@ namespace collarmesh::files {
 namespace fs = std::filesystem;
 
 namespace {
-
-std::string extension_of(const fs::path& path, const std::string& format) {
-  std::string extension = format.empty() ? path.extension().string() : format;
-  for (char& c : extension)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + ('a' - 'A'));
-  return extension;
-}
 
 std::vector<fs::path> with_siblings(const fs::path& path, std::initializer_list<const char*> extensions) {
   std::vector<fs::path> files{path};
@@ -77,7 +71,7 @@ std::vector<fs::path> read_with_pvtu(const fs::path& path) {
 }  // namespace
 
 std::vector<fs::path> files_written(const fs::path& path, const std::string& format) {
-  const std::string extension = extension_of(path, format);
+  const std::string extension = io::format_of(path, format);
   if (path == "-") return {};
   if (extension == ".ele") return with_siblings(path, {".ele", ".node", ".face", ".edge"});
   if (extension == ".xdmf") return parts_of_xdmf(path);
@@ -95,13 +89,13 @@ bool may_write(const fs::path& path, const std::string& format, const fs::path& 
   const std::vector<fs::path> written = files_written(path, format);
   return std::any_of(written.begin(), written.end(),
                      [&](const fs::path& each) { return same_file(each, file); }) ||
-         (extension_of(path, format) == ".pvtu" && is_named_as_piece(file, path) &&
+         (io::format_of(path, format) == ".pvtu" && is_named_as_piece(file, path) &&
           same_file(path.parent_path() / file.filename(), file));
 }
 
 std::vector<fs::path> files_read(const fs::path& path, const std::string& format) {
   if (path == "-") return {"/dev/stdin"};
-  const std::string extension = extension_of(path, format);
+  const std::string extension = io::format_of(path, format);
   if (extension == ".ele") return with_siblings(path, {".node", ".face", ".edge"});
   if (extension == ".xdmf") return parts_of_xdmf(path);
   if (extension == ".pvtu") return read_with_pvtu(path);

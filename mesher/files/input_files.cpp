@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <string_view>
 
 #include "collarmesh/error.h"
 #include "collarmesh/io/mesh_surface_io.h"
 #include "collarmesh/io/tet_mesh_io.h"
+#include "common/lower_case.h"
 #include "files/edit_distance.h"
 #include "files/surface_files.h"
 
@@ -18,11 +18,6 @@ namespace collarmesh::files {
 namespace fs = std::filesystem;
 
 namespace {
-
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
 
 void require_file(const std::string& path) {
   std::error_code ignored;
@@ -42,13 +37,13 @@ std::string opened(const std::string& path) { return path == "-" ? "/dev/stdin" 
 std::string similar_file(const std::string& path) {
   const fs::path wanted(path);
   const fs::path folder = wanted.has_parent_path() ? wanted.parent_path() : fs::path(".");
-  const std::string name = lower(wanted.filename().string());
+  const std::string name = lower_case(wanted.filename().string());
   std::size_t nearest = 1 + name.size() / 3;
   std::string found;
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
     const std::string candidate = entry->path().filename().string();
-    const std::size_t distance = edit_distance(name, lower(candidate));
+    const std::size_t distance = edit_distance(name, lower_case(candidate));
     if (distance > nearest || (distance == nearest && !found.empty())) continue;
     nearest = distance;
     found = (wanted.parent_path() / candidate).string();

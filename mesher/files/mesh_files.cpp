@@ -1,5 +1,7 @@
 #include "collarmesh/mesh_files.h"
 
+#include <utility>
+
 #include "collarmesh/io/size_field_io.h"
 #include "collarmesh/surface_tolerance.h"
 #include "files/complex_input.h"
@@ -7,22 +9,6 @@
 namespace collarmesh {
 
 namespace {
-
-files::InputReading reading_of(const RunOptions& options, const std::string& format,
-                               const Execution& execution) {
-  files::InputReading reading;
-  reading.format = format;
-  reading.distance = [&options](double diagonal) { return distance_of(options, diagonal); };
-  if (options.dimension == 3)
-    reading.tolerance = [&options](const Plc& plc) {
-      return tolerance_of(plc, options.mesh.bounds, options.mesh.size, static_cast<int>(options.order));
-    };
-  reading.overlap = options.overlap;
-  reading.threads = options.mesh.threads;
-  reading.names = options.names;
-  reading.cancel = execution.cancel;
-  return reading;
-}
 
 /// Builds complexes from files, one for each repair.
 class FilesSource : public ComplexSource {
@@ -51,7 +37,9 @@ class FilesSource : public ComplexSource {
 
 FilesResult mesh_files(const std::vector<std::string>& paths, const RunOptions& options,
                        const std::string& format, const Execution& execution) {
-  files::ComplexInput input(paths, reading_of(options, format, execution));
+  files::InputReading reading = files::reading_for_mesh(options, format);
+  reading.cancel = execution.cancel;
+  files::ComplexInput input(paths, std::move(reading));
   FilesSource source(options, input);
   FilesResult result{run_pipeline(source, options, execution), {}};
   if (input.has_cad()) result.result.mesh.group_names = GroupNames::cad;

@@ -2,10 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
-
 #include "collarmesh/error.h"
 #include "common/module_function.h"
+#include "io/file_bytes.h"
 
 namespace collarmesh::files {
 
@@ -17,11 +16,7 @@ constexpr const char* module = "collarmesh_openmesh.so";
 
 bool is_om([[maybe_unused]] const std::string& path, [[maybe_unused]] std::string_view format) {
 #ifdef COLLARMESH_OPENMESH
-  std::string extension =
-      format.empty() ? std::filesystem::path(path).extension().string() : std::string(format);
-  for (char& c : extension)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + ('a' - 'A'));
-  return extension == ".om";
+  return io::format_of(path, format) == ".om";
 #else
   return false;
 #endif

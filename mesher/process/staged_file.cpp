@@ -286,6 +286,13 @@ void require_writable(const fs::path& target, const std::vector<fs::path>& besid
   for (const fs::path& file : beside) require_place(file);
 }
 
+void write_text(const std::string& path, const std::string& text) {
+  std::ofstream file(path);
+  file << text;
+  file.close();
+  if (!file) throw WriteError(fmt::format("{}: cannot be written; is the disk full?", path));
+}
+
 void remove_dead_folder(const fs::path& folder) {
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {

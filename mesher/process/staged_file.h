@@ -41,6 +41,9 @@ class StagedFile {
   int lock_;
 };
 
+/// Writes a file of text. Throws WriteError.
+void write_text(const std::string& path, const std::string& text);
+
 /// Checks that `target`, and the files written `beside` it, can be made there. Throws WriteError with the
 /// reason. Call it before long work.
 void require_writable(const std::filesystem::path& target,

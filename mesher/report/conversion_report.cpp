@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -108,16 +107,8 @@ std::string counts_text(std::string_view verb,
 
 }  // namespace
 
-std::string format_of(const std::string& path, const std::string& format) {
-  std::string extension = format.empty() ? std::filesystem::path(path).extension().string() : format;
-  for (char& c : extension)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + ('a' - 'A'));
-  return extension;
-}
-
 std::vector<std::string> lost_by(const std::string& format, const PolygonSoup& soup) {
-  const auto* kept =
-      std::find_if(surfaces.begin(), surfaces.end(), [&](const Kept& k) { return k.format == format; });
+  const auto* kept = std::ranges::find(surfaces, format, &Kept::format);
   if (kept == surfaces.end()) return {};
   std::vector<std::string> losses;
   std::size_t facet_tags = 0;
@@ -132,8 +123,7 @@ std::vector<std::string> lost_by(const std::string& format, const PolygonSoup& s
 }
 
 std::vector<std::string> lost_by(const std::string& format, const TetMesh& mesh) {
-  const auto* kept =
-      std::find_if(meshes.begin(), meshes.end(), [&](const MeshKept& k) { return k.format == format; });
+  const auto* kept = std::ranges::find(meshes, format, &MeshKept::format);
   if (kept == meshes.end()) return {};
   std::vector<std::string> losses;
   add(losses, kept->collar, count_tags(mesh.tet_collar), "collar marks of tets");
@@ -168,8 +158,7 @@ std::vector<std::string> lost_by(const std::string& format, const TetMesh& mesh)
 }
 
 bool keeps_names(const std::string& format) {
-  const auto* kept =
-      std::find_if(meshes.begin(), meshes.end(), [&](const MeshKept& k) { return k.format == format; });
+  const auto* kept = std::ranges::find(meshes, format, &MeshKept::format);
   return kept == meshes.end() || kept->names != 0;
 }
 

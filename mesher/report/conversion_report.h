@@ -8,9 +8,6 @@
 
 namespace collarmesh::report {
 
-/// Returns the given format, or else the extension of the path, in lower case with its dot.
-std::string format_of(const std::string& path, const std::string& format);
-
 /// Describes the data that a format cannot store; empty if nothing is lost.
 std::vector<std::string> lost_by(const std::string& format, const PolygonSoup& soup);
 std::vector<std::string> lost_by(const std::string& format, const TetMesh& mesh);

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "common/layer_tets.h"
+#include "common/sort_uniquely.h"
 
 namespace collarmesh::report {
 
@@ -51,8 +52,7 @@ void add_point(const TetMesh& mesh, Index p, std::vector<std::uint32_t>& point_n
 /// Adds the faces on patches, if all their points are shown.
 void add_faces(const TetMesh& mesh, const std::vector<std::uint32_t>& point_number, ShownMesh& shown) {
   shown.face_tags = mesh.face_tag;
-  std::sort(shown.face_tags.begin(), shown.face_tags.end());
-  shown.face_tags.erase(std::unique(shown.face_tags.begin(), shown.face_tags.end()), shown.face_tags.end());
+  sort_uniquely(shown.face_tags);
   shown.faces.reserve(4 * mesh.faces.size());
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     for (const Index p : mesh.faces[f]) shown.faces.push_back(point_number[p]);

@@ -4,6 +4,7 @@
 
 #include "collarmesh/error.h"
 #include "collarmesh/merge_soups.h"
+#include "io/file_bytes.h"
 #include "report/conversion_report.h"
 #include "report/report.h"
 
@@ -36,7 +37,7 @@ std::string place_regions(const std::vector<PolygonSoup>& soups, PlcOptions opti
 
 MergedSoup merge_for_output(const std::vector<PolygonSoup>& soups, const std::string& path,
                             const std::string& format, const PlcOptions& plc) {
-  const std::string extension = format_of(path, format);
+  const std::string extension = io::format_of(path, format);
   MergeReport report;
   MergedSoup merged{merge_soups(soups, {plc.weld, cut_for(extension)}, report), {}};
   if (extension == ".poly" || extension == ".smesh") merged.told = place_regions(soups, plc, merged.soup);

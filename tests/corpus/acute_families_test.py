@@ -1,6 +1,6 @@
 """Mesh members of the acute families and let an independent checker judge the meshes.
 
-    acute_families_test.py PROGRAM ACUTE_SHAPE [-k WORD] [--keep FOLDER]
+    acute_families_test.py PROGRAM ACUTE_SHAPE [-k WORD] [--keep FOLDER] [--workers N]
 
 Every family that ACUTE_SHAPE can write, at set parameters and at random ones. Planar members are judged with
 --exact, curved ones by the distance tolerance. Exit code 77 (skipped) without a checker (judging.py).
@@ -17,6 +17,7 @@ import argparse
 import concurrent.futures
 import json
 import math
+import os
 import re
 import sys
 import tempfile
@@ -118,6 +119,7 @@ def main():
     parser.add_argument("generator", metavar="acute_shape")
     parser.add_argument("-k", default="", help="only members whose name contains this")
     parser.add_argument("--keep", help="folder for the meshes")
+    parser.add_argument("--workers", type=int, default=os.cpu_count(), help="inputs at the same time")
     arguments = parser.parse_args()
     if not JUDGE:
         print("COLLARMESH_JUDGE is not set: no judge to ask")
@@ -128,7 +130,7 @@ def main():
         return 1
     members = [member for member in members if arguments.k in member.name]
     failures = 0
-    with tempfile.TemporaryDirectory() as temporary, concurrent.futures.ThreadPoolExecutor(2) as pool:
+    with tempfile.TemporaryDirectory() as temporary, concurrent.futures.ThreadPoolExecutor(arguments.workers) as pool:
         folder = Path(arguments.keep or temporary)
         results = [pool.submit(outcome, arguments.program, arguments.generator, member, folder) for member in members]
         for member, result in zip(members, results):

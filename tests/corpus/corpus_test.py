@@ -1,6 +1,6 @@
 """Mesh every file of a corpus and judge the meshes.
 
-    corpus_test.py PROGRAM [-k WORD] [--keep FOLDER]
+    corpus_test.py PROGRAM [-k WORD] [--keep FOLDER] [--workers N]
 
 COLLARMESH_CORPUS names the folder; its MANIFEST.tsv says what to expect of each file. Files are
 meshed at 1/25 of their bounding box's diagonal; COLLARMESH_JUDGE may name a checker (judging.py).
@@ -170,6 +170,7 @@ def main():
     parser.add_argument("program")
     parser.add_argument("-k", default="", help="only files whose name contains this")
     parser.add_argument("--keep", help="folder for the meshes")
+    parser.add_argument("--workers", type=int, default=os.cpu_count(), help="inputs at the same time")
     arguments = parser.parse_args()
     if not CORPUS:
         print("COLLARMESH_CORPUS is not set: no corpus to run")
@@ -178,7 +179,7 @@ def main():
     with open(corpus / "MANIFEST.tsv", newline="") as manifest:
         rows = [row for row in csv.DictReader(manifest, delimiter="\t") if arguments.k in row["name"]]
     failures = 0
-    with tempfile.TemporaryDirectory() as temporary, concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+    with tempfile.TemporaryDirectory() as temporary, concurrent.futures.ThreadPoolExecutor(arguments.workers) as pool:
         folder = pathlib.Path(arguments.keep or temporary)
         results = [pool.submit(outcome, arguments.program, corpus / row["name"], row["expect"], folder) for row in rows]
         for row, result in zip(rows, results):

@@ -1,6 +1,6 @@
 """Mesh a sample of real parts as they come.
 
-    real_parts_test.py PROGRAM [--every N]
+    real_parts_test.py PROGRAM [--every N] [--workers N]
 
 COLLARMESH_REAL names a folder of CAD files and surfaces, good and bad. Each N-th of them and those that once failed
 are meshed with the defaults. A file may be refused with a message or reach its time limit, but nothing may crash, no
@@ -21,7 +21,7 @@ from judging import Failed, run
 
 KINDS = {".step", ".stp", ".brep", ".brp", ".igs", ".iges", ".stl", ".obj", ".off", ".ply"}
 LARGEST = 600_000  # bytes
-SECONDS = 60
+SECONDS = 30
 MESHED = 0.8  # least share of the sample; some files are open sheets or need more time
 # Parts of file names, for faults that are mended now: refinement did not end beside a sheet outside all
 # regions, where a sample across a gap fell onto a point of a curve, and in folds as fine as the repair's
@@ -81,6 +81,7 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("program")
     parser.add_argument("--every", type=int, default=12)
+    parser.add_argument("--workers", type=int, default=os.cpu_count(), help="inputs at the same time")
     arguments = parser.parse_args()
     folder = os.environ.get("COLLARMESH_REAL", "")
     if not folder:
@@ -88,7 +89,7 @@ def main():
         return 77
     files = sample(folder, arguments.every)
     meshed = failures = 0
-    with tempfile.TemporaryDirectory() as temporary, concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+    with tempfile.TemporaryDirectory() as temporary, concurrent.futures.ThreadPoolExecutor(arguments.workers) as pool:
         results = [(path, pool.submit(outcome, arguments.program, path, temporary)) for path in files]
         for name, size in LAYERS_ONCE_FAILED:
             for path in pathlib.Path(folder).rglob(f"*{name}*"):

@@ -175,7 +175,7 @@ TEST(IoLayers, PrismsThatTurnTheOtherWayAreReversed) {
     const TetMesh right = order == 1 ? layer_mesh() : second_order(layer_mesh());
     TetMesh mesh = right;
     for (std::size_t i = 0; i < mesh.layers.prisms.size(); ++i) {
-      const io::CellNodes nodes = io::turned(CellKind::prism, io::nodes_of_prism(mesh, i));
+      const io::CellNodes nodes = io::turned(CellKind::prism, io::nodes_of(CellKind::prism)(mesh, i));
       std::copy_n(nodes.begin(), 6, mesh.layers.prisms[i].begin());
       if (order == 2) std::copy_n(nodes.begin() + 6, 9, mesh.layers.prism_mid_nodes[i].begin());
     }

@@ -18,7 +18,7 @@ import numpy
 import Part
 from PySide import QtCore, QtGui
 
-from freecad.collarmesh_workbench import (angle_chart, colours, cost, guarantees, mesh_object, meshing_process, places,
+from freecad.collarmesh_workbench import (angle_chart, colours, compatibility, cost, guarantees, mesh_object, meshing_process, places,
                                           prediction, processes, program, size_objects, view_marks, work_folder,
                                           worst_elements)
 
@@ -435,7 +435,7 @@ async def the_result_is_told():
     report["check"]["findings"] = [finding]
     broken = [text for text, messages in guarantees.guarantees(report) if messages]
     require(broken == ["Circumradius / shortest edge is bounded"], f"{broken}")
-    key = meshing_process._key(obj)
+    key = compatibility.key_of(obj)
     meshing_process._outcomes[key] = dataclasses.replace(meshing_process._outcomes[key], report=report)
     await close_panel()
     await open_panel(obj)

@@ -4,7 +4,8 @@ import dataclasses
 
 from PySide import QtCore, QtGui
 
-from . import mesh_properties, numbers_typed, preferences
+from . import mesh_properties, numbers_typed, preferences, widgets
+from .compatibility import value_of
 from .fold import Fold
 from .quantity_field import QuantityField
 from .translations import translate
@@ -112,10 +113,7 @@ class AdvancedSection(QtGui.QWidget):
             for row in properties:
                 if row.name in obj.PropertiesList:
                     self._add(rows, row)
-        layout = QtGui.QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(self.fold)
-        layout.addWidget(body)
+        widgets.stack(self, self.fold, body)
 
     def store(self):
         """Stores the values in the object's properties. Raises ValueError, which names the field."""
@@ -125,7 +123,7 @@ class AdvancedSection(QtGui.QWidget):
             except ValueError as error:
                 self.fold.setChecked(True)
                 raise ValueError(f"{text}: {error}") from error
-            if value != self._value(name):
+            if value != value_of(self.object, name):
                 setattr(self.object, name, value)
 
     def tick(self, name):
@@ -141,10 +139,6 @@ class AdvancedSection(QtGui.QWidget):
                 except ValueError:
                     pass
 
-    def _value(self, name):
-        value = getattr(self.object, name)
-        return getattr(value, "Value", value)
-
     def _add(self, rows, row):
         widget, read = self._widget(row)
         widget.setObjectName("collarmesh_" + row.name)
@@ -159,7 +153,7 @@ class AdvancedSection(QtGui.QWidget):
 
     def _widget(self, row):
         """Returns the widget, and a function that reads its value."""
-        value = self._value(row.name)
+        value = value_of(self.object, row.name)
         if row.choices:
             return self._combo(row, value)
         if row.unit:

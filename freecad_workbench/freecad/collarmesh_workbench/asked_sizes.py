@@ -6,7 +6,7 @@ import math
 
 import numpy
 
-from . import inputs, size_presets
+from . import extent, inputs, size_presets
 
 FINE = 1 / 60  # largest length of the triangles' edges, relative to the diagonal
 DEFLECTION = 1 / 200  # relative to the diagonal
@@ -26,14 +26,12 @@ class Surface:
 
 def surface_of(part):
     """Returns the surface of an object, in triangles that are small enough for colours."""
-    mesh = inputs.triangles_of(part)
+    mesh, diagonal = inputs.triangles_of(part), extent.diagonal(part)
     if mesh is not None:
         triangles = [(0, *mesh.Topology)]
-        diagonal = mesh.BoundBox.DiagonalLength
     else:
-        shape = inputs.shape_of(part)
-        diagonal = shape.BoundBox.DiagonalLength
-        triangles = [(number, *face.tessellate(DEFLECTION * diagonal)) for number, face in enumerate(shape.Faces, 1)]
+        triangles = [(number, *face.tessellate(DEFLECTION * diagonal))
+                     for number, face in enumerate(inputs.shape_of(part).Faces, 1)]
     places, faces = [numpy.zeros((0, 3, 3))], [numpy.zeros(0, dtype=int)]
     for number, points, corners in triangles:
         if corners:
@@ -65,12 +63,13 @@ def subdivided(triangles, faces, longest):
 def on(surface, part, settings):
     """Returns for each corner of a Surface the size that the Settings ask for, mm."""
     shape = inputs.shape_of(part)
-    diagonal = (inputs.triangles_of(part) or shape).BoundBox.DiagonalLength
+    diagonal = extent.diagonal(part)
     places = surface.places
     sizes = numpy.full(len(places), settings.size or diagonal * size_presets.DEFAULT_PART_OF_DIAGONAL)
     if not shape.isNull():
         for number, size in settings.solid_sizes.items():
-            sizes[_on_solid(surface, shape, number)] = numpy.minimum(size, sizes[_on_solid(surface, shape, number)])
+            its = _on_solid(surface, shape, number)
+            sizes[its] = numpy.minimum(size, sizes[its])
         growth = settings.gradation or GROWTH
         for kind, wanted in (("Face", settings.face_sizes), ("Edge", settings.edge_sizes)):
             for number, size in wanted.items():

@@ -4,6 +4,7 @@ import os
 
 import FreeCAD
 import FreeCADGui
+import ObjectsFem
 
 from . import (compatibility, inputs, layer_objects, layers_panel, layers_view, mesh_menu, mesh_object, mesh_properties,
                new_mesh, other_panel, result_refinement, size_objects, take_over)
@@ -37,13 +38,11 @@ class Command:
     def GetResources(self):
         return {"Pixmap": self.icon, "MenuText": self.text(), "ToolTip": self.tip()}
 
-    @classmethod
-    def text(cls):
-        return translate("collarmesh", cls.menu_text)
+    def text(self):
+        return translate("collarmesh", self.menu_text)
 
-    @classmethod
-    def tip(cls):
-        return translate("collarmesh", cls.tool_tip)
+    def tip(self):
+        return translate("collarmesh", self.tool_tip)
 
     def IsActive(self):
         return FreeCAD.ActiveDocument is not None and self.target() is not None
@@ -131,14 +130,12 @@ class Group(Refinement):
     )
 
     def create(self, document, obj):
-        return compatibility.make_group(document, obj)
+        return ObjectsFem.makeMeshGroup(document, obj)
 
 
-class Size(Command):
-    """Adds a size by place to the selected mesh, or to the mesh of the selected part, or to the only mesh in
-    the document."""
+class Addition(Command):
+    """Adds an object to the selected mesh, or to the mesh of the selected part, or to the only mesh in the document."""
 
-    kind = ""
     panel_commits = True
 
     def Activated(self):
@@ -151,6 +148,13 @@ class Size(Command):
         found = [each for each in ours if each in chosen or compatibility.meshed_object(each) in chosen]
         found = found or ([] if chosen else ours)
         return found[0] if len(found) == 1 else None
+
+
+class Size(Addition):
+    """Adds a size by place."""
+
+    def __init__(self, kind, menu_text, tool_tip):
+        self.kind, self.icon, self.menu_text, self.tool_tip = kind, icon_of(kind), menu_text, tool_tip
 
     def create(self, _document, obj):
         picked = [
@@ -179,45 +183,8 @@ def middle_of(elements):
     return middle
 
 
-class SizeSphere(Size):
-    kind = "Sphere"
-    icon = icon_of(kind)
-    menu_text = mark("collarmesh", "Size in a sphere")
-    tool_tip = mark(
-        "collarmesh",
-        "Ask for a smaller size in a sphere, which can be dragged in the 3D view; select faces to put it there",
-    )
-
-
-class SizeBox(Size):
-    kind = "Box"
-    icon = icon_of(kind)
-    menu_text = mark("collarmesh", "Size in a box")
-    tool_tip = mark(
-        "collarmesh", "Ask for a smaller size in a box, which can be dragged and turned in the 3D view"
-    )
-
-
-class SizeCylinder(Size):
-    kind = "Cylinder"
-    icon = icon_of(kind)
-    menu_text = mark("collarmesh", "Size in a cylinder")
-    tool_tip = mark(
-        "collarmesh", "Ask for a smaller size in a cylinder, which can be dragged and turned in the 3D view"
-    )
-
-
-class SizeDistance(Size):
-    kind = "Distance"
-    icon = icon_of(kind)
-    menu_text = mark("collarmesh", "Size near faces and edges")
-    tool_tip = mark(
-        "collarmesh", "Ask for a smaller size within a distance from the selected faces and edges"
-    )
-
-
-class Layers(Size):
-    """Adds boundary layers on the selected faces to a mesh; without any, on all outer faces."""
+class Layers(Addition):
+    """Adds boundary layers on the selected faces; without any, on all outer faces."""
 
     icon = layers_view.ICON
     menu_text = mark("collarmesh", "Boundary layers")
@@ -247,7 +214,7 @@ class TakeOver(Command):
 
     def Activated(self):
         target = self.target()
-        later(lambda: mesh_menu.take(target))  # see `Size`
+        later(lambda: mesh_menu.take(target))  # see `Addition`
 
 
 class RefineByResult(Command):
@@ -276,19 +243,28 @@ class RefineByResult(Command):
 
 
 COMMANDS = {
-    MESH_COMMAND: MeshFromShape,
-    REFINEMENT_COMMAND: Refinement,
-    "Collarmesh_SizeSphere": SizeSphere,
-    "Collarmesh_SizeBox": SizeBox,
-    "Collarmesh_SizeCylinder": SizeCylinder,
-    "Collarmesh_SizeDistance": SizeDistance,
-    "Collarmesh_Layers": Layers,
-    "Collarmesh_RefineByResult": RefineByResult,
-    GROUP_COMMAND: Group,
-    "Collarmesh_TakeOver": TakeOver,
+    MESH_COMMAND: MeshFromShape(),
+    REFINEMENT_COMMAND: Refinement(),
+    "Collarmesh_SizeSphere": Size(
+        "Sphere", mark("collarmesh", "Size in a sphere"),
+        mark("collarmesh",
+             "Ask for a smaller size in a sphere, which can be dragged in the 3D view; select faces to put it there")),
+    "Collarmesh_SizeBox": Size(
+        "Box", mark("collarmesh", "Size in a box"),
+        mark("collarmesh", "Ask for a smaller size in a box, which can be dragged and turned in the 3D view")),
+    "Collarmesh_SizeCylinder": Size(
+        "Cylinder", mark("collarmesh", "Size in a cylinder"),
+        mark("collarmesh", "Ask for a smaller size in a cylinder, which can be dragged and turned in the 3D view")),
+    "Collarmesh_SizeDistance": Size(
+        "Distance", mark("collarmesh", "Size near faces and edges"),
+        mark("collarmesh", "Ask for a smaller size within a distance from the selected faces and edges")),
+    "Collarmesh_Layers": Layers(),
+    "Collarmesh_RefineByResult": RefineByResult(),
+    GROUP_COMMAND: Group(),
+    "Collarmesh_TakeOver": TakeOver(),
 }
 
 
 def register():
     for name, command in COMMANDS.items():
-        FreeCADGui.addCommand(name, command())
+        FreeCADGui.addCommand(name, command)

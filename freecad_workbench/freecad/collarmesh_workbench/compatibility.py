@@ -10,19 +10,15 @@ from femmesh import meshtools
 
 
 class Stateless:
-    """A proxy that saves nothing. FreeCAD 0.20 calls the first two methods, later versions the others."""
-
-    def __getstate__(self):
-        return None
-
-    def __setstate__(self, _state):
-        return None
+    """A proxy that saves nothing."""
 
     def dumps(self):
         return None
 
     def loads(self, _state):
         return None
+
+    __getstate__, __setstate__ = dumps, loads  # FreeCAD 0.20 calls these
 
 
 class WithProperties(Stateless):
@@ -47,6 +43,17 @@ def add_mesh_object(document, name):
 def shape_property(mesh_object):
     """Returns the property that links the meshed object: `Shape` from FreeCAD 1.0 on, `Part` before."""
     return "Shape" if "Shape" in mesh_object.PropertiesList else "Part"
+
+
+def type_of(obj):
+    """Returns the `Type` of an object's proxy; "" if it has none."""
+    return getattr(getattr(obj, "Proxy", None), "Type", "")
+
+
+def value_of(obj, name):
+    """Returns a property's value, of a quantity in millimetres or degrees; 0 without the property."""
+    value = getattr(obj, name, 0)
+    return getattr(value, "Value", value)
 
 
 def meshed_object(mesh_object):
@@ -76,14 +83,14 @@ def is_suppressed(obj):
 def is_plain_refinement(obj):
     """Returns whether the object is a size on sub-shapes. From FreeCAD 1.1 on, lists of refinements contain
     other kinds, too."""
-    kind = getattr(getattr(obj, "Proxy", None), "Type", "")
+    kind = type_of(obj)
     return not kind.startswith("Fem::Mesh") or kind in ("Fem::MeshRegion", "Fem::MeshRefinement")
 
 
 def size_by_place(obj):
     """Converts a refinement by place of FreeCAD 1.1 to one of ours: returns (kind, size, size far away,
     distance over which the size grows to that, properties); None for other objects."""
-    kind = getattr(getattr(obj, "Proxy", None), "Type", "")
+    kind = type_of(obj)
     if kind == "Fem::MeshDistance":
         between = obj.DistanceMaximum.Value - obj.DistanceMinimum.Value
         return "Distance", obj.SizeMinimum.Value, obj.SizeMaximum.Value, between, {
@@ -98,6 +105,11 @@ def size_by_place(obj):
     return "Box", *sizes, {**dict(zip(("Length", "Width", "Height"), lengths)), "Placement": corner}
 
 
+def key_of(obj):
+    """Returns the names of an object's document and of the object, which identify it while it exists."""
+    return obj.Document.Name, obj.Name
+
+
 def mesh_objects(document):
     """Returns FEM's mesh objects, of all meshers."""
     return document.findObjects("Fem::FemMeshObject")
@@ -107,10 +119,6 @@ def make_refinement(document, mesh_object):
     """Makes FreeCAD's object for a size on sub-shapes, which later versions call a refinement."""
     make = getattr(ObjectsFem, "makeMeshRegion", None) or ObjectsFem.makeMeshRefinement
     return make(document, mesh_object)
-
-
-def make_group(document, mesh_object):
-    return ObjectsFem.makeMeshGroup(document, mesh_object)
 
 
 _in_transaction = set()  # names of documents with an open transaction

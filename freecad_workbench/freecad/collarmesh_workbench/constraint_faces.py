@@ -31,7 +31,7 @@ class Proxy(compatibility.Stateless):
 
 
 def is_ours(obj):
-    return getattr(getattr(obj, "Proxy", None), "Type", "") == TYPE
+    return compatibility.type_of(obj) == TYPE
 
 
 def can_be_made(mesh_object):
@@ -48,9 +48,8 @@ def of(mesh_object):
 def make(mesh_object):
     """Returns the object with the faces; makes it if necessary. Raises MesherError."""
     if not can_be_made(mesh_object):
-        text = translate(
-            "collarmesh", "{label}: only a mesh of triangles needs faces for constraints, and it must be made first.")
-        raise MesherError(text.format(label=mesh_object.Label))
+        raise MesherError(translate("collarmesh", "{label}: only a mesh of triangles needs faces for constraints, and it must "
+                                                  "be made first."), label=mesh_object.Label)
     there = of(mesh_object)
     if there is not None:
         return there
@@ -71,8 +70,8 @@ def references(mesh_object, names):
     groups = getattr(obj, GROUPS)
     for name in names:
         if name not in groups:
-            text = translate("collarmesh", "{label} has no group of faces called {name}; it has {names}.")
-            raise MesherError(text.format(label=mesh_object.Label, name=name, names=", ".join(dict.fromkeys(groups))))
+            raise MesherError(translate("collarmesh", "{label} has no group of faces called {name}; it has {names}."),
+                              label=mesh_object.Label, name=name, names=", ".join(dict.fromkeys(groups)))
     return [(obj, tuple(_face_of(groups, name) for name in names))]
 
 

@@ -2,7 +2,7 @@
 
 from PySide import QtCore, QtGui
 
-from . import compatibility, contacts, inputs
+from . import compatibility, contacts, inputs, widgets
 from .translations import translate
 
 MOST = 3  # number of faces named; the tool tip lists all
@@ -17,19 +17,14 @@ class ContactsSection(QtGui.QWidget):
         super().__init__()
         self.object = obj
         self._names = []
-        self.label = QtGui.QLabel()
-        self.label.setObjectName("collarmesh_contacts")
-        self.label.setWordWrap(True)
+        self.label = widgets.label("collarmesh_contacts")
         self.box = QtGui.QCheckBox(translate("collarmesh", "Keep touching solids apart"))
         self.box.setObjectName("collarmesh_KeepApart")
         self.box.setToolTip(translate("collarmesh", "Give each solid nodes of its own where solids touch, for contact and "
                                                     "tie constraints; otherwise they are glued"))
         self.box.setChecked(obj.KeepApart)
         self.box.toggled.connect(self._toggled)
-        layout = QtGui.QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(self.label)
-        layout.addWidget(self.box)
+        widgets.stack(self, self.label, self.box)
         self.hide()
         self._timer = QtCore.QTimer(self, singleShot=True)
         self._timer.timeout.connect(self._look)

@@ -2,7 +2,7 @@
 
 from PySide import QtCore, QtGui
 
-from . import compatibility, mesh_properties, open_shape
+from . import compatibility, mesh_properties, open_shape, widgets
 from .groups import analysis_of
 from .translations import translate
 
@@ -21,16 +21,10 @@ class DimensionSection(QtGui.QWidget):
                              translate("collarmesh", "2D: triangles, for shells"), translate("collarmesh", "3D: tetrahedra")])
         self.combo.setToolTip(translate(
             "collarmesh", "From shape: tetrahedra in what encloses a volume, triangles on faces and open surfaces, lines on wires"))
-        self.note = QtGui.QLabel()
-        self.note.setObjectName("collarmesh_dimension_note")
-        self.note.setWordWrap(True)
-        row = QtGui.QFormLayout()
-        row.setRowWrapPolicy(QtGui.QFormLayout.WrapLongRows)
+        self.note = widgets.label("collarmesh_dimension_note")
+        row = widgets.form()
         row.addRow(translate("collarmesh", "Dimension of the elements"), self.combo)
-        layout = QtGui.QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addLayout(row)
-        layout.addWidget(self.note)
+        widgets.stack(self, row, self.note)
         self.combo.setCurrentIndex(mesh_properties.DIMENSIONS.index(obj.ElementDimension))
         self.combo.currentIndexChanged.connect(lambda _index: self.changed.emit())
 
@@ -70,12 +64,8 @@ def missing_section(mesh_object, dimension):
     """Returns the object that FEM needs for such elements if the analysis lacks it; "" for none."""
     analysis = analysis_of(mesh_object)
     members = [] if analysis is None else analysis.Group
-    if dimension == 3 or any(type_of(each) == f"Fem::ElementGeometry{dimension}D" for each in members):
+    if dimension == 3 or any(compatibility.type_of(each) == f"Fem::ElementGeometry{dimension}D" for each in members):
         return ""
     if dimension == 1:
         return translate("collarmesh", "The analysis needs a beam cross section (FEM: Beam cross section).")
     return translate("collarmesh", "The analysis needs a thickness (FEM: Shell plate thickness).")
-
-
-def type_of(obj):
-    return getattr(getattr(obj, "Proxy", None), "Type", "")

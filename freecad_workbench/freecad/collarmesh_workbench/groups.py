@@ -26,8 +26,8 @@ def analysis_of(mesh_object):
 
 
 def materials_of(analysis):
-    return [each for each in analysis.Group if each.Name and getattr(getattr(each, "Proxy", None), "Type", "") ==
-            "Fem::MaterialCommon"] if analysis else []
+    return [each for each in (analysis.Group if analysis else ())
+            if each.Name and compatibility.type_of(each) == "Fem::MaterialCommon"]
 
 
 def elements_of(fem_mesh, part, subshapes):

@@ -28,6 +28,11 @@ def guarantees(report):
     return lines
 
 
+def _curved():
+    return (translate("collarmesh", "Curved elements are not inverted"),
+            ("mid_nodes", "mid_node_distance", "positive_jacobian"))
+
+
 def _groups_of_layers():
     return [
         (translate("collarmesh", "Elements of layers are not inverted and meet in whole sides"),
@@ -46,8 +51,7 @@ def _groups_of_triangles():
          ("patch_orientation", "shell_orientation")),
         (translate("collarmesh", "Elements know their faces and edges"), ("curve_tag", "patch_tag")),
         (translate("collarmesh", "Triangles have no small or large angle"), ("triangle_angles",)),
-        (translate("collarmesh", "Curved elements are not inverted"),
-         ("mid_nodes", "mid_node_distance", "positive_jacobian")),
+        _curved(),
     ]
 
 
@@ -56,8 +60,7 @@ def _groups_of_lines():
         (translate("collarmesh", "The mesh follows every edge from end to end"),
          ("curve_cover", "curve_distance", "curve_present", "vertex_feature", "vertex_present", "listed_edges")),
         (translate("collarmesh", "Elements know their edges"), ("curve_tag",)),
-        (translate("collarmesh", "Curved elements are not inverted"),
-         ("mid_nodes", "mid_node_distance", "positive_jacobian")),
+        _curved(),
     ]
 
 
@@ -76,6 +79,5 @@ def _groups():
         (translate("collarmesh", "Thin elements have no small or large angle"), ("thin_angles",)),
         (translate("collarmesh", "Collars have no large angle"),
          ("collar_cells", "collar_centre", "collar_dihedral", "collar_disjoint", "collar_gap")),
-        (translate("collarmesh", "Curved elements are not inverted"),
-         ("mid_nodes", "mid_node_distance", "positive_jacobian")),
+        _curved(),
     ]

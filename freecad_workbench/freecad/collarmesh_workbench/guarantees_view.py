@@ -1,8 +1,8 @@
 """The part of the panel that shows which guarantees a mesh keeps."""
 
-from PySide import QtCore, QtGui
+from PySide import QtGui
 
-from . import colours
+from . import colours, widgets
 from .fold import Fold
 from .guarantees import guarantees
 from .translations import translate
@@ -14,17 +14,10 @@ class GuaranteesView(QtGui.QWidget):
     def __init__(self):
         super().__init__()
         self._report, self._out_of_date = None, False
-        self.lines = QtGui.QLabel()
-        self.lines.setObjectName("collarmesh_guarantees")
-        self.lines.setWordWrap(True)
-        self.lines.setTextInteractionFlags(QtCore.Qt.TextSelectableByMouse)
+        self.lines = widgets.label("collarmesh_guarantees", selectable=True)
         self.fold = Fold(self.lines)
         self.fold.setObjectName("collarmesh_guarantees_fold")
-        layout = QtGui.QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.setSpacing(2)
-        layout.addWidget(self.fold)
-        layout.addWidget(self.lines)
+        widgets.stack(self, self.fold, self.lines).setSpacing(2)
 
     def show_report(self, report):
         self._report, self._out_of_date = report, False

@@ -49,12 +49,10 @@ def write(part, path):
     if mesh is None:
         shape = shape_of(part)
         if shape.isNull():
-            raise MesherError(
-                translate("collarmesh", "{label} has no shape; recompute it.").format(label=part.Label)
-            )
+            raise MesherError(translate("collarmesh", "{label} has no shape; recompute it."), label=part.Label)
         shape.exportBrep(path)
     elif mesh.CountFacets == 0:
-        raise MesherError(translate("collarmesh", "{label} has no triangles.").format(label=part.Label))
+        raise MesherError(translate("collarmesh", "{label} has no triangles."), label=part.Label)
     else:
         write_triangles(mesh, path)
 
@@ -76,24 +74,13 @@ def write_triangles(mesh, path):
     count = mesh.countSegments()
     if count:
         numbers[numbers == 0] = count + 1
-    names = {
-        number: REST if number > count else f"Segment{number}" for number in sorted(set(numbers)) if number
-    }
-    lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat"]
+    names = {number: REST if number > count else f"Segment{number}" for number in sorted(set(numbers)) if number}
+    sections = [("MeshFormat", ["2.2 0 8"])]
     if names:
-        lines += [
-            "$PhysicalNames",
-            str(len(names)),
-            *(f'2 {n} "{name}"' for n, name in names.items()),
-            "$EndPhysicalNames",
-        ]
-    lines += ["$Nodes", str(len(points))]
-    lines += [f"{i} {p.x!r} {p.y!r} {p.z!r}" for i, p in enumerate(points, 1)]
-    lines += ["$EndNodes", "$Elements", str(len(triangles))]
-    lines += [
-        f"{i} 2 2 {n} {n} {a + 1} {b + 1} {c + 1}"
-        for i, (n, (a, b, c)) in enumerate(zip(numbers, triangles), 1)
-    ]
-    lines += ["$EndElements", ""]
+        sections.append(("PhysicalNames", [len(names), *(f'2 {n} "{name}"' for n, name in names.items())]))
+    sections.append(("Nodes", [len(points), *(f"{i} {p.x!r} {p.y!r} {p.z!r}" for i, p in enumerate(points, 1))]))
+    sections.append(("Elements", [len(triangles), *(f"{i} 2 2 {n} {n} {a + 1} {b + 1} {c + 1}" for i, (n, (a, b, c))
+                                                    in enumerate(zip(numbers, triangles), 1))]))
     with open(path, "w", encoding="ascii") as file:
-        file.write("\n".join(lines))
+        for name, lines in sections:
+            print(f"${name}", *lines, f"$End{name}", sep="\n", file=file)

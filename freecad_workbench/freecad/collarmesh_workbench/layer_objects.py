@@ -40,7 +40,7 @@ class Layers(compatibility.WithProperties):
 
 
 def is_ours(obj):
-    return getattr(getattr(obj, "Proxy", None), "Type", "") == TYPE
+    return compatibility.type_of(obj) == TYPE
 
 
 def make(mesh_object, name="BoundaryLayers"):
@@ -68,9 +68,8 @@ def words_of(mesh_object):
 def word_of(obj, part):
     faces, solids = subshapes(obj, part)
     if len(solids) > 1:
-        text = translate(
-            "collarmesh", "{label}: layers are on both sides of a face, or inside one solid; {count} are chosen.")
-        raise MesherError(text.format(label=obj.Label, count=len(solids)))
+        raise MesherError(translate("collarmesh", "{label}: layers are on both sides of a face, or inside one solid; {count} "
+                                                  "are chosen."), label=obj.Label, count=len(solids))
     settings = [f"growth={checked(obj, 'Growth', 1, MOST_GROWTH)!r}", f"count={checked(obj, 'Count', 1, MOST_LAYERS)}"]
     if obj.Thickness.Value > 0:
         settings.append(f"thickness={obj.Thickness.Value!r}")
@@ -85,25 +84,18 @@ def checked(obj, name, least, most):
     value = getattr(obj, name)
     if least <= value <= most:
         return value
-    text = translate("collarmesh", "{label}: {property} is {value:g}; it has to be {least} to {most}.")
-    raise MesherError(text.format(label=obj.Label, property=name, value=value, least=least, most=most))
+    raise MesherError(translate("collarmesh", "{label}: {property} is {value:g}; it has to be {least} to {most}."),
+                      label=obj.Label, property=name, value=value, least=least, most=most)
 
 
 def subshapes(obj, part):
     """Returns the numbers of the object's faces and of its solids. Raises MesherError for others."""
-    shape, found = inputs.shape_of(part), {"Face": [], "Solid": []}
-    for linked, name in size_objects.references(obj):
-        kind, number = size_objects.kind_and_number(name)
-        wrong = ""
-        if linked is not part:
-            wrong = translate("collarmesh", "{label} refers to {other}, but {part} is meshed; choose its faces.")
-        elif kind not in found:
-            wrong = translate("collarmesh", "{label}: {name} is no face.")
-        elif number > len(getattr(shape, kind + "s")):
-            wrong = translate("collarmesh", "{label}: {part} has no {name} any more; choose its faces again.")
-        if wrong:
-            whole = translate("collarmesh", "the whole object")
-            raise MesherError(wrong.format(label=obj.Label, other=linked.Label, part=part.Label, name=name or whole))
+    found = {"Face": [], "Solid": []}
+    for kind, number in size_objects.subshapes(
+            obj, part, found,
+            translate("collarmesh", "{label} refers to {other}, but {part} is meshed; choose its faces."),
+            translate("collarmesh", "{label}: {name} is no face."),
+            translate("collarmesh", "{label}: {part} has no {name} any more; choose its faces again.")):
         found[kind].append(number)
     return found["Face"], found["Solid"]
 

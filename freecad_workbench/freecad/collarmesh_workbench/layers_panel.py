@@ -7,7 +7,7 @@ import re
 import FreeCADGui
 from PySide import QtGui
 
-from . import colours, compatibility, dock, inputs, layer_objects, size_objects
+from . import colours, compatibility, dock, inputs, layer_objects, size_objects, widgets
 from .edit_panel import EditPanel
 from .quantity_field import QuantityField
 from .translations import translate
@@ -27,8 +27,7 @@ class LayersPanel(EditPanel):
         self.part = None if self.mesh is None else compatibility.meshed_object(self.mesh)
         layout = QtGui.QVBoxLayout(self.form)
         self._add_faces(layout)
-        rows = QtGui.QFormLayout()
-        rows.setRowWrapPolicy(QtGui.QFormLayout.WrapLongRows)
+        rows = widgets.form()
         layout.addLayout(rows)
         self.first = self._add_length(rows, "FirstHeight", translate("collarmesh", "First height"),
                                       translate("collarmesh", "a tenth of the size"))
@@ -40,25 +39,21 @@ class LayersPanel(EditPanel):
         self.thickness = self._add_length(rows, "Thickness", translate("collarmesh", "Thickness of all"),
                                           translate("collarmesh", "from the first height"))
         self._add_tetrahedra(layout)
-        self.note = QtGui.QLabel()
-        self.note.setObjectName("collarmesh_layers_note")
-        self.note.setWordWrap(True)
+        self.note = widgets.label("collarmesh_layers_note")
         layout.addWidget(self.note)
         layout.addStretch()
         self.fill()
         dock.widen(self.form, WIDTH)
 
     def _add_faces(self, layout):
-        label = QtGui.QLabel(translate("collarmesh", "Faces with layers: type their names, or select them in the 3D view and "
-                                       "add them. With a solid among them, layers are inside that solid only."))
-        label.setWordWrap(True)
+        label = widgets.label(text=translate(
+            "collarmesh", "Faces with layers: type their names, or select them in the 3D view and add them. With a solid among "
+            "them, layers are inside that solid only."))
         self.faces = QtGui.QLineEdit()
         self.faces.setObjectName("collarmesh_layers_faces")
         self.faces.setPlaceholderText(translate("collarmesh", "all outer faces"))
         self.faces.textChanged.connect(self._names_typed)
-        add = QtGui.QPushButton(translate("collarmesh", "Add the selected"))
-        add.setObjectName("collarmesh_layers_add")
-        add.clicked.connect(self.add_selected)
+        add = widgets.button("collarmesh_layers_add", translate("collarmesh", "Add the selected"), self.add_selected)
         for widget in (label, self.faces, add):
             layout.addWidget(widget)
 

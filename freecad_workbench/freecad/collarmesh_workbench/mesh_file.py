@@ -31,7 +31,7 @@ def _run(mesh_object, arguments):
     """Runs the program and returns its standard output. The word `MESH` among the arguments stands for the
     object's mesh. Raises MesherError."""
     if not elements.is_there(mesh_object.FemMesh):
-        raise MesherError(translate("collarmesh", "{label} has no mesh yet.").format(label=mesh_object.Label))
+        raise MesherError(translate("collarmesh", "{label} has no mesh yet."), label=mesh_object.Label)
     program = find_program(preferences.program())
     folder = WorkFolder()
     try:

@@ -52,25 +52,24 @@ def _run(action, obj):
 
 
 def edit(obj):
-    """Opens the panel of the object."""
+    """Opens the panel of the object and returns it; None if it cannot be opened."""
     document = FreeCADGui.getDocument(obj.Document.Name)
     if document.getInEdit():
         document.resetEdit()
     document.setEdit(obj.Name)
+    return obj.ViewObject.Proxy.panel
 
 
 def mesh_again(obj):
     """Opens the panel of the object and starts meshing."""
-    edit(obj)
-    panel = obj.ViewObject.Proxy.panel
+    panel = edit(obj)
     if panel is not None:
         panel.start()
 
 
 def refine_by_result(obj):
     """Opens the panel of the object at the fields for this."""
-    edit(obj)
-    panel = obj.ViewObject.Proxy.panel
+    panel = edit(obj)
     if panel is not None:
         panel.refine.unfold()
 

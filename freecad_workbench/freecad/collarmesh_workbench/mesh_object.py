@@ -13,23 +13,14 @@ from .translations import translate
 TINY = 0.01  # shorter edges, relative to the target edge length, are probably unintended
 
 
-def add_properties(obj):
-    """Add the properties that the object does not have yet, with their defaults."""
-    for each in (mesh_properties, up_to_date, mesh_undo):
-        each.add_properties(obj)
-
-
-class MeshProxy(compatibility.Stateless):
+class MeshProxy(compatibility.WithProperties):
     """The Python part of the object. FEM's tools check `Type`."""
 
     Type = mesh_properties.TYPE
 
-    def __init__(self, obj):
-        obj.Proxy = self
-        add_properties(obj)
-
-    def onDocumentRestored(self, obj):
-        add_properties(obj)
+    def add_properties(self, obj):
+        for each in (mesh_properties, up_to_date, mesh_undo):
+            each.add_properties(obj)
 
     def execute(self, obj):
         """Handles a recompute by FreeCAD: keeps the mesh, and marks it if it is out of date."""
@@ -94,22 +85,15 @@ def tiny_edges(shape, size):
         return []
     default = shape.BoundBox.DiagonalLength / 20
     size = min(size, 4 * default) or default
-    text = translate(
-        "collarmesh",
-        "{edge} at {place} is only {length} mm long, the mesh becomes very fine there: remove the edge if it is not "
-        "meant (Part: Defeaturing)",
-    )
-    return [
-        "warning: "
-        + text.format(
-            edge=f"Edge{number}",
-            place=f"({place.x:.6g}, {place.y:.6g}, {place.z:.6g})",
-            length=f"{edge.Length:.3g}",
-        )
-        for number, edge in enumerate(shape.Edges, 1)
-        if not edge.Degenerated and edge.Length < TINY * size
-        for place in [edge.CenterOfMass]
-    ]
+    text = translate("collarmesh", "{edge} at {place} is only {length} mm long, the mesh becomes very fine there: remove the "
+                                   "edge if it is not meant (Part: Defeaturing)")
+    warnings = []
+    for number, edge in enumerate(shape.Edges, 1):
+        if not edge.Degenerated and edge.Length < TINY * size:
+            place = "({:.6g}, {:.6g}, {:.6g})".format(*edge.CenterOfMass)
+            told = text.format(edge=f"Edge{number}", place=place, length=f"{edge.Length:.3g}")
+            warnings.append("warning: " + told)
+    return warnings
 
 
 def finish(obj, job, exit_code=0):
@@ -118,10 +102,7 @@ def finish(obj, job, exit_code=0):
     fem_mesh = Fem.read(job.mesh)
     if elements.dimension(fem_mesh) != job.dimension:
         raise MesherError(
-            translate(
-                "collarmesh", "The mesher wrote a mesh without elements; please report it with the shape."
-            )
-        )
+            translate("collarmesh", "The mesher wrote a mesh without elements; please report it with the shape."))
     contact_groups.add(job.meshed, fem_mesh, job.apart)
     groups.add_groups(obj, fem_mesh)
     report = job.report()

@@ -10,6 +10,7 @@ import time
 import FreeCAD
 
 from . import elements, groups, mesh_properties, up_to_date
+from .compatibility import key_of
 from .translations import doc
 
 NUMBER = "MeshNumber"
@@ -21,16 +22,12 @@ _kept = {}  # by document and object: {number: mesh}, the current one last
 _in_place = {}  # by document and object: the object's number when this module last handled its mesh
 
 
-def _key(obj):
-    return obj.Document.Name, obj.Name
-
-
 def add_properties(obj):
     if NUMBER not in obj.PropertiesList:
         text = doc("Number of the mesh that the object has")
         obj.addProperty("App::PropertyInteger", NUMBER, "Base", text, up_to_date.HIDDEN)
         setattr(obj, NUMBER, next(_numbers))
-        _in_place[_key(obj)] = getattr(obj, NUMBER)
+        _in_place[key_of(obj)] = getattr(obj, NUMBER)
 
 
 def replace(obj, fem_mesh):
@@ -38,7 +35,7 @@ def replace(obj, fem_mesh):
     if not obj.Document.UndoMode:
         obj.FemMesh = fem_mesh
         return
-    meshes = _kept.setdefault(_key(obj), {})
+    meshes = _kept.setdefault(key_of(obj), {})
     before, number = getattr(obj, NUMBER), next(_numbers)
     kept = meshes.pop(before, None)
     # Other code may have cleared or replaced the mesh.
@@ -48,7 +45,7 @@ def replace(obj, fem_mesh):
         del meshes[next(iter(meshes))]
     obj.FemMesh = fem_mesh
     setattr(obj, NUMBER, number)
-    _in_place[_key(obj)] = number
+    _in_place[key_of(obj)] = number
 
 
 def same(first, second):
@@ -67,20 +64,16 @@ def same(first, second):
 
 class Observer:
     def slotUndoDocument(self, document):
-        self._put_right(document)
-
-    def slotRedoDocument(self, document):
-        self._put_right(document)
-
-    def _put_right(self, document):
         for each in document.Objects:
             if not mesh_properties.is_ours(each):
                 continue
             number = getattr(each, NUMBER)
-            if number != _in_place.get(_key(each)):  # if equal, this undo step did not change the mesh
-                _in_place[_key(each)] = number
-                _put(each, _kept.get(_key(each), {}).get(number))
+            if number != _in_place.get(key_of(each)):  # if equal, this undo step did not change the mesh
+                _in_place[key_of(each)] = number
+                _put(each, _kept.get(key_of(each), {}).get(number))
             up_to_date.show(each)
+
+    slotRedoDocument = slotUndoDocument
 
     def slotDeletedDocument(self, document):
         for by_object in (_kept, _in_place):

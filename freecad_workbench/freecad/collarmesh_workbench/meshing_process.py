@@ -13,6 +13,7 @@ import FreeCADGui
 from PySide import QtCore, QtGui
 
 from . import compatibility, elements, mesh_object, mesh_undo, processes, up_to_date
+from .compatibility import key_of
 from .later import later
 from .program import MesherError, Progress
 from .time_left import TimeLeft
@@ -36,19 +37,15 @@ class Outcome:
     mesh_number: int = 0  # see mesh_undo
 
 
-def _key(obj):
-    return obj.Document.Name, obj.Name
-
-
 def run_of(obj):
     """Returns the run in progress, else None."""
-    return _runs.get(_key(obj))
+    return _runs.get(key_of(obj))
 
 
 def outcome_of(obj):
     """Returns the outcome of the object's last run since its document was opened, else None. The object's
     mesh may be another one, for example after undo."""
-    outcome = _outcomes.get(_key(obj))
+    outcome = _outcomes.get(key_of(obj))
     if outcome is None or outcome.report is None:
         return outcome
     is_there = elements.is_there(obj.FemMesh) and getattr(obj, mesh_undo.NUMBER) == outcome.mesh_number
@@ -59,7 +56,7 @@ def start(obj, time_left=None, prepare=mesh_object.start):
     """Begins a run of the Job that `prepare(obj)` returns; `time_left` is a TimeLeft, if there is an estimate. Raises
     MesherError."""
     if run_of(obj) is None:
-        _runs[_key(obj)] = MeshingProcess(obj, time_left, prepare)
+        _runs[key_of(obj)] = MeshingProcess(obj, time_left, prepare)
     return run_of(obj)
 
 
@@ -88,10 +85,10 @@ class MeshingProcess(QtCore.QObject):
         self._process.start(self.job.command[0], self.job.command[1:])
         if not self._process.waitForStarted():
             self.job.folder.cleanup()
-            text = translate("collarmesh", "{program} cannot be started: {error}")
-            error = text.format(program=self.job.command[0], error=self._process.errorString())
+            error = MesherError(translate("collarmesh", "{program} cannot be started: {error}"),
+                                program=self.job.command[0], error=self._process.errorString())
             processes.end(self._process)
-            raise MesherError(error)
+            raise error
         self.job.folder.program_is(self._process.processId())
 
     def cancel(self):
@@ -131,7 +128,7 @@ class MeshingProcess(QtCore.QObject):
             _say(text.format(object=self.object.Label), 5 * WAIT)
             later(lambda: self._end(exit_code), WAIT)
             return
-        key = _key(self.object)
+        key = key_of(self.object)
         try:
             outcome = self._outcome(exit_code)
         except Exception as error:  # exceptions of FreeCAD; the panel continues
@@ -202,7 +199,7 @@ def _say(text, milliseconds):
 
 class _Observer:
     def slotDeletedObject(self, deleted):
-        _forget(lambda key: key == _key(deleted))
+        _forget(lambda key: key == key_of(deleted))
 
     def slotDeletedDocument(self, document):
         _forget(lambda key: key[0] == document.Name)

@@ -14,6 +14,11 @@ def shown(text):
     return text.replace(".", QtCore.QLocale().decimalPoint())
 
 
+def grouped(count):
+    """Returns a whole number as text, with spaces between thousands."""
+    return f"{count:,.0f}".replace(",", "\u202f")
+
+
 def number(text):
     """Reads a plain number. Raises ValueError."""
     try:

@@ -2,6 +2,7 @@
 
 from PySide import QtCore, QtGui
 
+from . import widgets
 from .translations import translate
 
 
@@ -19,18 +20,12 @@ class OrderSection(QtGui.QWidget):
         self.combo.setObjectName("collarmesh_ElementOrder")
         self.combo.addItems(["", ""])
         self.combo.setToolTip(translate("collarmesh", "Second order: mid-edge nodes, on the exact faces"))
-        self.note = QtGui.QLabel(translate(
+        self.note = widgets.label("collarmesh_order_note", translate(
             "collarmesh", "First order is too stiff for bending: displacements come out too small, and stresses far "
             "too small. It is for a first look, and for solvers that ask for it."))
-        self.note.setObjectName("collarmesh_order_note")
-        self.note.setWordWrap(True)
-        row = QtGui.QFormLayout()
-        row.setRowWrapPolicy(QtGui.QFormLayout.WrapLongRows)
+        row = widgets.form()
         row.addRow(translate("collarmesh", "Order of the elements"), self.combo)
-        layout = QtGui.QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addLayout(row)
-        layout.addWidget(self.note)
+        widgets.stack(self, row, self.note)
         self.show_dimension(3)
         self.combo.setCurrentIndex(order - 1)
         self._show_note()

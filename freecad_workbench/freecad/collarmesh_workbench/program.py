@@ -23,6 +23,10 @@ OF_ADAPTING = ("elements_per_circle", "radius_edge", "distance", "planar_toleran
 class MesherError(RuntimeError):
     """A fault of the input or of the program, with its place and a remedy."""
 
+    def __init__(self, text, /, **values):
+        """`values` replace their names in braces in the text."""
+        super().__init__(text.format(**values) if values else text)
+
 
 class Cancelled(MesherError):
     """Raised if the caller cancelled the run."""
@@ -111,23 +115,17 @@ def find_program(preferred=""):
         if candidate:
             if shutil.which(candidate):
                 return shutil.which(candidate)
-            text = translate("collarmesh", "The mesher {path} is no program; correct its path in the preferences.")
-            raise MesherError(text.format(path=candidate))
+            raise MesherError(
+                translate("collarmesh", "The mesher {path} is no program; correct its path in the preferences."), path=candidate)
     addon = pathlib.Path(__file__).resolve().parents[2]
-    beside = [addon.parent / "build" / "release" / "bin" / "collarmesh"]
+    candidates = [addon / "bin" / "collarmesh", "collarmesh", addon.parent / "build" / "release" / "bin" / "collarmesh"]
     if len(addon.parents) > 3:  # an installed add-on is in WHERE/share/freecad/Mod/collarmesh, and the program in WHERE/bin
-        beside.append(addon.parents[3] / "bin" / "collarmesh")
-    inside = addon / "bin" / "collarmesh"
-    for candidate in (str(inside), "collarmesh", *map(str, beside)):
+        candidates.append(addon.parents[3] / "bin" / "collarmesh")
+    for candidate in map(str, candidates):
         if shutil.which(candidate):
             return shutil.which(candidate)
-    raise MesherError(
-        translate(
-            "collarmesh",
-            "The program collarmesh is not found: install it so that it is on the PATH, or name its path in the "
-            "preferences.",
-        )
-    )
+    raise MesherError(translate("collarmesh", "The program collarmesh is not found: install it so that it is on the PATH, "
+                                              "or name its path in the preferences."))
 
 
 @dataclasses.dataclass

@@ -2,7 +2,7 @@
 
 from PySide import QtCore, QtGui
 
-from . import colours, cost, result_refinement
+from . import colours, cost, result_refinement, widgets
 from .fold import Fold
 from .numbers_typed import shown
 from .program import MesherError
@@ -29,9 +29,7 @@ class RefineSection(QtGui.QWidget):
         self.fold.setToolTip(translate("collarmesh", "Make the mesh finer where the error of the stresses is large, and "
                                        "coarser where it is small"))
         self.fold.toggled.connect(lambda _shown: self.refresh())
-        self.note = QtGui.QLabel()
-        self.note.setObjectName("collarmesh_refine_note")
-        self.note.setWordWrap(True)
+        self.note = widgets.label("collarmesh_refine_note")
         self.elements = QtGui.QSpinBox()
         self.elements.setObjectName("collarmesh_refine_elements")
         self.elements.setRange(LEAST, cost.MANY)
@@ -46,12 +44,8 @@ class RefineSection(QtGui.QWidget):
         for field, action in ((self.elements, self._for_elements), (self.error, self._for_error)):
             field.setKeyboardTracking(False)
             field.valueChanged.connect(action)
-        self.question = QtGui.QLabel()
-        self.question.setObjectName("collarmesh_refine_question")
-        self.question.setWordWrap(True)
-        self.button = QtGui.QPushButton()
-        self.button.setObjectName("collarmesh_refine")
-        self.button.clicked.connect(self.clicked)
+        self.question = widgets.label("collarmesh_refine_question")
+        self.button = widgets.button("collarmesh_refine", "", self.clicked)
         rows = QtGui.QFormLayout(body)
         rows.setContentsMargins(0, 0, 0, 0)
         rows.addRow(self.note)
@@ -59,10 +53,7 @@ class RefineSection(QtGui.QWidget):
         rows.addRow(translate("collarmesh", "≈ error"), self.error)
         rows.addRow(self.question)
         rows.addRow(self.button)
-        layout = QtGui.QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(self.fold)
-        layout.addWidget(body)
+        widgets.stack(self, self.fold, body)
         self.refresh()
 
     def unfold(self):

@@ -36,7 +36,7 @@ def _numbered(number):
 
 def volume_text(volume):
     if volume >= 1e5:
-        return f"{volume:,.0f}".replace(",", "\u202f")
+        return numbers_typed.grouped(volume)
     return numbers_typed.shown(f"{volume:.6g}")
 
 

@@ -51,7 +51,7 @@ def plan(obj):
     """Returns the Plan of a mesh. Raises MesherError."""
     if elements.dimension(obj.FemMesh) != 3:
         raise MesherError(
-            translate("collarmesh", "{label} has no tetrahedra that a result could refine.").format(label=obj.Label))
+            translate("collarmesh", "{label} has no tetrahedra that a result could refine."), label=obj.Label)
     if not up_to_date.has_shape(compatibility.meshed_object(obj), list(getattr(obj, up_to_date.SHAPE))):
         raise MesherError(
             translate("collarmesh", "The part has changed since the mesh was made: mesh it again and solve it."))
@@ -63,8 +63,8 @@ def plan(obj):
         raise MesherError(translate("collarmesh", "The mesh has flat elements, in which there are no strains: mesh the part again.")
                           ) from None
     if errors.energy_norm == 0:
-        raise MesherError(translate("collarmesh", "{label}: nothing is deformed, so there is no error to estimate.").format(
-            label=label))
+        raise MesherError(translate("collarmesh", "{label}: nothing is deformed, so there is no error to estimate."),
+                          label=label)
     return Plan(label, solution, errors, result_errors.Sizes(solution, errors))
 
 
@@ -77,13 +77,13 @@ def _displacements(obj):
                               for number, vector in zip(result.NodeNumbers, result.DisplacementVectors) if number in places}
     path = file_of_result(obj)
     if path is None:
-        raise MesherError(translate("collarmesh", "The analysis of {label} has no result with displacements: solve it first."
-                                    ).format(label=obj.Label))
+        raise MesherError(translate("collarmesh", "The analysis of {label} has no result with displacements: solve it first."),
+                          label=obj.Label)
     try:
         read = importCcxFrdResults.read_frd_result(str(path))
     except Exception as fault:  # FreeCAD's reader raises whatever its parsing meets
-        raise MesherError(translate("collarmesh", "{file} cannot be read ({fault}): solve the analysis again.").format(
-            file=path.name, fault=fault)) from None
+        raise MesherError(translate("collarmesh", "{file} cannot be read ({fault}): solve the analysis again."),
+                          file=path.name, fault=fault) from None
     moved = next((step["disp"] for step in reversed(read["Results"]) if step.get("disp")), {})
     return path.name, {number: (read["Nodes"][number], vector) for number, vector in moved.items() if number in read["Nodes"]}
 
@@ -106,8 +106,8 @@ def _solution(obj, label, displacements):
         places = numpy.array([tuple(place) for place, _ in found])
         is_same = abs(places - points).max() <= SAME_PLACE * abs(points).max()
     if not is_same:
-        raise MesherError(translate("collarmesh", "{label} is the result of another mesh: solve the analysis again.").format(
-            label=label))
+        raise MesherError(translate("collarmesh", "{label} is the result of another mesh: solve the analysis again."),
+                          label=label)
     materials, moduli = _materials(obj, numbers)
     return result_errors.Solution(points, tets.reshape(nodes.shape), numpy.array([tuple(vector) for _, vector in found]),
                                   materials, moduli)
@@ -132,8 +132,8 @@ def _moduli(card):
     try:
         ratio = float(card.get("PoissonRatio", STEEL[1]))
     except ValueError:
-        raise MesherError(translate("collarmesh", "Poisson's ratio {text} of the material is no number: correct it.").format(
-            text=card["PoissonRatio"])) from None
+        raise MesherError(translate("collarmesh", "Poisson's ratio {text} of the material is no number: correct it."),
+                          text=card["PoissonRatio"]) from None
     return modulus, min(ratio, MOST_INCOMPRESSIBLE)
 
 

@@ -1,11 +1,11 @@
 """The part of the panel that shows the result: counts, guarantees and a chart of the angles."""
 
-from PySide import QtCore, QtGui
+from PySide import QtGui
 
-from . import colours
+from . import colours, widgets
 from .angle_chart import AngleChart
 from .guarantees_view import GuaranteesView, escaped
-from .numbers_typed import shown
+from .numbers_typed import grouped, shown
 from .regions_table import RegionsTable
 from .size_presets import duration_text
 from .translations import translate
@@ -14,9 +14,9 @@ from .translations import translate
 class ResultSection(QtGui.QWidget):
     def __init__(self):
         super().__init__()
-        self.out_of_date = _label("collarmesh_out_of_date")
-        self.message = _label("collarmesh_message")
-        self.counts = _label("collarmesh_counts")
+        self.out_of_date = widgets.label("collarmesh_out_of_date", selectable=True)
+        self.message = widgets.label("collarmesh_message", selectable=True)
+        self.counts = widgets.label("collarmesh_counts", selectable=True)
         self.regions = RegionsTable()
         self.guarantees = GuaranteesView()
         self.chart = AngleChart()
@@ -24,10 +24,7 @@ class ResultSection(QtGui.QWidget):
         self.out_of_date.setText(_coloured(colours.CARE, translate(
             "collarmesh", "This mesh is out of date: the shape, a size or a setting has changed since it was made. "
             "Mesh it again.")))
-        layout = QtGui.QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        for widget in (self.out_of_date, self.message, self.counts, self.regions, self.guarantees, self.chart):
-            layout.addWidget(widget)
+        widgets.stack(self, self.out_of_date, self.message, self.counts, self.regions, self.guarantees, self.chart)
         self.clear()
 
     def clear(self):
@@ -74,18 +71,18 @@ def counts_text(report):
     dimension, time = report["options"]["dimension"], _time(report["seconds"]["total"])
     if dimension == 1:
         counts = translate("collarmesh", "<b>{lines}</b> lines, <b>{nodes}</b> nodes, in {time}")
-        return counts.format(lines=_exact(mesh["edges"]), nodes=_exact(mesh["points"]), time=time)
+        return counts.format(lines=grouped(mesh["edges"]), nodes=grouped(mesh["points"]), time=time)
     if dimension == 2:
         triangles = report["check"]["triangles"]
         counts = translate("collarmesh", "<b>{triangles}</b> triangles, <b>{nodes}</b> nodes")
         angles = translate("collarmesh", "angles from {smallest}° to {largest}°, in {time}")
-        return (counts.format(triangles=_exact(mesh["faces"]), nodes=_exact(mesh["points"])) + "<br>"
+        return (counts.format(triangles=grouped(mesh["faces"]), nodes=grouped(mesh["points"])) + "<br>"
                 + angles.format(smallest=shown(f"{triangles['min_angle']:.1f}"), largest=shown(f"{triangles['max_angle']:.1f}"),
                                 time=time))
     counts = translate("collarmesh", "<b>{tets}</b> tetrahedra, <b>{nodes}</b> nodes, <b>{faces}</b> faces")
     layers = "<br>" + layers_text(report["layers"]) if report.get("layers") else ""
     angles = translate("collarmesh", "dihedral angles from {smallest}° to {largest}°, in {time}")
-    return (counts.format(tets=_exact(mesh["tets"]), nodes=_exact(mesh["points"]), faces=_exact(mesh["faces"])) + "<br>"
+    return (counts.format(tets=grouped(mesh["tets"]), nodes=grouped(mesh["points"]), faces=grouped(mesh["faces"])) + "<br>"
             + angles.format(smallest=shown(f"{mesh['min_dihedral']:.1f}"), largest=shown(f"{mesh['max_dihedral']:.1f}"),
                             time=time) + layers)
 
@@ -94,7 +91,7 @@ def layers_text(layers):
     """Returns the counts of elements in boundary layers, and what these cover, as text."""
     text = translate("collarmesh", "Layers: <b>{prisms}</b> prisms, {pyramids} pyramids and {tets} tetrahedra cover {percent}% of "
                                    "the faces")
-    return text.format(prisms=_exact(layers["prisms"]), pyramids=_exact(layers["pyramids"]), tets=_exact(layers["tets"]),
+    return text.format(prisms=grouped(layers["prisms"]), pyramids=grouped(layers["pyramids"]), tets=grouped(layers["tets"]),
                        percent=shown(f"{100 * layers['coverage']:.1f}"))
 
 
@@ -114,15 +111,3 @@ def _time(seconds):
 
 def _coloured(kind, text):
     return f'<span style="{colours.css(kind)}">{escaped(text)}</span>'
-
-
-def _exact(count):
-    return f"{count:,}".replace(",", "\u202f")
-
-
-def _label(name):
-    label = QtGui.QLabel()
-    label.setObjectName(name)
-    label.setWordWrap(True)
-    label.setTextInteractionFlags(QtCore.Qt.TextSelectableByMouse)
-    return label

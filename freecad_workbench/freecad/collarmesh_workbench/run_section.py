@@ -4,6 +4,8 @@ import math
 
 from PySide import QtCore, QtGui
 
+from . import widgets
+from .numbers_typed import grouped
 from .size_presets import duration_text
 from .translations import translate
 
@@ -16,17 +18,11 @@ class RunSection(QtGui.QWidget):
 
     def __init__(self):
         super().__init__()
-        self.question = QtGui.QLabel()
-        self.question.setObjectName("collarmesh_question")
-        self.question.setWordWrap(True)
-        self.run = QtGui.QPushButton()
-        self.run.setObjectName("collarmesh_run")
+        self.question = widgets.label("collarmesh_question")
+        self.run = widgets.button("collarmesh_run", "", self.run_clicked)
         self.run.setDefault(True)
-        self.run.clicked.connect(self.run_clicked)
-        self.cancel = QtGui.QPushButton(translate("collarmesh", "Stop"))
-        self.cancel.setObjectName("collarmesh_cancel")
-        self.cancel.setToolTip(translate("collarmesh", "End the run; the mesh stays as it is"))
-        self.cancel.clicked.connect(self.cancel_clicked)
+        self.cancel = widgets.button("collarmesh_cancel", translate("collarmesh", "Stop"), self.cancel_clicked,
+                                     translate("collarmesh", "End the run; the mesh stays as it is"))
         self.bar = QtGui.QProgressBar()
         self.bar.setObjectName("collarmesh_progress")
         self.bar.setRange(0, 1000)
@@ -35,12 +31,7 @@ class RunSection(QtGui.QWidget):
         buttons = QtGui.QHBoxLayout()
         buttons.addWidget(self.run)
         buttons.addWidget(self.cancel)
-        layout = QtGui.QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(self.question)
-        layout.addLayout(buttons)
-        layout.addWidget(self.bar)
-        layout.addWidget(self.left)
+        widgets.stack(self, self.question, buttons, self.bar, self.left)
         self.rest()
 
     def ask(self, text, answer=""):
@@ -86,8 +77,7 @@ class RunSection(QtGui.QWidget):
         left = self._time_left.seconds(seconds, progress.fraction)
         words = []
         if progress.tets:
-            tets = f"{progress.tets:,}".replace(",", "\u202f")
-            words.append(translate("collarmesh", "{tets} elements so far").format(tets=tets))
+            words.append(translate("collarmesh", "{tets} elements so far").format(tets=grouped(progress.tets)))
         if left == math.inf:
             words.append(translate("collarmesh", "it takes longer than was estimated"))
         elif left is not None:

@@ -17,9 +17,10 @@ def check(settings, sources, part):
     asked += [(label, source["size"]) for label, source in sources]
     for label, size in asked:
         if not 0 < size < float("inf"):
-            text = translate("collarmesh", "{label}: a size of {size:g} mm makes no sense, it has to be more than 0.")
-            raise MesherError(text.format(label=label, size=size))
+            raise MesherError(
+                translate("collarmesh", "{label}: a size of {size:g} mm makes no sense, it has to be more than 0."),
+                label=label, size=size)
         if size < LEAST * diagonal:
-            text = translate("collarmesh", "{label}: {size:g} mm is less than a hundred thousandth of the part, "
-                                           "which is {diagonal:.4g} mm large. Choose a larger size.")
-            raise MesherError(text.format(label=label, size=size, diagonal=diagonal))
+            raise MesherError(translate("collarmesh", "{label}: {size:g} mm is less than a hundred thousandth of the part, "
+                                                      "which is {diagonal:.4g} mm large. Choose a larger size."),
+                              label=label, size=size, diagonal=diagonal)

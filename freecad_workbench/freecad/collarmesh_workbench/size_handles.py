@@ -97,16 +97,11 @@ class Handles:
         """Lets the mouse reach handles inside a part."""
         for each in self.object.Document.Objects:
             root = getattr(each.ViewObject, "RootNode", None)
-            if root is not None and each is not self.object:
+            if root is not None:
                 style = coin.SoPickStyle()
                 style.style = coin.SoPickStyle.UNPICKABLE
-                root.insertChild(style, 0)
+                root.insertChild(style, 1 if each is self.object else 0)  # its own node begins with the handles
                 self._hidden_from_mouse.append((root, style))
-        style = coin.SoPickStyle()
-        style.style = coin.SoPickStyle.UNPICKABLE
-        root = self.object.ViewObject.RootNode
-        root.insertChild(style, 1)  # in the scene before the handles
-        self._hidden_from_mouse.append((root, style))
 
     def remove(self):
         self._timer.stop()

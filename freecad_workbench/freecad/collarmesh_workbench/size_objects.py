@@ -47,13 +47,11 @@ class Size(compatibility.WithProperties):
         """Returns the object's sources for the program's size field. Raises MesherError."""
         for name in ("Size", *(name for name, _, _ in self.lengths)):
             if getattr(obj, name).Value <= 0:
-                text = translate("collarmesh", "{label}: {property} is {value}, but must be positive.")
-                raise MesherError(
-                    text.format(label=obj.Label, property=name, value=getattr(obj, name).UserString)
-                )
+                raise MesherError(translate("collarmesh", "{label}: {property} is {value}, but must be positive."),
+                                  label=obj.Label, property=name, value=getattr(obj, name).UserString)
         if obj.Growth < 0:
-            text = translate("collarmesh", "{label}: Growth is {value}, but must be 0 or more.")
-            raise MesherError(text.format(label=obj.Label, value=f"{obj.Growth:g}"))
+            raise MesherError(translate("collarmesh", "{label}: Growth is {value}, but must be 0 or more."),
+                              label=obj.Label, value=f"{obj.Growth:g}")
         return [{"size": obj.Size.Value, "growth": obj.Growth, **body} for body in self.bodies(obj)]
 
 
@@ -141,33 +139,17 @@ class Distance(Size):
 
     def check(self, obj, part):
         shape = inputs.shape_of(part)
-        for linked, name in references(obj):
-            kind, number = kind_and_number(name)
-            wrong = ""
-            if linked is not part:
-                wrong = translate(
-                    "collarmesh",
-                    "{label} refers to {other}, but {part} is meshed; choose its faces and edges.",
-                )
-            elif kind not in self.TAGS:
-                wrong = translate("collarmesh", "{label}: {name} is no face and no edge.")
-            elif number > len(getattr(shape, kind + "s")):
-                wrong = translate(
-                    "collarmesh", "{label}: {part} has no {name} any more; choose its faces and edges again."
-                )
-            elif kind == "Edge" and contacts.is_seam(shape, shape.Edges[number - 1]):
-                wrong = translate(
-                    "collarmesh",
-                    "{label}: {name} is the seam of a face, which the mesh does not have; choose the face.",
-                )
-            if wrong:
-                whole = translate("collarmesh", "the whole object")
-                raise MesherError(
-                    wrong.format(label=obj.Label, other=linked.Label, part=part.Label, name=name or whole)
-                )
+        for kind, number in subshapes(
+                obj, part, self.TAGS,
+                translate("collarmesh", "{label} refers to {other}, but {part} is meshed; choose its faces and edges."),
+                translate("collarmesh", "{label}: {name} is no face and no edge."),
+                translate("collarmesh", "{label}: {part} has no {name} any more; choose its faces and edges again.")):
+            if kind == "Edge" and contacts.is_seam(shape, shape.Edges[number - 1]):
+                raise MesherError(translate("collarmesh", "{label}: {name} is the seam of a face, which the mesh does not have; "
+                                                          "choose the face."), label=obj.Label, name=f"{kind}{number}")
         if not references(obj):
-            wrong = translate("collarmesh", "{label} has no faces and edges; choose some, or delete it.")
-            raise MesherError(wrong.format(label=obj.Label))
+            raise MesherError(translate("collarmesh", "{label} has no faces and edges; choose some, or delete it."),
+                              label=obj.Label)
 
     def bodies(self, obj):
         tags = {}
@@ -179,11 +161,8 @@ class Distance(Size):
 
 def references(obj):
     """Returns [(object, name of a face or edge)]."""
-    return [
-        (linked, name)
-        for linked, names in obj.References
-        for name in ((names,) if isinstance(names, str) else names)
-    ]
+    return [(linked, name) for linked, names in obj.References
+            for name in ((names,) if isinstance(names, str) else names)]
 
 
 def kind_and_number(name):
@@ -192,14 +171,32 @@ def kind_and_number(name):
     return (match[1], int(match[2])) if match else ("", 0)
 
 
+def subshapes(obj, part, kinds, if_of_other, if_of_other_kind, if_gone):
+    """Yields the kind and the number of each sub-shape in an object's references. Raises MesherError with one of the
+    texts for one that is not of the part, not of these kinds, or no longer there."""
+    shape = inputs.shape_of(part)
+    for linked, name in references(obj):
+        kind, number = kind_and_number(name)
+        wrong = ""
+        if linked is not part:
+            wrong = if_of_other
+        elif kind not in kinds:
+            wrong = if_of_other_kind
+        elif number > len(getattr(shape, kind + "s")):
+            wrong = if_gone
+        if wrong:
+            raise MesherError(wrong, label=obj.Label, other=linked.Label, part=part.Label,
+                              name=name or translate("collarmesh", "the whole object"))
+        yield kind, number
+
+
 KINDS = {"Sphere": Sphere, "Box": Box, "Cylinder": Cylinder, "Distance": Distance}
 PROPERTY = "MeshSizeList"  # property of a mesh object
 
 
 def kind_of(obj):
     """Returns the object's key in KINDS; None for other objects."""
-    of_proxy = getattr(getattr(obj, "Proxy", None), "Type", "")
-    return next((kind for kind, proxy in KINDS.items() if proxy.Type == of_proxy), None)
+    return next((kind for kind, proxy in KINDS.items() if proxy.Type == compatibility.type_of(obj)), None)
 
 
 def make(mesh_object, kind, size=0, name=""):
@@ -213,11 +210,8 @@ def make(mesh_object, kind, size=0, name=""):
     part = compatibility.meshed_object(mesh_object)
     if part is not None:
         proxy.place(obj, part)
-        size = (
-            size
-            or (mesh_object.CharacteristicLengthMax.Value or extent.bounding_box(part).DiagonalLength / 20)
-            / 4
-        )
+        whole = mesh_object.CharacteristicLengthMax.Value or extent.bounding_box(part).DiagonalLength / 20
+        size = size or whole / 4
     obj.Size = size
     setattr(mesh_object, PROPERTY, [*getattr(mesh_object, PROPERTY), obj])
     views.show(proxy.Type, obj)

@@ -3,9 +3,9 @@
 import contextlib
 
 import FreeCADGui
-from PySide import QtCore, QtGui
+from PySide import QtGui
 
-from . import dock, size_objects
+from . import dock, size_objects, widgets
 from .edit_panel import EditPanel
 from .size_handles import Handles
 from .quantity_field import ANY, NOT_NEGATIVE, POSITIVE, QuantityField
@@ -108,16 +108,11 @@ class SizePanel(EditPanel):
             ("add", translate("collarmesh", "Add the selected"), self.add_selected),
             ("remove", translate("collarmesh", "Remove"), self.remove_marked),
         ):
-            button = QtGui.QPushButton(text)
-            button.setObjectName("collarmesh_size_" + name)
-            button.clicked.connect(action)
-            row.addWidget(button)
+            row.addWidget(widgets.button("collarmesh_size_" + name, text, action))
 
     def _add_hint(self, layout):
-        hint = QtGui.QLabel(translate("collarmesh", "Drag the handles in the 3D view. To turn it, close this panel and choose "
-                                      "Transform in its context menu."))
-        hint.setWordWrap(True)
-        layout.addWidget(hint)
+        layout.addWidget(widgets.label(text=translate(
+            "collarmesh", "Drag the handles in the 3D view. To turn it, close this panel and choose Transform in its context menu.")))
 
     def _add_handles(self):
         self.object.recompute()

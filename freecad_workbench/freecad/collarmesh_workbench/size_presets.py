@@ -2,6 +2,7 @@
 
 import math
 
+from . import numbers_typed
 from .translations import translate
 
 DEFAULT_PART_OF_DIAGONAL = 1 / 20  # the program's default, as in the medium preset
@@ -31,7 +32,7 @@ def count_text(count):
     if count >= 1e9:
         mantissa, exponent = f"{count:.0e}".split("e")
         return f"{mantissa}·10" + str(int(exponent)).translate(SUPERSCRIPTS)
-    return f"{int(rounded(count)):,}".replace(",", "\u202f")
+    return numbers_typed.grouped(int(rounded(count)))
 
 
 def duration_text(seconds):

@@ -5,7 +5,7 @@ import contextlib
 import numpy
 from PySide import QtCore, QtGui
 
-from . import asked_sizes, compatibility, numbers_typed
+from . import asked_sizes, compatibility, numbers_typed, widgets
 from .translations import translate
 
 NAME = "collarmesh_sizes"
@@ -34,10 +34,7 @@ class SizePreview(QtGui.QWidget):
         self.legend.setObjectName("collarmesh_sizes_legend")
         self.ends = QtGui.QLabel()
         self.ends.setObjectName("collarmesh_sizes_ends")
-        layout = QtGui.QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        for widget in (self.button, self.legend, self.ends):
-            layout.addWidget(widget)
+        widgets.stack(self, self.button, self.legend, self.ends)
         self.legend.hide()
         self.ends.hide()
         self._timer = QtCore.QTimer(self, singleShot=True, interval=WAIT)

@@ -2,7 +2,7 @@
 
 from PySide import QtCore, QtGui
 
-from . import numbers_typed, size_presets
+from . import numbers_typed, size_presets, widgets
 from .quantity_field import POSITIVE, QuantityField
 from .translations import translate
 from .whole_table import WholeTable
@@ -30,10 +30,7 @@ class SizeSection(QtGui.QWidget):
         row = QtGui.QFormLayout()
         self.label = translate("collarmesh", "Size of the elements")
         row.addRow(self.label, self.field.widget)
-        layout = QtGui.QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(self.table)
-        layout.addLayout(row)
+        widgets.stack(self, self.table, row)
         self._mark_row()
         self.table.currentItemChanged.connect(self._take_preset)
         self.field.widget.textChanged.connect(self._edited)

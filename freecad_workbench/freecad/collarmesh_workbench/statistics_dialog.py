@@ -12,14 +12,18 @@ BAR = 160  # width of the longest bar in pixels
 
 def page(mesh_object):
     """Returns the statistics as HTML. Raises MesherError."""
-    fem_mesh = mesh_object.FemMesh
-    if elements.dimension(fem_mesh) < 3:
-        return _table(_rows_of_shell(fem_mesh)) + _groups(fem_mesh)
-    mesh = mesh_file.statistics(mesh_object)
+    fem_mesh, dimension = mesh_object.FemMesh, elements.dimension(mesh_object.FemMesh)
+    name = {2: translate("collarmesh", "Triangles"), 3: translate("collarmesh", "Tetrahedra")}.get(
+        dimension, translate("collarmesh", "Lines"))
+    mesh = mesh_file.statistics(mesh_object) if dimension == 3 else None
     rows = [
-        (translate("collarmesh", "Tetrahedra"), f"{mesh['tets']}"),
+        (name, f"{mesh['tets'] if mesh else len(elements.numbers(fem_mesh))}"),
         (translate("collarmesh", "Order of the elements"), f"{elements.order(fem_mesh)}"),
         (translate("collarmesh", "Nodes"), f"{fem_mesh.NodeCount}"),
+    ]
+    if mesh is None:
+        return _table(rows) + _groups(fem_mesh)
+    rows += [
         (translate("collarmesh", "Triangles on faces"), f"{mesh['faces']}"),
         (translate("collarmesh", "Median edge length"), f"{mesh['median_edge']:.4g} mm"),
         (translate("collarmesh", "Volume"), f"{sum(mesh['region_volumes'].values()):.6g} mm³"),
@@ -29,15 +33,6 @@ def page(mesh_object):
     text = _table(rows)
     text += f"<h4>{translate('collarmesh', 'Smallest dihedral angle of each tetrahedron')}</h4>"
     return text + bars(mesh["histograms"]["min_dihedral"]) + _groups(fem_mesh)
-
-
-def _rows_of_shell(fem_mesh):
-    """Returns table rows for a mesh of triangles or lines."""
-    of_triangles = elements.dimension(fem_mesh) == 2
-    name = translate("collarmesh", "Triangles") if of_triangles else translate("collarmesh", "Lines")
-    return [(name, f"{len(elements.numbers(fem_mesh))}"),
-            (translate("collarmesh", "Order of the elements"), f"{elements.order(fem_mesh)}"),
-            (translate("collarmesh", "Nodes"), f"{fem_mesh.NodeCount}")]
 
 
 def _table(rows):

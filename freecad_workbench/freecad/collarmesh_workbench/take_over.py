@@ -6,6 +6,7 @@ import math
 import ObjectsFem
 
 from . import compatibility, extent, inputs, layer_objects, mesh_object, mesh_properties, size_objects, up_to_date
+from .compatibility import value_of
 from .program import MesherError
 from .translations import doc, translate
 
@@ -34,10 +35,10 @@ def can_be_taken_over(obj):
 
 def mesher_of(obj):
     """Returns Gmsh, Netgen, or "" for other objects."""
-    of_proxy = getattr(getattr(obj, "Proxy", None), "Type", "")
-    if of_proxy == "Fem::FemMeshGmsh":
+    kind = compatibility.type_of(obj)
+    if kind == "Fem::FemMeshGmsh":
         return "Gmsh"
-    if of_proxy == "Fem::FemMeshNetgen" or obj.TypeId == "Fem::FemMeshShapeNetgenObject":
+    if kind == "Fem::FemMeshNetgen" or obj.TypeId == "Fem::FemMeshShapeNetgenObject":
         return "Netgen"
     return ""
 
@@ -47,9 +48,7 @@ def take_over(old):
     sentences on what was lost. Raises MesherError."""
     mesher = mesher_of(old)
     if not mesher:
-        raise MesherError(
-            translate("collarmesh", "{label} is no mesh of Gmsh or Netgen.").format(label=old.Label)
-        )
+        raise MesherError(translate("collarmesh", "{label} is no mesh of Gmsh or Netgen."), label=old.Label)
     document = old.Document
     with compatibility.transaction(document, translate("collarmesh", "Take over by collarmesh")):
         new = mesh_object.make(document, compatibility.meshed_object(old))
@@ -141,11 +140,6 @@ def take_netgen(old, new):
     new.Gradation = growth
     new.MeshSizeFromCurvature = round(2 * math.pi * along_radius)
     return []
-
-
-def value_of(obj, name):
-    value = getattr(obj, name, 0)
-    return getattr(value, "Value", value)
 
 
 def hand_over(old):

@@ -7,7 +7,7 @@ import FreeCADGui
 from PySide import QtCore, QtGui
 
 from . import (colours, compatibility, constraint_faces, constraint_faces_view, cost, dock, elements, extent, mesh_properties,
-               meshing_process, new_mesh, open_shape, places, prediction, up_to_date, views, worst_elements)
+               meshing_process, new_mesh, open_shape, places, prediction, up_to_date, views, widgets, worst_elements)
 from .advanced_section import AdvancedSection, in_panel_words
 from .contacts_section import ContactsSection
 from .dimension_section import DimensionSection
@@ -41,11 +41,8 @@ class MeshTaskPanel:
         self._build()
         self.predictions = prediction.Predictions(obj)
         self.predictions.made.connect(self._show_made)
-        self.size.changed.connect(self._ask)
-        self.advanced.changed.connect(self._ask)
-        self.order.changed.connect(self._ask)
-        self.dimension.changed.connect(self._ask)
-        self.contacts.changed.connect(self._ask)
+        for section in (self.size, self.advanced, self.order, self.dimension, self.contacts):
+            section.changed.connect(self._ask)
         if meshing_process.run_of(obj) is not None:
             self._follow(meshing_process.run_of(obj))
         else:
@@ -80,16 +77,12 @@ class MeshTaskPanel:
         self.result.chart.worst_clicked.connect(self.show_worst)
         self.list = PlacesList()
         self.list.picked.connect(self.marks.show)
-        self.report_button = QtGui.QPushButton(translate("collarmesh", "Report"))
-        self.report_button.setObjectName("collarmesh_report")
-        tip = translate("collarmesh", "Open a page with all measurements and a view of the mesh")
-        self.report_button.setToolTip(tip)
-        self.report_button.clicked.connect(self.open_report)
-        self.faces_button = QtGui.QPushButton(translate("collarmesh", "Faces for constraints"))
-        self.faces_button.setObjectName("collarmesh_constraint_faces")
-        tip = translate("collarmesh", "Show a face for each group of this mesh of triangles, for the constraints of FEM")
-        self.faces_button.setToolTip(tip)
-        self.faces_button.clicked.connect(self.show_constraint_faces)
+        self.report_button = widgets.button(
+            "collarmesh_report", translate("collarmesh", "Report"), self.open_report,
+            translate("collarmesh", "Open a page with all measurements and a view of the mesh"))
+        self.faces_button = widgets.button(
+            "collarmesh_constraint_faces", translate("collarmesh", "Faces for constraints"), self.show_constraint_faces,
+            translate("collarmesh", "Show a face for each group of this mesh of triangles, for the constraints of FEM"))
         layout = QtGui.QVBoxLayout(self.form)
         for widget in (self.size, self.preview, self.dimension, self.order, self.advanced, self.contacts, self.refine,
                        self.run_section, self.result, self.list, self.report_button, self.faces_button):
@@ -316,7 +309,7 @@ class MeshTaskPanel:
         is_wanted = not self.object.ViewObject.Proxy.is_new or self.object.FemMesh.NodeCount or self.run is not None
         self._close()
         if not is_wanted:
-            key = self.object.Document.Name, self.object.Name
+            key = compatibility.key_of(self.object)
             later(lambda: new_mesh.take_back(*key))  # after the panel is closed
         return True
 

@@ -75,10 +75,9 @@ class ViewMarks:
 
     def _look_at(self, points, tetrahedra, subshapes):
         box = FreeCAD.BoundBox()
-        for point in points:
-            box.add(FreeCAD.Vector(*point))
-        for corner in numpy.concatenate(tetrahedra).reshape(-1, 3) if tetrahedra else ():
-            box.add(FreeCAD.Vector(*corner))
+        corners = numpy.concatenate(tetrahedra).reshape(-1, 3) if tetrahedra else ()
+        for place in (*points, *corners):
+            box.add(FreeCAD.Vector(*place))
         part = compatibility.meshed_object(self.object)
         for name in subshapes:
             of_subshape = extent.box_of_subshape(part, name)

@@ -354,13 +354,6 @@ class Timer {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-void write_report(const std::string& path, const Report& report) {
-  std::ofstream file(path);
-  file << report::json_text(report.json(), 1) << '\n';
-  file.close();
-  if (!file) throw WriteError(fmt::format("{}: cannot be written; is the disk full?", path));
-}
-
 /// Replaces one folder by another in a message that names files.
 std::string with_name(std::string message, const std::filesystem::path& from,
                       const std::filesystem::path& to) {
@@ -402,7 +395,9 @@ void write_files(const DistributedArguments& arguments, const ParallelMesh& mesh
     if (!first) return;
     if (!arguments.mesh.reports.empty()) {
       staged_report.emplace(arguments.mesh.reports.front());
-      staged_report->write([&](const std::string& path) { write_report(path, report); });
+      staged_report->write([&](const std::string& path) {
+        process::write_text(path, report::json_text(report.json(), 1) + "\n");
+      });
     }
     process::StagedFile::commit({&*staged, staged_report ? &*staged_report : nullptr});
   });

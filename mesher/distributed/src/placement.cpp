@@ -11,6 +11,7 @@
 #include "angles.h"
 #include "calls.h"
 #include "common/cells_at_vertices.h"
+#include "common/sort_uniquely.h"
 #include "delaunay/predicates.h"
 #include "local_mesh.h"
 #include "second_order/places_on_features.h"
@@ -97,7 +98,7 @@ class Placement {
       std::vector<Index> changed = draw_back(look_at);
       if (all_reduce(communicator_, std::int64_t{!changed.empty()}, MPI_MAX) == 0) break;
       look_at.insert(look_at.end(), changed.begin(), changed.end());
-      sort_out(look_at);
+      sort_uniquely(look_at);
     }
     for (unsigned k = 0; k < retries && try_again(k); ++k) {
     }
@@ -106,11 +107,6 @@ class Placement {
   }
 
  private:
-  static void sort_out(std::vector<Index>& list) {
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-  }
-
   void begin() {
     const std::size_t n = mesh_->points.size();
     tets_at_ = {mesh_->tets, n};
@@ -241,7 +237,7 @@ class Placement {
       for (const Index v : movers) --fresh_[v];
       for (std::size_t v = 0; v < touched.size(); ++v)
         if (touched[v] > 0) fresh_[v] = tries;
-      sort_out(tets);
+      sort_uniquely(tets);
     }
     return tets;
   }
@@ -421,7 +417,7 @@ class Placement {
     vertices_.combine(touched, MPI_MAX);
     for (std::size_t v = 0; v < touched.size(); ++v)
       if (touched[v] > 0) fresh_[v] = tries;
-    sort_out(around);
+    sort_uniquely(around);
     return around;
   }
 

@@ -56,15 +56,11 @@ Inputs inputs_of(const py::list& given) {
 
 files::ComplexInput read(const Inputs& inputs, const Options& options, Watch& watch) {
   watch.begin_stage("read");
-  files::InputReading reading;
-  reading.format = options.input_format;
+  files::InputReading reading = files::reading_of(options, options.input_format);
   reading.distance = [&options](double diagonal) { return distance_of(options, diagonal); };
   reading.tolerance = [&options](const Plc& plc) {
     return tolerance_of(plc, options.mesh.bounds, options.mesh.size, static_cast<int>(options.order));
   };
-  reading.overlap = options.overlap;
-  reading.threads = options.mesh.threads;
-  reading.names = options.names;
   reading.cancel = &watch.flag();
   reading.stop = [&watch] { watch.stop_if_asked(); };
   files::ComplexInput input(inputs.paths, reading);

@@ -9,6 +9,7 @@
 
 #include "adapt/edge_division.h"
 #include "adapt/mesh_complex.h"
+#include "adapt/smoothing.h"
 #include "check/labelled.h"
 #include "coarsen/coarsen_edited.h"
 #include "coarsen/coarsening_rule.h"
@@ -199,6 +200,8 @@ class Remeshing {
       coarsen_and_improve();
       if (static_cast<double>(divided) < least_share * static_cast<double>(mesh().points.size())) break;
     }
+    smooth(mesh(), made_.plc, kept_, target_sizes(), control_.execution());
+    control_.stop_if_asked(control_.execution().cancelled());
     mark_thin_tets(mesh(), options_.mesh.bounds.radius_edge);
   }
 

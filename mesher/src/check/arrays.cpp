@@ -12,6 +12,7 @@
 #include "common/flat_table.h"
 #include "common/found_in_ranges.h"
 #include "common/groups.h"
+#include "common/is_finite.h"
 #include "common/parallel_for.h"
 
 namespace collarmesh::checks {
@@ -167,9 +168,7 @@ void check_collar_balls(const TetMesh& mesh, Findings& findings) {
     const auto& [point, radius, centre] = mesh.collar_balls[b];
     const bool on_crease = point < mesh.points.size() && point < mesh.features.size() &&
                            mesh.features[point].dimension < 2 && mesh.features[point].feature != none;
-    const bool is_finite = std::isfinite(radius) && std::isfinite(centre.x) && std::isfinite(centre.y) &&
-                           std::isfinite(centre.z);
-    if (!on_crease || !is_finite || !(radius > 0))
+    if (!on_crease || !is_finite(centre) || !std::isfinite(radius) || !(radius > 0))
       findings.add(
           guarantee::valid_arrays, {}, {b},
           "Ball {} of a collar is centred at point {} with radius {:.6g}; it must be a point on a vertex "
@@ -208,7 +207,7 @@ bool check_points(const Subject& subject, Findings& findings) {
   bool finite = true;
   for (Index i = 0; i < mesh.points.size(); ++i) {
     const Point& p = mesh.points[i];
-    if (std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)) continue;
+    if (is_finite(p)) continue;
     finite = false;
     findings.add(guarantee::finite_points, {}, {i},
                  "Point {} has the coordinates {}; every one must be finite.", i, At{p});

@@ -5,6 +5,7 @@
 
 #include "common/distance_tree.h"
 #include "common/segments.h"
+#include "common/sort_uniquely.h"
 
 namespace collarmesh::checks {
 
@@ -57,8 +58,7 @@ std::map<std::vector<Tag>, CurvesOfTags> curves_by_tags(const Plc& plc) {
     if (plc.curves[c].straight) continue;
     std::vector<Tag> tags;
     for (const Index patch : plc.curves[c].patches) tags.push_back(plc.patches[patch].tag);
-    std::sort(tags.begin(), tags.end());
-    tags.erase(std::unique(tags.begin(), tags.end()), tags.end());
+    sort_uniquely(tags);
     if (!tags.empty()) found[tags].add(plc, c);
   }
   return found;

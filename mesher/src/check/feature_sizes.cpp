@@ -6,6 +6,7 @@
 #include "common/edge_key.h"
 #include "common/median.h"
 #include "common/round_curves.h"
+#include "common/sort_uniquely.h"
 
 namespace collarmesh::checks {
 
@@ -29,8 +30,7 @@ std::vector<double> lengths_of_sides(const TetMesh& mesh, int dimension) {
   std::vector<std::uint64_t> sides;
   for (const auto& f : mesh.faces)
     for (unsigned i = 0; i < 3; ++i) sides.push_back(edge_key(f[i], f[(i + 1) % 3]));
-  std::sort(sides.begin(), sides.end());
-  sides.erase(std::unique(sides.begin(), sides.end()), sides.end());
+  sort_uniquely(sides);
   lengths.reserve(sides.size());
   for (const std::uint64_t side : sides)
     add(static_cast<Index>(side >> 32U), static_cast<Index>(side & 0xffffffffU));

@@ -16,6 +16,7 @@
 #include "collarmesh/plc_builder.h"
 #include "common/cell_shapes.h"
 #include "common/layer_jacobians.h"
+#include "common/sort_uniquely.h"
 #include "common/tet_sides.h"
 #include "tolerance/forced_edges.h"
 
@@ -286,13 +287,7 @@ class LayerCheck {
     add(layers_.prisms, layers_.prism_mid_nodes, cell_shapes::prism_edges);
     add(layers_.pyramids, layers_.pyramid_mid_nodes, cell_shapes::pyramid_edges);
     add(layers_.quads, layers_.quad_mid_nodes, cell_shapes::quadrangle_edges);
-    std::sort(all.begin(), all.end(), [](const MidNode& a, const MidNode& b) {
-      return std::tie(a.ends, a.node) < std::tie(b.ends, b.node);
-    });
-    all.erase(
-        std::unique(all.begin(), all.end(),
-                    [](const MidNode& a, const MidNode& b) { return a.ends == b.ends && a.node == b.node; }),
-        all.end());
+    sort_uniquely(all, [](const MidNode& each) { return std::tie(each.ends, each.node); });
     for (std::size_t k = 1; k < all.size(); ++k)
       if (all[k].ends == all[k - 1].ends)
         findings_.add(guarantee::layer_mid_nodes, at(all[k].node), {all[k - 1].node, all[k].node},

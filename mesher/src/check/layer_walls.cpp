@@ -10,6 +10,7 @@
 
 #include "check/findings.h"
 #include "common/edge_key.h"
+#include "common/sort_uniquely.h"
 
 namespace collarmesh::checks {
 
@@ -167,8 +168,7 @@ class WallCheck {
       nodes.push_back(below(v));
       if (nodes.back() == v) base.push_back(v);
     }
-    std::sort(nodes.begin(), nodes.end());
-    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    sort_uniquely(nodes);
     found.region = region, found.layer = layer, found.weight = weight, found.cell = cell;
     if (nodes.size() == 3 && nodes.back() != none) {
       std::copy(nodes.begin(), nodes.end(), found.below.begin());

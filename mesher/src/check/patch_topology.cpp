@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "common/sort_uniquely.h"
+
 namespace collarmesh::checks {
 
 CurveUses::CurveUses(const Subject& subject)
@@ -150,8 +152,7 @@ class TopologyCheck {
     for (Index place = 0; place < faces_.size(); ++place)
       for (unsigned i = 0; i < 3; ++i)
         fans.push_back({subject_.mesh.faces[faces_[place]][i], fan(3 * place + i)});
-    std::sort(fans.begin(), fans.end());
-    fans.erase(std::unique(fans.begin(), fans.end()), fans.end());
+    sort_uniquely(fans);
     for (std::size_t i = 1; i < fans.size(); ++i) {
       const Index point = fans[i][0];
       if (fans[i - 1][0] != point || (i > 1 && fans[i - 2][0] == point) || is_vertex(point)) continue;

@@ -8,6 +8,7 @@
 #include "check/subject.h"
 #include "common/patch_distance.h"
 #include "common/patch_points.h"
+#include "common/sort_uniquely.h"
 
 namespace collarmesh::checks {
 
@@ -71,8 +72,7 @@ class PatchCheck {
     std::vector<Index> points;
     for (const Index f : faces_)
       points.insert(points.end(), subject_.mesh.faces[f].begin(), subject_.mesh.faces[f].end());
-    std::sort(points.begin(), points.end());
-    points.erase(std::unique(points.begin(), points.end()), points.end());
+    sort_uniquely(points);
     return points;
   }
 

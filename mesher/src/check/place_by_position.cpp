@@ -11,6 +11,7 @@
 #include "common/disjoint_sets.h"
 #include "common/distance_tree.h"
 #include "common/segments.h"
+#include "common/sort_uniquely.h"
 #include "common/tet_sides.h"
 
 namespace collarmesh::checks {
@@ -485,8 +486,7 @@ class Placement {
       for (unsigned i = 0; i < 4; ++i)
         for (unsigned j = 0; j < i; ++j)
           if (on_curve[tet[i]] && on_curve[tet[j]]) edges.push_back(sorted(tet[i], tet[j]));
-    std::sort(edges.begin(), edges.end());
-    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    sort_uniquely(edges);
     return edges;
   }
 

@@ -45,7 +45,7 @@ std::size_t HalvedPyramids::first_corner(Index pyramid) const {
 
 /// The nodes of a pyramid with the smallest corner of its base first.
 CellNodes HalvedPyramids::turned(Index pyramid) const {
-  const CellNodes nodes = nodes_of_pyramid(mesh_, pyramid);
+  const CellNodes nodes = nodes_of(CellKind::pyramid)(mesh_, pyramid);
   const std::size_t first = first_corner(pyramid);
   CellNodes result;
   for (std::size_t k = 0; k < 4; ++k) result.add(nodes[(first + k) % 4]);

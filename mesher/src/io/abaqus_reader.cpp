@@ -203,7 +203,7 @@ class AbaqusReader {
     else if (keyword.name == "include")
       lines_.fail("*INCLUDE is not supported; put the files into one");
     else if (keyword.name == "instance")
-      read_instance(keyword);
+      read_instance();
     else
       each_line([](const Fields&) {});
   }
@@ -380,12 +380,17 @@ class AbaqusReader {
       members.push_back(number);
       return;
     }
-    const auto found = set_index_.find(lower_case(field));
-    if (found == set_index_.end())
-      lines_.fail(fmt::format("no element set before has the name {}", in_quotes(field)));
-    const std::vector<std::int64_t> copy = sets_[found->second].members;
+    const std::vector<std::int64_t> copy = members_of(lower_case(field), field);
     require_room(copy.size());
     members.insert(members.end(), copy.begin(), copy.end());
+  }
+
+  /// Returns the members of an earlier set. `written`: its name for the message if there is none.
+  const std::vector<std::int64_t>& members_of(const std::string& name, std::string_view written) const {
+    const auto found = set_index_.find(name);
+    if (found == set_index_.end())
+      lines_.fail(fmt::format("no element set before has the name {}", in_quotes(written)));
+    return sets_[found->second].members;
   }
 
   /// Limits the members of sets: ranges and sets that name each other again and again would grow without
@@ -424,19 +429,17 @@ class AbaqusReader {
   };
 
   void add_sides(const std::string& set, Side side) {
-    const auto found = set_index_.find(set);
-    if (found == set_index_.end())
-      lines_.fail(fmt::format("no element set before has the name {}", in_quotes(set)));
+    const std::vector<std::int64_t>& members = members_of(set, set);
     std::vector<Side>& sides = surfaces_.back().second;
-    require_room(sets_[found->second].members.size());
-    for (const std::int64_t element : sets_[found->second].members) {
+    require_room(members.size());
+    for (const std::int64_t element : members) {
       side.element = element;
       sides.push_back(side);
     }
   }
 
   /// Rejects a part that is moved when it is placed, which is not supported.
-  void read_instance(const Keyword&) {
+  void read_instance() {
     each_line([&](const Fields& fields) {
       for (const std::string_view field : fields)
         if (!field.empty() && coordinate(field) != 0)
@@ -450,7 +453,7 @@ class AbaqusReader {
     Tagged tagged;
     for (const CellKind kind : all_cell_kinds) {
       tags_of(mesh_, kind).assign(count_of(mesh_, kind), 0);
-      tagged[static_cast<std::size_t>(kind)].resize(count_of(mesh_, kind));
+      tagged[kind].resize(count_of(mesh_, kind));
     }
     for (const Set& set : sets_)
       if (is_ours(set.name)) tag_members(set, tagged);
@@ -467,13 +470,13 @@ class AbaqusReader {
   static bool is_ours(const std::string& name) {
     return tag_of_group_name(3, name) || tag_of_group_name(2, name) || tag_of_group_name(1, name);
   }
-  using Tagged = std::array<std::vector<bool>, cell_kinds>;
+  using Tagged = PerKind<std::vector<bool>>;
   void tag_members(const Set& set, Tagged& tagged) {
     for (const std::int64_t number : set.members) {
       const Index element = elements_.find(number);
       if (element == none) continue;  // sets may name missing elements
       const auto [kind, index, half] = places_[element];
-      std::vector<bool>& of_kind = tagged[static_cast<std::size_t>(kind)];
+      std::vector<bool>& of_kind = tagged[kind];
       if (of_kind[index]) continue;
       of_kind[index] = true;
       tags_of(mesh_, kind)[index] = tag_of(shape_of(kind).dimension, set.written);
@@ -490,10 +493,9 @@ class AbaqusReader {
 
   /// Reads our own sets by region.
   void read_volumes() {
-    std::array<std::vector<Index>, cell_kinds> regions;
+    PerKind<std::vector<Index>> regions;
     for (const CellKind kind : all_cell_kinds)
-      if (shape_of(kind).dimension == 3)
-        regions[static_cast<std::size_t>(kind)].assign(count_of(mesh_, kind), none);
+      if (shape_of(kind).dimension == 3) regions[kind].assign(count_of(mesh_, kind), none);
     for (const Set& set : sets_) {
       Index region = 0;
       if (!set.name.starts_with(volume_prefix_) ||
@@ -502,13 +504,11 @@ class AbaqusReader {
       for (const std::int64_t number : set.members)
         if (const Index element = elements_.find(number);
             element != none && shape_of(places_[element].kind).dimension == 3)
-          regions[static_cast<std::size_t>(places_[element].kind)][places_[element].index] = region;
+          regions[places_[element].kind][places_[element].index] = region;
     }
     for (const std::vector<Index>& of_kind : regions)
       if (std::find(of_kind.begin(), of_kind.end(), none) != of_kind.end()) return;
-    for_each_kind(mesh_, 3, [&](CellKind kind) {
-      features_of(mesh_, kind) = std::move(regions[static_cast<std::size_t>(kind)]);
-    });
+    for_each_kind(mesh_, 3, [&](CellKind kind) { features_of(mesh_, kind) = std::move(regions[kind]); });
   }
 
   void add_surfaces() {

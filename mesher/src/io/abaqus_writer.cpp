@@ -138,21 +138,17 @@ void write_halves(FileWriter& out, const TetMesh& mesh, const HalvedPyramids& ha
 }
 
 void write_elements(FileWriter& out, const TetMesh& mesh, const HalvedPyramids& halved) {
-  std::map<Index, std::array<std::vector<Index>, cell_kinds>> volumes;
-  std::map<Index, Tag> tag_of_region;
+  std::map<Index, PerKind<std::vector<Index>>> volumes;
   for_each_kind(mesh, 3, [&](CellKind kind) {
     const std::vector<Index>& regions = features_of(mesh, kind);
-    for (std::size_t i = 0; i < regions.size(); ++i) {
-      volumes[regions[i]][static_cast<std::size_t>(kind)].push_back(static_cast<Index>(i));
-      tag_of_region.try_emplace(regions[i], tags_of(mesh, kind)[i]);
-    }
+    for (std::size_t i = 0; i < regions.size(); ++i)
+      volumes[regions[i]][kind].push_back(static_cast<Index>(i));
   });
   std::map<Tag, std::vector<Index>> regions_of_tag;
-  for (const auto& [region, cells] : volumes) {
-    regions_of_tag[tag_of_region.at(region)].push_back(region);
+  for (const auto& [region, tag] : tags_of_regions(mesh)) regions_of_tag[tag].push_back(region);
+  for (const auto& [region, cells] : volumes)
     for (const CellKind kind : all_cell_kinds)
-      write_elements_of(out, mesh, halved, kind, region, cells[static_cast<std::size_t>(kind)]);
-  }
+      write_elements_of(out, mesh, halved, kind, region, cells[kind]);
   out << "*ELSET, ELSET=EALL\n";
   for (const auto& volume : volumes) out << abaqus_volume_prefix << volume.first << ",\n";
   const NamesByTag names = names_of_regions(mesh);
@@ -228,13 +224,7 @@ void write_beams(FileWriter& out, const TetMesh& mesh, const NamesByTag& names) 
 /// Writes for each face the element behind it, and that element's side.
 void write_surfaces(FileWriter& out, const TetMesh& mesh, const HalvedPyramids& halved,
                     const NamesByTag& names) {
-  std::map<Tag, std::vector<SideOfCell>> surfaces;
-  for_each_kind(mesh, 2, [&](CellKind kind) {
-    const std::vector<SideOfCell> sides = sides_of_faces(mesh, kind);
-    for (std::size_t f = 0; f < sides.size(); ++f)
-      if (sides[f].cell != none) surfaces[tags_of(mesh, kind)[f]].push_back(sides[f]);
-  });
-  for (const auto& [tag, members] : surfaces) {
+  for (const auto& [tag, members] : sides_by_tag(mesh)) {
     out << "*SURFACE, NAME=" << names.at(tag) << ", TYPE=ELEMENT\n";
     for (const auto& [kind, cell, side] : members) {
       const std::size_t before = count_before(mesh, kind);

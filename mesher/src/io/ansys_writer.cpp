@@ -105,13 +105,7 @@ void write_ansys(const std::string& path, const TetMesh& mesh) {
   write_nblock(out, mesh);
   write_elements(out, mesh);
   DistinctNames known(longest_component);
-  Groups regions;
-  for_each_kind(mesh, 3, [&](CellKind kind) {
-    const std::vector<Tag>& tags = tags_of(mesh, kind);
-    for (std::size_t i = 0; i < tags.size(); ++i)
-      regions[tags[i]].push_back(static_cast<Index>(count_before(mesh, kind) + i + 1));
-  });
-  write_components(out, mesh, 3, regions, known);
+  write_components(out, mesh, 3, volumes_by_tag(mesh, 1), known);
   write_components(out, mesh, 2, nodes_by_tag(mesh, 2), known);
   write_components(out, mesh, 1, nodes_by_tag(mesh, 1), known);
   out << "FINISH\n";

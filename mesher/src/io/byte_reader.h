@@ -14,6 +14,29 @@
 
 namespace collarmesh::io {
 
+/// The types of numbers in files.
+enum class NumberType { unknown, i8, u8, i16, u16, i32, u32, i64, u64, f32, f64 };
+constexpr std::size_t size_of(NumberType type) {
+  constexpr std::array<std::size_t, 11> sizes{0, 1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
+  return sizes[static_cast<std::size_t>(type)];
+}
+
+/// Returns a number from its bytes in this order.
+template <class Number>
+Number value_at(std::string_view bytes, std::size_t at, std::endian order) {
+  std::array<char, sizeof(Number)> raw;
+  std::memcpy(raw.data(), bytes.data() + at, sizeof(Number));
+  if (order != std::endian::native) std::reverse(raw.begin(), raw.end());
+  return std::bit_cast<Number>(raw);
+}
+/// Returns the bytes of a number in this order.
+template <class Number>
+std::array<char, sizeof(Number)> bytes_of(Number value, std::endian order) {
+  auto bytes = std::bit_cast<std::array<char, sizeof(Number)>>(value);
+  if (order != std::endian::native) std::reverse(bytes.begin(), bytes.end());
+  return bytes;
+}
+
 /// Reads plain values of either byte order from memory and knows its position. Every failure is a ReadError
 /// "PATH: byte N: ...".
 class ByteReader {
@@ -30,11 +53,8 @@ class ByteReader {
     if (left() < sizeof(T))
       fail(
           fmt::format("expected {} ({} bytes), found the end of the file after {}", what, sizeof(T), left()));
-    std::array<char, sizeof(T)> raw;
-    std::memcpy(raw.data(), bytes_.data() + at_, sizeof(T));
     at_ += sizeof(T);
-    if (order_ != std::endian::native) std::reverse(raw.begin(), raw.end());
-    return std::bit_cast<T>(raw);
+    return value_at<T>(bytes_, at_ - sizeof(T), order_);
   }
 
   void skip(std::size_t count, std::string_view what) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "collarmesh/tet_mesh.h"
@@ -12,17 +13,34 @@
 
 namespace collarmesh::io {
 
+/// An item for each kind of cells.
+template <class Item>
+struct PerKind : std::array<Item, cell_kinds> {
+  constexpr Item& operator[](CellKind kind) { return this->data()[static_cast<std::size_t>(kind)]; }
+  constexpr const Item& operator[](CellKind kind) const {
+    return this->data()[static_cast<std::size_t>(kind)];
+  }
+};
+
+/// Returns the mid-edge nodes of a cell as a list: edges have a number, other cells an array.
+template <class Nodes>
+auto listed(Nodes& nodes) {
+  if constexpr (std::is_same_v<std::remove_const_t<Nodes>, Index>)
+    return std::span<Nodes, 1>(&nodes, 1);
+  else
+    return std::span(nodes);
+}
+
 /// The nodes of a cell of either order: its corners, then its mid-edge nodes in the order of TetMesh and
 /// LayerCells (of a tet ab, bc, ca, ad, bd, cd). VTK, Abaqus and Medit number those of tets in the same way.
 class CellNodes {
  public:
-  template <std::size_t corners, std::size_t mid_nodes>
-  static CellNodes of(const std::array<Index, corners>& cell,
-                      const std::vector<std::array<Index, mid_nodes>>& middle, std::size_t i) {
+  template <class Cell, class Middle>
+  static CellNodes of(const Cell& cell, const std::vector<Middle>& middle, std::size_t i) {
     CellNodes result;
     for (const Index v : cell) result.add(v);
     if (!middle.empty())
-      for (const Index v : middle[i]) result.add(v);
+      for (const Index v : listed(middle[i])) result.add(v);
     return result;
   }
 
@@ -63,46 +81,39 @@ class CellNodes {
   std::uint8_t count_ = 0;
 };
 
-inline CellNodes nodes_of_tet(const TetMesh& mesh, std::size_t i) {
-  return CellNodes::of(mesh.tets[i], mesh.tet_mid_nodes, i);
-}
-inline CellNodes nodes_of_face(const TetMesh& mesh, std::size_t i) {
-  return CellNodes::of(mesh.faces[i], mesh.face_mid_nodes, i);
-}
-inline CellNodes nodes_of_edge(const TetMesh& mesh, std::size_t i) {
-  CellNodes result;
-  for (const Index v : mesh.edges[i]) result.add(v);
-  if (mesh.order() == 2) result.add(mesh.edge_mid_nodes[i]);
-  return result;
-}
-inline CellNodes nodes_of_prism(const TetMesh& mesh, std::size_t i) {
-  return CellNodes::of(mesh.layers.prisms[i], mesh.layers.prism_mid_nodes, i);
-}
-inline CellNodes nodes_of_pyramid(const TetMesh& mesh, std::size_t i) {
-  return CellNodes::of(mesh.layers.pyramids[i], mesh.layers.pyramid_mid_nodes, i);
-}
-inline CellNodes nodes_of_quadrangle(const TetMesh& mesh, std::size_t i) {
-  return CellNodes::of(mesh.layers.quads[i], mesh.layers.quad_mid_nodes, i);
-}
-
 // The arrays of a mesh by the kind of cells. A format's writer and reader go over the kinds.
 
-inline std::size_t count_of(const TetMesh& mesh, CellKind kind) {
+/// Calls `call(cells, middle)` with the cells of a kind and their mid-edge nodes.
+template <class Mesh, class Call>
+auto with_cells(Mesh& mesh, CellKind kind, const Call& call) {
   switch (kind) {
-    case CellKind::tet: return mesh.tets.size();
-    case CellKind::prism: return mesh.layers.prisms.size();
-    case CellKind::pyramid: return mesh.layers.pyramids.size();
-    case CellKind::triangle: return mesh.faces.size();
-    case CellKind::quadrangle: return mesh.layers.quads.size();
-    default: return mesh.edges.size();
+    case CellKind::tet: return call(mesh.tets, mesh.tet_mid_nodes);
+    case CellKind::prism: return call(mesh.layers.prisms, mesh.layers.prism_mid_nodes);
+    case CellKind::pyramid: return call(mesh.layers.pyramids, mesh.layers.pyramid_mid_nodes);
+    case CellKind::triangle: return call(mesh.faces, mesh.face_mid_nodes);
+    case CellKind::quadrangle: return call(mesh.layers.quads, mesh.layers.quad_mid_nodes);
+    default: return call(mesh.edges, mesh.edge_mid_nodes);
   }
 }
 
+inline std::size_t count_of(const TetMesh& mesh, CellKind kind) {
+  return with_cells(mesh, kind, [](const auto& cells, const auto&) { return cells.size(); });
+}
+
+template <CellKind kind>
+CellNodes nodes_of_kind(const TetMesh& mesh, std::size_t i) {
+  return with_cells(
+      mesh, kind, [i](const auto& cells, const auto& middle) { return CellNodes::of(cells[i], middle, i); });
+}
 using NodesOf = CellNodes (*)(const TetMesh&, std::size_t);
+constexpr NodesOf nodes_of_tet = nodes_of_kind<CellKind::tet>,
+                  nodes_of_face = nodes_of_kind<CellKind::triangle>,
+                  nodes_of_edge = nodes_of_kind<CellKind::edge>;
 constexpr NodesOf nodes_of(CellKind kind) {
-  constexpr std::array<NodesOf, cell_kinds> of_kind{nodes_of_tet,  nodes_of_prism,      nodes_of_pyramid,
-                                                    nodes_of_face, nodes_of_quadrangle, nodes_of_edge};
-  return of_kind[static_cast<std::size_t>(kind)];
+  constexpr PerKind<NodesOf> of_kind{{nodes_of_tet, nodes_of_kind<CellKind::prism>,
+                                      nodes_of_kind<CellKind::pyramid>, nodes_of_face,
+                                      nodes_of_kind<CellKind::quadrangle>, nodes_of_edge}};
+  return of_kind[kind];
 }
 
 /// Returns the tags of the cells of a kind. The result is const if the mesh is, as in the following
@@ -177,14 +188,6 @@ inline std::size_t count_of_dimension(const TetMesh& mesh, std::size_t dimension
   for_each_kind(mesh, dimension, [&](CellKind kind) { count += count_of(mesh, kind); });
   return count;
 }
-/// Returns the tags of all cells of a dimension, in the order of the kinds.
-inline std::vector<Tag> all_tags(const TetMesh& mesh, std::size_t dimension) {
-  std::vector<Tag> tags;
-  for_each_kind(mesh, dimension, [&](CellKind kind) {
-    tags.insert(tags.end(), tags_of(mesh, kind).begin(), tags_of(mesh, kind).end());
-  });
-  return tags;
-}
 /// Returns the number of cells of the kinds before this one.
 inline std::size_t count_before(const TetMesh& mesh, CellKind kind) {
   std::size_t count = 0;
@@ -195,32 +198,34 @@ inline std::size_t count_before(const TetMesh& mesh, CellKind kind) {
   return count;
 }
 
-/// Appends the nodes of a cell of either order to a mesh that is being read.
-template <std::size_t corners, std::size_t mid_nodes>
-void add_nodes(const CellNodes& nodes, std::vector<std::array<Index, corners>>& cells,
-               std::vector<std::array<Index, mid_nodes>>& middle) {
-  auto& cell = cells.emplace_back();
-  for (std::size_t k = 0; k < corners; ++k) cell[k] = nodes[k];
-  if (nodes.size() == corners) return;
-  auto& mids = middle.emplace_back();
-  for (std::size_t k = 0; k < mid_nodes; ++k) mids[k] = nodes[corners + k];
+inline std::size_t count_of_all(const TetMesh& mesh) {
+  return count_before(mesh, CellKind::edge) + mesh.edges.size();
 }
-inline void add_tet(const CellNodes& n, TetMesh& mesh) { add_nodes(n, mesh.tets, mesh.tet_mid_nodes); }
-inline void add_face(const CellNodes& n, TetMesh& mesh) { add_nodes(n, mesh.faces, mesh.face_mid_nodes); }
-inline void add_edge(const CellNodes& n, TetMesh& mesh) {
-  mesh.edges.push_back({n[0], n[1]});
-  if (n.size() == 3) mesh.edge_mid_nodes.push_back(n[2]);
+
+/// Returns the tags of all cells of a dimension, in the order of the kinds.
+inline std::vector<Tag> all_tags(const TetMesh& mesh, std::size_t dimension) {
+  std::vector<Tag> tags;
+  for_each_kind(mesh, dimension, [&](CellKind kind) {
+    tags.insert(tags.end(), tags_of(mesh, kind).begin(), tags_of(mesh, kind).end());
+  });
+  return tags;
 }
+/// Replaces the nodes of a cell of either order.
+inline void set_cell(CellKind kind, std::size_t i, const CellNodes& nodes, TetMesh& mesh) {
+  with_cells(mesh, kind, [&](auto& cells, auto& middle) {
+    const auto corners = cells[i].size();
+    std::copy_n(nodes.begin(), corners, cells[i].begin());
+    if (nodes.size() > corners) std::copy(nodes.begin() + corners, nodes.end(), listed(middle[i]).begin());
+  });
+}
+/// Appends a cell of either order to a mesh that is being read.
 inline void add_cell(CellKind kind, const CellNodes& nodes, TetMesh& mesh) {
-  LayerCells& layers = mesh.layers;
-  switch (kind) {
-    case CellKind::tet: add_tet(nodes, mesh); break;
-    case CellKind::prism: add_nodes(nodes, layers.prisms, layers.prism_mid_nodes); break;
-    case CellKind::pyramid: add_nodes(nodes, layers.pyramids, layers.pyramid_mid_nodes); break;
-    case CellKind::triangle: add_face(nodes, mesh); break;
-    case CellKind::quadrangle: add_nodes(nodes, layers.quads, layers.quad_mid_nodes); break;
-    default: add_edge(nodes, mesh);
-  }
+  with_cells(mesh, kind, [&](auto& cells, auto& middle) {
+    const auto corners = cells.emplace_back().size();
+    std::copy_n(nodes.begin(), corners, cells.back().begin());
+    if (nodes.size() > corners)
+      std::copy(nodes.begin() + corners, nodes.end(), listed(middle.emplace_back()).begin());
+  });
 }
 
 /// The nodes of a side of a cell, counterclockwise as seen from outside, mid-edge nodes after the corners.

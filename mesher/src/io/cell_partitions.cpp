@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "common/cells_at_vertices.h"
+#include "common/sort_uniquely.h"
 #include "io/cell_nodes.h"
 
 namespace collarmesh::io {
@@ -52,8 +53,7 @@ std::vector<Index> partitions_of_points(const TetMesh& mesh) {
 
 std::vector<Index> partition_numbers(const TetMesh& mesh) {
   std::vector<Index> numbers(mesh.tet_partition);
-  std::sort(numbers.begin(), numbers.end());
-  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+  sort_uniquely(numbers);
   return numbers;
 }
 
@@ -67,8 +67,7 @@ std::vector<std::vector<Index>> ghost_tets(const TetMesh& mesh) {
     for (const Index v : mesh.tets[t])
       for (const Index other : tets_at[v])
         if (mesh.tet_partition[other] != mesh.tet_partition[t]) beside.push_back(mesh.tet_partition[other]);
-    std::sort(beside.begin(), beside.end());
-    beside.erase(std::unique(beside.begin(), beside.end()), beside.end());
+    sort_uniquely(beside);
     for (const Index partition : beside)
       ghosts[static_cast<std::size_t>(std::lower_bound(numbers.begin(), numbers.end(), partition) -
                                       numbers.begin())]

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <unordered_map>
 #include <utility>
 
 #include "collarmesh/error.h"
 #include "common/edge_key.h"
+#include "common/sort_uniquely.h"
 #include "io/cell_nodes.h"
 #include "io/cell_orientation.h"
 #include "io/sides_of_faces.h"
@@ -16,34 +18,25 @@ namespace collarmesh::io {
 
 namespace {
 
-template <std::size_t corners, std::size_t mid_nodes>
-void turn_cell(CellKind kind, std::array<Index, corners>& cell,
-               std::vector<std::array<Index, mid_nodes>>& middle, std::size_t i) {
-  const CellNodes nodes = turned(kind, CellNodes::of(cell, middle, i));
-  for (std::size_t k = 0; k < corners; ++k) cell[k] = nodes[k];
-  if (!middle.empty())
-    for (std::size_t k = 0; k < mid_nodes; ++k) middle[i][k] = nodes[corners + k];
+constexpr std::array<CellKind, 3> volume_kinds{CellKind::tet, CellKind::prism, CellKind::pyramid};
+constexpr std::array<CellKind, 2> surface_kinds{CellKind::triangle, CellKind::quadrangle};
+
+void turn_cell(TetMesh& mesh, CellKind kind, std::size_t i) {
+  set_cell(kind, i, turned(kind, nodes_of(kind)(mesh, i)), mesh);
 }
 
-template <std::size_t corners, std::size_t mid_nodes>
-void orient(CellKind kind, TetMesh& mesh, std::vector<std::array<Index, corners>>& cells,
-            std::vector<std::array<Index, mid_nodes>>& middle) {
+/// Reverses all cells of a kind if most are negative, because programs differ in the order of corners. Cells
+/// whose orientation differs from the others are inverted, and stay.
+void orient(TetMesh& mesh, CellKind kind) {
+  const std::size_t count = count_of(mesh, kind);
   std::size_t negative = 0, positive = 0;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     const double volume = six_volume_of(mesh, kind, i);
     if (volume < 0) ++negative;
     if (volume > 0) ++positive;
   }
   if (negative <= positive) return;
-  for (std::size_t i = 0; i < cells.size(); ++i) turn_cell(kind, cells[i], middle, i);
-}
-
-/// Reverses all cells of a kind if most are negative, because programs differ in the order of corners. Cells
-/// whose orientation differs from the others are inverted, and stay.
-void orient_volumes(TetMesh& mesh) {
-  orient(CellKind::tet, mesh, mesh.tets, mesh.tet_mid_nodes);
-  orient(CellKind::prism, mesh, mesh.layers.prisms, mesh.layers.prism_mid_nodes);
-  orient(CellKind::pyramid, mesh, mesh.layers.pyramids, mesh.layers.pyramid_mid_nodes);
+  for (std::size_t i = 0; i < count; ++i) turn_cell(mesh, kind, i);
 }
 
 /// The mid-edge nodes of the cells of volumes by the ends of their edge.
@@ -78,51 +71,35 @@ class MidNodes {
 /// Rejects cells of both orders. Volumes have one order; the triangles, the quadrangles or the edges have it,
 /// too, or no mid-edge nodes at all.
 void require_one_order(const std::string& path, const TetMesh& mesh) {
-  const bool second = mesh.order() == 2;
-  const LayerCells& layers = mesh.layers;
-  const auto all = [&](const auto& mid_nodes, std::size_t cells) {
-    return mid_nodes.size() == (second ? cells : 0);
-  };
-  const auto all_or_none = [&](const auto& mid_nodes, std::size_t cells) {
-    return mid_nodes.empty() || all(mid_nodes, cells);
-  };
-  if (!all_or_none(mesh.tet_mid_nodes, mesh.tets.size()) ||
-      !all(layers.prism_mid_nodes, layers.prisms.size()) ||
-      !all(layers.pyramid_mid_nodes, layers.pyramids.size()) ||
-      !all_or_none(mesh.face_mid_nodes, mesh.faces.size()) ||
-      !all_or_none(layers.quad_mid_nodes, layers.quads.size()) ||
-      !all_or_none(mesh.edge_mid_nodes, mesh.edges.size()))
-    throw ReadError(path + ": cells of first and second order are mixed; save them with one order");
+  for (const CellKind kind : all_cell_kinds) {
+    const bool in_layers = kind == CellKind::prism || kind == CellKind::pyramid;
+    const bool fits = with_cells(mesh, kind, [&](const auto& cells, const auto& middle) {
+      return middle.size() == (mesh.order() == 2 ? cells.size() : 0) || (middle.empty() && !in_layers);
+    });
+    if (!fits)
+      throw ReadError(path + ": cells of first and second order are mixed; save them with one order");
+  }
 }
 
 void complete_mid_nodes(const std::string& path, TetMesh& mesh) {
   require_one_order(path, mesh);
-  LayerCells& layers = mesh.layers;
-  const bool faces = mesh.face_mid_nodes.size() == mesh.faces.size(),
-             quads = layers.quad_mid_nodes.size() == layers.quads.size(),
-             edges = mesh.edge_mid_nodes.size() == mesh.edges.size();
-  if (mesh.order() == 1 || (faces && quads && edges)) return;
-  const MidNodes nodes(path, mesh);
-  if (!faces)
-    for (const auto& [a, b, c] : mesh.faces)
-      mesh.face_mid_nodes.push_back({nodes.find(a, b), nodes.find(b, c), nodes.find(c, a)});
-  if (!quads)
-    for (const auto& [a, b, c, d] : layers.quads)
-      layers.quad_mid_nodes.push_back(
-          {nodes.find(a, b), nodes.find(b, c), nodes.find(c, d), nodes.find(d, a)});
-  if (!edges)
-    for (const auto& [a, b] : mesh.edges) mesh.edge_mid_nodes.push_back(nodes.find(a, b));
+  if (mesh.order() == 1) return;
+  std::optional<MidNodes> nodes;
+  for (const CellKind kind : {CellKind::triangle, CellKind::quadrangle, CellKind::edge})
+    with_cells(mesh, kind, [&](const auto& cells, auto& middle) {
+      if (middle.size() == cells.size()) return;
+      if (!nodes) nodes.emplace(path, mesh);
+      for (const auto& cell : cells) {
+        const auto mid_nodes = listed(middle.emplace_back());
+        for (std::size_t e = 0; e < mid_nodes.size(); ++e)
+          mid_nodes[e] = nodes->find(cell[e], cell[(e + 1) % cell.size()]);
+      }
+    });
 }
 
-constexpr std::array<CellKind, 3> volume_kinds{CellKind::tet, CellKind::prism, CellKind::pyramid};
-constexpr std::array<CellKind, 2> surface_kinds{CellKind::triangle, CellKind::quadrangle};
-
 void number_regions(TetMesh& mesh) {
-  std::vector<Tag> tags;
-  for (const CellKind kind : volume_kinds)
-    tags.insert(tags.end(), tags_of(mesh, kind).begin(), tags_of(mesh, kind).end());
-  std::sort(tags.begin(), tags.end());
-  tags.erase(std::unique(tags.begin(), tags.end()), tags.end());
+  std::vector<Tag> tags = all_tags(mesh, 3);
+  sort_uniquely(tags);
   for (const CellKind kind : volume_kinds) {
     features_of(mesh, kind).clear();
     for (const Tag tag : tags_of(mesh, kind))
@@ -152,10 +129,7 @@ void find_face_regions(TetMesh& mesh, CellKind kind) {
   for (std::size_t f = 0; f < regions.size(); ++f)
     if (regions[f][0] == 0) {
       std::swap(regions[f][0], regions[f][1]);
-      if (kind == CellKind::triangle)
-        turn_cell(kind, mesh.faces[f], mesh.face_mid_nodes, f);
-      else
-        turn_cell(kind, mesh.layers.quads[f], mesh.layers.quad_mid_nodes, f);
+      turn_cell(mesh, kind, f);
     }
 }
 
@@ -173,7 +147,7 @@ void complete_layers(TetMesh& mesh) {
 
 void complete_mesh(const std::string& path, TetMesh& mesh) {
   complete_mid_nodes(path, mesh);
-  orient_volumes(mesh);
+  for (const CellKind kind : volume_kinds) orient(mesh, kind);
   for (const CellKind kind : all_cell_kinds) {
     tags_of(mesh, kind).resize(count_of(mesh, kind), 0);
     if (shape_of(kind).dimension < 3) features_of(mesh, kind).resize(count_of(mesh, kind), none);

@@ -55,11 +55,7 @@ class ExodusFile {
  public:
   ExodusFile(const std::string& path, const TetMesh& mesh) : mesh_(mesh), out_(path) {
     make_blocks();
-    for_each_kind(mesh, 2, [&](CellKind kind) {
-      const std::vector<SideOfCell> found = sides_of_faces(mesh, kind);
-      for (Index f = 0; f < found.size(); ++f)
-        if (found[f].cell != none) side_sets_[tags_of(mesh, kind)[f]].push_back(found[f]);
-    });
+    side_sets_ = sides_by_tag(mesh);
     node_sets_ = nodes_by_tag(mesh, 1);
     name_all();
   }
@@ -70,9 +66,7 @@ class ExodusFile {
     write_blocks();
     write_sets(side_sets_, side_numbers_, side_names_);
     for (const auto& [tag, members] : side_sets_) {
-      write_wholes(members, [&](const SideOfCell& each) {
-        return number_in_file_[static_cast<std::size_t>(each.kind)][each.cell];
-      });
+      write_wholes(members, [&](const SideOfCell& each) { return number_in_file_[each.kind][each.cell]; });
       write_wholes(members, [](const SideOfCell& each) { return type_of(each.kind).sides[each.side]; });
     }
     write_sets(node_sets_, node_numbers_, node_names_);
@@ -88,7 +82,7 @@ class ExodusFile {
   void make_blocks() {
     std::map<std::pair<Index, CellKind>, Block> blocks;
     for_each_kind(mesh_, 3, [&](CellKind kind) {
-      number_in_file_[static_cast<std::size_t>(kind)].resize(count_of(mesh_, kind));
+      number_in_file_[kind].resize(count_of(mesh_, kind));
       for (Index i = 0; i < count_of(mesh_, kind); ++i) {
         const Index region = features_of(mesh_, kind)[i];
         Block& block = blocks[{region, kind}];
@@ -104,7 +98,7 @@ class ExodusFile {
     for (auto& [key, block] : blocks) {
       const bool first = blocks_.empty() || blocks_.back().region != block.region;
       block.id = first ? block.region : ++last;
-      for (const Index i : block.cells) number_in_file_[static_cast<std::size_t>(block.kind)][i] = ++number;
+      for (const Index i : block.cells) number_in_file_[block.kind][i] = ++number;
       blocks_.push_back(std::move(block));
     }
   }
@@ -230,7 +224,7 @@ class ExodusFile {
   NetcdfWriter out_;
   std::vector<Block> blocks_;
   bool tags_fit_ = true;
-  std::array<std::vector<std::int32_t>, cell_kinds> number_in_file_;  // of each cell, block by block
+  PerKind<std::vector<std::int32_t>> number_in_file_;  // of each cell, block by block
   std::map<Tag, std::vector<SideOfCell>> side_sets_;
   Groups node_sets_;
   std::map<Tag, std::size_t> side_numbers_, node_numbers_;

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -12,6 +11,7 @@
 #include <system_error>
 
 #include "collarmesh/error.h"
+#include "common/lower_case.h"
 
 namespace collarmesh::io {
 
@@ -47,11 +47,8 @@ std::string read_bytes(const std::string& path) {
   return bytes;
 }
 
-std::string lower_extension(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c; });
-  return extension;
+std::string format_of(const std::string& path, std::string_view format) {
+  return lower_case(format.empty() ? std::filesystem::path(path).extension().string() : format);
 }
 
 }  // namespace collarmesh::io

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace collarmesh::io {
 
@@ -8,7 +9,17 @@ namespace collarmesh::io {
 /// holds, whatever sizes it claims.
 std::string read_bytes(const std::string& path);
 
-/// Returns the extension in lower case with its dot, empty if there is none.
-std::string lower_extension(const std::string& path);
+/// Returns the given format, or else the extension of the path, in lower case with its dot.
+std::string format_of(const std::string& path, std::string_view format = {});
+
+/// Returns the entry of a table of formats, by their extensions, for a file; null if there is none.
+template <class Formats>
+const typename Formats::value_type* find_format(const Formats& formats, const std::string& path,
+                                                std::string_view format) {
+  const std::string extension = format_of(path, format);
+  for (const auto& known : formats)
+    if (known.extension == extension) return &known;
+  return nullptr;
+}
 
 }  // namespace collarmesh::io

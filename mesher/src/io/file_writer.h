@@ -1,9 +1,11 @@
 #pragma once
 
+#include <bit>
 #include <cstdio>
 #include <string>
 #include <string_view>
 
+#include "io/byte_reader.h"
 #include "io/text_buffer.h"
 #include "io/unfinished_file.h"
 
@@ -28,6 +30,12 @@ class FileWriter {
 
   /// Appends text as it is; long text without a copy.
   void append(std::string_view text);
+  /// Appends the bytes of a number in this order.
+  template <class Number>
+  void append_bytes(Number value, std::endian order) {
+    const auto bytes = bytes_of(value, order);
+    *this << std::string_view(bytes.data(), bytes.size());
+  }
   /// Flushes, closes and renames the file.
   void commit();
 

@@ -10,9 +10,7 @@ namespace collarmesh::io {
 
 namespace {
 
-bool is_abaqus(const std::string& path, std::string_view format) {
-  return (format.empty() ? lower_extension(path) : std::string(format)) == ".inp";
-}
+bool is_abaqus(const std::string& path, std::string_view format) { return format_of(path, format) == ".inp"; }
 
 }  // namespace
 

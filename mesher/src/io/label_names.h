@@ -10,6 +10,7 @@
 #include "collarmesh/geometry.h"
 #include "collarmesh/tet_mesh.h"
 #include "common/group_names.h"
+#include "common/lower_case.h"
 
 /// Names of groups of cells as formats write and read them.
 namespace collarmesh::io {
@@ -51,7 +52,5 @@ class DistinctNames {
   std::size_t longest_;
   std::set<std::string> known_;
 };
-
-std::string lower_case(std::string_view text);
 
 }  // namespace collarmesh::io

@@ -32,9 +32,7 @@ void write_cells(FileWriter& out, const TetMesh& mesh, CellKind kind) {
 void write_vertices(FileWriter& out, const TetMesh& mesh) {
   out << "\nVertices\n" << mesh.points.size() << '\n';
   write_each(out, mesh.points.size(), [&](TextBuffer& text, std::size_t v) {
-    const Point& p = mesh.points[v];
-    text << p.x << ' ' << p.y << ' ' << p.z << ' '
-         << (mesh.features.empty() ? 0 : int{mesh.features[v].dimension}) << '\n';
+    text << mesh.points[v] << ' ' << (mesh.features.empty() ? 0 : int{mesh.features[v].dimension}) << '\n';
   });
 }
 

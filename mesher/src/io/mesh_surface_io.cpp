@@ -26,13 +26,6 @@ struct MeshFormat {
 constexpr std::array mesh_formats{MeshFormat{".msh", read_msh_cells}, MeshFormat{".mesh", read_medit_cells},
                                   MeshFormat{".vtu", read_vtu_cells}, MeshFormat{".vtp", read_vtp_cells}};
 
-const MeshFormat* find_mesh_format(const std::string& path, std::string_view format) {
-  const std::string extension = format.empty() ? lower_extension(path) : std::string(format);
-  for (const MeshFormat& known : mesh_formats)
-    if (known.extension == extension) return &known;
-  return nullptr;
-}
-
 /// Returns a point in each body of tets with one tag that are connected by faces.
 std::vector<PolygonSoup::RegionPoint> points_in_regions(const TetMesh& mesh) {
   if (mesh.tet_tag.size() != mesh.tets.size()) return {};
@@ -71,7 +64,7 @@ std::vector<PolygonSoup::RegionPoint> points_in_regions(const TetMesh& mesh) {
 }  // namespace
 
 TetMesh read_mesh_cells(const std::string& path, std::string_view format) {
-  const MeshFormat* found = find_mesh_format(path, format);
+  const MeshFormat* found = find_format(mesh_formats, path, format);
   if (found == nullptr) throw ReadError(fmt::format("{}: is not a mesh file that can have triangles", path));
   return found->read(path);
 }
@@ -106,7 +99,7 @@ PolygonSoup read_mesh_surface(const std::string& path, std::string_view format) 
 }
 
 bool is_mesh_surface_format(const std::string& path, std::string_view format) {
-  return find_mesh_format(path, format) != nullptr;
+  return find_format(mesh_formats, path, format) != nullptr;
 }
 
 }  // namespace collarmesh::io

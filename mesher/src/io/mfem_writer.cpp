@@ -65,10 +65,8 @@ struct Order {
 };
 
 void write_points(FileWriter& out, const TetMesh& mesh, const std::vector<Index>& which) {
-  write_each(out, which.size(), [&](TextBuffer& text, std::size_t i) {
-    const Point& p = mesh.points[which[i]];
-    text << p.x << ' ' << p.y << ' ' << p.z << '\n';
-  });
+  write_each(out, which.size(),
+             [&](TextBuffer& text, std::size_t i) { text << mesh.points[which[i]] << '\n'; });
 }
 
 void write_names(FileWriter& out, const TetMesh& mesh, const std::map<Tag, std::size_t>& attributes) {

@@ -20,8 +20,6 @@ namespace collarmesh::io {
 
 namespace {
 
-using Numbers = std::array<std::map<Tag, int>, 4>;
-
 void number_group(const std::vector<Tag>& tags, std::map<Tag, int>& numbers, std::set<int>& taken) {
   constexpr Tag limit = std::numeric_limits<int>::max();
   const std::set<Tag> distinct(tags.begin(), tags.end());
@@ -36,22 +34,12 @@ void number_group(const std::vector<Tag>& tags, std::map<Tag, int>& numbers, std
   }
 }
 
-Numbers number_groups(const TetMesh& mesh) {
-  Numbers numbers;
+MshPhysicals number_groups(const TetMesh& mesh) {
+  MshPhysicals numbers;
   std::set<int> taken;
   for (const std::size_t dimension : {2, 3, 1})
     number_group(all_tags(mesh, dimension), numbers[dimension], taken);
   return numbers;
-}
-
-void write_names(FileWriter& out, const TetMesh& mesh, const Numbers& numbers) {
-  std::size_t count = 0;
-  for (const auto& group : numbers) count += group.size();
-  out << "$PhysicalNames\n" << count << '\n';
-  for (std::size_t dimension = 1; dimension < 4; ++dimension)
-    for (const auto& [tag, number] : numbers[dimension])
-      out << dimension << ' ' << number << " \"" << group_name(mesh, dimension, tag, "-") << "\"\n";
-  out << "$EndPhysicalNames\n";
 }
 
 /// Gmsh's elementary entities are the features, from 1; cells without a feature share one entity.
@@ -74,15 +62,12 @@ void write_links(FileWriter& out, const TetMesh& mesh) {
 
 void write_msh2(const std::string& path, const TetMesh& mesh) {
   FileWriter out(path);
-  const Numbers numbers = number_groups(mesh);
+  const MshPhysicals numbers = number_groups(mesh);
   out << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
-  write_names(out, mesh, numbers);
+  write_physical_names(out, mesh, numbers);
   out << "$Nodes\n" << mesh.points.size() << '\n';
-  for (std::size_t i = 0; i < mesh.points.size(); ++i) {
-    const Point& p = mesh.points[i];
-    out << i + 1 << ' ' << p.x << ' ' << p.y << ' ' << p.z << '\n';
-  }
-  out << "$EndNodes\n$Elements\n" << count_before(mesh, CellKind::edge) + mesh.edges.size() << '\n';
+  for (std::size_t i = 0; i < mesh.points.size(); ++i) out << i + 1 << ' ' << mesh.points[i] << '\n';
+  out << "$EndNodes\n$Elements\n" << count_of_all(mesh) << '\n';
   std::size_t number = 0;
   const bool partitioned = !mesh.tet_partition.empty();
   // Only tets, triangles and edges have partitions.

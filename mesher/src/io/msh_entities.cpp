@@ -8,9 +8,10 @@
 #include <utility>
 
 #include "common/flat_table.h"
+#include "common/group_names.h"
 #include "common/note_last.h"
 #include "common/parallel_for.h"
-#include "io/cell_nodes.h"
+#include "common/sort_uniquely.h"
 #include "io/cell_partitions.h"
 
 namespace collarmesh::io {
@@ -86,10 +87,11 @@ constexpr std::size_t cells_at_once = 16384;
 
 std::size_t ranges_of(std::size_t count) { return (count + cells_at_once - 1) / cells_at_once; }
 
-/// Assigns cells of volumes to entities, numbered in the order of their first cells.
-void assign_volumes(const TetMesh& mesh, CellKind kind, EntityTable& table, std::vector<Index>& of_cell) {
+/// Assigns cells to entities, numbered in the order of their first cells.
+void assign_cells(const TetMesh& mesh, CellKind kind, EntityTable& table, std::vector<Index>& of_cell) {
   using Key = std::pair<Index, Tag>;
-  const std::vector<Index>& regions = features_of(mesh, kind);
+  const bool volumes = shape_of(kind).dimension == 3;
+  const std::vector<Index>& features = features_of(mesh, kind);
   const std::vector<Tag>& tags = tags_of(mesh, kind);
   struct Run {
     Key key;
@@ -100,7 +102,8 @@ void assign_volumes(const TetMesh& mesh, CellKind kind, EntityTable& table, std:
   parallel_for_ranges(tags.size(), cells_at_once, [&](std::size_t first, std::size_t last) {
     std::vector<Run>& found = runs[first / cells_at_once];
     for (std::size_t i = first; i < last; ++i)
-      if (const Key key(regions[i], tags[i]); found.empty() || found.back().key != key)
+      if (const Key key(volumes ? features[i] : number_of(features[i]), tags[i]);
+          found.empty() || found.back().key != key)
         found.push_back({key, i});
   });
   for (std::vector<Run>& of_range : runs)
@@ -116,18 +119,6 @@ void assign_volumes(const TetMesh& mesh, CellKind kind, EntityTable& table, std:
   });
 }
 
-void assign_cells(const TetMesh& mesh, Tables& tables, MshEntities& result) {
-  for (const CellKind kind : all_cell_kinds) {
-    const std::size_t dimension = shape_of(kind).dimension;
-    if (dimension == 3)
-      assign_volumes(mesh, kind, tables[3], result.of(kind));
-    else
-      for (std::size_t i = 0; i < count_of(mesh, kind); ++i)
-        result.of(kind).push_back(
-            tables[dimension].find(number_of(features_of(mesh, kind)[i]), tags_of(mesh, kind)[i]));
-  }
-}
-
 /// Assigns nodes to the entity of the last cell that has them. Of each cell of a kind, its nodes from number
 /// `from` on.
 void place_nodes(const TetMesh& mesh, CellKind kind, std::size_t from, MshEntities& result) {
@@ -135,7 +126,7 @@ void place_nodes(const TetMesh& mesh, CellKind kind, std::size_t from, MshEntiti
   for (std::size_t i = 0; i < count_of(mesh, kind); ++i) {
     const CellNodes nodes = nodes_of(kind)(mesh, i);
     for (std::size_t k = from; k < nodes.size(); ++k)
-      result.of_point[nodes[k]] = {dimension, result.of(kind)[i]};
+      result.of_point[nodes[k]] = {dimension, result.of_cell[kind][i]};
   }
 }
 
@@ -149,7 +140,7 @@ void place_corners_of_tets(const TetMesh& mesh, MshEntities& result) {
   });
   parallel_for_ranges(mesh.points.size(), cells_at_once, [&](std::size_t first, std::size_t last) {
     for (std::size_t v = first; v < last; ++v)
-      if (last_tet[v] != none) result.of_point[v] = {3, result.of(CellKind::tet)[last_tet[v]]};
+      if (last_tet[v] != none) result.of_point[v] = {3, result.of_cell[CellKind::tet][last_tet[v]]};
   });
 }
 
@@ -168,39 +159,28 @@ void place_points(const TetMesh& mesh, Tables& tables, MshEntities& result) {
   }
 }
 
-void find_boxes_of_volumes(const TetMesh& mesh, CellKind kind, MshEntities& result) {
+void find_boxes_of_cells(const TetMesh& mesh, CellKind kind, MshEntities& result) {
   struct Run {
     Index entity;
     Box box;
   };
-  const std::vector<Index>& entities = result.of(kind);
+  const std::vector<Index>& entities = result.of_cell[kind];
   std::vector<std::vector<Run>> runs(ranges_of(entities.size()));
-  const std::size_t corners = shape_of(kind).corners;
+  const CellShape shape = shape_of(kind);
   parallel_for_ranges(entities.size(), cells_at_once, [&](std::size_t first, std::size_t last) {
     std::vector<Run>& found = runs[first / cells_at_once];
     for (std::size_t i = first; i < last; ++i) {
       if (found.empty() || found.back().entity != entities[i]) found.push_back({entities[i], {}});
       const CellNodes nodes = nodes_of(kind)(mesh, i);
-      for (std::size_t k = 0; k < corners; ++k) found.back().box.add(mesh.points[nodes[k]]);
+      for (std::size_t k = 0; k < shape.corners; ++k) found.back().box.add(mesh.points[nodes[k]]);
     }
   });
   for (const std::vector<Run>& of_range : runs)
-    for (const Run& run : of_range) result.of_dimension[3][run.entity].box.add(run.box);
+    for (const Run& run : of_range) result.of_dimension[shape.dimension][run.entity].box.add(run.box);
 }
 
 void find_boxes(const TetMesh& mesh, MshEntities& result) {
-  for (const CellKind kind : all_cell_kinds) {
-    const CellShape shape = shape_of(kind);
-    if (shape.dimension == 3) {
-      find_boxes_of_volumes(mesh, kind, result);
-      continue;
-    }
-    for (std::size_t i = 0; i < count_of(mesh, kind); ++i) {
-      const CellNodes nodes = nodes_of(kind)(mesh, i);
-      Box& box = result.of_dimension[shape.dimension][result.of(kind)[i]].box;
-      for (std::size_t k = 0; k < shape.corners; ++k) box.add(mesh.points[nodes[k]]);
-    }
-  }
+  for (const CellKind kind : all_cell_kinds) find_boxes_of_cells(mesh, kind, result);
   for (std::size_t v = 0; v < mesh.points.size(); ++v) {
     const MshEntities::Place& place = result.of_point[v];
     result.of_dimension[place.dimension][place.entity].box.add(mesh.points[v]);
@@ -215,13 +195,12 @@ void find_boundaries(const TetMesh& mesh, MshEntities& result) {
   };
   for_each_kind(mesh, 2, [&](CellKind kind) {
     for (std::size_t i = 0; i < count_of(mesh, kind); ++i) {
-      const int surface = result.of_dimension[2][result.of(kind)[i]].number;
+      const int surface = result.of_dimension[2][result.of_cell[kind][i]].number;
       add(regions_beside(mesh, kind)[i][0], surface);
       add(regions_beside(mesh, kind)[i][1], -surface);
     }
   });
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  sort_uniquely(pairs);
   for (MshEntity& volume : result.of_dimension[3]) {
     const auto region = static_cast<Index>(volume.number);
     for (auto at =
@@ -314,6 +293,16 @@ class Divider {
 
 }  // namespace
 
+void write_physical_names(FileWriter& out, const TetMesh& mesh, const MshPhysicals& physicals) {
+  std::size_t count = 0;
+  for (const auto& numbers : physicals) count += numbers.size();
+  out << "$PhysicalNames\n" << count << '\n';
+  for (std::size_t dimension = 0; dimension < 4; ++dimension)
+    for (const auto& [tag, number] : physicals[dimension])
+      out << dimension << ' ' << number << " \"" << group_name(mesh, dimension, tag, "-") << "\"\n";
+  out << "$EndPhysicalNames\n";
+}
+
 MshParts divide_entities(const TetMesh& mesh, const MshEntities& whole) {
   MshParts result;
   result.numbers = partition_numbers(mesh);
@@ -321,8 +310,8 @@ MshParts divide_entities(const TetMesh& mesh, const MshEntities& whole) {
   MshEntities& parts = result.entities;
   Divider divider(mesh, whole, result);
   const auto divide = [&](CellKind kind, const auto& cells, const std::vector<Index>& partitions) {
-    divider.divide(static_cast<std::uint8_t>(shape_of(kind).dimension), cells, whole.of(kind), partitions,
-                   parts.of(kind));
+    divider.divide(static_cast<std::uint8_t>(shape_of(kind).dimension), cells, whole.of_cell[kind],
+                   partitions, parts.of_cell[kind]);
   };
   divide(CellKind::tet, mesh.tets, mesh.tet_partition);
   divide(CellKind::triangle, mesh.faces, partitions_of_faces(mesh));
@@ -336,7 +325,8 @@ MshEntities find_entities(const TetMesh& mesh) {
   MshEntities result;
   auto& lists = result.of_dimension;
   Tables tables{EntityTable(lists[0]), EntityTable(lists[1]), EntityTable(lists[2]), EntityTable(lists[3])};
-  assign_cells(mesh, tables, result);
+  for (const CellKind kind : all_cell_kinds)
+    assign_cells(mesh, kind, tables[shape_of(kind).dimension], result.of_cell[kind]);
   place_points(mesh, tables, result);
   result.numbers_are_features = !mesh.features.empty();
   for (EntityTable& table : tables)

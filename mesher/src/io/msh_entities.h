@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "collarmesh/tet_mesh.h"
-#include "common/cell_shapes.h"
+#include "io/cell_nodes.h"
+#include "io/file_writer.h"
 
 namespace collarmesh::io {
 
@@ -19,20 +20,21 @@ struct MshEntity {
   std::vector<int> boundary;  ///< of a volume: surfaces, negative where they point inwards
 };
 
+/// Numbers of physical groups by dimension and tag.
+using MshPhysicals = std::array<std::map<Tag, int>, 4>;
+void write_physical_names(FileWriter& out, const TetMesh& mesh, const MshPhysicals& numbers);
+
 struct MshEntities {
   std::array<std::vector<MshEntity>, 4> of_dimension;
-  /// The entity (position in of_dimension) of every cell, by kind.
-  std::array<std::vector<Index>, cell_kinds> of_cell;
+  /// The entity (position in of_dimension) of every cell.
+  PerKind<std::vector<Index>> of_cell;
   struct Place {
     std::uint8_t dimension = 3;
     Index entity = 0;
   };
   std::vector<Place> of_point;
-  std::array<std::map<Tag, int>, 4> physicals;  ///< number by tag
+  MshPhysicals physicals;
   bool numbers_are_features = false;
-
-  std::vector<Index>& of(CellKind kind) { return of_cell[static_cast<std::size_t>(kind)]; }
-  const std::vector<Index>& of(CellKind kind) const { return of_cell[static_cast<std::size_t>(kind)]; }
 };
 
 MshEntities find_entities(const TetMesh& mesh);

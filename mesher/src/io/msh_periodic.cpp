@@ -60,7 +60,7 @@ class PairLinks {
 
   void find_surfaces() {
     FaceFinder finder(mesh_.faces);
-    const std::vector<Index>& surfaces = entities_.of(CellKind::triangle);
+    const std::vector<Index>& surfaces = entities_.of_cell[CellKind::triangle];
     for (Index f = 0; f < mesh_.faces.size(); ++f) {
       if (!contains(pair_.first, mesh_.face_tag[f])) continue;
       const auto& [a, b, c] = mesh_.faces[f];
@@ -73,7 +73,7 @@ class PairLinks {
 
   void find_curves() {
     std::map<std::array<Index, 2>, Index> edges;
-    const std::vector<Index>& curves = entities_.of(CellKind::edge);
+    const std::vector<Index>& curves = entities_.of_cell[CellKind::edge];
     for (Index e = 0; e < mesh_.edges.size(); ++e)
       edges.emplace(sorted(mesh_.edges[e][0], mesh_.edges[e][1]), e);
     for (Index e = 0; e < mesh_.edges.size(); ++e) {

@@ -7,10 +7,12 @@
 #include <array>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string_view>
 #include <vector>
 
 #include "collarmesh/error.h"
+#include "common/sort_uniquely.h"
 #include "io/cell_nodes.h"
 #include "io/complete_mesh.h"
 #include "io/file_bytes.h"
@@ -106,16 +108,21 @@ void sort_nodes(Values& values, Contents& contents) {
   contents.dense = !nodes.empty() && nodes.front().number == 1 && nodes.back().number == nodes.size();
 }
 
+/// Returns the position of the node with a number; none if there is none.
+Index find_node(const Contents& contents, std::uint64_t number) {
+  const std::vector<Node>& nodes = contents.nodes;
+  if (contents.dense) return number - 1 < nodes.size() ? static_cast<Index>(number - 1) : none;
+  const auto found = std::ranges::lower_bound(nodes, number, {}, &Node::number);
+  return found != nodes.end() && found->number == number ? static_cast<Index>(found - nodes.begin()) : none;
+}
+
 template <class Values>
 Index read_corner(Values& values, const Contents& contents) {
-  const std::vector<Node>& nodes = contents.nodes;
   const std::uint64_t number = values.number("a node of an element");
-  if (contents.dense && number - 1 < nodes.size()) return static_cast<Index>(number - 1);
-  const auto found = std::lower_bound(nodes.begin(), nodes.end(), number,
-                                      [](const Node& node, std::uint64_t n) { return node.number < n; });
-  if (found == nodes.end() || found->number != number)
+  const Index node = find_node(contents, number);
+  if (node == none)
     values.fail(fmt::format("an element has the node {}, but no node has that number", number));
-  return static_cast<Index>(found - nodes.begin());
+  return node;
 }
 
 template <class Values>
@@ -158,8 +165,22 @@ void read_physical_names(MshText values, Contents& contents) {
   }
 }
 
-/// Reads the partitioned entities. `point_numbers`: how many numbers place a point entity, 3 coordinates or,
-/// in format 4.0, the 6 of a box.
+/// Reads the box, the physical groups and the boundary of an entity. Returns its first group, if there is
+/// one. `point_numbers`: how many numbers place a point, 3 coordinates or, in version 4.0, the 6 of a box.
+template <class Values>
+std::optional<Tag> read_rest_of_entity(Values& values, std::size_t dimension, int point_numbers) {
+  for (int k = 0; k < (dimension == 0 ? point_numbers : 6); ++k) values.real("the box of an entity");
+  std::optional<Tag> first;
+  const Index physicals = values.count("the number of physical groups", 1);
+  for (Index k = 0; k < physicals; ++k) {
+    const Tag physical = std::abs(Tag{values.integer("a physical group")});
+    if (!first) first = physical;
+  }
+  const Index boundary = dimension == 0 ? 0 : values.count("the number of bounding entities", 1);
+  for (Index k = 0; k < boundary; ++k) values.integer("a bounding entity");
+  return first;
+}
+
 template <class Values>
 void read_partition_entities(Values values, int point_numbers, Contents& contents) {
   values.number("the number of partitions");
@@ -182,16 +203,11 @@ void read_partition_entities(Values values, int point_numbers, Contents& content
         if (partition < 1) values.fail(fmt::format("a partition is {}; they are counted from 1", partition));
         if (k == 0) entity.partition = static_cast<Index>(partition) - 1;
       }
-      for (int k = 0; k < (dimension == 0 ? point_numbers : 6); ++k) values.real("the box of an entity");
-      const Index physicals = values.count("the number of physical groups", 1);
-      for (Index k = 0; k < physicals; ++k) values.integer("a physical group");
-      const Index boundary = dimension == 0 ? 0 : values.count("the number of bounding entities", 1);
-      for (Index k = 0; k < boundary; ++k) values.integer("a bounding entity");
+      read_rest_of_entity(values, dimension, point_numbers);
       contents.partition_entities[dimension].insert_or_assign(number, entity);
     }
 }
 
-/// Reads partition entities. `point_numbers` as for entities.
 template <class Values>
 void read_entities(Values values, int point_numbers, Contents& contents) {
   std::array<Index, 4> counts;
@@ -199,36 +215,50 @@ void read_entities(Values values, int point_numbers, Contents& contents) {
   for (std::size_t dimension = 0; dimension < 4; ++dimension)
     for (Index i = 0; i < counts[dimension]; ++i) {
       const int number = values.integer("the number of an entity");
-      for (int k = 0; k < (dimension == 0 ? point_numbers : 6); ++k) values.real("the box of an entity");
-      const Index physicals = values.count("the number of physical groups", 1);
-      for (Index k = 0; k < physicals; ++k)
-        contents.physical_of_entity[dimension].try_emplace(number,
-                                                           std::abs(Tag{values.integer("a physical group")}));
-      const Index boundary = dimension == 0 ? 0 : values.count("the number of bounding entities", 1);
-      for (Index k = 0; k < boundary; ++k) values.integer("a bounding entity");
+      if (const std::optional<Tag> physical = read_rest_of_entity(values, dimension, point_numbers))
+        contents.physical_of_entity[dimension].try_emplace(number, *physical);
     }
 }
 
+struct EntityOfBlock {
+  std::size_t dimension;
+  int number;
+};
+/// Reads the entity of a block. `old`: of version 4.0, where its number comes first.
 template <class Values>
-void read_nodes(Values values, Contents& contents) {
+EntityOfBlock read_entity_of_block(Values& values, bool old) {
+  const int first = old ? values.integer("the number of an entity") : 0;
+  const std::size_t dimension = read_dimension(values);
+  return {dimension, old ? first : values.integer("the number of an entity")};
+}
+
+/// Reads nodes. `old`: of version 4.0, where the place of each follows its number.
+template <class Values>
+void read_nodes(Values values, bool old, Contents& contents) {
   const Index blocks = values.count("the number of blocks", 4);
   const Index total = values.count("the number of nodes", 4);
-  values.number("the smallest number of a node");
-  values.number("the largest number of a node");
+  if (!old) {
+    values.number("the smallest number of a node");
+    values.number("the largest number of a node");
+  }
   contents.nodes.reserve(total);
   for (Index b = 0; b < blocks; ++b) {
-    const std::size_t dimension = read_dimension(values);
-    const int entity = whole_entity(contents, dimension, values.integer("the number of an entity"));
+    const EntityOfBlock of = read_entity_of_block(values, old);
+    const int entity = whole_entity(contents, of.dimension, of.number);
     const int parametric = values.integer("the flag for parametric nodes");
     const Index n = values.count("the number of nodes of a block", 4);
+    const auto read_place = [&](Node& node) {
+      node.point = values.point("a coordinate of a node");
+      for (std::size_t k = 0; parametric != 0 && k < of.dimension; ++k) values.real("a parameter of a node");
+    };
     const std::size_t first = contents.nodes.size();
-    for (Index i = 0; i < n; ++i)
+    for (Index i = 0; i < n; ++i) {
       contents.nodes.push_back(
-          {values.number("the number of a node"), {}, static_cast<std::uint8_t>(dimension), entity});
-    for (std::size_t i = first; i < contents.nodes.size(); ++i) {
-      contents.nodes[i].point = values.point("a coordinate of a node");
-      for (std::size_t k = 0; parametric != 0 && k < dimension; ++k) values.real("a parameter of a node");
+          {values.number("the number of a node"), {}, static_cast<std::uint8_t>(of.dimension), entity});
+      if (old) read_place(contents.nodes.back());
     }
+    if (!old)
+      for (std::size_t i = first; i < contents.nodes.size(); ++i) read_place(contents.nodes[i]);
   }
   if (contents.nodes.size() != total)
     values.fail(fmt::format("expected {} nodes, found {}", total, contents.nodes.size()));
@@ -269,21 +299,23 @@ void read_cells_of_block(Values& values, const GmshType* type, int entity, Tag t
 }
 
 template <class Values>
-void read_elements(Values values, Contents& contents) {
+void read_elements(Values values, bool old, Contents& contents) {
   const Index blocks = values.count("the number of blocks", 4);
   const Index total = values.count("the number of elements", 2);
-  values.number("the smallest number of an element");
-  values.number("the largest number of an element");
+  if (!old) {
+    values.number("the smallest number of an element");
+    values.number("the largest number of an element");
+  }
   std::size_t found = 0;
   for (Index b = 0; b < blocks; ++b) {
-    const std::size_t entity_dimension = read_dimension(values);
-    const int entity = values.integer("the number of an entity");
+    const EntityOfBlock of = read_entity_of_block(values, old);
     const GmshType* type = find_type(values, values.integer("the type of elements"));
     const Index n = values.count("the number of elements of a block", 2);
     found += n;
-    read_cells_of_block(values, type, entity, tag_of_entity(contents, entity_dimension, entity), n, contents);
+    read_cells_of_block(values, type, of.number, tag_of_entity(contents, of.dimension, of.number), n,
+                        contents);
   }
-  if (found != total) values.fail(fmt::format("expected {} elements, found {}", total, found));
+  if (!old && found != total) values.fail(fmt::format("expected {} elements, found {}", total, found));
 }
 
 /// Reads links of surfaces that have a matrix.
@@ -310,42 +342,6 @@ void read_periodic(Values values, Contents& contents) {
       link.nodes.push_back({values.number("a node of a link"), node});
     }
     if (dimension == 2 && numbers == matrix) contents.links.push_back(std::move(link));
-  }
-}
-
-// Version 4.0: entities come before dimensions; numbers and coordinates of nodes are together.
-
-void read_nodes_40(MshText values, Contents& contents) {
-  const Index blocks = values.count("the number of blocks", 4);
-  const Index total = values.count("the number of nodes", 4);
-  contents.nodes.reserve(total);
-  for (Index b = 0; b < blocks; ++b) {
-    const int number = values.integer("the number of an entity");
-    const std::size_t dimension = read_dimension(values);
-    const int entity = whole_entity(contents, dimension, number);
-    const int parametric = values.integer("the flag for parametric nodes");
-    const Index n = values.count("the number of nodes of a block", 4);
-    for (Index i = 0; i < n; ++i) {
-      Node node{values.number("the number of a node"), {}, static_cast<std::uint8_t>(dimension), entity};
-      node.point = values.point("a coordinate of a node");
-      for (std::size_t k = 0; parametric != 0 && k < dimension; ++k) values.real("a parameter of a node");
-      contents.nodes.push_back(node);
-    }
-  }
-  if (contents.nodes.size() != total)
-    values.fail(fmt::format("expected {} nodes, found {}", total, contents.nodes.size()));
-  sort_nodes(values, contents);
-}
-
-void read_elements_40(MshText values, Contents& contents) {
-  const Index blocks = values.count("the number of blocks", 4);
-  values.count("the number of elements", 2);
-  for (Index b = 0; b < blocks; ++b) {
-    const int entity = values.integer("the number of an entity");
-    const std::size_t entity_dimension = read_dimension(values);
-    const GmshType* type = find_type(values, values.integer("the type of elements"));
-    const Index n = values.count("the number of elements of a block", 2);
-    read_cells_of_block(values, type, entity, tag_of_entity(contents, entity_dimension, entity), n, contents);
   }
 }
 
@@ -478,50 +474,36 @@ MshFormat read_format(const std::string& path, const MshSection& section) {
 }
 
 /// Calls `read` with the values of a section as text or bytes.
-template <class Read>
+template <class Binary, class Read>
 void with_values(const std::string& path, const MshSection& section, const MshFormat& format, Read read) {
   if (format.binary)
-    read(MshBinary(path, section, format.order));
-  else
-    read(MshText(path, section));
-}
-
-/// Does the same for version 2.
-template <class Read>
-void with_old_values(const std::string& path, const MshSection& section, const MshFormat& format, Read read) {
-  if (format.binary)
-    read(MshBinary2(path, section, format.order));
+    read(Binary(path, section, format.order));
   else
     read(MshText(path, section));
 }
 
 void read_section(const std::string& path, const MshSection& section, const MshFormat& format,
                   Contents& contents) {
-  const auto with_any = [&](auto read) { with_values(path, section, format, read); };
+  const bool old = format.version == 4.0;
+  const int point_numbers = old ? 6 : 3;
+  const auto with_any = [&](auto read) { with_values<MshBinary>(path, section, format, read); };
+  const auto with_version_2 = [&](auto read) { with_values<MshBinary2>(path, section, format, read); };
   if (section.name == "PhysicalNames")
     read_physical_names(MshText(path, section), contents);
   else if (section.name == "Comments")
     contents.numbers_are_features = section.body.find(msh_numbers_are_features) != std::string_view::npos;
-  else if (section.name == "Entities" && format.version == 4.0)
-    read_entities(MshText(path, section), 6, contents);
-  else if (section.name == "Entities" && format.version > 4)
-    with_any([&](auto values) { read_entities(values, 3, contents); });
-  else if (section.name == "PartitionedEntities" && format.version == 4.0)
-    read_partition_entities(MshText(path, section), 6, contents);
-  else if (section.name == "PartitionedEntities" && format.version > 4)
-    with_any([&](auto values) { read_partition_entities(values, 3, contents); });
+  else if (section.name == "Entities" && format.version >= 4)
+    with_any([&](auto values) { read_entities(values, point_numbers, contents); });
+  else if (section.name == "PartitionedEntities" && format.version >= 4)
+    with_any([&](auto values) { read_partition_entities(values, point_numbers, contents); });
   else if (section.name == "Nodes" && format.version < 4)
-    with_old_values(path, section, format, [&](auto values) { read_nodes_2(values, contents); });
-  else if (section.name == "Nodes" && format.version == 4.0)
-    read_nodes_40(MshText(path, section), contents);
+    with_version_2([&](auto values) { read_nodes_2(values, contents); });
   else if (section.name == "Nodes")
-    with_any([&](auto values) { read_nodes(values, contents); });
+    with_any([&](auto values) { read_nodes(values, old, contents); });
   else if (section.name == "Elements" && format.version < 4)
-    with_old_values(path, section, format, [&](auto values) { read_elements_2(values, contents); });
-  else if (section.name == "Elements" && format.version == 4.0)
-    read_elements_40(MshText(path, section), contents);
+    with_version_2([&](auto values) { read_elements_2(values, contents); });
   else if (section.name == "Elements")
-    with_any([&](auto values) { read_elements(values, contents); });
+    with_any([&](auto values) { read_elements(values, old, contents); });
   else if (section.name == "Periodic" && format.version > 4)
     with_any([&](auto values) { read_periodic(values, contents); });
   else if (section.name == "ElementData" && !format.binary)
@@ -580,13 +562,6 @@ void add_once(Tag tag, std::vector<Tag>& tags) {
 
 /// Joins links of one motion. Only in our own files does each tag cover whole faces.
 void add_periodic(const Contents& contents, TetMesh& mesh) {
-  const auto position = [&](std::uint64_t number) {
-    const auto found = std::lower_bound(contents.nodes.begin(), contents.nodes.end(), number,
-                                        [](const Node& node, std::uint64_t n) { return node.number < n; });
-    return found != contents.nodes.end() && found->number == number
-               ? static_cast<Index>(found - contents.nodes.begin())
-               : none;
-  };
   for (const SurfaceLink& link : contents.links) {
     const auto alike = [&](const TetMesh::PeriodicFaces& faces) {
       return faces.motion.rows == link.motion.rows && faces.motion.shift == link.motion.shift;
@@ -597,13 +572,12 @@ void add_periodic(const Contents& contents, TetMesh& mesh) {
     add_once(tag_of_entity(contents, 2, link.master), faces->first);
     add_once(tag_of_entity(contents, 2, link.entity), faces->second);
     for (const auto& [node, image] : link.nodes)
-      if (const std::array<Index, 2> pair{position(node), position(image)};
+      if (const std::array<Index, 2> pair{find_node(contents, node), find_node(contents, image)};
           pair[0] != none && pair[1] != none)
         faces->nodes.push_back(pair);
   }
   for (TetMesh::PeriodicFaces& faces : mesh.periodic) {
-    std::sort(faces.nodes.begin(), faces.nodes.end());
-    faces.nodes.erase(std::unique(faces.nodes.begin(), faces.nodes.end()), faces.nodes.end());
+    sort_uniquely(faces.nodes);
   }
 }
 
@@ -680,14 +654,12 @@ struct MshFile {
 }  // namespace
 
 TetMesh read_msh(const std::string& path) {
-  const MshFile file(path);
-  Contents contents = file.contents(path);
+  Contents contents = MshFile(path).contents(path);
   return make_mesh(path, contents);
 }
 
 TetMesh read_msh_cells(const std::string& path) {
-  const MshFile file(path);
-  Contents contents = file.contents(path, false);
+  Contents contents = MshFile(path).contents(path, false);
   return make_mesh(path, contents);
 }
 
@@ -706,12 +678,8 @@ PointField read_msh_field(const std::string& path, const std::string& name) {
   const std::size_t chosen = choose_field(path, names, name);
   Contents contents = file.contents(path);
   PointField field{{}, names[chosen], std::vector<double>(contents.nodes.size(), NAN)};
-  for (const auto& [number, value] : read_node_values(path, *fields[chosen], file.format)) {
-    const auto node = std::lower_bound(contents.nodes.begin(), contents.nodes.end(), number,
-                                       [](const Node& n, std::uint64_t wanted) { return n.number < wanted; });
-    if (node != contents.nodes.end() && node->number == number)
-      field.values[static_cast<std::size_t>(node - contents.nodes.begin())] = value;
-  }
+  for (const auto& [number, value] : read_node_values(path, *fields[chosen], file.format))
+    if (const Index node = find_node(contents, number); node != none) field.values[node] = value;
   for (std::size_t i = 0; i < field.values.size(); ++i)
     if (std::isnan(field.values[i]))
       throw ReadError(

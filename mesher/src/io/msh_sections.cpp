@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/is_finite.h"
+
 namespace collarmesh::io {
 
 namespace {
@@ -43,39 +45,29 @@ std::vector<MshSection> split_msh(const std::string& path, std::string_view text
 
 namespace {
 
-template <class Values>
-Point finite_point(double x, double y, double z, const Values& values) {
-  if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z))
-    values.fail(fmt::format("the point that ends here, ({}, {}, {}), is not finite", x, y, z));
-  return {x, y, z};
-}
-
 std::string_view after_line(std::string_view text) {
   return text.substr(std::min(text.find('\n'), text.size() - 1) + 1);
 }
 
 }  // namespace
 
-Point MshBinary::point(std::string_view what) {
+Point MshBytes::point(std::string_view what) {
   const double x = real(what), y = real(what), z = real(what);
-  return finite_point(x, y, z, *this);
+  if (!is_finite({x, y, z}))
+    fail(fmt::format("the point that ends here, ({}, {}, {}), is not finite", x, y, z));
+  return {x, y, z};
 }
 
 MshBinary2::MshBinary2(const std::string& path, const MshSection& section, std::endian order)
-    : count_(TextScanner(path, section.body, 0, section.first_line).integer("a count")),
-      bytes_(path, after_line(section.body), order,
-             section.first_byte + section.body.size() - after_line(section.body).size()) {}
+    : MshBytes({path, after_line(section.body), order,
+                section.first_byte + section.body.size() - after_line(section.body).size()}),
+      count_(TextScanner(path, section.body, 0, section.first_line).integer("a count")) {}
 
 Index MshBinary2::count(std::string_view what, std::size_t numbers) {
   if (count_ < 0 || static_cast<std::uint64_t>(count_) > bytes_.left() / (4 * numbers))
     fail(fmt::format("{} is {}, but only {} bytes follow; the file is cut off or wrong", what, count_,
                      bytes_.left()));
   return static_cast<Index>(count_);
-}
-
-Point MshBinary2::point(std::string_view what) {
-  const double x = bytes_.get<double>(what), y = bytes_.get<double>(what), z = bytes_.get<double>(what);
-  return finite_point(x, y, z, *this);
 }
 
 }  // namespace collarmesh::io

@@ -50,13 +50,26 @@ class MshText {
   TextScanner scan_;
 };
 
+/// The values that the sections of all binary files have.
+class MshBytes {
+ public:
+  int integer(std::string_view what) { return bytes_.get<std::int32_t>(what); }
+  double real(std::string_view what) { return bytes_.get<double>(what); }
+  Point point(std::string_view what);
+  [[noreturn]] void fail(const std::string& message) const { bytes_.fail(message); }
+
+ protected:
+  explicit MshBytes(const ByteReader& bytes) : bytes_(bytes) {}
+
+  ByteReader bytes_;
+};
+
 /// The values of a section of a binary file.
-class MshBinary {
+class MshBinary : public MshBytes {
  public:
   MshBinary(const std::string& path, const MshSection& section, std::endian order)
-      : bytes_(path, section.body, order, section.first_byte) {}
+      : MshBytes({path, section.body, order, section.first_byte}) {}
 
-  int integer(std::string_view what) { return bytes_.get<std::int32_t>(what); }
   std::uint64_t number(std::string_view what) { return bytes_.get<std::uint64_t>(what); }
   Index count(std::string_view what, std::size_t numbers) {
     const std::uint64_t value = number(what);
@@ -65,21 +78,14 @@ class MshBinary {
                        bytes_.left()));
     return static_cast<Index>(value);
   }
-  double real(std::string_view what) { return bytes_.get<double>(what); }
-  Point point(std::string_view what);
-  [[noreturn]] void fail(const std::string& message) const { bytes_.fail(message); }
-
- private:
-  ByteReader bytes_;
 };
 
 /// The values of a section of a binary file of version 2: a count as text on the first line, then
 /// numbers of 32 bits.
-class MshBinary2 {
+class MshBinary2 : public MshBytes {
  public:
   MshBinary2(const std::string& path, const MshSection& section, std::endian order);
 
-  int integer(std::string_view what) { return bytes_.get<std::int32_t>(what); }
   std::uint64_t number(std::string_view what) {
     const int value = integer(what);
     if (value < 0) fail(fmt::format("{}, {}, is negative", what, value));
@@ -87,12 +93,9 @@ class MshBinary2 {
   }
   /// Reads the count at the beginning.
   Index count(std::string_view what, std::size_t numbers);
-  Point point(std::string_view what);
-  [[noreturn]] void fail(const std::string& message) const { bytes_.fail(message); }
 
  private:
   std::int64_t count_;
-  ByteReader bytes_;
 };
 
 }  // namespace collarmesh::io

@@ -30,30 +30,11 @@ namespace collarmesh::io {
 
 namespace {
 
-void write_physical_names(FileWriter& out, const TetMesh& mesh, const MshEntities& entities) {
-  std::size_t count = 0;
-  for (const auto& numbers : entities.physicals) count += numbers.size();
-  out << "$PhysicalNames\n" << count << '\n';
-  for (std::size_t dimension = 0; dimension < 4; ++dimension)
-    for (const auto& [tag, number] : entities.physicals[dimension])
-      out << dimension << ' ' << number << " \"" << group_name(mesh, dimension, tag, "-") << "\"\n";
-  out << "$EndPhysicalNames\n";
-}
-
-template <class Text>
-void write_point(Text& out, const Point& p) {
-  out << p.x << ' ' << p.y << ' ' << p.z;
-}
-
 /// Writes an entity. `part` is the text after its number.
 void write_entity(FileWriter& out, const MshEntity& entity, std::size_t dimension,
                   const std::string& part = {}) {
-  out << entity.number << ' ' << part;
-  write_point(out, entity.box.min);
-  if (dimension > 0) {
-    out << ' ';
-    write_point(out, entity.box.max);
-  }
+  out << entity.number << ' ' << part << entity.box.min;
+  if (dimension > 0) out << ' ' << entity.box.max;
   if (entity.physical == 0)
     out << " 0";
   else
@@ -178,10 +159,8 @@ void write_nodes(FileWriter& out, const TetMesh& mesh, const MshEntities& entiti
           << '\n';
       write_each(out, members.size(),
                  [&](TextBuffer& text, std::size_t i) { text << std::size_t{members[i]} + 1 << '\n'; });
-      write_each(out, members.size(), [&](TextBuffer& text, std::size_t i) {
-        write_point(text, mesh.points[members[i]]);
-        text << '\n';
-      });
+      write_each(out, members.size(),
+                 [&](TextBuffer& text, std::size_t i) { text << mesh.points[members[i]] << '\n'; });
     }
   out << "$EndNodes\n";
 }
@@ -212,11 +191,11 @@ struct CellGroups {
 
   CellGroups(const TetMesh& mesh, const MshEntities& entities) {
     for (const CellKind kind : all_cell_kinds) {
-      of_kind.emplace_back(entities.of_dimension[shape_of(kind).dimension].size(), entities.of(kind));
+      of_kind.emplace_back(entities.of_dimension[shape_of(kind).dimension].size(), entities.of_cell[kind]);
       first[static_cast<std::size_t>(kind)] = count_before(mesh, kind) + 1;
       filled += of_kind.back().filled();
     }
-    count = count_before(mesh, CellKind::edge) + mesh.edges.size();
+    count = count_of_all(mesh);
   }
 };
 
@@ -269,7 +248,7 @@ void write(const std::string& path, const TetMesh& mesh, bool with_ghosts) {
   out << "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Comments\nWritten by collarmesh.\n";
   if (entities.numbers_are_features) out << msh_numbers_are_features << '\n';
   out << "$EndComments\n";
-  write_physical_names(out, mesh, entities);
+  write_physical_names(out, mesh, entities.physicals);
   write_entities(out, entities);
   if (parts) write_partition_entities(out, *parts, with_ghosts ? ghost_volumes(*parts) : std::vector<int>());
   write_nodes(out, mesh, holders);

@@ -15,10 +15,10 @@ namespace {
 constexpr std::uint32_t of_text = 2, of_wholes = 4, of_floats = 5, of_doubles = 6;
 constexpr std::uint32_t dimension_list = 10, variable_list = 11, attribute_list = 12;
 
-template <class Unsigned>
-void append(std::string& bytes, Unsigned value) {
-  for (int shift = 8 * (static_cast<int>(sizeof value) - 1); shift >= 0; shift -= 8)
-    bytes += static_cast<char>(value >> shift & 0xFF);
+template <class Number>
+void append(std::string& bytes, Number value) {
+  const auto added = bytes_of(value, std::endian::big);
+  bytes.append(added.begin(), added.end());
 }
 void append32(std::string& bytes, std::uint64_t value) { append(bytes, static_cast<std::uint32_t>(value)); }
 
@@ -64,13 +64,13 @@ NetcdfWriter::Attribute NetcdfWriter::text(std::string name, const std::string& 
 
 NetcdfWriter::Attribute NetcdfWriter::whole(std::string name, std::int32_t value) {
   Attribute attribute{std::move(name), {}, of_wholes, 1};
-  append(attribute.bytes, static_cast<std::uint32_t>(value));
+  append(attribute.bytes, value);
   return attribute;
 }
 
 NetcdfWriter::Attribute NetcdfWriter::real(std::string name, float value) {
   Attribute attribute{std::move(name), {}, of_floats, 1};
-  append(attribute.bytes, std::bit_cast<std::uint32_t>(value));
+  append(attribute.bytes, value);
   return attribute;
 }
 
@@ -138,17 +138,9 @@ void NetcdfWriter::write_header() {
   out_ << std::string_view(header(header(0).size()));
 }
 
-void NetcdfWriter::write(std::int32_t value) {
-  std::string bytes;
-  append(bytes, static_cast<std::uint32_t>(value));
-  out_ << std::string_view(bytes);
-}
+void NetcdfWriter::write(std::int32_t value) { out_.append_bytes(value, std::endian::big); }
 
-void NetcdfWriter::write(double value) {
-  std::string bytes;
-  append(bytes, std::bit_cast<std::uint64_t>(value));
-  out_ << std::string_view(bytes);
-}
+void NetcdfWriter::write(double value) { out_.append_bytes(value, std::endian::big); }
 
 void NetcdfWriter::write(const std::string& text, std::size_t length) {
   const std::size_t kept = std::min(text.size(), length);

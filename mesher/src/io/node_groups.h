@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "collarmesh/tet_mesh.h"
+#include "common/sort_uniquely.h"
 #include "io/cell_nodes.h"
 
 namespace collarmesh::io {
@@ -24,9 +25,19 @@ inline Groups nodes_by_tag(const TetMesh& mesh, std::size_t dimension) {
       for (const Index v : nodes_of(kind)(mesh, i)) groups[tags[i]].push_back(v + 1);
   });
   for (auto& [tag, nodes] : groups) {
-    std::sort(nodes.begin(), nodes.end());
-    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    sort_uniquely(nodes);
   }
+  return groups;
+}
+
+/// Returns the cells of volumes with each tag, numbered from `first` in the order of their kinds.
+inline Groups volumes_by_tag(const TetMesh& mesh, std::size_t first) {
+  Groups groups;
+  for_each_kind(mesh, 3, [&](CellKind kind) {
+    const std::vector<Tag>& tags = tags_of(mesh, kind);
+    for (std::size_t i = 0; i < tags.size(); ++i)
+      groups[tags[i]].push_back(static_cast<Index>(count_before(mesh, kind) + i + first));
+  });
   return groups;
 }
 

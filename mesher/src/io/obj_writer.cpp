@@ -26,7 +26,7 @@ std::string name_of(const PolygonSoup& soup, Tag tag) {
 void write_obj(const std::string& path, const PolygonSoup& soup) {
   FileWriter out(path);
   out << "# Written by collarmesh.\n";
-  for (const Point& p : soup.points) out << "v " << p.x << ' ' << p.y << ' ' << p.z << '\n';
+  for (const Point& p : soup.points) out << "v " << p << '\n';
   Tag group = 0;
   for (Index f = 0; f < soup.facet_count(); ++f) {
     if (soup.facet_tag(f) != group) out << "g " << name_of(soup, group = soup.facet_tag(f)) << '\n';

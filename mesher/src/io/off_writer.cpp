@@ -8,7 +8,7 @@ namespace collarmesh::io {
 void write_off(const std::string& path, const PolygonSoup& soup) {
   FileWriter out(path);
   out << "OFF\n" << soup.points.size() << ' ' << soup.facet_count() + soup.segments.size() << " 0\n";
-  for (const Point& p : soup.points) out << p.x << ' ' << p.y << ' ' << p.z << '\n';
+  for (const Point& p : soup.points) out << p << '\n';
   for (Index f = 0; f < soup.facet_count(); ++f) {
     const auto corners = one_polygon(path, soup, f);
     out << corners.size();

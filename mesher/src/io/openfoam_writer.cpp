@@ -25,11 +25,6 @@ namespace collarmesh::io {
 
 namespace {
 
-/// The cells of volumes are numbered in the order of their kinds.
-std::size_t number_of_cell(const TetMesh& mesh, CellKind kind, std::size_t cell) {
-  return count_before(mesh, kind) + cell;
-}
-
 /// Corners of a triangle or quadrangle, the smallest first; a triangle's fourth one is `none`.
 using Corners = std::array<Index, 4>;
 
@@ -73,6 +68,7 @@ struct Sides {
     std::vector<Side> all;
     all.reserve(4 * mesh.tets.size() + 5 * (mesh.layers.prisms.size() + mesh.layers.pyramids.size()));
     for_each_kind(mesh, 3, [&](CellKind kind) {
+      const std::size_t before = count_before(mesh, kind);
       for (std::size_t i = 0; i < count_of(mesh, kind); ++i) {
         const CellNodes nodes = nodes_of(kind)(mesh, i);
         for (const auto& [count, places] : shape_of(kind).sides) {
@@ -80,7 +76,7 @@ struct Sides {
           for (std::size_t k = 0; k < count; ++k) corners[k] = nodes[places[k]];
           const auto end = corners.begin() + static_cast<std::ptrdiff_t>(count);
           std::rotate(corners.begin(), std::min_element(corners.begin(), end), end);
-          all.push_back({corners, static_cast<Index>(number_of_cell(mesh, kind, i))});
+          all.push_back({corners, static_cast<Index>(before + i)});
         }
       }
     });
@@ -171,12 +167,7 @@ void write_labels(FileWriter& out, const char* what, const std::vector<Index>& l
 }
 
 void write_cell_zones(FileWriter& out, const TetMesh& mesh) {
-  Groups zones;
-  for_each_kind(mesh, 3, [&](CellKind kind) {
-    const std::vector<Tag>& tags = tags_of(mesh, kind);
-    for (std::size_t i = 0; i < tags.size(); ++i)
-      zones[tags[i]].push_back(static_cast<Index>(number_of_cell(mesh, kind, i)));
-  });
+  const Groups zones = volumes_by_tag(mesh, 0);
   out << zones.size() << "\n(\n";
   for (const auto& [tag, cells] : zones) {
     out << word_name(mesh, 3, tag) << "\n{\n        type            cellZone;\n";
@@ -226,10 +217,8 @@ void write_openfoam(const std::string& path, const TetMesh& mesh) {
       owner(folder, "owner", "labelList", note), neighbour(folder, "neighbour", "labelList", note),
       cell_zones(folder, "cellZones", "regIOobject"), face_zones(folder, "faceZones", "regIOobject"),
       boundary(folder, "boundary", "polyBoundaryMesh");
-  points.write(mesh.points.size(), [&](TextBuffer& text, std::size_t i) {
-    const Point& p = mesh.points[i];
-    text << '(' << p.x << ' ' << p.y << ' ' << p.z << ")\n";
-  });
+  points.write(mesh.points.size(),
+               [&](TextBuffer& text, std::size_t i) { text << '(' << mesh.points[i] << ")\n"; });
   faces.write(all, [&](TextBuffer& text, std::size_t i) {
     const Corners& corners = side(i).corners;
     const std::size_t count = count_corners(corners);

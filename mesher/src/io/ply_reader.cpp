@@ -18,33 +18,17 @@ namespace collarmesh::io {
 
 namespace {
 
-enum class Type { none, i8, u8, i16, u16, i32, u32, f32, f64 };
-
-struct TypeName {
-  std::string_view name;
-  Type type;
-};
-constexpr TypeName type_names[] = {
+using Type = NumberType;
+constexpr std::pair<std::string_view, Type> type_names[] = {
     {"char", Type::i8},   {"uchar", Type::u8},   {"short", Type::i16},   {"ushort", Type::u16},
     {"int", Type::i32},   {"uint", Type::u32},   {"float", Type::f32},   {"double", Type::f64},
     {"int8", Type::i8},   {"uint8", Type::u8},   {"int16", Type::i16},   {"uint16", Type::u16},
     {"int32", Type::i32}, {"uint32", Type::u32}, {"float32", Type::f32}, {"float64", Type::f64}};
 
-std::size_t size_of(Type type) {
-  switch (type) {
-    case Type::i8:
-    case Type::u8: return 1;
-    case Type::i16:
-    case Type::u16: return 2;
-    case Type::f64: return 8;
-    default: return 4;
-  }
-}
-
 struct Property {
   std::string_view name;
-  Type type = Type::none;
-  Type list_size = Type::none;  ///< none: not a list
+  Type type = Type::unknown;
+  Type list_size = Type::unknown;  ///< unknown: not a list
 };
 
 struct PlyElement {
@@ -63,8 +47,8 @@ struct Header {
 
 Type read_type(TextScanner& scan) {
   const std::string_view name = scan.word("a type");
-  for (const TypeName& known : type_names)
-    if (known.name == name) return known.type;
+  for (const auto& [known, type] : type_names)
+    if (known == name) return type;
   scan.fail("a type such as float or uchar", name);
 }
 
@@ -191,7 +175,7 @@ class Body {
   void require_room(const PlyElement& element) {
     std::size_t least = 0;
     for (const Property& p : element.properties)
-      least += Values::least_bytes(p.list_size == Type::none ? p.type : p.list_size);
+      least += Values::least_bytes(p.list_size == Type::unknown ? p.type : p.list_size);
     if (element.count > values_.left() / least)
       values_.fail_at(fmt::format(
           "expected {} elements '{}' of at least {} bytes, found {} bytes; the file is cut off or "
@@ -211,7 +195,7 @@ class Body {
   static std::size_t tag_column(const PlyElement& element) {
     const auto found =
         std::find_if(element.properties.begin(), element.properties.end(), [](const Property& p) {
-          return p.name == "tag" && p.type == Type::i32 && p.list_size == Type::none;
+          return p.name == "tag" && p.type == Type::i32 && p.list_size == Type::unknown;
         });
     return static_cast<std::size_t>(found - element.properties.begin());
   }
@@ -220,7 +204,7 @@ class Body {
     const std::array<std::size_t, 3> columns{column(element, "x"), column(element, "y"),
                                              column(element, "z")};
     for (const std::size_t k : columns)
-      if (element.properties[k].list_size != Type::none) values_.fail_at("a coordinate cannot be a list");
+      if (element.properties[k].list_size != Type::unknown) values_.fail_at("a coordinate cannot be a list");
     soup_.points.reserve(element.count);
     for (std::uint64_t i = 0; i < element.count; ++i) {
       Point p;
@@ -273,7 +257,7 @@ class Body {
 
   void read_corners(const Property& property) {
     corners_.clear();
-    if (property.list_size == Type::none) values_.fail_at("the corners of a face have to be a list");
+    if (property.list_size == Type::unknown) values_.fail_at("the corners of a face have to be a list");
     const std::size_t n = list_length(property);
     for (std::size_t i = 0; i < n; ++i) corners_.push_back(corner(property.type));
   }
@@ -297,7 +281,7 @@ class Body {
   }
 
   void skip(const Property& property) {
-    const std::size_t n = property.list_size == Type::none ? 1 : list_length(property);
+    const std::size_t n = property.list_size == Type::unknown ? 1 : list_length(property);
     for (std::size_t i = 0; i < n; ++i) values_.number(property.type, property.name);
   }
 

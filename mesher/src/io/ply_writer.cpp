@@ -12,13 +12,6 @@ namespace collarmesh::io {
 
 namespace {
 
-template <class T>
-void write_binary(FileWriter& out, T value) {
-  static_assert(std::endian::native == std::endian::little);
-  const auto bytes = std::bit_cast<std::array<char, sizeof(T)>>(value);
-  out << std::string_view(bytes.data(), bytes.size());
-}
-
 /// Returns whether tags are written. The format has no integers of 64 bits.
 bool has_tags(const PolygonSoup& soup) {
   bool any = false;
@@ -43,16 +36,16 @@ void write_ply(const std::string& path, const PolygonSoup& soup) {
     out << "element edge " << soup.segments.size() << "\nproperty uint vertex1\nproperty uint vertex2\n";
   out << "end_header\n";
   for (const Point& p : soup.points)
-    for (const double c : {p.x, p.y, p.z}) write_binary(out, c);
+    for (const double c : {p.x, p.y, p.z}) out.append_bytes(c, std::endian::little);
   for (Index f = 0; f < soup.facet_count(); ++f) {
     const auto corners = one_polygon(path, soup, f);
-    write_binary(out, static_cast<std::uint32_t>(corners.size()));
-    for (const Index v : corners) write_binary(out, v);
-    if (tags) write_binary(out, static_cast<std::int32_t>(soup.facet_tag(f)));
+    out.append_bytes(static_cast<std::uint32_t>(corners.size()), std::endian::little);
+    for (const Index v : corners) out.append_bytes(v, std::endian::little);
+    if (tags) out.append_bytes(static_cast<std::int32_t>(soup.facet_tag(f)), std::endian::little);
   }
   for (const auto& segment : soup.segments) {
-    write_binary(out, segment.a);
-    write_binary(out, segment.b);
+    out.append_bytes(segment.a, std::endian::little);
+    out.append_bytes(segment.b, std::endian::little);
   }
   out.commit();
 }

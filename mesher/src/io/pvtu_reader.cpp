@@ -42,25 +42,47 @@ const std::vector<std::int64_t>& numbers(const NamedPiece& named, const VtkPiece
       named.path, name));
 }
 
+/// A point or a cell: its number in the whole mesh, its piece, and its place there.
+struct PieceMember {
+  std::int64_t number;
+  std::size_t piece, place;
+};
+
+void sort_by_number(std::vector<PieceMember>& members) {
+  std::sort(members.begin(), members.end(), [](const PieceMember& a, const PieceMember& b) {
+    return std::tie(a.number, a.piece, a.place) < std::tie(b.number, b.piece, b.place);
+  });
+}
+
+/// Joins the arrays of these names that all pieces have.
+template <std::size_t count>
+void join_arrays(const std::vector<NamedPiece>& pieces, const std::vector<PieceMember>& members,
+                 const std::array<std::string_view, count>& names, VtkPiece::Arrays VtkPiece::*arrays,
+                 VtkPiece& whole) {
+  for (const std::string_view name : names) {
+    const bool everywhere = std::all_of(pieces.begin(), pieces.end(), [&](const NamedPiece& each) {
+      return (each.piece.*arrays).contains(name);
+    });
+    if (!everywhere || name == vtk_point_ids || name == vtk_cell_ids || name == vtk_ghosts) continue;
+    auto& values = (whole.*arrays)[std::string(name)];
+    for (const PieceMember& member : members)
+      values.push_back((pieces[member.piece].piece.*arrays).find(name)->second[member.place]);
+  }
+}
+
 /// Merges points of several pieces with the same number.
 void join_points(std::vector<NamedPiece>& pieces, VtkPiece& whole) {
-  struct Place {
-    std::int64_t number;
-    std::size_t piece, point;
-  };
-  std::vector<Place> places;
+  std::vector<PieceMember> places;
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     const VtkPiece& piece = pieces[k].piece;
     const auto& ids = numbers(pieces[k], piece.point_data, vtk_point_ids, piece.points.size());
     for (std::size_t i = 0; i < ids.size(); ++i) places.push_back({ids[i], k, i});
     pieces[k].point_of.resize(piece.points.size());
   }
-  std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
-    return std::tie(a.number, a.piece, a.point) < std::tie(b.number, b.piece, b.point);
-  });
-  std::vector<Place> kept;
-  for (const Place& place : places) {
-    const Point& p = pieces[place.piece].piece.points[place.point];
+  sort_by_number(places);
+  std::vector<PieceMember> kept;
+  for (const PieceMember& place : places) {
+    const Point& p = pieces[place.piece].piece.points[place.place];
     if (kept.empty() || kept.back().number != place.number) {
       kept.push_back(place);
       whole.points.push_back(p);
@@ -69,26 +91,14 @@ void join_points(std::vector<NamedPiece>& pieces, VtkPiece& whole) {
                                   pieces[place.piece].path, place.number, p.x, p.y, p.z,
                                   whole.points.back().x, whole.points.back().y, whole.points.back().z));
     }
-    pieces[place.piece].point_of[place.point] = static_cast<std::int64_t>(whole.points.size()) - 1;
+    pieces[place.piece].point_of[place.place] = static_cast<std::int64_t>(whole.points.size()) - 1;
   }
-  for (const std::string_view name : vtk_point_arrays) {
-    const bool everywhere = std::all_of(pieces.begin(), pieces.end(), [&](const NamedPiece& each) {
-      return each.piece.point_data.count(name) > 0;
-    });
-    if (!everywhere || name == vtk_point_ids) continue;
-    auto& values = whole.point_data[std::string(name)];
-    for (const Place& place : kept)
-      values.push_back(pieces[place.piece].piece.point_data.find(name)->second[place.point]);
-  }
+  join_arrays(pieces, kept, vtk_point_arrays, &VtkPiece::point_data, whole);
 }
 
 /// Joins cells in the order of their numbers.
 void join_cells(const std::vector<NamedPiece>& pieces, VtkPiece& whole) {
-  struct Place {
-    std::int64_t number;
-    std::size_t piece, cell;
-  };
-  std::vector<Place> places;
+  std::vector<PieceMember> places;
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     const VtkPiece& piece = pieces[k].piece;
     const auto& ids = numbers(pieces[k], piece.cell_data, vtk_cell_ids, piece.types.size());
@@ -96,39 +106,30 @@ void join_cells(const std::vector<NamedPiece>& pieces, VtkPiece& whole) {
     for (std::size_t i = 0; i < ids.size(); ++i)
       if (ghosts == piece.cell_data.end() || ghosts->second[i] == 0) places.push_back({ids[i], k, i});
   }
-  std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
-    return std::tie(a.number, a.piece, a.cell) < std::tie(b.number, b.piece, b.cell);
-  });
+  sort_by_number(places);
   for (std::size_t i = 1; i < places.size(); ++i)
     if (places[i].number == places[i - 1].number)
       throw ReadError(fmt::format("{}: cell {} occurs twice, and neither is marked as a ghost",
                                   pieces[places[i].piece].path, places[i].number));
-  for (const Place& place : places) {
+  for (const PieceMember& place : places) {
     const auto& [path, piece, point_of] = pieces[place.piece];
     const auto size = static_cast<std::int64_t>(piece.connectivity.size());
-    const std::int64_t begin = place.cell == 0 ? 0 : piece.ends[place.cell - 1], end = piece.ends[place.cell];
+    const std::int64_t begin = place.place == 0 ? 0 : piece.ends[place.place - 1],
+                       end = piece.ends[place.place];
     if (begin < 0 || end < begin || end > size)
-      throw ReadError(fmt::format("{}: cell {} has the corners {} to {}, but there are {}", path, place.cell,
+      throw ReadError(fmt::format("{}: cell {} has the corners {} to {}, but there are {}", path, place.place,
                                   begin, end, size));
     for (std::int64_t at = begin; at < end; ++at) {
       const std::int64_t corner = piece.connectivity[static_cast<std::size_t>(at)];
       if (corner < 0 || corner >= static_cast<std::int64_t>(point_of.size()))
         throw ReadError(fmt::format("{}: cell {} has the corner {}, but there are {} points", path,
-                                    place.cell, corner, point_of.size()));
+                                    place.place, corner, point_of.size()));
       whole.connectivity.push_back(point_of[static_cast<std::size_t>(corner)]);
     }
     whole.ends.push_back(static_cast<std::int64_t>(whole.connectivity.size()));
-    whole.types.push_back(piece.types[place.cell]);
+    whole.types.push_back(piece.types[place.place]);
   }
-  for (const std::string_view name : vtk_cell_arrays) {
-    const bool everywhere = std::all_of(pieces.begin(), pieces.end(), [&](const NamedPiece& each) {
-      return each.piece.cell_data.count(name) > 0;
-    });
-    if (!everywhere || name == vtk_cell_ids || name == vtk_ghosts) continue;
-    auto& values = whole.cell_data[std::string(name)];
-    for (const Place& place : places)
-      values.push_back(pieces[place.piece].piece.cell_data.find(name)->second[place.cell]);
-  }
+  join_arrays(pieces, places, vtk_cell_arrays, &VtkPiece::cell_data, whole);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/sort_uniquely.h"
 #include "common/xml_text.h"
 #include "io/cell_nodes.h"
 #include "io/cell_partitions.h"
@@ -30,7 +31,8 @@ constexpr std::uint8_t duplicate = 1;
 
 /// The members of one piece; ghost tets follow its own.
 struct Members {
-  std::vector<Index> tets, faces, edges, points;
+  PerKind<std::vector<Index>> cells;
+  std::vector<Index> points;
   std::size_t own_tets = 0;
 };
 
@@ -42,16 +44,17 @@ std::vector<Members> members_by_partition(const TetMesh& mesh, const std::vector
     return members[static_cast<std::size_t>(std::lower_bound(numbers.begin(), numbers.end(), partition) -
                                             numbers.begin())];
   };
-  const std::vector<Index> faces = partitions_of_faces(mesh), edges = partitions_of_edges(mesh);
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
-    of(mesh.tet_partition[t]).tets.push_back(static_cast<Index>(t));
-  for (std::size_t f = 0; f < faces.size(); ++f) of(faces[f]).faces.push_back(static_cast<Index>(f));
-  for (std::size_t e = 0; e < edges.size(); ++e) of(edges[e]).edges.push_back(static_cast<Index>(e));
-  for (Members& each : members) each.own_tets = each.tets.size();
+  const auto add = [&](CellKind kind, const std::vector<Index>& partitions) {
+    for (Index i = 0; i < partitions.size(); ++i) of(partitions[i]).cells[kind].push_back(i);
+  };
+  add(CellKind::tet, mesh.tet_partition);
+  add(CellKind::triangle, partitions_of_faces(mesh));
+  add(CellKind::edge, partitions_of_edges(mesh));
+  for (Members& each : members) each.own_tets = each.cells[CellKind::tet].size();
   if (!with_ghosts) return members;
   const std::vector<std::vector<Index>> ghosts = ghost_tets(mesh);
   for (std::size_t k = 0; k < members.size(); ++k)
-    members[k].tets.insert(members[k].tets.end(), ghosts[k].begin(), ghosts[k].end());
+    std::ranges::copy(ghosts[k], std::back_inserter(members[k].cells[CellKind::tet]));
   return members;
 }
 
@@ -72,40 +75,39 @@ class Cutter {
   /// Finds the points of these cells, ascending; the first piece also gets points without cells.
   void find_points(Members& members, bool first) const {
     std::vector<Index>& points = members.points;
-    const auto add = [&](const CellNodes& nodes) { points.insert(points.end(), nodes.begin(), nodes.end()); };
-    for (const Index t : members.tets) add(nodes_of_tet(mesh_, t));
-    for (const Index f : members.faces) add(nodes_of_face(mesh_, f));
-    for (const Index e : members.edges) add(nodes_of_edge(mesh_, e));
+    for (const CellKind kind : all_cell_kinds)
+      for (const Index cell : members.cells[kind])
+        std::ranges::copy(nodes_of(kind)(mesh_, cell), std::back_inserter(points));
     if (first) add_loose_points(points);
-    std::sort(points.begin(), points.end());
-    points.erase(std::unique(points.begin(), points.end()), points.end());
+    sort_uniquely(points);
   }
 
   TetMesh cut(const Members& members) {
     for (std::size_t i = 0; i < members.points.size(); ++i) local_[members.points[i]] = static_cast<Index>(i);
+    const std::vector<Index>&tets = members.cells[CellKind::tet], &faces = members.cells[CellKind::triangle],
+          &edges = members.cells[CellKind::edge];
     TetMesh part;
     part.group_names = mesh_.group_names;
     part.names = mesh_.names;
     part.points = picked(mesh_.points, members.points);
     part.features = picked(mesh_.features, members.points);
-    part.tets = numbered(picked(mesh_.tets, members.tets));
-    part.tet_mid_nodes = numbered(picked(mesh_.tet_mid_nodes, members.tets));
-    part.tet_region = picked(mesh_.tet_region, members.tets);
-    part.tet_tag = picked(mesh_.tet_tag, members.tets);
-    part.tet_collar = picked(mesh_.tet_collar, members.tets);
-    part.tet_crease = picked(mesh_.tet_crease, members.tets);
-    part.tet_thin = picked(mesh_.tet_thin, members.tets);
-    part.tet_partition = picked(mesh_.tet_partition, members.tets);
-    part.faces = numbered(picked(mesh_.faces, members.faces));
-    part.face_mid_nodes = numbered(picked(mesh_.face_mid_nodes, members.faces));
-    part.face_regions = picked(mesh_.face_regions, members.faces);
-    part.face_patch = picked(mesh_.face_patch, members.faces);
-    part.face_tag = picked(mesh_.face_tag, members.faces);
-    part.edges = numbered(picked(mesh_.edges, members.edges));
-    for (const Index node : picked(mesh_.edge_mid_nodes, members.edges))
-      part.edge_mid_nodes.push_back(local_[node]);
-    part.edge_curve = picked(mesh_.edge_curve, members.edges);
-    part.edge_tag = picked(mesh_.edge_tag, members.edges);
+    part.tets = numbered(picked(mesh_.tets, tets));
+    part.tet_mid_nodes = numbered(picked(mesh_.tet_mid_nodes, tets));
+    part.tet_region = picked(mesh_.tet_region, tets);
+    part.tet_tag = picked(mesh_.tet_tag, tets);
+    part.tet_collar = picked(mesh_.tet_collar, tets);
+    part.tet_crease = picked(mesh_.tet_crease, tets);
+    part.tet_thin = picked(mesh_.tet_thin, tets);
+    part.tet_partition = picked(mesh_.tet_partition, tets);
+    part.faces = numbered(picked(mesh_.faces, faces));
+    part.face_mid_nodes = numbered(picked(mesh_.face_mid_nodes, faces));
+    part.face_regions = picked(mesh_.face_regions, faces);
+    part.face_patch = picked(mesh_.face_patch, faces);
+    part.face_tag = picked(mesh_.face_tag, faces);
+    part.edges = numbered(picked(mesh_.edges, edges));
+    for (const Index node : picked(mesh_.edge_mid_nodes, edges)) part.edge_mid_nodes.push_back(local_[node]);
+    part.edge_curve = picked(mesh_.edge_curve, edges);
+    part.edge_tag = picked(mesh_.edge_tag, edges);
     return part;
   }
 
@@ -119,12 +121,9 @@ class Cutter {
 
   void add_loose_points(std::vector<Index>& points) const {
     std::vector<bool> used(mesh_.points.size(), false);
-    const auto mark = [&](const CellNodes& nodes) {
-      for (const Index v : nodes) used[v] = true;
-    };
-    for (std::size_t t = 0; t < mesh_.tets.size(); ++t) mark(nodes_of_tet(mesh_, t));
-    for (std::size_t f = 0; f < mesh_.faces.size(); ++f) mark(nodes_of_face(mesh_, f));
-    for (std::size_t e = 0; e < mesh_.edges.size(); ++e) mark(nodes_of_edge(mesh_, e));
+    for (const CellKind kind : all_cell_kinds)
+      for (std::size_t i = 0; i < count_of(mesh_, kind); ++i)
+        for (const Index v : nodes_of(kind)(mesh_, i)) used[v] = true;
     for (std::size_t v = 0; v < used.size(); ++v)
       if (!used[v]) points.push_back(static_cast<Index>(v));
   }
@@ -136,12 +135,9 @@ class Cutter {
 /// Returns the numbers of cells: tets, then faces, then edges.
 VtkArray cell_ids(const TetMesh& mesh, const Members& members) {
   std::vector<std::int64_t> ids;
-  const auto add = [&](const std::vector<Index>& cells, std::size_t first) {
-    for (const Index cell : cells) ids.push_back(static_cast<std::int64_t>(first + cell));
-  };
-  add(members.tets, 0);
-  add(members.faces, mesh.tets.size());
-  add(members.edges, mesh.tets.size() + mesh.faces.size());
+  for (const CellKind kind : all_cell_kinds)
+    for (const Index cell : members.cells[kind])
+      ids.push_back(static_cast<std::int64_t>(count_before(mesh, kind) + cell));
   return {std::string(vtk_cell_ids), std::move(ids)};
 }
 
@@ -149,7 +145,7 @@ void add_ghost_marks(const Members& members, Index number, const std::vector<Ind
                      VtkGrid& grid) {
   std::vector<std::uint8_t> cells(grid.cell_count, 0), points;
   std::fill(cells.begin() + static_cast<std::ptrdiff_t>(members.own_tets),
-            cells.begin() + static_cast<std::ptrdiff_t>(members.tets.size()), duplicate);
+            cells.begin() + static_cast<std::ptrdiff_t>(members.cells[CellKind::tet].size()), duplicate);
   for (const Index v : members.points) points.push_back(partition_of_point[v] == number ? 0 : duplicate);
   grid.cell_data.push_back({std::string(vtk_ghosts), std::move(cells)});
   grid.point_data.push_back({std::string(vtk_ghosts), std::move(points)});

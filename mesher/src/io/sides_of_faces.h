@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <vector>
 
 #include "collarmesh/tet_mesh.h"
@@ -56,6 +57,17 @@ inline std::vector<SideOfCell> sides_of_faces(const TetMesh& mesh, CellKind kind
     if (behind || found[face].cell == none) found[face] = side;
   });
   return found;
+}
+
+/// Returns such sides of triangles and quadrangles by tag, without those of faces beside no cell.
+inline std::map<Tag, std::vector<SideOfCell>> sides_by_tag(const TetMesh& mesh) {
+  std::map<Tag, std::vector<SideOfCell>> by_tag;
+  for_each_kind(mesh, 2, [&](CellKind kind) {
+    const std::vector<SideOfCell> sides = sides_of_faces(mesh, kind);
+    for (std::size_t f = 0; f < sides.size(); ++f)
+      if (sides[f].cell != none) by_tag[tags_of(mesh, kind)[f]].push_back(sides[f]);
+  });
+  return by_tag;
 }
 
 }  // namespace collarmesh::io

@@ -26,17 +26,10 @@ constexpr std::array formats{
     SoupFormat{".stl", read_stl, write_stl},    SoupFormat{".ply", read_ply, write_ply},
     SoupFormat{".poly", read_poly, write_poly}, SoupFormat{".smesh", read_smesh, write_smesh}};
 
-const SoupFormat* find_soup_format(const std::string& path, std::string_view format) {
-  const std::string extension = format.empty() ? lower_extension(path) : std::string(format);
-  for (const SoupFormat& known : formats)
-    if (known.extension == extension) return &known;
-  return nullptr;
-}
-
 constexpr std::array<std::string_view, 6> cad_extensions{".step", ".stp", ".iges", ".igs", ".brep", ".brp"};
 
 std::string unknown(const std::string& path) {
-  if (std::ranges::count(cad_extensions, lower_extension(path)) > 0)
+  if (std::ranges::count(cad_extensions, format_of(path)) > 0)
     return path +
            ": this is a CAD shape, not a surface; programs mesh CAD shapes with mesh_files "
            "(collarmesh::files)";
@@ -46,7 +39,7 @@ std::string unknown(const std::string& path) {
 }  // namespace
 
 PolygonSoup read_soup(const std::string& path, std::string_view format) {
-  const SoupFormat* found = find_soup_format(path, format);
+  const SoupFormat* found = find_format(formats, path, format);
   if (found == nullptr) throw ReadError(unknown(path));
   PolygonSoup soup = found->read(path);
   soup.name = path;
@@ -54,13 +47,13 @@ PolygonSoup read_soup(const std::string& path, std::string_view format) {
 }
 
 void write_soup(const std::string& path, const PolygonSoup& soup, std::string_view format) {
-  const SoupFormat* found = find_soup_format(path, format);
+  const SoupFormat* found = find_format(formats, path, format);
   if (found == nullptr) throw WriteError(unknown(path));
   found->write(path, soup);
 }
 
 bool is_soup_format(const std::string& path, std::string_view format) {
-  return find_soup_format(path, format) != nullptr;
+  return find_format(formats, path, format) != nullptr;
 }
 
 std::vector<std::string> soup_formats() {

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "common/is_finite.h"
 #include "io/byte_reader.h"
 #include "io/file_bytes.h"
 #include "io/point_merger.h"
@@ -114,7 +115,7 @@ PolygonSoup read_text(const std::string& path, std::string_view text) {
 Point read_binary_point(ByteReader& reader) {
   const auto coordinate = [&reader] { return double{reader.get<float>("a coordinate of a vertex")}; };
   const double x = coordinate(), y = coordinate(), z = coordinate();
-  if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z))
+  if (!is_finite({x, y, z}))
     reader.fail(fmt::format("the vertex that ends here, ({}, {}, {}), is not finite", x, y, z));
   return {x, y, z};
 }

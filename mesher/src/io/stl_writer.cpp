@@ -17,9 +17,7 @@ namespace collarmesh::io {
 namespace {
 
 void write_point(FileWriter& out, const Point& p) {
-  static_assert(std::endian::native == std::endian::little);
-  const std::array<float, 3> raw{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
-  out << std::string_view(reinterpret_cast<const char*>(raw.data()), sizeof raw);
+  for (const double c : {p.x, p.y, p.z}) out.append_bytes(static_cast<float>(c), std::endian::little);
 }
 
 }  // namespace
@@ -28,8 +26,8 @@ void write_stl(const std::string& path, const PolygonSoup& soup) {
   FileWriter out(path);
   std::string header = "binary STL, written by collarmesh";
   header.resize(80, ' ');
-  const auto count = std::bit_cast<std::array<char, 4>>(soup.facet_count());
-  out << header << std::string_view(count.data(), count.size());
+  out << header;
+  out.append_bytes(soup.facet_count(), std::endian::little);
   for (Index f = 0; f < soup.facet_count(); ++f) {
     const auto corners = one_polygon(path, soup, f);
     if (corners.size() != 3)

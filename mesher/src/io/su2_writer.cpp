@@ -6,33 +6,14 @@
 #include <vector>
 
 #include "collarmesh/error.h"
-#include "io/cell_nodes.h"
-#include "io/cell_orientation.h"
 #include "io/label_names.h"
 #include "io/tet_mesh_formats.h"
+#include "io/vtk_grid.h"
 #include "io/write_each.h"
 
 namespace collarmesh::io {
 
 namespace {
-
-/// VTK's number of a kind of cells.
-constexpr int number_of(CellKind kind) {
-  switch (kind) {
-    case CellKind::tet: return 10;
-    case CellKind::prism: return 13;
-    case CellKind::pyramid: return 14;
-    case CellKind::quadrangle: return 9;
-    default: return 5;
-  }
-}
-
-/// Returns the nodes in VTK's order, in which the normal of a prism's first triangle points away from the
-/// second one.
-CellNodes vtk_nodes(const TetMesh& mesh, CellKind kind, std::size_t cell) {
-  const CellNodes nodes = nodes_of(kind)(mesh, cell);
-  return kind == CellKind::prism ? turned(kind, nodes) : nodes;
-}
 
 void write_markers(FileWriter& out, const TetMesh& mesh) {
   std::map<Tag, std::vector<std::pair<CellKind, Index>>> markers;
@@ -46,7 +27,7 @@ void write_markers(FileWriter& out, const TetMesh& mesh) {
   for (const auto& [tag, faces] : markers) {
     out << "MARKER_TAG= " << word_name(mesh, 2, tag) << "\nMARKER_ELEMS= " << faces.size() << '\n';
     for (const auto& [kind, f] : faces) {
-      out << number_of(kind);
+      out << vtk_type_of(kind, 1);
       for (const Index v : nodes_of(kind)(mesh, f)) out << ' ' << v;
       out << '\n';
     }
@@ -63,16 +44,14 @@ void write_su2(const std::string& path, const TetMesh& mesh) {
   for_each_kind(mesh, 3, [&](CellKind kind) {
     const std::size_t before = count_before(mesh, kind);
     write_each(out, count_of(mesh, kind), [&](TextBuffer& text, std::size_t i) {
-      text << number_of(kind);
-      for (const Index v : vtk_nodes(mesh, kind, i)) text << ' ' << v;
+      text << vtk_type_of(kind, 1);
+      for (const Index v : in_vtk_order(kind, nodes_of(kind)(mesh, i))) text << ' ' << v;
       text << ' ' << before + i << '\n';
     });
   });
   out << "NPOIN= " << mesh.points.size() << '\n';
-  write_each(out, mesh.points.size(), [&](TextBuffer& text, std::size_t i) {
-    const Point& p = mesh.points[i];
-    text << p.x << ' ' << p.y << ' ' << p.z << ' ' << i << '\n';
-  });
+  write_each(out, mesh.points.size(),
+             [&](TextBuffer& text, std::size_t i) { text << mesh.points[i] << ' ' << i << '\n'; });
   write_markers(out, mesh);
   out.commit();
 }

@@ -78,13 +78,6 @@ std::string unknown(const std::string& path, std::string_view format, const std:
              : fmt::format("{}: {}", path, missing);
 }
 
-const TetMeshFormat* find_format(const std::string& path, std::string_view format) {
-  const std::string extension = format.empty() ? lower_extension(path) : std::string(format);
-  for (const TetMeshFormat& known : tet_mesh_formats)
-    if (known.extension == extension) return &known;
-  return nullptr;
-}
-
 std::vector<std::string> extensions(bool (*wanted)(const TetMeshFormat&)) {
   std::vector<std::string> result;
   for (const TetMeshFormat& format : tet_mesh_formats)
@@ -112,7 +105,7 @@ void require_place_for_layers(const std::string& path, const TetMesh& mesh, cons
 
 void write_tet_mesh(const std::string& path, const TetMesh& mesh, std::string_view format,
                     GhostCells ghost_cells) {
-  const TetMeshFormat* found = find_format(path, format);
+  const TetMeshFormat* found = find_format(tet_mesh_formats, path, format);
   if (found == nullptr) throw WriteError(unknown(path, format, written_tet_mesh_formats()));
   if ((mesh.is_surface() || mesh.is_curves()) && !found->surfaces)
     throw WriteError(fmt::format("{}: {} has no place for a mesh of {} alone; write {}", path,
@@ -127,7 +120,7 @@ void write_tet_mesh(const std::string& path, const TetMesh& mesh, std::string_vi
 }
 
 TetMesh read_tet_mesh(const std::string& path, std::string_view format) {
-  const TetMeshFormat* found = find_format(path, format);
+  const TetMeshFormat* found = find_format(tet_mesh_formats, path, format);
   if (found == nullptr || found->read == nullptr)
     throw ReadError(unknown(path, format, read_tet_mesh_formats()));
   return found->read(path);
@@ -163,7 +156,7 @@ std::vector<std::string> read_tet_mesh_formats() {
 }
 
 std::string missing_library(const std::string& path, std::string_view format) {
-  const std::string extension = format.empty() ? lower_extension(path) : std::string(format);
+  const std::string extension = format_of(path, format);
   const bool med = extension == ".med", hdf5 = extension == ".xdmf" || extension == ".cgns";
   if ((!med && !hdf5) || is_tet_mesh_format(path, format)) return {};
   return fmt::format("{} needs {}, without which this program was built; install {} and build it again",
@@ -171,7 +164,7 @@ std::string missing_library(const std::string& path, std::string_view format) {
 }
 
 bool is_tet_mesh_format(const std::string& path, std::string_view format) {
-  return find_format(path, format) != nullptr;
+  return find_format(tet_mesh_formats, path, format) != nullptr;
 }
 
 }  // namespace collarmesh::io

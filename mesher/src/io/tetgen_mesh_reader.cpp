@@ -21,14 +21,6 @@ namespace collarmesh::io {
 
 namespace {
 
-/// The place of each of TetMesh's nodes in the order of the file.
-template <std::size_t n>
-std::array<std::uint8_t, n> inverse(const std::array<std::uint8_t, n>& order) {
-  std::array<std::uint8_t, n> result{};
-  for (std::size_t k = 0; k < n; ++k) result[order[k]] = static_cast<std::uint8_t>(k);
-  return result;
-}
-
 class CellFile {
  public:
   CellFile(const std::string& path, std::int64_t first, std::size_t points)
@@ -43,7 +35,7 @@ class CellFile {
     scan_.integer("the number of a cell");
     CellNodes nodes;
     for (std::size_t k = 0; k < n; ++k) nodes.add(scan_.index("a corner", first_, points_));
-    return nodes.in_order(order);
+    return nodes.from_order(order);
   }
 
   /// Reads a tag: region attributes are real numbers.
@@ -77,9 +69,8 @@ void read_tets(const std::string& path, std::int64_t first, TetMesh& mesh) {
   const std::int64_t attributes =
       file.scan().at_line_end() ? 0 : file.scan().integer("the number of attributes");
   file.scan().skip_line();
-  const auto order = inverse(tetgen_tet_order);
   for (Index i = 0; i < file.count(); ++i) {
-    add_tet(file.read_nodes(static_cast<std::size_t>(n), order), mesh);
+    add_cell(CellKind::tet, file.read_nodes(static_cast<std::size_t>(n), tetgen_tet_order), mesh);
     mesh.tet_tag.push_back(attributes > 0 ? file.read_tag() : 0);
     file.scan().skip_line();
   }
@@ -87,16 +78,15 @@ void read_tets(const std::string& path, std::int64_t first, TetMesh& mesh) {
 }
 
 /// Reads cells. Faces and edges have mid-edge nodes if tets have.
-template <class Add>
-void read_cells(const std::string& path, std::int64_t first, std::size_t n,
-                std::span<const std::uint8_t> order, Add add, std::vector<Tag>& tags, TetMesh& mesh) {
+void read_cells(const std::string& path, std::int64_t first, CellKind kind,
+                std::span<const std::uint8_t> order, TetMesh& mesh) {
   if (!std::filesystem::exists(path)) return;
   CellFile file(path, first, mesh.points.size());
   const bool markers = !file.scan().at_line_end() && file.scan().integer("the flag for markers") != 0;
   file.scan().skip_line();
   for (Index i = 0; i < file.count(); ++i) {
-    add(file.read_nodes(n, order), mesh);
-    tags.push_back(markers ? file.read_tag() : 0);
+    add_cell(kind, file.read_nodes(shape_of(kind).nodes(mesh.order()), order), mesh);
+    tags_of(mesh, kind).push_back(markers ? file.read_tag() : 0);
     file.scan().skip_line();
   }
 }
@@ -107,10 +97,8 @@ TetMesh read_tetgen(const std::string& path) {
   TetMesh mesh;
   const std::int64_t first = read_nodes(tetgen_sibling(path, ".node"), mesh);
   read_tets(tetgen_sibling(path, ".ele"), first, mesh);
-  const bool second = mesh.order() == 2;
-  read_cells(tetgen_sibling(path, ".face"), first, second ? 6 : 3, inverse(tetgen_face_order), add_face,
-             mesh.face_tag, mesh);
-  read_cells(tetgen_sibling(path, ".edge"), first, second ? 3 : 2, {}, add_edge, mesh.edge_tag, mesh);
+  read_cells(tetgen_sibling(path, ".face"), first, CellKind::triangle, tetgen_face_order, mesh);
+  read_cells(tetgen_sibling(path, ".edge"), first, CellKind::edge, {}, mesh);
   complete_mesh(path, mesh);
   return mesh;
 }

@@ -17,8 +17,7 @@ namespace {
 void write_mesh_nodes(FileWriter& out, const TetMesh& mesh) {
   out << mesh.points.size() << " 3 0 1\n";
   write_each(out, mesh.points.size(), [&](TextBuffer& text, std::size_t i) {
-    const Point& p = mesh.points[i];
-    text << i + 1 << ' ' << p.x << ' ' << p.y << ' ' << p.z << ' '
+    text << i + 1 << ' ' << mesh.points[i] << ' '
          << (mesh.features.empty() ? 0 : mesh.features[i].dimension + 1) << '\n';
   });
 }

@@ -13,9 +13,13 @@ TetgenNodeHeader read_tetgen_node_header(TextScanner& scan) {
   }
   if (!scan.at_line_end()) header.attributes = scan.integer("the number of attributes of a point");
   if (header.attributes < 0) scan.fail(fmt::format("the number of attributes is {}", header.attributes));
-  header.markers = !scan.at_line_end() && scan.integer("the flag for boundary markers") != 0;
+  header.markers = read_tetgen_marker_flag(scan);
   scan.skip_line();
   return header;
+}
+
+bool read_tetgen_marker_flag(TextScanner& scan) {
+  return !scan.at_line_end() && scan.integer("the flag for boundary markers") != 0;
 }
 
 std::int64_t read_tetgen_nodes(TextScanner& scan, const TetgenNodeHeader& header, std::vector<Point>& points,

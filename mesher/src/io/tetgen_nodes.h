@@ -16,6 +16,9 @@ struct TetgenNodeHeader {
 };
 TetgenNodeHeader read_tetgen_node_header(TextScanner& scan);
 
+/// Returns whether lines end with a marker. A missing flag is 0.
+bool read_tetgen_marker_flag(TextScanner& scan);
+
 /// Returns the number of the first point, 0 or 1. Tags stay empty without markers.
 std::int64_t read_tetgen_nodes(TextScanner& scan, const TetgenNodeHeader& header, std::vector<Point>& points,
                                std::vector<Tag>& tags);

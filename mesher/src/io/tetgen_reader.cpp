@@ -17,11 +17,6 @@ namespace collarmesh::io {
 
 namespace {
 
-/// Returns whether facet lines end with a marker. Missing flags are 0.
-bool marker_flag(TextScanner& scan) {
-  return !scan.at_line_end() && scan.integer("the flag for boundary markers") != 0;
-}
-
 Tag marker(TextScanner& scan, bool given) {
   return given && !scan.at_line_end() ? scan.integer("a boundary marker") : 0;
 }
@@ -101,7 +96,7 @@ using FacetReader = FileFacet (*)(TextScanner&, std::int64_t, bool, const Polygo
 
 void read_facets(TextScanner& scan, std::int64_t first, FacetReader read_facet, PolygonSoup& soup) {
   const Index count = scan.count("the number of facets", 4);
-  const bool markers = marker_flag(scan);
+  const bool markers = read_tetgen_marker_flag(scan);
   scan.skip_line();
   for (Index i = 0; i < count; ++i) {
     const FileFacet facet = read_facet(scan, first, markers, soup);

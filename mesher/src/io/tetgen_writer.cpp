@@ -18,8 +18,7 @@ void write_soup_nodes(FileWriter& out, const PolygonSoup& soup) {
   const bool markers = !soup.point_tags.empty();
   out << "# Written by collarmesh.\n" << soup.points.size() << " 3 0 " << (markers ? 1 : 0) << '\n';
   for (std::size_t i = 0; i < soup.points.size(); ++i) {
-    const Point& p = soup.points[i];
-    out << i + 1 << ' ' << p.x << ' ' << p.y << ' ' << p.z;
+    out << i + 1 << ' ' << soup.points[i];
     if (markers) out << ' ' << soup.point_tags[i];
     out << '\n';
   }
@@ -28,10 +27,6 @@ void write_soup_nodes(FileWriter& out, const PolygonSoup& soup) {
 void write_corners(FileWriter& out, std::span<const Index> corners) {
   out << corners.size();
   for (const Index v : corners) out << ' ' << std::size_t{v} + 1;
-}
-
-void write_point(FileWriter& out, std::size_t number, const Point& p) {
-  out << number << ' ' << p.x << ' ' << p.y << ' ' << p.z;
 }
 
 void write_poly_facets(FileWriter& out, const PolygonSoup& soup) {
@@ -45,10 +40,7 @@ void write_poly_facets(FileWriter& out, const PolygonSoup& soup) {
       write_corners(out, soup.polygon(q));
       out << '\n';
     }
-    for (std::size_t h = 0; h < holes[f].size(); ++h) {
-      write_point(out, h + 1, holes[f][h]);
-      out << '\n';
-    }
+    for (std::size_t h = 0; h < holes[f].size(); ++h) out << h + 1 << ' ' << holes[f][h] << '\n';
   }
   for (const auto& segment : soup.segments) {
     out << "1 0 " << segment.tag << '\n';
@@ -73,15 +65,12 @@ double volume_of_edge(double edge) { return edge * edge * edge / (6 * std::numbe
 
 void write_holes_and_regions(FileWriter& out, const PolygonSoup& soup) {
   out << soup.hole_points.size() << '\n';
-  for (std::size_t i = 0; i < soup.hole_points.size(); ++i) {
-    write_point(out, i + 1, soup.hole_points[i]);
-    out << '\n';
-  }
+  for (std::size_t i = 0; i < soup.hole_points.size(); ++i)
+    out << i + 1 << ' ' << soup.hole_points[i] << '\n';
   out << soup.region_points.size() << '\n';
   for (std::size_t i = 0; i < soup.region_points.size(); ++i) {
     const auto& region = soup.region_points[i];
-    write_point(out, i + 1, region.point);
-    out << ' ' << region.tag << ' ';
+    out << i + 1 << ' ' << region.point << ' ' << region.tag << ' ';
     if (region.size > 0)
       out << volume_of_edge(region.size) << '\n';
     else

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "collarmesh/geometry.h"
+
 namespace collarmesh::io {
 
 /// Text in memory. Numbers are written whatever the locale, doubles in the shortest form that reads back as
@@ -29,6 +31,8 @@ class TextBuffer {
     used_ += static_cast<std::size_t>(std::to_chars(first, first + longest_number, value).ptr - first);
     return *this;
   }
+
+  TextBuffer& operator<<(const Point& p) { return *this << p.x << ' ' << p.y << ' ' << p.z; }
 
   std::string_view text() const { return {bytes_.data(), used_}; }
   void clear() { used_ = 0; }

@@ -17,27 +17,18 @@ namespace {
 
 struct XmlType {
   std::string_view name;
-  VtkType type;
-  std::size_t size;
+  NumberType type;
 };
-constexpr std::array<XmlType, 10> xml_types{{{"Int8", VtkType::i8, 1},
-                                             {"UInt8", VtkType::u8, 1},
-                                             {"Int16", VtkType::i16, 2},
-                                             {"UInt16", VtkType::u16, 2},
-                                             {"Int32", VtkType::i32, 4},
-                                             {"UInt32", VtkType::u32, 4},
-                                             {"Int64", VtkType::i64, 8},
-                                             {"UInt64", VtkType::u64, 8},
-                                             {"Float32", VtkType::f32, 4},
-                                             {"Float64", VtkType::f64, 8}}};
-
-template <class T>
-T value_at(std::string_view bytes, std::size_t at, std::endian order) {
-  std::array<char, sizeof(T)> raw;
-  std::memcpy(raw.data(), bytes.data() + at, sizeof(T));
-  if (order != std::endian::native) std::reverse(raw.begin(), raw.end());
-  return std::bit_cast<T>(raw);
-}
+constexpr std::array<XmlType, 10> xml_types{{{"Int8", NumberType::i8},
+                                             {"UInt8", NumberType::u8},
+                                             {"Int16", NumberType::i16},
+                                             {"UInt16", NumberType::u16},
+                                             {"Int32", NumberType::i32},
+                                             {"UInt32", NumberType::u32},
+                                             {"Int64", NumberType::i64},
+                                             {"UInt64", NumberType::u64},
+                                             {"Float32", NumberType::f32},
+                                             {"Float64", NumberType::f64}}};
 
 /// Takes bytes from the front of the stored data.
 class Stored {
@@ -161,16 +152,10 @@ std::vector<std::int64_t> convert_to_integers(std::string_view bytes, std::endia
 
 }  // namespace
 
-VtkType vtk_type(std::string_view name) {
+NumberType vtk_type(std::string_view name) {
   for (const XmlType& known : xml_types)
     if (known.name == name) return known.type;
-  return VtkType::unknown;
-}
-
-std::size_t vtk_size(VtkType type) {
-  for (const XmlType& known : xml_types)
-    if (known.type == type) return known.size;
-  return 0;
+  return NumberType::unknown;
 }
 
 std::string decode_vtk_array(std::string_view text, bool base64, const VtkStorage& storage) {
@@ -180,33 +165,33 @@ std::string decode_vtk_array(std::string_view text, bool base64, const VtkStorag
 }
 
 template <class To>
-std::vector<To> convert_vtk_values(std::string_view bytes, VtkType type, std::endian order) {
+std::vector<To> convert_vtk_values(std::string_view bytes, NumberType type, std::endian order) {
   constexpr bool to_integers = std::is_integral_v<To>;
   switch (type) {
-    case VtkType::i8: return convert<std::int8_t, To>(bytes, order);
-    case VtkType::u8: return convert<std::uint8_t, To>(bytes, order);
-    case VtkType::i16: return convert<std::int16_t, To>(bytes, order);
-    case VtkType::u16: return convert<std::uint16_t, To>(bytes, order);
-    case VtkType::i32: return convert<std::int32_t, To>(bytes, order);
-    case VtkType::u32: return convert<std::uint32_t, To>(bytes, order);
-    case VtkType::i64: return convert<std::int64_t, To>(bytes, order);
-    case VtkType::u64: return convert<std::uint64_t, To>(bytes, order);
-    case VtkType::f32:
+    case NumberType::i8: return convert<std::int8_t, To>(bytes, order);
+    case NumberType::u8: return convert<std::uint8_t, To>(bytes, order);
+    case NumberType::i16: return convert<std::int16_t, To>(bytes, order);
+    case NumberType::u16: return convert<std::uint16_t, To>(bytes, order);
+    case NumberType::i32: return convert<std::int32_t, To>(bytes, order);
+    case NumberType::u32: return convert<std::uint32_t, To>(bytes, order);
+    case NumberType::i64: return convert<std::int64_t, To>(bytes, order);
+    case NumberType::u64: return convert<std::uint64_t, To>(bytes, order);
+    case NumberType::f32:
       if constexpr (to_integers)
         return convert_to_integers<float>(bytes, order);
       else
         return convert<float, To>(bytes, order);
-    case VtkType::f64:
+    case NumberType::f64:
       if constexpr (to_integers)
         return convert_to_integers<double>(bytes, order);
       else
         return convert<double, To>(bytes, order);
-    case VtkType::unknown: break;
+    case NumberType::unknown: break;
   }
   return {};
 }
 
-template std::vector<double> convert_vtk_values(std::string_view, VtkType, std::endian);
-template std::vector<std::int64_t> convert_vtk_values(std::string_view, VtkType, std::endian);
+template std::vector<double> convert_vtk_values(std::string_view, NumberType, std::endian);
+template std::vector<std::int64_t> convert_vtk_values(std::string_view, NumberType, std::endian);
 
 }  // namespace collarmesh::io

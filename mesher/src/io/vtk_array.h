@@ -6,14 +6,13 @@
 #include <string_view>
 #include <vector>
 
+#include "io/byte_reader.h"
+
 /// Values of VTK's XML formats as they are stored outside the XML: blocks of bytes, raw or base64,
 /// compressed or not.
 namespace collarmesh::io {
 
-enum class VtkType { i8, u8, i16, u16, i32, u32, i64, u64, f32, f64, unknown };
-
-VtkType vtk_type(std::string_view name);
-std::size_t vtk_size(VtkType type);
+NumberType vtk_type(std::string_view name);
 
 enum class VtkCompression { none, zlib, lz4 };
 
@@ -38,6 +37,6 @@ std::string decode_vtk_array(std::string_view stored, bool base64, const VtkStor
 
 /// Converts numbers of any type to doubles or 64-bit integers.
 template <class To>
-std::vector<To> convert_vtk_values(std::string_view bytes, VtkType type, std::endian order);
+std::vector<To> convert_vtk_values(std::string_view bytes, NumberType type, std::endian order);
 
 }  // namespace collarmesh::io

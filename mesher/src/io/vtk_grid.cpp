@@ -12,7 +12,7 @@
 
 #include "common/large_pages.h"
 #include "common/parallel_for.h"
-#include "io/cell_nodes.h"
+#include "io/cell_orientation.h"
 #include "io/cell_partitions.h"
 #include "io/complete_mesh.h"
 #include "io/names_text.h"
@@ -23,38 +23,15 @@ namespace {
 
 constexpr std::int64_t vtk_vertex = 1;
 
-/// VTK's types of a kind of cells, by order.
-struct VtkKind {
-  CellKind kind;
-  std::array<std::uint8_t, 2> types;
-};
-constexpr std::array<VtkKind, cell_kinds> vtk_kinds{{{CellKind::tet, {10, 24}},
-                                                     {CellKind::prism, {13, 26}},
-                                                     {CellKind::pyramid, {14, 27}},
-                                                     {CellKind::triangle, {5, 22}},
-                                                     {CellKind::quadrangle, {9, 23}},
-                                                     {CellKind::edge, {3, 21}}}};
-
-/// Our node at each place of VTK's wedges, in which the normal of the first triangle points away from the
-/// second one.
-constexpr std::array<std::uint8_t, 15> wedge_order{0, 2, 1, 3, 5, 4, 8, 7, 6, 11, 10, 9, 12, 14, 13};
-
-std::span<const std::uint8_t> vtk_order(CellKind kind, std::size_t nodes) {
-  if (kind != CellKind::prism) return {};
-  return std::span(wedge_order).first(nodes);
-}
-
-std::size_t cell_count(const TetMesh& mesh) {
-  std::size_t count = 0;
-  for (const CellKind kind : all_cell_kinds) count += count_of(mesh, kind);
-  return count;
-}
+/// VTK's types of cells, by order.
+constexpr PerKind<std::array<std::uint8_t, 2>> vtk_types{
+    {{{10, 24}, {13, 26}, {14, 27}, {5, 22}, {9, 23}, {3, 21}}}};
 
 /// Makes one value per cell.
 template <class T, class OfCell>
 std::vector<T> per_cell(const TetMesh& mesh, const OfCell& of_cell) {
   std::vector<T> values;
-  reserve_in_large_pages(values, cell_count(mesh));
+  reserve_in_large_pages(values, count_of_all(mesh));
   for (const CellKind kind : all_cell_kinds)
     for (std::size_t i = 0; i < count_of(mesh, kind); ++i) values.push_back(static_cast<T>(of_cell(kind, i)));
   return values;
@@ -78,7 +55,7 @@ class GridMaker {
  public:
   explicit GridMaker(const TetMesh& mesh) : mesh_(mesh) {
     grid_.point_count = mesh.points.size();
-    grid_.cell_count = cell_count(mesh);
+    grid_.cell_count = count_of_all(mesh);
   }
 
   VtkGrid make() {
@@ -122,13 +99,11 @@ class GridMaker {
     std::size_t corners = 0;
     for (const CellKind kind : all_cell_kinds) corners += shape_of(kind).corners * count_of(mesh_, kind);
     reserve_in_large_pages(values, corners);
-    for (const CellKind kind : all_cell_kinds) {
-      const std::span<const std::uint8_t> order = vtk_order(kind, shape_of(kind).nodes(mesh_.order()));
+    for (const CellKind kind : all_cell_kinds)
       for (std::size_t i = 0; i < count_of(mesh_, kind); ++i) {
-        const CellNodes nodes = nodes_of(kind)(mesh_, i).in_order(order);
+        const CellNodes nodes = in_vtk_order(kind, nodes_of(kind)(mesh_, i));
         values.insert(values.end(), nodes.begin(), nodes.end());
       }
-    }
     return values;
   }
 
@@ -139,10 +114,9 @@ class GridMaker {
   }
 
   std::vector<std::uint8_t> types() const {
-    const std::size_t second = mesh_.order() == 2 ? 1 : 0;
-    return per_cell<std::uint8_t>(mesh_, [&](CellKind kind, std::size_t) {
-      return vtk_kinds[static_cast<std::size_t>(kind)].types[second];
-    });
+    const int order = mesh_.order();
+    return per_cell<std::uint8_t>(mesh_,
+                                  [&](CellKind kind, std::size_t) { return vtk_type_of(kind, order); });
   }
 
   void add_features() {
@@ -204,7 +178,7 @@ class GridMaker {
       VtkArray& array = cell_data_.emplace_back();
       array.name = names[k];
       std::vector<float> values;
-      resize_in_large_pages(values, cell_count(mesh_));
+      resize_in_large_pages(values, count_of_all(mesh_));
       of_cells[k] = values.data();
       array.values = std::move(values);
     }
@@ -231,7 +205,7 @@ class GridMaker {
 // Reading
 
 /// The cells of one piece by kind, as positions in its arrays.
-using CellKinds = std::array<std::vector<std::size_t>, cell_kinds>;
+using CellKinds = PerKind<std::vector<std::size_t>>;
 
 /// The kind of cells as which a VTK cell type is read.
 struct ReadType {
@@ -241,9 +215,9 @@ struct ReadType {
 
 ReadType find_type(std::size_t cell, std::int64_t type) {
   if (type == vtk_vertex) return {};
-  for (const auto& [kind, types] : vtk_kinds)
+  for (const CellKind kind : all_cell_kinds)
     for (const int order : {1, 2})
-      if (types[static_cast<std::size_t>(order) - 1] == type) return {shape_of(kind).nodes(order), kind};
+      if (vtk_type_of(kind, order) == type) return {shape_of(kind).nodes(order), kind};
   throw VtkPieceError{
       "types",
       fmt::format(
@@ -278,8 +252,8 @@ CellKinds add_cells(const VtkPiece& piece, std::size_t first_point, TetMesh& mes
     const auto* first = piece.connectivity.data() + begin;
     const CellNodes nodes = read_nodes(piece, i, {first, type.nodes}, first_point);
     if (type.kind) {
-      add_cell(*type.kind, nodes.from_order(vtk_order(*type.kind, type.nodes)), mesh);
-      kinds[static_cast<std::size_t>(*type.kind)].push_back(i);
+      add_cell(*type.kind, in_vtk_order(*type.kind, nodes), mesh);
+      kinds[*type.kind].push_back(i);
     }
     begin = piece.ends[i];
   }
@@ -316,7 +290,7 @@ void add_read_labels(const VtkPiece& piece, const CellKinds& kinds, TetMesh& mes
              &regions = find({"region"}), &features = find({"feature"}), &layers = find({"layer"}),
              &back = find({"region_back"}), &front = find({"region_front"});
   for (const CellKind kind : all_cell_kinds) {
-    const std::vector<std::size_t>& cells = kinds[static_cast<std::size_t>(kind)];
+    const std::vector<std::size_t>& cells = kinds[kind];
     const std::size_t dimension = shape_of(kind).dimension;
     pick(tags, cells, tags_of(mesh, kind));
     if (dimension < 3 || all_below(regions, none))
@@ -327,7 +301,7 @@ void add_read_labels(const VtkPiece& piece, const CellKinds& kinds, TetMesh& mes
         regions_beside(mesh, kind)
             .push_back({static_cast<Index>(back[cell]), static_cast<Index>(front[cell])});
   }
-  const std::vector<std::size_t>& tets = kinds[static_cast<std::size_t>(CellKind::tet)];
+  const std::vector<std::size_t>& tets = kinds[CellKind::tet];
   pick(find({"collar"}), tets, mesh.tet_collar);
   pick(find({"crease"}), tets, mesh.tet_crease);
   pick(find({"thin"}), tets, mesh.tet_thin);
@@ -353,6 +327,12 @@ void drop_partial(std::vector<T>& values, std::size_t count) {
 }
 
 }  // namespace
+
+int vtk_type_of(CellKind kind, int order) { return vtk_types[kind][order == 2 ? 1 : 0]; }
+
+CellNodes in_vtk_order(CellKind kind, const CellNodes& nodes) {
+  return kind == CellKind::prism ? turned(kind, nodes) : nodes;
+}
 
 VtkGrid make_vtk_grid(const TetMesh& mesh) { return GridMaker(mesh).make(); }
 

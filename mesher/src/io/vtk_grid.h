@@ -9,9 +9,17 @@
 #include <vector>
 
 #include "collarmesh/tet_mesh.h"
+#include "io/cell_nodes.h"
 
 /// A mesh as an unstructured grid of VTK, which several file formats store.
 namespace collarmesh::io {
+
+/// Returns VTK's number of a kind of cells.
+int vtk_type_of(CellKind kind, int order);
+
+/// Returns the nodes in VTK's order, or those of VTK in ours: in its wedges the normal of the first triangle
+/// points away from the second one.
+CellNodes in_vtk_order(CellKind kind, const CellNodes& nodes);
 
 struct VtkArray {
   std::string name;

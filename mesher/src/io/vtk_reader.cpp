@@ -10,6 +10,7 @@
 
 #include "collarmesh/error.h"
 #include "io/file_bytes.h"
+#include "io/finite_points.h"
 #include "io/label_names.h"
 #include "io/number_text.h"
 #include "io/tet_mesh_formats.h"
@@ -23,16 +24,24 @@ namespace {
 
 struct LegacyType {
   std::string_view name;
-  VtkType type;
+  NumberType type;
 };
 /// VTK writes vtkIdType with 32 bits here. "long" has 64 bits, as on the systems where most VTK files come
 /// from.
-constexpr LegacyType legacy_types[] = {
-    {"char", VtkType::i8},          {"signed_char", VtkType::i8},     {"unsigned_char", VtkType::u8},
-    {"short", VtkType::i16},        {"unsigned_short", VtkType::u16}, {"int", VtkType::i32},
-    {"unsigned_int", VtkType::u32}, {"long", VtkType::i64},           {"unsigned_long", VtkType::u64},
-    {"vtktypeint64", VtkType::i64}, {"vtktypeuint64", VtkType::u64},  {"vtkidtype", VtkType::i32},
-    {"float", VtkType::f32},        {"double", VtkType::f64}};
+constexpr LegacyType legacy_types[] = {{"char", NumberType::i8},
+                                       {"signed_char", NumberType::i8},
+                                       {"unsigned_char", NumberType::u8},
+                                       {"short", NumberType::i16},
+                                       {"unsigned_short", NumberType::u16},
+                                       {"int", NumberType::i32},
+                                       {"unsigned_int", NumberType::u32},
+                                       {"long", NumberType::i64},
+                                       {"unsigned_long", NumberType::u64},
+                                       {"vtktypeint64", NumberType::i64},
+                                       {"vtktypeuint64", NumberType::u64},
+                                       {"vtkidtype", NumberType::i32},
+                                       {"float", NumberType::f32},
+                                       {"double", NumberType::f64}};
 
 class LegacyReader {
  public:
@@ -75,7 +84,7 @@ class LegacyReader {
     else if (name == "cells")
       read_cells();
     else if (name == "cell_types")
-      piece_.types = values<std::int64_t>(scan_.count("the number of cells", 1), VtkType::i32);
+      piece_.types = values<std::int64_t>(scan_.count("the number of cells", 1), NumberType::i32);
     else if (name == "cell_data")
       begin_data(scan_.count("the number of cells", 1), piece_.ends.size(), piece_.cell_data,
                  vtk_cell_arrays);
@@ -102,14 +111,8 @@ class LegacyReader {
   void read_points() {
     require_no_data(piece_.point_data, "POINTS");
     const Index n = scan_.count("the number of points", 3);
-    const std::vector<double> coordinates = values<double>(3 * std::size_t{n}, read_type());
-    piece_.points.clear();
-    for (std::size_t i = 0; i < n; ++i) {
-      const Point p{coordinates[3 * i], coordinates[3 * i + 1], coordinates[3 * i + 2]};
-      if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-        fail(fmt::format("point {}, ({}, {}, {}), is not finite", i, p.x, p.y, p.z));
-      piece_.points.push_back(p);
-    }
+    piece_.points = finite_points(values<double>(3 * std::size_t{n}, read_type()),
+                                  [this](const std::string& message) { fail(message); });
   }
 
   void read_cells() {
@@ -132,7 +135,7 @@ class LegacyReader {
   }
 
   void read_counted_cells(Index n, Index size) {
-    const std::vector<std::int64_t> numbers = values<std::int64_t>(size, VtkType::i32);
+    const std::vector<std::int64_t> numbers = values<std::int64_t>(size, NumberType::i32);
     piece_.connectivity.clear();
     piece_.ends.clear();
     std::size_t at = 0;
@@ -185,7 +188,7 @@ class LegacyReader {
 
   void read_scalars() {
     const std::string_view name = scan_.word("the name of an array");
-    const VtkType type = read_type(false);
+    const NumberType type = read_type(false);
     const Index components = scan_.at_line_end() ? 1 : scan_.count("the number of components", 1);
     if (lower_case(scan_.peek()) == "lookup_table") {
       scan_.word("LOOKUP_TABLE");
@@ -197,7 +200,7 @@ class LegacyReader {
   void read_table() {
     scan_.word("the name of a table");
     const Index n = scan_.count("the size of a table", 1);
-    values<double>(4 * std::size_t{n}, binary_ ? VtkType::u8 : VtkType::f32);
+    values<double>(4 * std::size_t{n}, binary_ ? NumberType::u8 : NumberType::f32);
   }
 
   void read_field() {
@@ -239,7 +242,7 @@ class LegacyReader {
   void skip_colors() {
     scan_.word("the name of an array");
     const Index components = scan_.count("the number of components", 1);
-    values<double>(times(tuples_, components), binary_ ? VtkType::u8 : VtkType::f32);
+    values<double>(times(tuples_, components), binary_ ? NumberType::u8 : NumberType::f32);
   }
 
   /// Skips metadata, which ends with an empty line.
@@ -255,7 +258,7 @@ class LegacyReader {
     return a * b;
   }
 
-  VtkType read_type(bool last_on_line = true) {
+  NumberType read_type(bool last_on_line = true) {
     const std::string name = keyword("a type of values");
     const auto* found = std::find_if(std::begin(legacy_types), std::end(legacy_types),
                                      [&](const LegacyType& known) { return known.name == name; });
@@ -266,7 +269,7 @@ class LegacyReader {
 
   /// Reads `count` numbers, which begin on the next line if they are binary.
   template <class T>
-  std::vector<T> values(std::size_t count, VtkType type) {
+  std::vector<T> values(std::size_t count, NumberType type) {
     if (binary_) return binary_values<T>(count, type);
     if (count > scan_.left() / 2 + 1)
       fail(fmt::format("expected {} values, found only {} bytes; the file is cut off", count, scan_.left()));
@@ -274,8 +277,8 @@ class LegacyReader {
     result.reserve(count);
     for (std::size_t i = 0; i < count; ++i)
       if constexpr (std::is_integral_v<T>)
-        result.push_back(type == VtkType::f32 || type == VtkType::f64 ? rounded(scan_.number("a value"))
-                                                                      : scan_.integer("a value"));
+        result.push_back(type == NumberType::f32 || type == NumberType::f64 ? rounded(scan_.number("a value"))
+                                                                            : scan_.integer("a value"));
       else
         result.push_back(scan_.number("a value"));
     return result;
@@ -288,9 +291,9 @@ class LegacyReader {
   }
 
   template <class T>
-  std::vector<T> binary_values(std::size_t count, VtkType type) {
+  std::vector<T> binary_values(std::size_t count, NumberType type) {
     scan_.skip_line();
-    const std::size_t size = vtk_size(type);
+    const std::size_t size = size_of(type);
     if (count > scan_.left() / size)
       fail(fmt::format("expected {} values of {} bytes, found {} bytes; the file is cut off", count, size,
                        scan_.left()));

@@ -21,15 +21,8 @@ constexpr std::string_view type_name(float) { return "float"; }
 constexpr std::string_view type_name(double) { return "double"; }
 
 template <class T>
-void write_value(FileWriter& out, T value) {
-  auto bytes = std::bit_cast<std::array<char, sizeof(T)>>(value);
-  if (std::endian::native == std::endian::little) std::reverse(bytes.begin(), bytes.end());
-  out << std::string_view(bytes.data(), bytes.size());
-}
-
-template <class T>
 void write_values(FileWriter& out, const std::vector<T>& values) {
-  for (const T value : values) write_value(out, value);
+  for (const T value : values) out.append_bytes(value, std::endian::big);
   out << '\n';
 }
 
@@ -40,12 +33,12 @@ void write_cells(FileWriter& out, const VtkGrid& grid) {
   out << "CELLS " << grid.cell_count << ' ' << grid.cell_count + corners.size() << '\n';
   std::int64_t begin = 0;
   for (const std::int64_t end : ends) {
-    write_value(out, static_cast<std::int32_t>(end - begin));
-    for (; begin < end; ++begin) write_value(out, corners[static_cast<std::size_t>(begin)]);
+    out.append_bytes(static_cast<std::int32_t>(end - begin), std::endian::big);
+    for (; begin < end; ++begin) out.append_bytes(corners[static_cast<std::size_t>(begin)], std::endian::big);
   }
   out << "\nCELL_TYPES " << grid.cell_count << '\n';
   for (const std::uint8_t type : std::get<std::vector<std::uint8_t>>(grid.types.values))
-    write_value(out, std::int32_t{type});
+    out.append_bytes(std::int32_t{type}, std::endian::big);
   out << '\n';
 }
 

@@ -14,6 +14,7 @@
 
 #include "collarmesh/error.h"
 #include "io/file_bytes.h"
+#include "io/finite_points.h"
 #include "io/number_text.h"
 #include "io/tet_mesh_formats.h"
 #include "io/text_scanner.h"
@@ -43,8 +44,8 @@ class VtuFile {
   /// Returns the values of an array. `count` is the required number; any number if not given.
   template <class T>
   std::vector<T> values(const pugi::xml_node& array, std::size_t count = any) const {
-    const VtkType type = vtk_type(array.attribute("type").value());
-    if (type == VtkType::unknown)
+    const NumberType type = vtk_type(array.attribute("type").value());
+    if (type == NumberType::unknown)
       fail(array, fmt::format("unknown type of values {}", in_quotes(array.attribute("type").value())));
     const std::string_view format = array.attribute("format").as_string("ascii");
     std::vector<T> result = format == "ascii" ? text_values<T>(array) : stored_values<T>(array, type, format);
@@ -158,12 +159,12 @@ class VtuFile {
   }
 
   template <class T>
-  std::vector<T> stored_values(const pugi::xml_node& array, VtkType type, std::string_view format) const {
+  std::vector<T> stored_values(const pugi::xml_node& array, NumberType type, std::string_view format) const {
     std::size_t first_byte = 0;
     const std::string bytes = format == "binary"     ? inline_bytes(array, first_byte)
                               : format == "appended" ? appended_bytes(array, first_byte)
                                                      : unknown_format(array, format);
-    if (bytes.size() % vtk_size(type) != 0)
+    if (bytes.size() % size_of(type) != 0)
       fail_byte(first_byte, array, fmt::format("{} bytes are not a whole number of values", bytes.size()));
     return convert_vtk_values<T>(bytes, type, storage_.order);
   }
@@ -279,13 +280,8 @@ class PieceReader {
     if (!array) file_.fail(piece_, "expected Points");
     if (point_count_ > 0 && array.attribute("NumberOfComponents").as_int(3) != 3)
       file_.fail(array, "expected points of 3 components");
-    const std::vector<double> values = file_.values<double>(array, 3 * point_count_);
-    for (std::size_t i = 0; i < point_count_; ++i) {
-      const Point p{values[3 * i], values[3 * i + 1], values[3 * i + 2]};
-      if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-        file_.fail(array, fmt::format("point {}, ({}, {}, {}), is not finite", i, p.x, p.y, p.z));
-      piece.points.push_back(p);
-    }
+    piece.points = finite_points(file_.values<double>(array, 3 * point_count_),
+                                 [&](const std::string& message) { file_.fail(array, message); });
   }
 
   pugi::xml_node required(const pugi::xml_node& section, const char* name) const {

@@ -9,6 +9,7 @@
 
 #include "collarmesh/error.h"
 #include "common/distances.h"
+#include "common/sort_uniquely.h"
 
 namespace collarmesh::periodicity {
 
@@ -29,8 +30,7 @@ Features features_of(const std::vector<Index>& patches, const Plc& plc) {
     of.curves.insert(of.curves.end(), p.curves.begin(), p.curves.end());
   }
   for (auto* features : {&of.vertices, &of.curves}) {
-    std::sort(features->begin(), features->end());
-    features->erase(std::unique(features->begin(), features->end()), features->end());
+    sort_uniquely(*features);
   }
   return of;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/sort_uniquely.h"
 #include "shells/triangle_shape.h"
 
 namespace collarmesh::shells {
@@ -92,8 +93,7 @@ std::vector<Index> SurfaceComplex::neighbours(Index v) const {
     for (const Index c : triangles[t].corners)
       if (c != v) found.push_back(c);
   for (const Index e : vertices[v].edges) found.push_back(edges[e].other(v));
-  std::sort(found.begin(), found.end());
-  found.erase(std::unique(found.begin(), found.end()), found.end());
+  sort_uniquely(found);
   return found;
 }
 

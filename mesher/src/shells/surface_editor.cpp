@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/sort_uniquely.h"
 #include "shells/curve_division.h"
 #include "shells/vertex_fan.h"
 
@@ -143,8 +144,7 @@ bool SurfaceEditor::can_contract(Index from, Index to) const {
                         std::back_inserter(common));
   for (const Index t : complex_.triangles_at(from, to))
     thirds.push_back(complex_.triangles[t].third(from, to));
-  std::sort(thirds.begin(), thirds.end());
-  thirds.erase(std::unique(thirds.begin(), thirds.end()), thirds.end());
+  sort_uniquely(thirds);
   if (common != thirds) return false;
   for (const Index t : complex_.vertices[from].triangles) {
     const auto& corners = complex_.triangles[t];

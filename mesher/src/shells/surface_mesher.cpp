@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "common/sort_uniquely.h"
 #include "shells/chord_limits.h"
 #include "shells/curve_division.h"
 #include "shells/sharp_corners.h"
@@ -180,8 +181,7 @@ void SurfaceMesher::contract_short(double least_shape) {
       if (share < short_edge) edges.emplace_back(share, std::min(a, b), std::max(a, b));
     }
   }
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  sort_uniquely(edges);
   const SurfaceEditor::Contraction rule{.longest = long_edge, .least_shape = least_shape};
   for (const auto& [share, a, b] : edges) {
     if (complex_.vertices[a].triangles.empty() || complex_.vertices[b].triangles.empty()) continue;
@@ -215,8 +215,7 @@ void SurfaceMesher::flip_all() {
         if (editor_.flip(v, n)) next.insert(next.end(), {v, n, c, d});
       }
     }
-    std::sort(next.begin(), next.end());
-    next.erase(std::unique(next.begin(), next.end()), next.end());
+    sort_uniquely(next);
     changed = std::move(next);
     for (const Index v : changed) waiting[v] = true;
   }

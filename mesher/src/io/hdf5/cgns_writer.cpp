@@ -3,7 +3,6 @@
 // kind of cells; the faces of a section on the boundary are also a boundary condition, whose family has the
 // name.
 #include <fmt/format.h>
-#include <hdf5.h>
 
 #include <algorithm>
 #include <array>
@@ -19,9 +18,9 @@
 
 #include "collarmesh/error.h"
 #include "io/cell_nodes.h"
+#include "io/hdf5/hdf5_file.h"
 #include "io/label_names.h"
 #include "io/tet_mesh_formats.h"
-#include "io/unfinished_file.h"
 
 namespace collarmesh::io {
 
@@ -29,38 +28,24 @@ namespace {
 
 constexpr std::size_t longest_name = 32;
 
-/// CGNS' element types of a kind of cells.
-struct CgnsType {
-  CellKind kind;
-  std::array<std::int32_t, 2> numbers;  ///< by order
-};
-constexpr std::array<CgnsType, cell_kinds> cgns_types{{{CellKind::tet, {10, 11}},
-                                                       {CellKind::prism, {14, 15}},
-                                                       {CellKind::pyramid, {12, 21}},
-                                                       {CellKind::triangle, {5, 6}},
-                                                       {CellKind::quadrangle, {7, 8}},
-                                                       {CellKind::edge, {3, 4}}}};
+/// CGNS' types of elements, by order.
+constexpr PerKind<std::array<std::int32_t, 2>> cgns_types{
+    {{{10, 11}, {14, 15}, {12, 21}, {5, 6}, {7, 8}, {3, 4}}}};
+
+/// Returns properties with which links keep their order.
+hid_t ordered(hid_t kind) {
+  const hid_t properties = H5Pcreate(kind);
+  H5Pset_link_creation_order(properties, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
+  return properties;
+}
 
 /// A file of CGNS' nodes: groups of HDF5 with attributes, and their values in a data set.
-class CgnsFile {
+class CgnsFile : public Hdf5File {
  public:
-  explicit CgnsFile(std::string path) : target_(std::move(path)) {
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // we report errors ourselves
-    const hid_t of_file = H5Pcreate(H5P_FILE_CREATE);
-    of_group_ = H5Pcreate(H5P_GROUP_CREATE);
-    for (const hid_t properties : {of_file, of_group_})
-      H5Pset_link_creation_order(properties, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
-    file_ = H5Fcreate(target_.temporary().c_str(), H5F_ACC_TRUNC, of_file, H5P_DEFAULT);
-    H5Pclose(of_file);
-    require(file_ >= 0);
+  explicit CgnsFile(std::string path)
+      : Hdf5File(std::move(path), Handle(ordered(H5P_FILE_CREATE), H5Pclose)) {
     describe_root();
   }
-  ~CgnsFile() {
-    H5Pclose(of_group_);
-    if (file_ >= 0) H5Fclose(file_);
-  }
-  CgnsFile(const CgnsFile&) = delete;
-  CgnsFile& operator=(const CgnsFile&) = delete;
 
   /// Returns the path of the node. Nodes without values have the type MT.
   std::string add(const std::string& parent, const std::string& name, const char* label) {
@@ -69,7 +54,7 @@ class CgnsFile {
   std::string add(const std::string& parent, const std::string& name, const char* label,
                   const std::string& text) {
     std::string path = add_node(parent, name, label, "C1");
-    write(path, H5T_NATIVE_CHAR, {text.size()}, text.data());
+    write(path + "/ data", text.data(), {text.size()});
     return path;
   }
   /// Adds values. `size` is in Fortran's order; empty: a list.
@@ -80,26 +65,16 @@ class CgnsFile {
     std::string path = add_node(parent, name, label, whole ? "I4" : small ? "R4" : "R8");
     std::reverse(size.begin(), size.end());
     if (size.empty()) size = {values.size()};
-    write(path, whole ? H5T_NATIVE_INT32 : small ? H5T_NATIVE_FLOAT : H5T_NATIVE_DOUBLE, size, values.data());
+    write(path + "/ data", values.data(), size);
     return path;
   }
 
-  void commit() {
-    require(H5Fclose(std::exchange(file_, -1)) >= 0);
-    target_.commit();
-  }
-  void require(bool done) const {
-    if (!done) target_.fail(0);
-  }
-
  private:
-  void describe_root() {
-    const hid_t root = H5Gopen2(file_, "/", H5P_DEFAULT);
-    require(root >= 0);
+  void describe_root() const {
+    const Handle root(H5Gopen2(id(), "/", H5P_DEFAULT), H5Gclose);
     set_text(root, "name", "HDF5 MotherNode", longest_name);
     set_text(root, "label", "Root Node of HDF5 File", longest_name);
     set_text(root, "type", "MT", 2);
-    H5Gclose(root);
     const bool little = H5Tget_order(H5T_NATIVE_INT) == H5T_ORDER_LE;
     write_text("/ format", little ? "IEEE_LITTLE_32" : "IEEE_BIG_32", 20);
     unsigned major = 0, minor = 0, patch = 0;
@@ -108,61 +83,36 @@ class CgnsFile {
   }
 
   std::string add_node(const std::string& parent, const std::string& name, const char* label,
-                       const char* type) {
+                       const char* type) const {
     std::string path = parent + "/" + name;
-    const hid_t group = H5Gcreate2(file_, path.c_str(), H5P_DEFAULT, of_group_, H5P_DEFAULT);
-    require(group >= 0);
+    const Handle group(H5Gcreate2(id(), path.c_str(), H5P_DEFAULT, of_group_, H5P_DEFAULT), H5Gclose);
     set_text(group, "name", name, longest_name);
     set_text(group, "label", label, longest_name);
     set_text(group, "type", type, 2);
     const hsize_t one = 1;
-    const hid_t space = H5Screate_simple(1, &one, nullptr);
-    const hid_t flags = H5Acreate2(group, "flags", H5T_NATIVE_INT, space, H5P_DEFAULT, H5P_DEFAULT);
     const int flag = 1;
-    const bool written = flags >= 0 && H5Awrite(flags, H5T_NATIVE_INT, &flag) >= 0;
-    if (flags >= 0) H5Aclose(flags);
-    H5Sclose(space);
-    H5Gclose(group);
-    require(written);
+    set(group, "flags", H5T_NATIVE_INT, Handle(H5Screate_simple(1, &one, nullptr), H5Sclose), &flag);
     return path;
   }
 
+  void set(hid_t object, const char* name, hid_t type, hid_t space, const void* value) const {
+    const Handle attribute(H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+    require(attribute >= 0 && H5Awrite(attribute, type, value) >= 0);
+  }
   /// Sets an attribute; attributes have a fixed size.
   void set_text(hid_t object, const char* name, std::string text, std::size_t size) const {
     text.resize(size + 1, '\0');
-    const hid_t type = H5Tcopy(H5T_C_S1);
+    const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
     H5Tset_size(type, size + 1);
-    const hid_t space = H5Screate(H5S_SCALAR);
-    const hid_t attribute = H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
-    const bool written = attribute >= 0 && H5Awrite(attribute, type, text.data()) >= 0;
-    if (attribute >= 0) H5Aclose(attribute);
-    H5Sclose(space);
-    H5Tclose(type);
-    require(written);
+    set(object, name, type, Handle(H5Screate(H5S_SCALAR), H5Sclose), text.data());
   }
 
   void write_text(const std::string& path, std::string text, std::size_t size) const {
     text.resize(size + 1, '\0');
-    write_set(path, H5T_NATIVE_CHAR, {text.size()}, text.data());
+    write(path, text.data(), {text.size()});
   }
 
-  void write(const std::string& node, hid_t type, const std::vector<hsize_t>& size,
-             const void* values) const {
-    write_set(node + "/ data", type, size, values);
-  }
-
-  void write_set(const std::string& path, hid_t type, const std::vector<hsize_t>& size,
-                 const void* values) const {
-    const hid_t space = H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr);
-    const hid_t set = H5Dcreate2(file_, path.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-    const bool written = set >= 0 && H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0;
-    if (set >= 0) H5Dclose(set);
-    if (space >= 0) H5Sclose(space);
-    require(written);
-  }
-
-  UnfinishedFile target_;
-  hid_t file_ = -1, of_group_ = -1;
+  const Handle of_group_{ordered(H5P_GROUP_CREATE), H5Pclose};
 };
 
 /// The cells of one section.
@@ -284,9 +234,7 @@ void write_cgns(const std::string& path, const TetMesh& mesh) {
     const std::vector<std::int32_t> range{whole(first), whole(first + section.cells.size() - 1)};
     const std::string elements =
         file.add(zone, section.name, "Elements_t",
-                 std::vector<std::int32_t>{cgns_types[static_cast<std::size_t>(section.kind)]
-                                               .numbers[static_cast<std::size_t>(mesh.order()) - 1],
-                                           0});
+                 std::vector<std::int32_t>{cgns_types[section.kind][mesh.order() == 2 ? 1 : 0], 0});
     file.add(elements, "ElementRange", "IndexRange_t", range);
     file.add(elements, "ElementConnectivity", "DataArray_t", nodes_of_section(mesh, section));
     const std::vector<std::int32_t> outside{whole(first), whole(first + section.outside - 1)};

@@ -17,6 +17,7 @@
 #include "io/cell_nodes.h"
 #include "io/cell_partitions.h"
 #include "io/complete_mesh.h"
+#include "io/finite_points.h"
 #include "io/hdf5/med_format.h"
 #include "io/label_names.h"
 #include "io/tet_mesh_formats.h"
@@ -103,12 +104,7 @@ class MedReader {
     if (MEDmeshNodeCoordinateRd(file_, name_.c_str(), MED_NO_DT, MED_NO_IT, MED_FULL_INTERLACE,
                                 values.data()) < 0)
       fail("its points cannot be read");
-    for (std::size_t i = 0; i < values.size(); i += 3) {
-      const Point p{values[i], values[i + 1], values[i + 2]};
-      if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-        fail(fmt::format("point {}, ({}, {}, {}), is not finite", i / 3, p.x, p.y, p.z));
-      mesh_.points.push_back(p);
-    }
+    mesh_.points = finite_points(values, [this](const std::string& message) { fail(message); });
   }
 
   void read_cells(const MedType& of, int order) {

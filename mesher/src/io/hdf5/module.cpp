@@ -11,31 +11,22 @@ const herr_t no_work_at_the_end = H5dont_atexit();
 
 }  // namespace
 
+namespace collarmesh::io {
+
+#pragma GCC visibility push(default)
 extern "C" {
 
 #ifdef COLLARMESH_XDMF
-__attribute__((visibility("default"))) void collarmesh_write_xdmf(const std::string& path,
-                                                                  const collarmesh::TetMesh& mesh) {
-  collarmesh::io::write_xdmf(path, mesh);
-}
-__attribute__((visibility("default"))) void collarmesh_read_xdmf(const std::string& path,
-                                                                 collarmesh::TetMesh& mesh) {
-  mesh = collarmesh::io::read_xdmf(path);
-}
-__attribute__((visibility("default"))) void collarmesh_write_cgns(const std::string& path,
-                                                                  const collarmesh::TetMesh& mesh) {
-  collarmesh::io::write_cgns(path, mesh);
-}
+void collarmesh_write_xdmf(const std::string& path, const TetMesh& mesh) { write_xdmf(path, mesh); }
+void collarmesh_read_xdmf(const std::string& path, TetMesh& mesh) { mesh = read_xdmf(path); }
+void collarmesh_write_cgns(const std::string& path, const TetMesh& mesh) { write_cgns(path, mesh); }
 #endif
 
 #ifdef COLLARMESH_MED
-__attribute__((visibility("default"))) void collarmesh_write_med(const std::string& path,
-                                                                 const collarmesh::TetMesh& mesh) {
-  collarmesh::io::write_med(path, mesh);
-}
-__attribute__((visibility("default"))) void collarmesh_read_med(const std::string& path,
-                                                                collarmesh::TetMesh& mesh) {
-  mesh = collarmesh::io::read_med(path);
-}
+void collarmesh_write_med(const std::string& path, const TetMesh& mesh) { write_med(path, mesh); }
+void collarmesh_read_med(const std::string& path, TetMesh& mesh) { mesh = read_med(path); }
 #endif
 }
+#pragma GCC visibility pop
+
+}  // namespace collarmesh::io

@@ -1,19 +1,22 @@
 // Reads XDMF as collarmesh, meshio and dolfinx write it: a uniform grid of tetrahedra with its values in HDF5
 // or in the text, and the tagged faces and edges in files beside it, NAME_faces.xdmf and NAME_edges.xdmf.
 #include <fmt/format.h>
-#include <hdf5.h>
 
-#include <array>
-#include <cmath>
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <pugixml.hpp>
+#include <span>
 #include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "collarmesh/error.h"
+#include "common/lower_case.h"
+#include "io/finite_points.h"
+#include "io/hdf5/hdf5_file.h"
+#include "io/hdf5/xdmf_format.h"
 #include "io/tet_mesh_formats.h"
 #include "io/vtk_grid.h"
 
@@ -26,46 +29,6 @@ namespace fs = std::filesystem;
 [[noreturn]] void fail(const std::string& path, const std::string& message) {
   throw ReadError(fmt::format("{}: {}", path, message));
 }
-
-/// Names of XDMF's topologies, with VTK's numbers for the same cells.
-struct Topology {
-  std::string_view name;
-  std::int64_t vtk;
-  std::size_t nodes;
-};
-constexpr std::array<Topology, 6> topologies{{{"tetrahedron", 10, 4},
-                                              {"tetrahedron_10", 24, 10},
-                                              {"triangle", 5, 3},
-                                              {"triangle_6", 22, 6},
-                                              {"polyline", 3, 2},
-                                              {"edge_3", 21, 3}}};
-
-template <class T>
-hid_t native_type();
-template <>
-hid_t native_type<double>() {
-  return H5T_NATIVE_DOUBLE;
-}
-template <>
-hid_t native_type<std::int64_t>() {
-  return H5T_NATIVE_INT64;
-}
-
-/// Closes the HDF5 object that it holds.
-class Handle {
- public:
-  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
-  ~Handle() {
-    if (id_ >= 0) close_(id_);
-  }
-  Handle(const Handle&) = delete;
-  Handle& operator=(const Handle&) = delete;
-  operator hid_t() const { return id_; }
-
- private:
-  hid_t id_;
-  herr_t (*close_)(hid_t);
-};
 
 template <class T>
 std::vector<T> read_dataset(const std::string& path, const fs::path& file, const std::string& name) {
@@ -98,10 +61,8 @@ class Grid {
     if (!grid_) fail(path_, "expected Xdmf, Domain and Grid");
     if (grid_.attribute("GridType").as_string("Uniform") != std::string_view("Uniform"))
       fail(path_, "expected a uniform grid; name a file of one");
-    kind_ = find_topology();
+    find_topology();
   }
-
-  const Topology& kind() const { return *kind_; }
 
   std::vector<double> coordinates() const {
     const pugi::xml_node geometry = grid_.child("Geometry");
@@ -114,15 +75,15 @@ class Grid {
   /// Adds the cells and their data.
   void append(VtkPiece& piece) const {
     const auto nodes = read<std::int64_t>(grid_.child("Topology").child("DataItem"));
-    if (nodes.size() % kind_->nodes != 0)
-      fail(path_,
-           fmt::format("{} nodes are not a whole number of cells of {} nodes", nodes.size(), kind_->nodes));
-    const std::size_t before = piece.types.size(), count = nodes.size() / kind_->nodes;
+    const std::size_t of_cell = shape_of(kind_).nodes(order_);
+    if (nodes.size() % of_cell != 0)
+      fail(path_, fmt::format("{} nodes are not a whole number of cells of {} nodes", nodes.size(), of_cell));
+    const std::size_t before = piece.types.size(), count = nodes.size() / of_cell;
     piece.connectivity.insert(piece.connectivity.end(), nodes.begin(), nodes.end());
     const std::int64_t first = piece.ends.empty() ? 0 : piece.ends.back();
     for (std::size_t i = 1; i <= count; ++i)
-      piece.ends.push_back(first + static_cast<std::int64_t>(i * kind_->nodes));
-    piece.types.resize(before + count, kind_->vtk);
+      piece.ends.push_back(first + static_cast<std::int64_t>(i * of_cell));
+    piece.types.resize(before + count, vtk_type_of(kind_, order_));
     for (const pugi::xml_node& attribute : grid_.children("Attribute")) {
       const std::string name = attribute.attribute("Name").value();
       const bool of_cells = attribute.attribute("Center").value() == std::string_view("Cell");
@@ -146,25 +107,23 @@ class Grid {
   }
 
  private:
-  template <std::size_t n>
-  static bool is_among(std::string_view name, const std::array<std::string_view, n>& names) {
-    for (const std::string_view each : names)
-      if (each == name) return true;
-    return false;
+  static bool is_among(std::string_view name, std::span<const std::string_view> names) {
+    return std::ranges::count(names, name) > 0;
   }
 
   static std::string type_of(const pugi::xml_node& node, const char* attribute) {
-    std::string type =
-        node.attribute(attribute) ? node.attribute(attribute).value() : node.attribute("Type").value();
-    for (char& c : type)
-      if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + ('a' - 'A'));
-    return type;
+    return lower_case(node.attribute(node.attribute(attribute) ? attribute : "Type").value());
   }
 
-  const Topology* find_topology() const {
+  void find_topology() {
     const std::string type = type_of(grid_.child("Topology"), "TopologyType");
-    for (const Topology& known : topologies)
-      if (known.name == type) return &known;
+    for (const auto& [kind, names] : xdmf_topologies)
+      for (const int order : {1, 2})
+        if (lower_case(names[order == 2 ? 1 : 0]) == type) {
+          kind_ = kind;
+          order_ = order;
+          return;
+        }
     fail(path_,
          fmt::format("cells of the type '{}' are not supported, only tetrahedra, triangles and lines of "
                      "first or second order, one type to a grid",
@@ -207,17 +166,9 @@ class Grid {
   std::string path_;
   pugi::xml_document document_;
   pugi::xml_node grid_;
-  const Topology* kind_ = nullptr;
+  CellKind kind_ = CellKind::tet;
+  int order_ = 1;
 };
-
-void set_points(const std::string& path, const std::vector<double>& values, VtkPiece& piece) {
-  for (std::size_t i = 0; i + 2 < values.size(); i += 3) {
-    const Point p{values[i], values[i + 1], values[i + 2]};
-    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-      fail(path, fmt::format("point {}, ({}, {}, {}), is not finite", i / 3, p.x, p.y, p.z));
-    piece.points.push_back(p);
-  }
-}
 
 }  // namespace
 
@@ -225,7 +176,7 @@ TetMesh read_xdmf(const std::string& path) {
   const Grid tets(path);
   VtkPiece piece;
   const std::vector<double> coordinates = tets.coordinates();
-  set_points(path, coordinates, piece);
+  piece.points = finite_points(coordinates, [&](const std::string& message) { fail(path, message); });
   tets.append(piece);
   const fs::path place(path);
   for (const char* part : {"faces", "edges"}) {

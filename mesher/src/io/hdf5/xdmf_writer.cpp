@@ -1,7 +1,6 @@
 // XDMF 3 with its values in HDF5 (www.xdmf.org, "XDMF Model and Format"), as uniform grids of one kind of
 // cells, one grid per file, as dolfinx and meshio read them. vtk_grid.h describes the arrays.
 #include <fmt/format.h>
-#include <hdf5.h>
 
 #include <array>
 #include <filesystem>
@@ -10,72 +9,27 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
-#include <utility>
 #include <variant>
 #include <vector>
 
 #include "common/xml_text.h"
 #include "io/cell_nodes.h"
 #include "io/file_writer.h"
+#include "io/hdf5/hdf5_file.h"
+#include "io/hdf5/xdmf_format.h"
 #include "io/label_names.h"
 #include "io/tet_mesh_formats.h"
-#include "io/unfinished_file.h"
 #include "io/vtk_grid.h"
 
 namespace collarmesh::io {
 
 namespace {
 
-struct NumberType {
-  std::string_view name;
-  int bytes;
-  hid_t stored;
-};
-NumberType number_type(std::uint8_t) { return {"UChar", 1, H5T_NATIVE_UINT8}; }
-NumberType number_type(std::int32_t) { return {"Int", 4, H5T_NATIVE_INT32}; }
-NumberType number_type(std::int64_t) { return {"Int", 8, H5T_NATIVE_INT64}; }
-NumberType number_type(float) { return {"Float", 4, H5T_NATIVE_FLOAT}; }
-NumberType number_type(double) { return {"Float", 8, H5T_NATIVE_DOUBLE}; }
-
-/// An HDF5 file that appears under its name when it is complete.
-class ValueFile {
- public:
-  explicit ValueFile(std::string path) : target_(std::move(path)) {
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // we report errors ourselves
-    file_ = H5Fcreate(target_.temporary().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
-    require(file_ >= 0);
-  }
-  ~ValueFile() {
-    if (file_ >= 0) H5Fclose(file_);
-  }
-  ValueFile(const ValueFile&) = delete;
-  ValueFile& operator=(const ValueFile&) = delete;
-
-  template <class T>
-  void write(const std::string& name, const std::vector<T>& values, std::size_t columns) {
-    const hsize_t size[2] = {values.size() / columns, columns};
-    const hid_t space = H5Screate_simple(columns > 1 ? 2 : 1, size, nullptr);
-    const hid_t type = number_type(T{}).stored;
-    const hid_t set = H5Dcreate2(file_, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-    const bool written = set >= 0 && H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0;
-    if (set >= 0) H5Dclose(set);
-    if (space >= 0) H5Sclose(space);
-    require(written);
-  }
-
-  void commit() {
-    require(H5Fclose(std::exchange(file_, -1)) >= 0);
-    target_.commit();
-  }
-
- private:
-  void require(bool done) const {
-    if (!done) target_.fail(0);
-  }
-
-  UnfinishedFile target_;
-  hid_t file_ = -1;
-};
+/// XDMF's name of a type of numbers.
+template <class Number>
+constexpr std::string_view number_type = std::is_floating_point_v<Number> ? "Float"
+                                         : sizeof(Number) == 1            ? "UChar"
+                                                                          : "Int";
 
 /// The contents of one file: the cells of one dimension, as a uniform grid.
 struct Cells {
@@ -86,37 +40,27 @@ struct Cells {
   std::vector<std::string_view> arrays;  ///< arrays of these cells; dolfinx takes the first one for tags
 };
 
-template <class NodesOf>
-std::vector<std::int64_t> nodes_of_all(const TetMesh& mesh, std::size_t count, NodesOf nodes_of) {
-  std::vector<std::int64_t> nodes;
-  for (std::size_t i = 0; i < count; ++i)
-    for (const Index v : nodes_of(mesh, i)) nodes.push_back(v);
-  return nodes;
-}
-
-std::array<Cells, 3> cells_by_dimension(const TetMesh& mesh) {
-  const bool second = mesh.order() == 2;
-  const std::size_t tets = mesh.tets.size(), faces = mesh.faces.size(), edges = mesh.edges.size();
-  const bool surface = mesh.is_surface(), curves = mesh.is_curves();
-  return {Cells{surface || curves ? "tets" : "mesh",
-                second ? "Tetrahedron_10" : "Tetrahedron",
-                0,
-                tets,
-                nodes_of_all(mesh, tets, nodes_of_tet),
-                {"tag", "region", "collar", "crease", "thin", "partition", "radius_edge", "min_dihedral",
-                 "max_dihedral"}},
-          Cells{surface ? "mesh" : "faces",
-                second ? "Triangle_6" : "Triangle",
-                tets,
-                faces,
-                nodes_of_all(mesh, faces, nodes_of_face),
-                {"tag", "region_back", "region_front", "feature", "partition"}},
-          Cells{curves ? "mesh" : "edges",
-                second ? "Edge_3" : "Polyline",
-                tets + faces,
-                edges,
-                nodes_of_all(mesh, edges, nodes_of_edge),
-                {"tag", "feature", "partition"}}};
+std::vector<Cells> cells_by_dimension(const TetMesh& mesh) {
+  constexpr std::array<const char*, 3> names{"tets", "faces", "edges"};
+  const std::array<std::vector<std::string_view>, 3> arrays{
+      {{"tag", "region", "collar", "crease", "thin", "partition", "radius_edge", "min_dihedral",
+        "max_dihedral"},
+       {"tag", "region_back", "region_front", "feature", "partition"},
+       {"tag", "feature", "partition"}}};
+  const std::size_t main = mesh.is_curves() ? 2 : mesh.is_surface() ? 1 : 0;
+  std::vector<Cells> all;
+  for (std::size_t k = 0; k < xdmf_topologies.size(); ++k) {
+    const auto& [kind, topologies] = xdmf_topologies[k];
+    Cells& cells = all.emplace_back();
+    cells.name = k == main ? "mesh" : names[k];
+    cells.topology = topologies[mesh.order() == 2 ? 1 : 0];
+    cells.first = count_before(mesh, kind);
+    cells.count = count_of(mesh, kind);
+    for (std::size_t i = 0; i < cells.count; ++i)
+      for (const Index v : nodes_of(kind)(mesh, i)) cells.nodes.push_back(v);
+    cells.arrays = arrays[k];
+  }
+  return all;
 }
 
 /// A file and the one with its values; dolfinx requires the same name for both.
@@ -169,15 +113,16 @@ class GridFile {
 
   template <class T>
   void write_item(const std::string& name, const std::vector<T>& values, std::size_t columns) {
-    const NumberType type = number_type(T{});
-    out_ << "<DataItem Format=\"HDF\" NumberType=\"" << type.name << "\" Precision=\"" << type.bytes
+    out_ << "<DataItem Format=\"HDF\" NumberType=\"" << number_type<T> << "\" Precision=\"" << sizeof(T)
          << "\" Dimensions=\"" << values.size() / columns;
     if (columns > 1) out_ << ' ' << columns;
     out_ << "\">" << values_name_ << ":/" << name << "</DataItem>\n";
-    values_.write(name, values, columns);
+    const hsize_t rows = values.size() / columns;
+    values_.write(name, values.data(),
+                  columns > 1 ? std::vector<hsize_t>{rows, columns} : std::vector<hsize_t>{rows});
   }
 
-  ValueFile values_;
+  Hdf5File values_;
   std::string values_name_;
   FileWriter out_;
 };
