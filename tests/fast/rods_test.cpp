@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <numbers>
 #include <set>
@@ -21,7 +22,7 @@ using namespace testing;
 constexpr double size = 1;
 
 std::optional<TetMesh> rods_of(const Plc& plc, int order = 1) {
-  return tetrahedra_of_rods(plc, default_tolerance(plc, size, order), size);
+  return tetrahedra_of_rods(plc, default_tolerance(plc, size, order), {size});
 }
 
 void expect_good(const Plc& plc, const TetMesh& mesh, double off) {
@@ -92,11 +93,27 @@ TEST(Rods, MayBeSeveralBodies) {
 }
 
 TEST(Rods, MayBeBentAndClosed) {
-  const Plc plc = build_plc(std::vector{ring(3, 0.05, 48, 480)});
+  const Plc plc = build_plc(std::vector{ring(3, 0.2, 24, 120)});
   const auto mesh = rods_of(plc);
   ASSERT_TRUE(mesh);
   expect_good(plc, *mesh, 0.02);
   EXPECT_TRUE(mesh->edges.empty());
+}
+
+TEST(Rods, HaveNoMoreVerticesThanAsked) {
+  const Plc plc = build_plc(std::vector{cylinder(0.2, 3, 24)});
+  const SurfaceTolerance tolerance = default_tolerance(plc, size);
+  const std::size_t vertices = rods_of(plc)->points.size();
+  EXPECT_TRUE(tetrahedra_of_rods(plc, tolerance, {size, vertices}));
+  EXPECT_FALSE(tetrahedra_of_rods(plc, tolerance, {size, vertices - 1}));
+}
+
+TEST(Rods, AreCancelled) {
+  const Plc plc = build_plc(std::vector{cylinder(0.2, 3, 24)});
+  const std::atomic<bool> flag{true};
+  Execution execution;
+  execution.cancel = &flag;
+  EXPECT_FALSE(tetrahedra_of_rods(plc, default_tolerance(plc, size), {size}, execution));
 }
 
 TEST(Rods, AreThinRoundAndAlone) {

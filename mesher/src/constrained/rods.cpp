@@ -69,9 +69,10 @@ struct RodEnd {
 /// A rod's axis and the rings of vertices around it.
 class Rod {
  public:
-  Rod(const Plc& plc, const SurfaceTolerance& tolerance, double size, Index region,
-      const std::vector<Index>& patches)
-      : plc_(plc), tolerance_(tolerance), size_(size), region_(region) {
+  /// Keeps references to the complex, the tolerance and the execution.
+  Rod(const Plc& plc, const SurfaceTolerance& tolerance, double size, const Execution& execution,
+      Index region, const std::vector<Index>& patches)
+      : plc_(plc), tolerance_(tolerance), execution_(execution), size_(size), region_(region) {
     for (const Index p : patches) {
       if (plc.patches[p].planar)
         planar_.push_back(p);
@@ -80,16 +81,28 @@ class Rod {
     }
   }
 
-  /// Finds the rings. Returns whether the body is a rod whose rings keep the tolerance.
-  bool find() {
-    if (patch_ == none || (planar_.size() != 0 && planar_.size() != 2) || !find_ends() || is_thick())
-      return false;
+  /// Returns whether the body may be a rod, by its patches, volume and surface.
+  bool begin() {
+    return patch_ != none && (planar_.size() == 0 || planar_.size() == 2) && find_ends() && !is_thick();
+  }
+  /// Finds the axis. Returns whether the body is a rod that rings can keep within the tolerance.
+  bool measure() {
     hierarchy_ = hierarchy_of_patch(plc_, patch_);
-    return find_axis() && find_spacing() && find_rings();
+    return find_axis() && find_spacing();
+  }
+  /// Adds the tets, faces and edges. Returns whether there are rings.
+  bool add_to(TetMesh& mesh) {
+    const bool found = find_rings();
+    if (found) Filling(*this, mesh).run();
+    return found;
   }
 
-  /// Adds the tets, faces and edges.
-  void add_to(TetMesh& mesh) const { Filling(*this, mesh).run(); }
+  /// Returns the fewest vertices that a rod of this length takes, after `begin`.
+  std::size_t fewest_vertices() const {
+    return static_cast<std::size_t>(fewest_in_ring * length_ / (apart * radius_));
+  }
+  /// Returns the number of vertices, after `measure`.
+  std::size_t vertices() const { return (in_ring_ + 1) * (steps_ + (is_loop() ? 0 : 1)); }
 
  private:
   /// Numbers the vertices of a rod in a mesh, and adds its elements.
@@ -224,13 +237,14 @@ class Rod {
   }
 
   /// Returns whether the body is thick or short, as estimated from its volume and surface.
-  bool is_thick() const {
+  bool is_thick() {
     double area = 0;
     for (Index i = 0; i < patch().triangle_count; ++i)
       area += area_of(plc_, plc_.triangles[patch().first_triangle + i]);
-    const double radius = 2 * std::fabs(plc_.regions[region_].volume) / area;
-    reach_ = rays_per_radius * radius;
-    return radius > thinner_than_size * size_ || area / (full_turn * radius) < least_length * radius;
+    radius_ = 2 * std::fabs(plc_.regions[region_].volume) / area;
+    length_ = area / (full_turn * radius_);
+    reach_ = rays_per_radius * radius_;
+    return radius_ > thinner_than_size * size_ || length_ < least_length * radius_;
   }
 
   struct Hit {
@@ -294,7 +308,7 @@ class Rod {
     Section first;
     if (is_loop() ? !begin_loop(first) : !begin_at_end(first)) return false;
     sections_.push_back(first);
-    while (sections_.size() < most_sections) {
+    while (sections_.size() < most_sections && !execution_.cancelled()) {
       const Section& last = sections_.back();
       const double step = step_in_radii * last.radius;
       if (!is_loop() && distance(last.centre, ends_[1].centre) < 1.5 * step) return finish_at_end();
@@ -321,7 +335,7 @@ class Rod {
   bool begin_at_end(Section& first) const {
     first = section_at_end(0);
     Section next = first;
-    next.centre = first.centre + reach_ / rays_per_radius * first.along;
+    next.centre = first.centre + radius_ * first.along;
     if (!measure(next)) return false;
     first.radius = next.radius;
     first.tolerance = next.tolerance;
@@ -507,6 +521,7 @@ class Rod {
       shift_ = static_cast<std::size_t>(((static_cast<long>(pieces) % n) + n) % n);
     }
     for (std::size_t j = 0; j <= steps_; ++j) {
+      if (execution_.cancelled()) return false;
       if (j == steps_ && is_loop()) break;
       const double share = static_cast<double>(j) / steps;
       const Section section = at_share(share);
@@ -547,11 +562,12 @@ class Rod {
 
   const Plc& plc_;
   const SurfaceTolerance& tolerance_;
-  double size_;
+  const Execution& execution_;
+  double size_, radius_ = 0, length_ = 0;
   Index region_, patch_ = none;
   std::vector<Index> planar_;
   std::vector<RodEnd> ends_;
-  mutable double reach_ = 0;  // length of rays
+  double reach_ = 0;  // length of rays
   std::unique_ptr<TriangleHierarchy> hierarchy_;
   mutable std::vector<TriangleHierarchy::Crossing> crossings_;
   std::vector<Section> sections_;
@@ -579,15 +595,31 @@ std::optional<std::vector<std::vector<Index>>> patches_of_bodies(const Plc& plc)
 }  // namespace
 }  // namespace constrained
 
-std::optional<TetMesh> tetrahedra_of_rods(const Plc& plc, const SurfaceTolerance& tolerance, double size) {
+std::optional<TetMesh> tetrahedra_of_rods(const Plc& plc, const SurfaceTolerance& tolerance,
+                                          const RodLimits& limits, const Execution& execution) {
+  using constrained::Rod;
   const auto bodies = constrained::patches_of_bodies(plc);
   if (!bodies) return std::nullopt;
-  TetMesh mesh;
+  const auto exceeds = [&](std::size_t vertices) {
+    return limits.most_vertices > 0 && vertices > limits.most_vertices;
+  };
+  std::vector<Rod> rods;
+  std::size_t vertices = 0;
   for (Index region = 1; region < bodies->size(); ++region) {
-    constrained::Rod rod(plc, tolerance, size, region, (*bodies)[region]);
-    if (!rod.find()) return std::nullopt;
-    rod.add_to(mesh);
+    Rod& rod = rods.emplace_back(plc, tolerance, limits.size, execution, region, (*bodies)[region]);
+    if (!rod.begin()) return std::nullopt;
+    vertices += rod.fewest_vertices();
   }
+  if (exceeds(vertices)) return std::nullopt;
+  vertices = 0;
+  for (Rod& rod : rods) {
+    if (!rod.measure()) return std::nullopt;
+    vertices += rod.vertices();
+    if (exceeds(vertices)) return std::nullopt;
+  }
+  TetMesh mesh;
+  for (Rod& rod : rods)
+    if (!rod.add_to(mesh)) return std::nullopt;
   mesh.tet_collar.assign(mesh.tets.size(), 0);
   mesh.tet_crease.assign(mesh.tets.size(), 0);
   mesh.tet_thin.assign(mesh.tets.size(), 0);
