@@ -40,7 +40,7 @@ PipelineOptions pipeline_options(const MeshArguments& a) {
   PipelineOptions options = a;
   options.mesh.count_work = !a.reports.empty();
   options.trace = !a.trace_folder.empty();
-  options.mesh.time_limit = 0;  // the interrupt flag limits the whole run, from reading to writing
+  options.mesh.time_limit = process::time_left();  // the whole run is limited, from reading to writing
   return options;
 }
 
@@ -158,7 +158,7 @@ RepairOptions mesh(const MeshArguments& arguments, files::ComplexInput& input, S
   };
   InputSource source(arguments, input, stages);
   static_cast<SoupPipelineResult&>(run) = run_pipeline(source, pipeline_options(arguments), execution);
-  if (run.result.status == MeshStatus::cancelled) {
+  if (run.result.status == MeshStatus::cancelled || run.result.status == MeshStatus::budget_hit) {
     if (run.times.stages().back().first == "refine") note_where_it_stopped(run.result);
     process::stop_if_interrupted();
   }

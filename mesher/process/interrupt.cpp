@@ -143,6 +143,13 @@ void set_time_limit(double seconds) {
   if (!watched) set_flag_at_the_deadline();
 }
 
+double time_left() {
+  constexpr double least = 1e-3;
+  const std::lock_guard lock(deadline_mutex);
+  if (deadline == Clock::time_point::max()) return 0;
+  return std::max(std::chrono::duration<double>(deadline - Clock::now()).count(), least);
+}
+
 void note_stage(StageReached reached, std::string told) {
   if (told.empty()) {
     told = "stage: " + reached.stage;

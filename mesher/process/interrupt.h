@@ -31,6 +31,8 @@ void install_interrupt_handlers();
 
 /// Limits the time of the command from now on, in seconds; 0: no limit.
 void set_time_limit(double seconds);
+/// Returns the seconds until the time is up, more than 0; 0: there is no limit.
+double time_left();
 
 /// The current stage of the command, and the size of its mesh.
 struct StageReached {

@@ -3,6 +3,8 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -74,7 +76,16 @@ struct Call {
   Options options;
   std::optional<files::ComplexInput> input = {};
   Plc plc = {};  // refers to the input
+  const std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
 };
+
+/// Returns the seconds until the time limit, more than 0; 0: there is no limit.
+double time_left(const Call& call) {
+  constexpr double least = 1e-3;
+  const double limit = call.options.mesh.time_limit;
+  const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - call.start;
+  return limit > 0 ? std::max(limit - passed.count(), least) : 0;
+}
 
 template <class Kind>
 std::shared_ptr<Kind> new_call(const py::list& inputs, const py::dict& options) {
@@ -143,7 +154,7 @@ class InputSource : public ComplexSource {
 void mesh(MeshCall& call, Watch& watch) {
   read(call, watch);
   PipelineOptions options = call.options;
-  options.mesh.time_limit = 0;  // run_watched limits the time of the whole call
+  options.mesh.time_limit = time_left(call);  // run_watched limits the time of the whole call
   InputSource source(call.options, *call.input);
   call.run = run_pipeline(source, options, watch.execution());
   require_complete(call.run.result);

@@ -130,6 +130,10 @@ void run_watched(std::function<void(Watch&)> work, const py::object& progress, d
       --abandoned;
     }).detach();
   }
+  // The work knows the time limit, too, and may end first.
+  if (reason == Reason::none && failure && limited &&
+      std::chrono::duration<double>(Clock::now() - start).count() > time_limit)
+    reason = Reason::time;
   if (reason == Reason::python) std::rethrow_exception(raised);
   if (reason == Reason::time)
     throw BudgetSpent(

@@ -98,3 +98,10 @@ inline constexpr std::array<std::string_view, 14> of_shapes{
     thickness_kept, curve_distance,  patch_distance,  patch_area};
 
 }  // namespace collarmesh::guarantee
+
+namespace collarmesh {
+
+/// A larger relative deviation of a region's volume calls for a warning.
+inline constexpr double volume_warned_of = 0.02;
+
+}  // namespace collarmesh

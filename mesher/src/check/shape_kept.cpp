@@ -3,6 +3,7 @@
 #include <string>
 
 #include "check/feature_sizes.h"
+#include "check/guarantees.h"
 #include "check/subject.h"
 
 namespace collarmesh::checks {
@@ -40,9 +41,8 @@ std::vector<double> enclosed_by(const std::vector<Shell>& shells, const Subject&
 /// Compares a volume with the input's; adds a finding or a warning.
 void judge_volume(const Subject& subject, const std::string& what, double made, double input,
                   const Point& where, Index id, CheckReport& report, Findings& findings) {
-  constexpr double warned_of = 0.02;
   const double largest = volume_allowance(subject.mesh.order()), off = std::fabs(made - input);
-  if (!(off > std::min(warned_of, largest) * input)) return;
+  if (!(off > std::min(volume_warned_of, largest) * input)) return;
   const std::string found =
       fmt::format("{} has a volume of {:.6g} in the mesh and of {:.6g} in the input, {:+.2f} %", what, made,
                   input, percent_off(made, input));

@@ -87,7 +87,30 @@ void RunControl::stop() {
   throw Ended();
 }
 
-bool RunControl::out_of_time() const { return deadline_ && deadline_->passed(); }
+bool RunControl::out_of_time() const {
+  return (deadline_ && deadline_->passed()) || (of_attempt_ && of_attempt_->passed());
+}
+
+void RunControl::attempt(double share_of_time, const std::function<void()>& work) {
+  if (!(time_limit_ > 0)) return work();
+  using Clock = std::chrono::steady_clock;
+  const double left = time_limit_ - std::chrono::duration<double>(Clock::now() - start_).count();
+  if (left <= 0) return;
+  const Execution outside = inner_;
+  of_attempt_ = std::make_unique<Deadline>(share_of_time * left, outside);
+  inner_.cancel = &of_attempt_->flag();
+  const auto restore = [&] {
+    inner_.cancel = outside.cancel;
+    of_attempt_.reset();
+  };
+  try {
+    work();
+  } catch (...) {
+    restore();
+    throw;
+  }
+  restore();
+}
 
 /// Forwards the progress of a stage, scaled to its share of the whole.
 bool RunControl::go_on(ProgressReport report) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <string_view>
@@ -38,6 +39,11 @@ class RunControl {
   [[noreturn]] void stop();
   bool out_of_time() const;
 
+  /// Runs an attempt at a better result in at most this share of the time that is left until the time limit,
+  /// so that the result at hand is not lost. If that time is up, stages end as at the time limit. Does
+  /// nothing if no time is left.
+  void attempt(double share_of_time, const std::function<void()>& work);
+
  private:
   class Deadline;
   bool go_on(ProgressReport report);
@@ -46,7 +52,8 @@ class RunControl {
   const double time_limit_;  // seconds; 0: none
   const Execution& outer_;
   Execution inner_;
-  std::unique_ptr<Deadline> deadline_;
+  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::unique_ptr<Deadline> deadline_, of_attempt_;
   std::string_view stage_;
   double from_ = 0, to_ = 0, fraction_ = 0;  // fractions of the whole run: begin and end of the stage, and
                                              // the last one reported

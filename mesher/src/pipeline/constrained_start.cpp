@@ -11,8 +11,10 @@
 #include "adapt/bring_to_size.h"
 #include "collarmesh/plc_builder.h"
 #include "common/cell_shapes.h"
+#include "common/thread_limit.h"
 #include "constrained/constrained_tetrahedra.h"
 #include "constrained/ladders.h"
+#include "constrained/rods.h"
 #include "pipeline/certification.h"
 #include "pipeline/reshaping.h"
 #include "pipeline/vertex_bound.h"
@@ -45,13 +47,18 @@ void fill(MeshJob& job, const Plc& plc) {
       [&](const Execution& watched) { job.made.result.mesh = constrained_tetrahedra(plc, watched).mesh; });
 }
 
+/// Returns whether one size is asked for everywhere, by the options and by the complex.
+bool has_one_size(const MeshOptions& asked, const Plc& plc) {
+  return std::ranges::none_of(plc.regions, [](const Plc::Region& region) { return region.size > 0; }) &&
+         asked.region_size.empty() && asked.patch_size.empty() && asked.curve_size.empty() &&
+         !asked.size_field && asked.elements_per_circle == 0 && asked.elements_across_gap == 0;
+}
+
 /// Returns whether ladders may help: in shells far thinner than the size, if one size is asked for
 /// everywhere, because the rungs are divided to that size and not further.
 bool may_have_ladders(const MeshJob& job, double size) {
-  const MeshOptions& asked = job.options.mesh;
-  return asked.region_size.empty() && asked.patch_size.empty() && asked.curve_size.empty() &&
-         !asked.size_field && asked.elements_per_circle == 0 && asked.elements_across_gap == 0 &&
-         !job.given.periodic.any() && has_thin_shells(*job.plc, *job.refined_with.bounds.tolerance, size);
+  return has_one_size(job.options.mesh, *job.plc) && !job.given.periodic.any() &&
+         has_thin_shells(*job.plc, *job.refined_with.bounds.tolerance, size);
 }
 
 /// Returns whether a number of vertices exceeds the limit that was given.
@@ -131,6 +138,37 @@ bool keeps_lengths(const TetMesh& mesh, double size) {
   };
   return tets_per_long * static_cast<double>(std::ranges::count_if(mesh.tets, is_long)) <=
          static_cast<double>(mesh.tets.size());
+}
+
+bool may_have_rods(const MeshJob& job) {
+  const MeshOptions& asked = job.options.mesh;
+  const Bounds &given = job.given.mesh.bounds, &bounds = asked.bounds;
+  const bool asks_for_shapes = job.given.min_dihedral > 0 || bounds.interior_node ||
+                               bounds.thin_in_narrow_places_only ||
+                               asked.edges_per_hole > MeshOptions{}.edges_per_hole;
+  return may_start_constrained(job.given) && has_one_size(asked, *job.plc) && !asks_for_shapes &&
+         !(given.distance > 0) && !given.tolerance && asked.profile == Profile::standard &&
+         !job.given.layers.any();
+}
+
+bool fill_rods(MeshJob& job) {
+  MeshResult& result = job.made.result;
+  std::optional<TetMesh> mesh;
+  ThreadLimit(job.options.mesh.threads).run([&] {
+    const RodLimits limits{.size = smallest_size(job.options.mesh, job.plc->bounds.diagonal()),
+                           .most_vertices = job.refined_with.max_vertices};
+    mesh = tetrahedra_of_rods(*job.plc, *job.options.mesh.bounds.tolerance, limits, job.execution());
+  });
+  job.control.stop_if_asked();
+  if (!mesh) return false;
+  result.mesh = std::move(*mesh);
+  CoarsenReport& coarsening = job.made.coarsening.emplace();  // tets may be thin, as after coarsening
+  coarsening.tets_before = coarsening.tets_after = result.mesh.tets.size();
+  remeshing::mark_cells(result.mesh, *job.plc, job.refined_with.bounds);
+  if (count_misshapen(job, result.mesh) > 0) return false;
+  job.control.begin("tetrahedralize", 0.06, 0.2);
+  job.trace("tetrahedralize", result.mesh);
+  return true;
 }
 
 bool may_start_constrained(const PipelineOptions& options) {

@@ -16,6 +16,14 @@ bool may_start_constrained(const PipelineOptions& options);
 /// Returns whether hardly any tet has an edge far longer than this size.
 bool keeps_lengths(const TetMesh& mesh, double size);
 
+/// Returns whether the options permit a mesh of rings around rods: its edges have one size, and nothing else
+/// is asked of distances and shapes.
+bool may_have_rods(const MeshJob& job);
+
+/// Makes a mesh of rings around rods, if all bodies of the complex are thin rods. Returns whether they are,
+/// and all tets keep the bounds on their shapes. Throws Ended.
+bool fill_rods(MeshJob& job);
+
 /// Makes the constrained tetrahedra of the complex, and brings their edges to the target lengths. Throws
 /// Ended.
 void tetrahedralize(MeshJob& job);

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 
 #include "check/guarantees.h"
 #include "collarmesh/error.h"
+#include "common/disjoint_sets.h"
 #include "common/thread_limit.h"
 #include "periodic/make_periodic.h"
 #include "periodic/tolerance_across.h"
@@ -49,10 +51,24 @@ void raise_order(MeshJob& job) {
   if (job.made.second_order.cancelled) job.control.stop();
 }
 
+/// Returns sets of the two smooth patches of walls, layers and shells. Chords on both sides of these cancel
+/// only if they are equally long.
+DisjointSets sides_of_walls(const Plc& plc) {
+  std::vector<std::vector<Index>> smooth(plc.regions.size());
+  for (Index p = 0; p < plc.patches.size(); ++p)
+    if (const auto& regions = plc.patches[p].regions; !plc.patches[p].planar && regions[0] != regions[1])
+      for (const Index r : regions) smooth[r].push_back(p);
+  DisjointSets walls(plc.patches.size());
+  for (Index r = 1; r < plc.regions.size(); ++r)
+    if (smooth[r].size() == 2) walls.unite(smooth[r][0], smooth[r][1]);
+  return walls;
+}
+
 }  // namespace
 
 void MeshMaker::make(const Plc& plc, std::uint64_t seed) {
   set_up(plc, seed);
+  if (take_rods()) return;
   if (may_be_better_constrained()) {
     if (!refines_with_few_vertices() &&
         take_constrained(plc, "its curved walls or gaps are far thinner than the elements", Lengths::kept))
@@ -95,6 +111,25 @@ void MeshMaker::set_up(const Plc& plc, std::uint64_t seed) {
   if (job_.budget.most() > 0) options.mesh.max_vertices = job_.budget.most();
   options.mesh.seed = seed;
   job_.refined_with = options_of_refinement(job_, narrow_cells_);
+}
+
+/// Uses tetrahedra between rings of vertices if all bodies are thin rods and every guarantee holds.
+bool MeshMaker::take_rods() {
+  if (no_rods_ == job_.plc || job_.start != Start::automatic || !may_have_rods(job_)) return false;
+  PipelineResult before = std::exchange(job_.made, {});
+  if (fill_rods(job_)) {
+    project(job_);
+    raise_order(job_);
+    certify(job_, tolerance(*job_.plc));
+    if (job_.made.guarantees_hold()) {
+      is_constrained_ = true;
+      job_.made.check.notes.push_back("made of rings around rods that are far thinner than the elements");
+      return true;
+    }
+  }
+  no_rods_ = job_.plc;
+  job_.made = std::move(before);
+  return false;
 }
 
 /// Returns whether a refinement probably makes many times the elements that are needed. Cylinders that nearly
@@ -222,6 +257,7 @@ std::optional<PipelineResult> MeshMaker::from_constrained(const Plc& plc, const 
 void MeshMaker::take_new_complex() {
   tolerance_.reset();
   nearer_.reset();
+  no_rods_ = nullptr;
   hopeless_ = nullptr;
 }
 
@@ -232,6 +268,33 @@ void MeshMaker::move_to(const Plc& plc) {
 }
 
 void MeshMaker::come_nearer(const Plc& plc, double share) { nearer_ = tolerance(plc, 1).scaled(share); }
+
+void MeshMaker::come_nearer(const Plc& plc, const std::vector<double>& shares) {
+  constexpr double as_near = 1.2;  // ratio of the tolerances of two sides that count as equal
+  const SurfaceTolerance base = nearer_ ? *nearer_ : tolerance(plc, 1);
+  struct Wall {
+    double least = INFINITY, most = 0;
+    bool comes_nearer = false;
+  };
+  DisjointSets sides = sides_of_walls(plc);
+  std::vector<Wall> walls(plc.patches.size());
+  for (Index p = 0; p < plc.patches.size(); ++p) {
+    if (plc.patches[p].planar) continue;
+    auto& [least, most, comes_nearer] = walls[sides.find(p)];
+    least = std::min(least, base.largest_on_patch(p));
+    most = std::max(most, base.largest_on_patch(p));
+    comes_nearer |= shares[p] < 1;
+  }
+  std::vector<double> triangles(plc.triangles.size());
+  for (Index t = 0; t < triangles.size(); ++t) {
+    const Index patch = plc.triangles[t].patch;
+    const auto& [least, most, comes_nearer] = walls[sides.find(patch)];
+    triangles[t] = base.at_triangle(t);
+    if (!comes_nearer || plc.patches[patch].planar) continue;
+    triangles[t] = most > as_near * least ? std::min(triangles[t], least) : shares[patch] * triangles[t];
+  }
+  nearer_ = SurfaceTolerance(plc, std::move(triangles), base.largest());
+}
 
 const SurfaceTolerance& MeshMaker::tolerance(const Plc& plc) {
   if (!tolerance_) tolerance_ = tolerance(plc, static_cast<int>(job_.given.order));

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "pipeline/constrained_start.h"
 #include "pipeline/mesh_job.h"
@@ -56,6 +57,9 @@ class MeshMaker {
 
   /// Multiplies the surface tolerance of first order by this share in further meshes of this complex.
   void come_nearer(const Plc& plc, double share);
+  /// Multiplies the tolerance by a share for each patch. Where the sides of a wall have unequal tolerances,
+  /// they get the smaller one instead.
+  void come_nearer(const Plc& plc, const std::vector<double>& shares);
 
   void set_narrow_cells(NarrowCells cells) { narrow_cells_ = cells; }
   /// Sets whether `make` throws FarTooFine.
@@ -64,6 +68,7 @@ class MeshMaker {
  private:
   void set_up(const Plc& plc, std::uint64_t seed);
   bool may_be_better_constrained() const;
+  bool take_rods();
   bool refines_with_few_vertices();
   bool may_take_constrained(const Plc& plc) const;
   bool is_far_too_fine() const;
@@ -79,6 +84,7 @@ class MeshMaker {
   Hope hope_ = Hope::any;
   bool was_far_too_fine_ = false;
   bool is_constrained_ = false;                // whether the kept mesh started from constrained tetrahedra
+  const Plc* no_rods_ = nullptr;               // the complex whose rods had no good mesh
   const Plc* hopeless_ = nullptr;              // the complex whose constrained tetrahedra are not tried
   std::optional<SurfaceTolerance> tolerance_;  // tolerance of the current complex
   std::optional<SurfaceTolerance> nearer_;     // smaller tolerance for another try, after regions lost volume

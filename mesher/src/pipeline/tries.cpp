@@ -8,6 +8,7 @@
 #include <iterator>
 #include <new>
 #include <optional>
+#include <string>
 #include <tuple>
 #include <utility>
 
@@ -83,10 +84,12 @@ void Tries::mesh(const Plc& plc) {
     maker_.make_anyhow(plc, why);
   }
   try_seeds(plc);
+  keep_volumes(plc);
 }
 
 void Tries::mesh_repaired(SoupPipelineResult& all) {
   mesh_any_repaired(all);
+  keep_volumes(all.plc);
   maker_.move_to(all.plc);  // later stages and the options need it
 }
 
@@ -268,6 +271,7 @@ std::pair<Tries::End, std::string> Tries::attempt(const Plc& plc, std::exception
     return {job_.made.guarantees_hold() ? End::holds : End::missed, job_.made.missed()};
   } catch (const Ended&) {
     if (!job_.hit_bound()) throw;
+    has_exploded_ = true;
     return {End::exploded, describe_explosion(plc, job_.budget.most(), job_.made.result.where)};
   } catch (const FarTooFine& e) {
     most_asked_for_ = e.most;
@@ -318,9 +322,10 @@ void Tries::try_seeds(const Plc& plc) {
   for (std::uint64_t seed = first + 1; seed < first + job_.given.seeds && !made.guarantees_hold(); ++seed) {
     const std::string missed = made.missed();
     if (const double share = share_for_volumes(); share < 1) maker_.come_nearer(plc, share);
-    if (find_better(true, [&] { maker_.make(plc, seed); }))
-      made.check.notes.push_back(
-          fmt::format("made with seed {}, because with seed {}: {}", seed, first, missed));
+    if (!find_better(true, [&] { maker_.make(plc, seed); })) continue;
+    seed_ = seed;
+    made.check.notes.push_back(
+        fmt::format("made with seed {}, because with seed {}: {}", seed, first, missed));
   }
   try_narrow_places_otherwise(plc);
 }
@@ -349,10 +354,14 @@ void Tries::try_narrow_places_otherwise(const Plc& plc) {
       if (bound > 0) most = std::min(most, bound);
     job_.budget.set_most(most);
   }
-  maker_.set_narrow_cells(were_left ? NarrowCells::bounded : NarrowCells::left);
-  if (find_better(true, [&] { maker_.make(plc, job_.given.mesh.seed); }))
+  const NarrowCells otherwise = were_left ? NarrowCells::bounded : NarrowCells::left;
+  maker_.set_narrow_cells(otherwise);
+  if (find_better(true, [&] { maker_.make(plc, job_.given.mesh.seed); })) {
+    seed_ = job_.given.mesh.seed;
+    narrow_cells_ = otherwise;
     made.check.notes.push_back(fmt::format("made with {} narrow places, because otherwise {}",
                                            were_left ? "a bounded ratio in" : "any ratio in", missed));
+  }
   job_.budget.set_most(before);
   maker_.set_narrow_cells(NarrowCells::bounded_if_cheap);
 }
@@ -378,6 +387,79 @@ double Tries::share_for_volumes() const {
     keep(input.shells[i], mesh.shells[i]);
   if (missed(guarantee::thickness_kept)) share = least;
   return share;
+}
+
+/// Returns the largest relative deviation of a region's volume. Lowers the shares of the patches around each
+/// region whose volume is off by more than the limit of warnings to those that may bring it within the limit.
+double Tries::largest_loss(const Plc& plc, std::vector<double>* shares) const {
+  constexpr double aim = 0.7, least = 0.25;
+  const ShapeMeasures &input = job_.made.check.of_input, &mesh = job_.made.check.of_mesh;
+  double largest = 0;
+  for (Index r = 1; r < std::min(input.volumes.size(), mesh.volumes.size()); ++r) {
+    if (!(input.volumes[r] > 0)) continue;
+    const double off = std::fabs(mesh.volumes[r] / input.volumes[r] - 1);
+    largest = std::max(largest, off);
+    if (shares == nullptr || off <= volume_warned_of) continue;
+    const double share = std::max(least, aim * volume_warned_of / off);
+    for (Index p = 0; p < plc.patches.size(); ++p)
+      if (std::ranges::count(plc.patches[p].regions, r) == 1) (*shares)[p] = std::min((*shares)[p], share);
+  }
+  return largest;
+}
+
+/// Returns whether the kept mesh is good and was refined with the distances of first order, without trouble.
+bool Tries::may_keep_volumes() const {
+  constexpr std::size_t most_tets = 100'000;
+  const PipelineOptions& given = job_.given;
+  return given.order == 1 && given.start != Start::constrained && !(given.mesh.bounds.distance > 0) &&
+         !given.mesh.bounds.tolerance && !given.layers.any() && !given.periodic.any() && !has_exploded_ &&
+         maker_.depends_on_seed() && job_.made.guarantees_hold() &&
+         job_.made.result.mesh.tets.size() <= most_tets;
+}
+
+/// Makes the mesh again, nearer to the surfaces of regions whose volumes call for a warning. What chords take
+/// from one side of a wall and add on the other cancels only in part, which no estimate from the complex
+/// tells beforehand. Keeps the mesh with the better volumes. The mesh at hand is never lost to a limit of
+/// time, as half of the time that is left remains.
+void Tries::keep_volumes(const Plc& plc) {
+  constexpr unsigned rounds = 2;
+  constexpr double share_of_time = 0.5;
+  for (unsigned round = 0; round < rounds && may_keep_volumes(); ++round) {
+    std::vector<double> shares(plc.patches.size(), 1);
+    const double loss = largest_loss(plc, &shares);
+    if (loss <= volume_warned_of) return;
+    bool better = false;
+    job_.control.attempt(share_of_time, [&] { better = come_nearer(plc, shares, loss); });
+    if (!better) return;
+  }
+}
+
+/// Makes the mesh again with these shares of the tolerance. Keeps it if no volume calls for a warning, or if
+/// the loss of the mesh at hand is halved with at most twice the tets. Returns whether it is kept.
+bool Tries::come_nearer(const Plc& plc, const std::vector<double>& shares, double loss) {
+  constexpr std::size_t times_vertices = 3, times_tets = 2;
+  PipelineResult& made = job_.made;
+  const std::vector<std::string> notes = made.check.notes;
+  const std::size_t tets = made.result.mesh.tets.size(), before = job_.budget.most();
+  std::size_t most = times_vertices * made.result.statistics.vertices_inserted;
+  for (const std::size_t bound : {before, job_.given.mesh.max_vertices})
+    if (bound > 0) most = std::min(most, bound);
+  job_.budget.set_most(most);
+  maker_.set_narrow_cells(narrow_cells_);
+  maker_.come_nearer(plc, shares);
+  const bool better = find_better(true, [&] {
+    maker_.make(plc, seed_);
+    const double now = largest_loss(plc, nullptr);
+    const bool is_halved = 2 * now <= loss && made.result.mesh.tets.size() <= times_tets * tets;
+    if (now > volume_warned_of && !is_halved) throw Hopeless();
+  });
+  job_.budget.set_most(before);
+  maker_.set_narrow_cells(NarrowCells::bounded_if_cheap);
+  if (!better) return false;
+  made.check.notes.insert(made.check.notes.begin(), notes.begin(), notes.end());
+  made.check.notes.push_back(fmt::format(
+      "made nearer to smooth surfaces, because a region's volume was off by {:.2g}%", 100 * loss));
+  return true;
 }
 
 template <class Way>

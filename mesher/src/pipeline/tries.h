@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <exception>
 #include <string>
 #include <utility>
@@ -16,7 +18,8 @@ namespace collarmesh::pipeline {
 class Tries {
  public:
   /// Keeps a reference to the job. `source` makes the complexes; null if there is only one.
-  Tries(MeshJob& job, ComplexSource* source) : job_(job), source_(source), maker_(job, source) {}
+  Tries(MeshJob& job, ComplexSource* source)
+      : job_(job), source_(source), maker_(job, source), seed_(job.given.mesh.seed) {}
 
   /// Builds the complex, with repairs, and meshes it. `all` gets the complex that was meshed. Throws Ended
   /// and PlcError.
@@ -50,6 +53,10 @@ class Tries {
   bool take_constrained(const Plc& plc);
   void try_narrow_places_otherwise(const Plc& plc);
   double share_for_volumes() const;
+  double largest_loss(const Plc& plc, std::vector<double>* shares) const;
+  bool may_keep_volumes() const;
+  void keep_volumes(const Plc& plc);
+  bool come_nearer(const Plc& plc, const std::vector<double>& shares, double loss);
 
   /// Tries another way to make a mesh. The present result stays unless it has no mesh or the new one keeps
   /// every guarantee.
@@ -60,6 +67,10 @@ class Tries {
   ComplexSource* source_;
   MeshMaker maker_;
   std::size_t most_asked_for_ = 0;  // number of vertices above which a refinement counted as too fine
+  bool has_exploded_ = false;
+  // What made the kept mesh.
+  std::uint64_t seed_;
+  NarrowCells narrow_cells_ = NarrowCells::bounded_if_cheap;
 };
 
 }  // namespace collarmesh::pipeline
