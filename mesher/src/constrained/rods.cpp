@@ -102,7 +102,9 @@ class Rod {
     return static_cast<std::size_t>(fewest_in_ring * length_ / (apart * radius_));
   }
   /// Returns the number of vertices, after `measure`.
-  std::size_t vertices() const { return (in_ring_ + 1) * (steps_ + (is_loop() ? 0 : 1)); }
+  std::size_t vertices() const {
+    return is_loop() ? steps_ * (in_ring_ + 1) : steps_ * (in_ring_ + 1) + in_ring_ + 2;
+  }
 
  private:
   /// Numbers the vertices of a rod in a mesh, and adds its elements.
