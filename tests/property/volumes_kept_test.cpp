@@ -22,6 +22,7 @@ using namespace testing;
 PipelineOptions asked(double size) {
   PipelineOptions options;
   options.mesh = with_size(size);
+  options.mesh.threads = 1;
   return options;
 }
 
