@@ -83,7 +83,7 @@ class Rod {
 
   /// Returns whether the body may be a rod, by its patches, volume and surface.
   bool begin() {
-    return patch_ != none && (planar_.size() == 0 || planar_.size() == 2) && find_ends() && !is_thick();
+    return patch_ != none && (planar_.empty() || planar_.size() == 2) && find_ends() && !is_thick();
   }
   /// Finds the axis. Returns whether the body is a rod that rings can keep within the tolerance.
   bool measure() {
