@@ -27,7 +27,7 @@ from pathlib import Path
 
 from judging import JUDGE, MOST_TETS, TIME_LIMIT, Failed, run, verdict
 
-SIZE = 0.3
+SIZE = 0.4
 DISTANCE = 2e-3  # about a thousandth of the diagonals
 RANDOM_SEEDS = (1,)
 
