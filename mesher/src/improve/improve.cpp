@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <numeric>
 #include <queue>
 
 #include "collarmesh/error.h"
 #include "collarmesh/mesher.h"
+#include "common/found_in_ranges.h"
 #include "common/parallel_for.h"
 #include "common/thread_limit.h"
 #include "improve/detours.h"
@@ -89,9 +89,9 @@ class Improvement {
   }
 
   void find_poor_tets() {
-    std::vector<Index> all(complex().size());
-    std::iota(all.begin(), all.end(), Index{0});
-    find_poor_of(all);
+    poor_ = found_in_ranges<Item>(complex().size(), [&](std::size_t t, std::vector<Item>& found) {
+      add_if_poor(static_cast<Index>(t), found);
+    });
   }
 
   // Finds poor tets, like find_poor_tets, in less time. Precondition: tets have changed only in batches after
@@ -104,16 +104,13 @@ class Improvement {
       if (was_poor) ++poor;
       if (was_poor || (t < changed_in_.size() && changed_in_[t] > batch)) asked.push_back(t);
     }
-    find_poor_of(asked);
+    poor_ = found_in_ranges<Item>(
+        asked.size(), [&](std::size_t i, std::vector<Item>& found) { add_if_poor(asked[i], found); });
   }
 
-  void find_poor_of(const std::vector<Index>& tets) {
-    std::vector<double> qualities(tets.size());
-    parallel_for_in_chunks(tets.size(),
-                           [&](std::size_t i) { qualities[i] = remedies_.poor_quality(tets[i]); });
-    poor_.clear();
-    for (std::size_t i = 0; i < tets.size(); ++i)
-      if (qualities[i] < INFINITY) poor_.push_back({qualities[i], tets[i], complex()[tets[i]].generation});
+  void add_if_poor(Index tet, std::vector<Item>& found) const {
+    const double q = remedies_.poor_quality(tet);
+    if (q < INFINITY) found.push_back({q, tet, complex()[tet].generation});
   }
 
   void queue(Index tet) {

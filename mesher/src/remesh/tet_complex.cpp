@@ -127,11 +127,6 @@ void TetComplex::find_pinched_vertices() {
   }
 }
 
-std::array<Point, 4> TetComplex::corners(Index tet) const {
-  const auto& v = tets_[tet].corners;
-  return {mesh_.points[v[0]], mesh_.points[v[1]], mesh_.points[v[2]], mesh_.points[v[3]]};
-}
-
 // Finds the star. Stars are small, so a small table of the tets found is faster than marks.
 void TetComplex::star(Index vertex, std::vector<Index>& found) const {
   IndexSet known;

@@ -62,7 +62,10 @@ class TetComplex {
   const Tet& operator[](Index tet) const { return tets_[tet]; }
   TetMesh& mesh() { return mesh_; }
   const TetMesh& mesh() const { return mesh_; }
-  std::array<Point, 4> corners(Index tet) const;
+  std::array<Point, 4> corners(Index tet) const {
+    const auto& v = tets_[tet].corners;
+    return {mesh_.points[v[0]], mesh_.points[v[1]], mesh_.points[v[2]], mesh_.points[v[3]]};
+  }
   bool on_curve(Index a, Index b) const { return curve_edges_.contains(edge_key(a, b)); }
   /// Returns whether ab is an edge of a mesh face. Always true at a pinched vertex a.
   bool on_faces(Index a, Index b) const;
