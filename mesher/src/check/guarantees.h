@@ -12,8 +12,13 @@
 ///    second_order.cpp. Otherwise declare a check in subject.h and call it from `judge` in check.cpp, for
 ///    meshes without tets from `judge_shells` in shells.cpp.
 /// 3. Under MPI nothing of this runs by itself: call the predicate from `Certification` in
-///    distributed/src/certify.cpp, which adds up over the ranks.
+///    distributed/src/certify.cpp, for tets in `check_tets`, for nodes in `check_points`. `gather` collects
+///    the findings of all ranks. A measure of the whole mesh is summed in `sum_up` and judged in
+///    `compare_with_complex`. Names for many ranks only, as "shared_places", stand there.
 /// 4. Break it on purpose in tests/fast/check_wrong_meshes_test.cpp.
+/// 5. Add the name to `guarantees` in report/html_report/facts.js and to
+///    freecad_workbench/freecad/collarmesh_workbench/guarantees.py; without it the reports show the guarantee
+///    only when it is missed.
 namespace collarmesh::guarantee {
 
 // Guarantees of arrays and labels.

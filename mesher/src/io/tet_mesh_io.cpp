@@ -21,9 +21,14 @@ namespace {
 ///   not at all;
 /// - a line in `tet_mesh_formats`;
 /// - a line in `meshes` in report/conversion_report.cpp, or `convert` reports no losses;
-/// - if it writes side files, a line in files/file_groups.cpp, so that none takes the place of an input;
+/// - if it writes or reads side files, a line each in `files_written`, `is_of_several_files` and `files_read`
+///   in files/file_groups.cpp, so that none takes the place of an input;
 /// - a line in tests/fast/io_round_trip_test.cpp if it is read, else a case of
-///   tests/io/solver_formats_test.py;
+///   tests/io/solver_formats_test.py and its name in the list in tests/CMakeLists.txt;
+/// - if its surface may be an input, a line in `mesh_formats` in mesh_surface_io.cpp;
+/// - if it needs a library, an #ifdef around its line, and its name in `missing_library`;
+/// - a line in `FORMATS` in freecad_workbench/freecad/collarmesh_workbench/mesh_file.py, if FreeCAD should
+///   offer it;
 /// - a row in doc/formats.md.
 struct TetMeshFormat {
   std::string_view extension;
