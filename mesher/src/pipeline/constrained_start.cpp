@@ -79,7 +79,7 @@ Plc divided_strips(const MeshJob& job, double size, const Vector& diagonals) {
 /// Makes, improves and coarsens tetrahedra between the rungs of strips. Returns the number of those that miss
 /// their bounds; all of them if there are many before they are coarsened.
 std::size_t fill_ladders(MeshJob& job, const Plc& divided) {
-  constexpr std::size_t tets_per_poor_before = 10;
+  constexpr std::size_t tets_per_poor_before = 30;
   fill(job, divided);
   TetMesh& mesh = job.made.result.mesh;
   job.control.begin("remesh", 0.2, 0.6);
