@@ -163,9 +163,11 @@ bool MeshMaker::refines_with_few_vertices() {
 bool MeshMaker::is_far_too_fine() const {
   constexpr double times = 15, least = 60'000;
   const auto tets = static_cast<double>(job_.made.result.mesh.tets.size());
+  const auto is_predicted = [&](double wanted) {
+    return prediction::count_tets(prediction::Shape(*job_.plc), job_.options.mesh, {}, wanted) >= wanted;
+  };
   return job_.start == Start::automatic && job_.options.coarsen &&
-         job_.made.result.status == MeshStatus::complete && tets > least &&
-         tets > times * prediction::count_tets(prediction::Shape(*job_.plc), job_.options.mesh);
+         job_.made.result.status == MeshStatus::complete && tets > least && !is_predicted(tets / times);
 }
 
 /// Replaces the refined mesh by one made from the constrained tetrahedra, if that keeps every guarantee.

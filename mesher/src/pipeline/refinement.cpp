@@ -28,7 +28,7 @@ constexpr double reached_collar_angle = 130;
 
 /// Compares the number of vertices of a refinement with the number that its sizes ask for. The costly parts
 /// of the answer, that number and whether thin features may cause more, are computed only if a refinement
-/// inserts many.
+/// inserts many, and the number only as far as the comparison needs it.
 class VertexCounter {
  public:
   VertexCounter(const MeshJob& job, Fineness fineness) : job_(job), fineness_(fineness) {}
@@ -37,7 +37,7 @@ class VertexCounter {
   /// because of features thinner than the feature size.
   bool exceeds(std::size_t vertices) {
     if (fineness_ == Fineness::any || vertices <= few) return false;
-    exceeded_ |= vertices > most() && may_be_thin();
+    exceeded_ |= is_above_most(static_cast<double>(vertices)) && may_be_thin();
     return exceeded_;
   }
 
@@ -54,13 +54,15 @@ class VertexCounter {
 
   bool has_exceeded() const { return exceeded_; }
   std::size_t most() {
-    if (most_ == 0) most_ = find_most();
-    return most_;
+    if (!is_known_) count_up_to(largest);
+    return static_cast<std::size_t>(std::min(most_, largest));
   }
 
  private:
-  // Most parts without thin features have less than one vertex for each tet that is left after coarsening.
-  static constexpr std::size_t few = 1500, by_tet = 1;
+  // Parts without thin features mostly have less than `few` vertices, plus one for each tet that is left after
+  // coarsening.
+  static constexpr std::size_t few = 1500;
+  static constexpr double largest = 1e15;
 
   // Returns whether a refinement that has reached this number of vertices must end with too many. The moments
   // of progress reports depend on the clock, so this must be false throughout a refinement that does not
@@ -68,15 +70,20 @@ class VertexCounter {
   // vertices and some more; it drops those if it begins again.
   bool will_exceed(std::size_t vertices) {
     constexpr std::size_t some_more = 5000;
-    return fineness_ == Fineness::as_asked && vertices > few && vertices > 2 * most() + some_more &&
-           exceeds(vertices);
+    return fineness_ == Fineness::as_asked && vertices > few + some_more &&
+           is_above_most(0.5 * static_cast<double>(vertices - some_more)) && exceeds(vertices);
   }
 
-  std::size_t find_most() const {
-    constexpr double largest = 1e15;
-    const double tets = prediction::count_tets(prediction::Shape(*job_.plc), job_.options.mesh);
-    return static_cast<std::size_t>(
-        std::min(static_cast<double>(few) + static_cast<double>(by_tet) * tets, largest));
+  bool is_above_most(double vertices) {
+    if (!is_known_ && vertices >= most_) count_up_to(2 * vertices);  // twice, for later questions
+    return vertices > most_;
+  }
+
+  void count_up_to(double enough) {
+    if (!shape_) shape_.emplace(*job_.plc);
+    const double tets = prediction::count_tets(*shape_, job_.options.mesh, {}, enough);
+    most_ = static_cast<double>(few) + tets;
+    is_known_ = tets < enough;
   }
 
   // Returns whether thin places can have that many vertices. This costs far more than the prediction.
@@ -93,7 +100,9 @@ class VertexCounter {
   const MeshJob& job_;
   Fineness fineness_;
   bool exceeded_ = false;
-  std::size_t most_ = 0;      // 0: not known
+  std::optional<prediction::Shape> shape_;
+  double most_ = 0;           // the number that the sizes ask for, or less if it is not known yet
+  bool is_known_ = false;
   std::optional<bool> thin_;  // the answer of may_be_thin
 };
 

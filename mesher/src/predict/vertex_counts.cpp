@@ -24,21 +24,23 @@ double ramp(double x, double from, double to) { return std::clamp((x - from) / (
 
 class Counter {
  public:
-  Counter(const Shape& shape, const MeshOptions& options, const Model& model)
+  Counter(const Shape& shape, const MeshOptions& options, const Model& model, double enough)
       : shape_(shape),
         plc_(shape.plc()),
         options_(options),
         tolerance_(tolerance_of(plc_, options.bounds, options.size)),
         model_(model),
+        enough_(enough),
         sizing_(plc_, options, Frame()),
         pieces_(pieces_of_curves()),
         sizes_(sources()) {}
 
+  // Begins with the regions, where most tets are found in the least time.
   double run() {
-    for (const double share : shape_.angles().of_vertex) add(1, share);
-    for (Index c = 0; c < plc_.curves.size(); ++c) count_on_curve(c);
-    count_on_patches();
     count_inside();
+    for (const double share : shape_.angles().of_vertex) add(1, share);
+    for (Index c = 0; c < plc_.curves.size() && !is_enough(); ++c) count_on_curve(c);
+    count_on_patches();
     return tets_;
   }
 
@@ -60,6 +62,7 @@ class Counter {
     Index region = none;
   };
 
+  bool is_enough() const { return tets_ >= enough_; }
   void add(double vertices, double share) {
     if (vertices > 0)  // avoids 0 times infinity
       tets_ += model_.tets_per_vertex * share * vertices;
@@ -172,7 +175,7 @@ class Counter {
     std::deque<Piece> pieces;
     for (Index t = 0; t < plc_.triangles.size(); ++t) pieces.push_back({t, shape_.corners(t)});
     const std::size_t most = most_pieces + pieces.size();
-    for (std::size_t done = 0; !pieces.empty(); ++done) {
+    for (std::size_t done = 0; !pieces.empty() && !is_enough(); ++done) {
       const Piece piece = pieces.front();
       pieces.pop_front();
       const auto& [a, b, c] = piece.corners;
@@ -228,7 +231,7 @@ class Counter {
   void count_inside() {
     const Vector extent = plc_.bounds.max - plc_.bounds.min;
     std::deque<Cube> cubes{{plc_.bounds.centre(), 0.5 * std::max({extent.x, extent.y, extent.z})}};
-    for (std::size_t done = 0; !cubes.empty(); ++done) {
+    for (std::size_t done = 0; !cubes.empty() && !is_enough(); ++done) {
       Cube cube = cubes.front();
       cubes.pop_front();
       const bool last = done + cubes.size() >= most_cubes;
@@ -276,6 +279,7 @@ class Counter {
   const MeshOptions& options_;
   SurfaceTolerance tolerance_;
   const Model& model_;
+  double enough_;
   Sizing sizing_;
   std::vector<std::vector<CurvePiece>> pieces_;  // by curve
   GradedSize sizes_;
@@ -284,8 +288,8 @@ class Counter {
 
 }  // namespace
 
-double count_tets(const Shape& shape, const MeshOptions& options, const Model& model) {
-  return Counter(shape, options, model).run();
+double count_tets(const Shape& shape, const MeshOptions& options, const Model& model, double enough) {
+  return Counter(shape, options, model, enough).run();
 }
 
 }  // namespace collarmesh::prediction
