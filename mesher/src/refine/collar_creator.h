@@ -62,8 +62,8 @@ class CollarCreator {
   /// vertex. Precondition: the vertex waits for its ball.
   void create_at_vertex(Index vertex, Index near, BallReason reason);
   /// Looks for crease vertices or curves that have become isolated. Creates the balls of vertices at once;
-  /// those of curves are created by `create_on_isolated_curves`. Precondition: all other parts know the new
-  /// cells.
+  /// those of curves are created by `create_on_isolated_curves`. Precondition: the new cells were reported to
+  /// all other parts.
   void cells_made(const ConflictZone& zone, Index vertex);
   /// Creates the balls of curves that have become isolated.
   void create_on_isolated_curves();

@@ -22,8 +22,8 @@ class Sizing {
   /// exceeds the size by more. Sizes given as numbers of elements, across a gap or on a circle, are used as
   /// they are.
   static constexpr double edge_per_size = 1.08;
-  /// If the mesh will be coarsened, cells are left in gaps narrower than this share of the target edge
-  /// length: in wider gaps a bounded ratio costs little, and angles are better.
+  /// If the mesh will be coarsened, cells may exceed the ratio in gaps narrower than this share of the target
+  /// edge length: in wider gaps a bounded ratio costs little, and angles are better.
   static constexpr double narrow_gap_per_size = 0.1;
 
   /// Makes the sizes. Functions of a place throw OptionError if the field returns no positive size there; an

@@ -50,7 +50,8 @@ class TriangleQuality {
   /// Records that no point could be inserted to destroy a triangle, so that it is not tried again.
   void give_up(FaceId face) { surface_.note_given_up(face); }
 
-  /// Judges the triangles of new cells. Precondition: surface and sizes know the new cells and the vertex.
+  /// Judges the triangles of new cells. Precondition: the new cells and the vertex were reported to surface
+  /// and sizes.
   void cells_made(const ConflictZone& zone);
   /// Judges the triangles of new cells in a block. Several threads may call it, each with its own queue, if
   /// no sizes come from the caller or are kept at vertices.
