@@ -97,7 +97,7 @@ struct Surface {
     return places;
   }
   /// Returns the nodes inside a patch. `targets`: target edge lengths by vertex; if there are any, leaves out
-  /// nodes that are far nearer to others than these.
+  /// nodes that are far nearer to other nodes than these lengths.
   std::vector<SpacedPlace> spaced_inside(const TetMesh& mesh, Index patch,
                                          const std::vector<double>& targets) const {
     if (!targets.empty()) return sparse_nodes(mesh, faces[patch], targets);

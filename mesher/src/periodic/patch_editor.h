@@ -69,7 +69,7 @@ class PatchEditor {
   CavityEditor& editor_;
   Index patch_;
   Vector normal_;    // normal, pointing out of the region
-  Point viewpoint_;  // a point outside, from which sides are judged
+  Point viewpoint_;  // a point outside, for telling the left of an edge from its right
   std::unordered_map<std::uint64_t, std::array<Index, 2>> faces_at_;  // by edge
   std::unordered_map<Index, bool> stays_;  // nodes inside the patch, and whether each stays
   Index last_ = none;                      // the face that was made or found last
