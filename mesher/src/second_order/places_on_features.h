@@ -39,7 +39,7 @@ class PlacesOnFeatures {
   const Plc& plc_;
   FeatureShapes shapes_;
   FlatFeatures flat_;
-  ExactGeometry exact_;  // restricted to flat features; empty if there is none
+  ExactGeometry exact_;  // limited by `flat_`; empty if there is no exact geometry
 };
 
 }  // namespace collarmesh::second_order
