@@ -8,9 +8,9 @@
 
 namespace collarmesh {
 
-/// Keeps straight curves and planar patches flat when their nodes move onto exact geometry. The geometry may
-/// deviate from the line or plane by the tolerance of the shape, or by more than the tessellation's points
-/// do.
+/// The limits that keep straight curves and planar patches flat when their nodes move onto exact geometry.
+/// The geometry may deviate from the line or plane by the tolerance of the shape, or by more than the
+/// tessellation's points do.
 class FlatFeatures {
  public:
   /// Keeps a reference to the complex. Cost: linear in the triangles.
