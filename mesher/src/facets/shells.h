@@ -16,7 +16,7 @@ namespace collarmesh::facets {
 /// Precondition: triangles meet in common edges and corners only.
 DisjointSets find_shells(const Draft& draft, const EdgeTable& edges);
 
-/// Finds where straight lines meet the triangles.
+/// A search for the places where straight lines meet the triangles.
 class LineCaster {
  public:
   /// Keeps references to both. The triangles are the first items of the tree, in their order.
