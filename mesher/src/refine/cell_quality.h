@@ -14,8 +14,8 @@
 
 namespace collarmesh {
 
-/// Decides which cells to destroy: skinny ones, by their radius-edge ratio or because they are flat, and
-/// large ones.
+/// The part that decides which cells to destroy: skinny ones, by their radius-edge ratio or because they are
+/// flat, and large ones.
 ///
 /// State: with a vertex ratio, the shortest edge at every vertex. Invariant: after an insertion the queue
 /// contains every new cell that must be destroyed, and older cells that have become so. The loop reports

@@ -11,8 +11,8 @@
 
 namespace collarmesh {
 
-/// Reviews the collar surface whenever all other work is done (paper, section 4), and queues its faults: poor
-/// triangles, and vertices of creases that are vertices of cells outside the collar.
+/// The part that reviews the collar surface whenever all other work is done (paper, section 4), and queues
+/// its faults: poor triangles, and vertices of creases that are vertices of cells outside the collar.
 ///
 /// State: the known triangles of the collar surface since the last review. Invariant, once started: every
 /// cell near collars that was created since then, or whose vertices lie on other features, is touched. So a

@@ -4,8 +4,9 @@
 
 namespace collarmesh {
 
-/// Moves input that lies far from the origin close to it without any rounding. On an axis where min > 0 and
-/// max <= 2 min (or mirrored), subtracting the bound nearer to zero is exact (Sterbenz).
+/// A translation without any rounding, which moves input that lies far from the origin close to it. On an
+/// axis where min > 0 and max <= 2 min (or mirrored), subtracting the bound nearer to zero is exact
+/// (Sterbenz).
 class Frame {
  public:
   Frame() = default;

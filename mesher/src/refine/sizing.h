@@ -8,8 +8,8 @@
 
 namespace collarmesh {
 
-/// Turns the requested sizes into target edge lengths, and these into bounds on circumradii. The factors are
-/// measured (doc/architecture/refinement.md).
+/// A conversion of the requested sizes to target edge lengths, and of these to bounds on circumradii. The
+/// factors are measured (doc/architecture/refinement.md).
 ///
 /// Callers are CurveChains::too_coarse, TriangleQuality::target_size and CellQuality::judge, to decide about
 /// splits; GradedSizes::cells_made, for the size at a new vertex; CollarCreator::target_size, for the radii

@@ -12,10 +12,10 @@
 
 namespace collarmesh {
 
-/// Decides which restricted triangles to destroy: large ones and unresolved ones. A triangle is unresolved if
-/// its vertices do not all lie on its patch, if its dual edge crosses several sheets, or if its circumcentre
-/// is too far from the surface. (RestrictedSurface::restrict_face finds the first two when it makes the
-/// record.)
+/// The part that decides which restricted triangles to destroy: large ones and unresolved ones. A triangle is
+/// unresolved if its vertices do not all lie on its patch, if its dual edge crosses several sheets, or if its
+/// circumcentre is too far from the surface. (RestrictedSurface::restrict_face finds the first two when it
+/// makes the record.)
 /// State: the notes of the restricted surface. Invariant: after an insertion every triangle of the new cells
 /// is judged, and the queue contains those that must be destroyed. The loop and BlockRefinement report
 /// insertions and take candidates; SurfaceCheck and SurfaceTopology ask for triangles to split.
