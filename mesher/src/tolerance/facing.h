@@ -23,7 +23,7 @@ double least_facing(bool neighbours);
 double facing_distance(const Plc& plc, Index patch, const Point& x, const Vector& normal, const Vector& way,
                        Index triangle, const std::array<Point, 3>& corners);
 
-/// Finds the surface that faces a point of the surface, across a region, a gap or a cavity.
+/// A search for the surface that faces a point of the surface, across a region, a gap or a cavity.
 class FacingSurfaces {
  public:
   /// Keeps the complex by reference.
