@@ -132,7 +132,7 @@ struct Surface {
   std::vector<std::vector<Index>> faces;  // by patch
 };
 
-/// Makes the meshes of both groups of each pair correspond: curves, then patches.
+/// The procedure that makes the meshes of both groups of each pair correspond: curves, then patches.
 class Maker {
  public:
   Maker(TetMesh& mesh, const Plc& plc, Periodicity periodicity)

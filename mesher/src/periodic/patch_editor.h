@@ -17,7 +17,7 @@ struct PatchChange {
   std::size_t inserted = 0, removed = 0, turned = 0;
 };
 
-/// Changes the triangles of a planar patch on the boundary, and the tets behind it.
+/// An editor of the triangles of a planar patch on the boundary, and of the tets behind it.
 class PatchEditor {
  public:
   using Edge = std::array<Index, 2>;

@@ -361,7 +361,7 @@ Index Recut::vertex_back(Place place, Shift shift) const {
 
 namespace {
 
-/// Builds a mesh of numbered vertices, which are created on first use.
+/// A mesh of numbered vertices, which are created on first use.
 class Restored {
  public:
   explicit Restored(const TetMesh& like) {
