@@ -6,8 +6,8 @@
 
 namespace collarmesh::second_order {
 
-/// Finds the places of nodes on curves and patches: on the exact geometry or, where there is none, on the
-/// complex.
+/// A search for the places of nodes on curves and patches: on the exact geometry or, where there is none, on
+/// the complex.
 class PlacesOnFeatures {
  public:
   /// Keeps references to both.
