@@ -10,10 +10,10 @@ namespace collarmesh {
 /// The bounds that every stage keeps and that `check` judges by. Angles in degrees.
 struct Bounds {
   double radius_edge = 2;  ///< largest circumradius / shortest edge in regions, outside collars; at least 1
-  /// Smallest dihedral angle of thin tets, the tets that exceed `radius_edge`; 0: no tet may exceed it. At a
-  /// crease sharper than this, half of the crease's angle is enough. Where the input forces edges to be
-  /// short, as across a thin wall, half of the angle that they leave is enough. Dihedral and face angles of
-  /// thin tets are at most 150.
+  /// Smallest dihedral angle that thin tets, those that exceed `radius_edge`, may have; 0: no tet may be
+  /// thin. At a crease sharper than this, half of the crease's angle is enough. Where the input forces edges
+  /// to be short, as across a thin wall, half of the angle that such edges permit is enough. Dihedral and
+  /// face angles of thin tets are at most 150.
   double thin_angle = 8;
   /// Allows thin tets only at creases and in narrow places; if false, anywhere. A place is narrow if two
   /// features without a common point, or two features that meet in a crease, are closer there than the

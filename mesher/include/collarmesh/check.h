@@ -92,9 +92,9 @@ CheckReport check(const TetMesh& mesh, const Plc& plc, const CheckOptions& optio
 inline constexpr double least_triangle_angle = 20, largest_triangle_angle = 120;
 
 /// Recomputes every guarantee of a mesh of triangles alone (`mesh_shells`): conformity (every edge has two
-/// triangles, or lies on a curve with one of each patch there), vertices, curves as chains of edges, tags,
-/// orientation, areas of planar patches, surface distance in both directions, angles, and positive Jacobians
-/// of curved triangles. A mesh without feature indices is matched by tags and position.
+/// triangles, or lies on a curve and has one triangle of each patch there), vertices, curves as chains of
+/// edges, tags, orientation, areas of planar patches, surface distance in both directions, angles, and
+/// positive Jacobians of curved triangles. A mesh without feature indices is matched by tags and position.
 CheckReport check_shells(const TetMesh& mesh, const Plc& plc, const CheckOptions& options = {},
                          const Execution& execution = {});
 

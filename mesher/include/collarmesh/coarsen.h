@@ -21,12 +21,12 @@ struct CoarsenReport {
 /// edge length there (0.75 inside regions), within their features, unless a new edge would exceed 1.5 times
 /// that length or be shorter than all edges around it.
 /// The radius-edge bound alone makes tets as small as the thinnest wall and the sharpest wedge require. This
-/// function therefore lets thin tets exceed it. Their dihedral angles are at least `thin_angle`, and their
-/// dihedral and face angles at most 150 degrees (the maximum-angle condition: Babuska and Aziz 1976, Krizek
-/// 1992). Afterwards collars are the tets that touch a crease; their angles are at most `collar_angle`. A
-/// collapse that nearly fits is repaired at once, by edge removal and by moving vertices, or undone. All
-/// other guarantees still hold; planar patches stay planar, smooth patches and curves stay within the
-/// distance.
+/// function therefore lets thin tets exceed that bound. Their dihedral angles are at least `thin_angle`, and
+/// their dihedral and face angles at most 150 degrees (the maximum-angle condition: Babuska and Aziz 1976,
+/// Krizek 1992). Afterwards collars are the tets that touch a crease; their angles are at most
+/// `collar_angle`. A collapse that nearly fits is repaired at once, by edge removal and by moving vertices,
+/// or undone. All other guarantees still hold; planar patches stay planar, smooth patches and curves stay
+/// within the distance.
 /// Preconditions: `mesh` comes from `generate` for `plc` with the options `made_with`, and is of first order.
 /// Guarantee: same input and options, same mesh. Throws OptionError for an angle out of range. Cost: linear
 /// in the tets, with local changes: some microseconds for each tet that is removed, and several times that

@@ -13,8 +13,8 @@ using CurvedTet = std::array<Point, 10>;
 /// Returns the nodes of a tet. Precondition: mesh.order() == 2.
 CurvedTet curved_tet(const TetMesh& mesh, Index tet);
 
-/// Returns whether the Jacobian determinant of the map from the reference tetrahedron exceeds `least` times
-/// that of the straight tetrahedron with the same corners, everywhere. With `least` 0, tells whether the
+/// Returns whether the Jacobian determinant of the map from the reference tetrahedron everywhere exceeds
+/// `least` times that of the straight tetrahedron with the same corners. With `least` 0, tells whether the
 /// element is valid. The answer rests on bounds, not samples: the determinant is a cubic polynomial, whose 20
 /// Bernstein coefficients enclose it and equal it at the corners; the element is bisected until these bounds
 /// decide (Johnen, Remacle and Geuzaine, Geometrical validity of curvilinear finite elements, 2013, section

@@ -11,14 +11,14 @@ namespace collarmesh {
 
 /// Operations that `improve` may use, and its goals.
 struct ImproveOptions {
-  double min_dihedral =
-      20;  ///< degrees; improve tets with a smaller dihedral angle, or with an obtuse one of equal badness
-  Bounds bounds = {};     ///< bounds that no new tet breaks
+  double min_dihedral = 20;  ///< degrees; improve tets with a smaller dihedral angle, or an obtuse one as bad
+                             ///< as that (see `improve`)
+  Bounds bounds = {};        ///< bounds that no new tet breaks
   double thin_above = 0;  ///< radius-edge ratio above which later stages call tets thin; 0: the bound on the
                           ///< ratio
   bool move_vertices = true;   ///< also move, insert and remove vertices instead of only changing connections
   bool keep_vertices = false;  ///< insert and remove no vertices beside thin tets unless an angle exceeds
-                               ///< their bound: a coarsened mesh already has as few vertices as it needs
+                               ///< the bound for thin tets: a coarsened mesh has as few vertices as it needs
   double edges_per_hole = 0;   ///< as MeshOptions::edges_per_hole
   unsigned passes = 3;         ///< maximum number of passes, each over the tets that are still poor
   unsigned threads = 0;        ///< maximum number of threads; 0: all cores. The result does not depend on it
@@ -33,8 +33,8 @@ struct ImproveReport {
   std::size_t remaining = 0;   ///< tets below the bound at the end
   std::size_t edge_removals = 0, boundary_flips = 0, moved_vertices = 0, contracted_edges = 0,
               inserted_vertices = 0;
-  /// Number of detours: sequences of operations that made tets worse before they made them better, and single
-  /// operations that these made possible. Not counted above.
+  /// Number of detours: sequences of operations that first made tets worse and then better, and single
+  /// operations that detours made possible. The counts above leave them out.
   std::size_t detours = 0;
   double seconds = 0;
   bool cancelled = false;  ///< the mesh is valid and partly improved
@@ -42,17 +42,17 @@ struct ImproveReport {
 
 /// Removes slivers by hill climbing on the smallest sine of a tet's dihedral angles (obtuse ones count 0.7
 /// times, so that 155 degrees is about as bad as 17), worst tets first. The operations: removing edges,
-/// inside regions and on patches; moving vertices within their features; collapsing edges if no edge becomes
-/// longer than those before; inserting vertices on edges (Freitag and Ollivier-Gooch 1997; the edge removal
-/// is Klincsek's optimal triangulation of the ring, as in Klingner and Shewchuk 2007, section 2). A sliver
-/// with two faces on a smooth patch is removed from its region.
+/// inside regions and on patches; moving vertices within their features; collapsing edges if no new edge is
+/// longer than the edges before; inserting vertices on edges (Freitag and Ollivier-Gooch 1997; the edge
+/// removal is Klincsek's optimal triangulation of the ring, as in Klingner and Shewchuk 2007, section 2). A
+/// sliver with two faces on a smooth patch is removed from its region.
 /// For the few tets that no operation improves, tries an operation that makes tets worse and improves its
 /// result; undoes both unless the tets are better afterwards, compared from the worst one up. No other
 /// operation makes the worst tet of its cavity worse, breaks the radius-edge bound (by a tet that is not
-/// thin), touches a collar, leaves the plane of a planar patch, or takes a smooth patch or curve and its
-/// faces or edges farther apart than the distance.
+/// thin), touches a collar, leaves the plane of a planar patch, or puts faces or edges farther than the
+/// distance from their smooth patch or curve.
 /// Preconditions: `mesh` comes from `generate` for `plc`, first order, with the same `distance`. Cost: linear
-/// in the tets, with a small factor for tets below a bound that they can reach.
+/// in the tets, with a small factor for poor tets that can reach the bound.
 ImproveReport improve(TetMesh& mesh, const Plc& plc, const ImproveOptions& options = {},
                       const Execution& execution = {});
 

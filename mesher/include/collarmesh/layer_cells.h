@@ -31,8 +31,8 @@ struct LayerCells {
   std::vector<Index> quad_patch;  ///< index of the patch in the complex, none when unknown
   std::vector<Tag> quad_tag;      ///< tag of that patch
 
-  /// Mid-edge nodes in second order, else empty: of a prism those of ab, bc, ca, de, ef, fd, ad, be, cf; of a
-  /// pyramid ab, bc, cd, da, ae, be, ce, de; of a quadrangle ab, bc, cd, da.
+  /// Mid-edge nodes; empty in first order. Their edges are, for a prism, ab, bc, ca, de, ef, fd, ad, be, cf;
+  /// for a pyramid ab, bc, cd, da, ae, be, ce, de; for a quadrangle ab, bc, cd, da.
   std::vector<std::array<Index, 9>> prism_mid_nodes;
   std::vector<std::array<Index, 8>> pyramid_mid_nodes;
   std::vector<std::array<Index, 4>> quad_mid_nodes;

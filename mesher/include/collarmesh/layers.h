@@ -40,7 +40,7 @@ struct LayersReport {
   struct Reduction {
     std::string why;        ///< the reason
     std::size_t nodes = 0;  ///< nodes of the wall that this reason concerns
-    double smallest = 1;    ///< smallest share of the height that is left
+    double smallest = 1;    ///< smallest height there, as a share of the height asked for
     Point where;            ///< the node with that share
   };
   struct Patch {

@@ -25,7 +25,7 @@ struct MeshMeasures {
   std::array<std::size_t, bins> min_dihedrals{};  ///< tets by their smallest dihedral angle, 10 degrees a bin
   std::array<std::size_t, bins> max_dihedrals{};  ///< tets by their largest dihedral angle
   std::array<std::size_t, bins>
-      radius_edges{};  ///< tets by radius-edge ratio, 0.25 a bin, the last one is open
+      radius_edges{};  ///< tets by radius-edge ratio, 0.25 a bin; the last bin is open
   std::map<Index, double> region_volumes;
   /// The ten tets with the smallest and the ten with the largest dihedral angles, the most extreme first.
   std::vector<Extreme> smallest_angles, largest_angles;

@@ -31,14 +31,15 @@ enum class Profile {
   paper
 };
 
-/// The cells in narrow places that the radius-edge bound applies to. A place is narrow between features that
+/// The cells in narrow places to which the radius-edge bound applies. A place is narrow between features that
 /// have no point in common and are nearer to each other than a tenth of the size, as across a thin wall. Such
 /// cells may exceed the bound in meshes that will be coarsened, where angles are bounded instead of the ratio
 /// (Bounds::thin_angle).
 enum class NarrowCells {
   bounded,
   left,
-  bounded_if_cheap  ///< bounded if that takes at most about twice the vertices; otherwise all are left
+  bounded_if_cheap  ///< bounded if that takes at most about twice the vertices; otherwise all may exceed the
+                    ///< bound
 };
 
 /// The goals of `generate`. Lengths are absolute, in input units, and are target edge lengths: the median
@@ -64,7 +65,7 @@ struct MeshOptions {
                                    ///< faces across a region; 0: no effect
   Bounds bounds = {};
   /// Bound on circumradius / shortest edge outside every region; used if larger than the bound inside. Edges
-  /// straight across a gap do not count there.
+  /// that lead straight across a gap do not count there.
   double exterior_radius_edge = 8;
   NarrowCells narrow_cells = NarrowCells::bounded;
   double vertex_ratio = 0;  ///< bound on largest circumradius / shortest edge at a vertex in the regions
@@ -94,10 +95,10 @@ std::vector<std::string> sizes_without_effect(const Plc& plc, const MeshOptions&
 
 /// Returns the default of the surface distance tolerance, absolute: a tenth of the target edge length (0: of
 /// its default, as in MeshOptions), at most 1/200 of the diagonal. A circle whose radius is near the target
-/// length then gets about eight edges: edges of that length have this chord error. Small curves may be
-/// rougher than large ones, but see MeshOptions::edges_per_hole. For cells of second order it is at most
-/// 1/550 of the diagonal: it applies to the triangles of their corners, and coarser triangles could not be
-/// curved without inverting elements.
+/// length then gets about eight edges, whose chord error is about this tolerance. Small curves may be rougher
+/// than large ones, but see MeshOptions::edges_per_hole. For cells of second order it is at most 1/550 of the
+/// diagonal: it applies to the triangles of their corners, and coarser triangles could not be curved without
+/// inverting elements.
 double default_distance(double size, double diagonal, int order = 1);
 
 enum class MeshStatus {
@@ -148,13 +149,13 @@ struct MeshResult {
   Point where;
   TetMesh mesh;
   MeshStatistics statistics;
-  bool has_narrow_cells = false;  ///< cells with a larger ratio may have been left
+  bool has_narrow_cells = false;  ///< cells above the radius-edge bound may remain
                                   ///< (MeshOptions::narrow_cells)
 };
 
 /// Meshes a complex: Sparse Voronoi Refinement (paper, Procedure 1). Preconditions: `plc` comes from
 /// `build_plc` and may have creases. Guarantee (status complete): every tet in a region and outside collars
-/// has circumradius / shortest edge <= radius_edge, every one in a collar no dihedral angle above
+/// has circumradius / shortest edge <= radius_edge, every tet in a collar has no dihedral angle above
 /// collar_angle; curves are unions of edges, patches unions of faces, planar ones exactly up to rounding and
 /// smooth ones within `distance`. Throws OptionError when options contradict each other, PlcError if features
 /// come so near to each other that no collar fits between them. Cost: near linear in the output.

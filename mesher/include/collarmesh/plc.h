@@ -99,7 +99,7 @@ struct Plc {
   Cleanup cleanup;
   std::vector<Warning> warnings;
 
-  /// Returns whether the patch contains this vertex / curve. Cost: logarithmic in the list.
+  /// Return whether a patch or curve contains this vertex or curve. Cost: logarithmic in the list.
   bool vertex_on_patch(Index vertex, Index patch) const;
   bool curve_on_patch(Index curve, Index patch) const;
   bool vertex_on_curve(Index vertex, Index curve) const;

@@ -32,7 +32,7 @@ class PolygonSoup {
     Index facet = 0;
     Point point;
   };
-  /// A point that names the region it lies in, its tag and optionally its target edge length.
+  /// A point in a region, with the tag of that region and optionally its target edge length.
   struct RegionPoint {
     Point point;
     Tag tag = 0;
@@ -44,8 +44,8 @@ class PolygonSoup {
   std::vector<Tag> point_tags;  ///< one per point, or empty
   std::vector<Segment> segments;
   std::vector<Index> vertices;  ///< points that are features by themselves
-  /// Whether the soup gives its features: vertices, segments, borders of tags and folds above 90 degrees.
-  /// Angles then add none.
+  /// Whether the soup gives its features: vertices, segments, borders of tags and folds above 90 degrees. The
+  /// feature angle then adds none.
   bool given_features = false;
   std::vector<RegionPoint> region_points;  ///< .poly: region_points and hole_points decide which space of
                                            ///< their file is solid
@@ -55,7 +55,7 @@ class PolygonSoup {
   std::vector<FacetHole> facet_holes;
   TagNames tag_names;  ///< names of the file for its tags
   std::optional<Tag>
-      region_tag;  ///< tag of regions that this surface is the first to bound; by default their number
+      region_tag;  ///< tag of regions whose boundary is mostly from this soup; by default their number
 
   /// Begins a facet; the polygons added next belong to it.
   void begin_facet(Tag tag = 0) { facets_.push_back({polygon_count(), tag}); }
@@ -72,7 +72,7 @@ class PolygonSoup {
     add_polygon(corners);
   }
 
-  /// Adds `by` to the tags of facets and to the tags of their names.
+  /// Adds `by` to the tags of facets, and moves their names to the new tags.
   void shift_facet_tags(Tag by) {
     for (Facet& facet : facets_) facet.tag += by;
     TagNames shifted;

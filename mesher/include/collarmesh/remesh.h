@@ -38,11 +38,11 @@ using AdaptOptions = std::function<void(const Plc&, PipelineOptions&)>;
 RemeshResult remesh(const TetMesh& mesh, const PipelineOptions& options = {}, const AdaptOptions& adapt = {},
                     const Execution& execution = {});
 
-/// Does the same, but the result follows the complex that the mesh was made of, and is certified against it:
-/// `complex`, not the triangles of the mesh, determines where nodes are inserted, where they move, and how
-/// far faces may be off. If `options.exact` is the geometry behind the complex (`adapt` may set it), nodes
-/// are moved onto it. The mesh has a vertex at each vertex of the complex, and faces and edges that cover its
-/// patches and curves. Throws PlcError with the place where it does not.
+/// Adapts a mesh as above, but the result follows the complex that the mesh was made of, and is certified
+/// against it: `complex`, not the triangles of the mesh, determines where nodes are inserted, where they
+/// move, and how far faces may be off. If `options.exact` is the geometry behind the complex (`adapt` may set
+/// it), nodes are moved onto it. The mesh must have a vertex at each vertex of the complex, and faces and
+/// edges that cover its patches and curves. Throws PlcError with the place where they are missing.
 RemeshResult remesh(const TetMesh& mesh, const Plc& complex, const PipelineOptions& options = {},
                     const AdaptOptions& adapt = {}, const Execution& execution = {});
 

@@ -31,8 +31,8 @@ struct RepairOptions {
   bool wrap_at_once = false;  ///< in `RepairMode::wrap`: wrap even if the other steps make a solid
   /// Features of a complex that are smaller than this share of the target size are collapsed; 0: none.
   double feature_size = 0.01;
-  /// The smallest target size that is given, absolute; 0: a twentieth of the diagonal. Nothing: no feature is
-  /// collapsed.
+  /// The smallest target size that is given, absolute; 0: a twentieth of the diagonal. Without a value, no
+  /// feature is collapsed.
   std::optional<double> target_size = {};
   std::vector<Tag> kept_patches = {}, kept_curves = {};  ///< tags of features that are never collapsed
   /// Maximum work before repair gives up, counted in pairs of facets near each other; a cut of an
@@ -91,7 +91,7 @@ struct RepairReport {
                                  ///< neighbours; size: volume
   RepairPlaces vanished;         ///< regions of valid input, as thin as the tolerance, that are gone; size:
                                  ///< volume
-  /// Number of other lost regions of valid input; places: in the regions that took their space.
+  /// Other regions of valid input that were lost; places: points in the regions that took their space.
   RepairPlaces united;
   std::vector<FilledHole> filled;
   double feature_size = 0;                   ///< size below which features were collapsed, absolute
@@ -142,8 +142,8 @@ struct RepairedPlc {
 };
 
 /// Returns `plc`, the complex of the soups, unless it has features below the tolerance: shorter curves,
-/// slits, or features that come as close without meeting. In that case returns the complex of the repaired
-/// soups. If the features cannot be removed, returns `plc` with a warning.
+/// slits, or features that come closer to each other than this without meeting. In that case returns the
+/// complex of the repaired soups. If the features cannot be removed, returns `plc` with a warning.
 RepairedPlc remove_noise(Plc plc, std::span<const PolygonSoup> soups, const PlcOptions& options = {},
                          const RepairOptions& repair_options = {}, const Execution& execution = {});
 
@@ -156,10 +156,9 @@ RepairedPlc collapse_small_features(RepairedPlc complex, std::span<const Polygon
                                     const PlcOptions& options = {}, const RepairOptions& repair_options = {},
                                     const Execution& execution = {});
 
-/// Renumbers the patches and curves of a complex that was repaired otherwise: those that `before` has get
-/// their numbers there, new ones the numbers after these. `before` is the complex in which untagged facets
-/// and edges were numbered. Otherwise a number given by the user would mean another feature. Cost: O(n log
-/// n).
+/// Renumbers the patches and curves of a complex that another repair made, so that a number given by the user
+/// still means the same feature. Features that `before` has get their numbers there, new ones the numbers
+/// after these. `before` is the complex in which untagged facets and edges were numbered. Cost: O(n log n).
 void keep_feature_numbers(const Plc& before, Plc& after);
 
 /// Builds the complex, after `repair` if there are faults or noise, with a tolerance that grows while that

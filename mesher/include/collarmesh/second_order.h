@@ -51,11 +51,12 @@ struct SecondOrderReport {
 /// 1. tets that curved edges make flat at a corner, wherever their other nodes lie, are replaced;
 /// 2. nodes inside regions, and in the planes of planar patches, move until all tets there are valid;
 /// 3. tets for which that does not help are replaced;
-/// 4. the nodes at fault move back towards the middles of their edges, as far as necessary. Straight tets are
-///    valid, so in the end every tet is. Vertices keep their numbers; mid-edge nodes follow all of them.
-///    Preconditions: `mesh` comes from `generate` for `plc`, first order. Throws OptionError unless 0 <=
-///    least_jacobian < 1. Cost: n log n in the tets, at most five times, and some milliseconds for each tet
-///    that is not valid at first.
+/// 4. the nodes at fault move back towards the middles of their edges, as far as necessary.
+///
+/// Straight tets are valid, so in the end every tet is valid. Vertices keep their numbers; mid-edge nodes
+/// follow all of them. Preconditions: `mesh` comes from `generate` for `plc`, first order. Throws OptionError
+/// unless 0 <= least_jacobian < 1. Cost: n log n in the tets, at most five times, and some milliseconds for
+/// each tet that is not valid at first.
 SecondOrderReport make_second_order(TetMesh& mesh, const Plc& plc, const SecondOrderOptions& options = {},
                                     const Execution& execution = {});
 

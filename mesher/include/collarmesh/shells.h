@@ -24,8 +24,8 @@ namespace collarmesh {
 PipelineResult mesh_shells(const Plc& plc, const PipelineOptions& options = {},
                            const Execution& execution = {});
 
-/// Meshes the patches of the complexes of a source, which need not bound anything. Facets that are no complex
-/// are repaired as for solids.
+/// Meshes the patches of a complex from a source; the patches need not bound anything. Facets that are no
+/// complex are repaired as for solids.
 SoupPipelineResult mesh_shells(ComplexSource& source, const PipelineOptions& options = {},
                                const Execution& execution = {});
 

@@ -16,8 +16,8 @@ namespace collarmesh {
 /// Returns the target edge length at a point, absolute, in input units; for `MeshOptions::size_field`.
 using SizeField = std::function<double(const Point&)>;
 
-/// Records which sources of a size field made anything finer: which of them somewhere asked for less than the
-/// given size.
+/// A record of the sources of a size field that made anything finer: those that somewhere asked for less than
+/// the given size.
 class SizeFieldUse {
  public:
   explicit SizeFieldUse(double size) : size_(size) {}

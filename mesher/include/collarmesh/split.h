@@ -52,7 +52,7 @@ struct SplitReport {
     double area = 0;         ///< area of the opened triangles, taken as straight, absolute
     double largest = 0;      ///< area of the largest opened triangle
     Point where;             ///< the middle of that triangle
-    std::size_t closed = 0;  ///< triangles that stay closed, because all their corners are on the front
+    std::size_t closed = 0;  ///< triangles that stay closed, because all their corners are on the cut's front
     Point closed_at;         ///< the middle of such a triangle
   };
   std::vector<Patch> patches;      ///< sorted by tag

@@ -117,7 +117,7 @@ struct TetMesh {
 /// Shape measures of one tetrahedron.
 struct TetQuality {
   double volume;        ///< signed volume
-  double radius_edge;   ///< circumradius / shortest edge; infinite for a flat one
+  double radius_edge;   ///< circumradius / shortest edge; infinite for a flat tet
   double min_dihedral;  ///< degrees
   double max_dihedral;  ///< degrees
 };

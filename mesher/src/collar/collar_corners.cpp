@@ -6,7 +6,7 @@ namespace collarmesh {
 
 namespace {
 
-// Points closer than this, relative to the radius, are the same: a circle that crosses the edge between two
+// Points closer than this, relative to the radius, count as one: a circle that crosses the edge between two
 // triangles gives two points.
 constexpr double same_point = 1e-6;
 constexpr int most_projections = 40;

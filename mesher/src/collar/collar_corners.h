@@ -7,7 +7,7 @@
 
 namespace collarmesh {
 
-/// Finds the points that the mesh must have on the collar surface.
+/// A search for the points that the mesh must have on the collar surface.
 class CollarCorners {
  public:
   /// Keeps references to all arguments.

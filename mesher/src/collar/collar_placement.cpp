@@ -19,7 +19,7 @@ namespace {
 constexpr double radius_per_gap = 1.0 / 3;
 // Features farther away than this many sizes do not affect the gap size.
 constexpr double gap_per_size = 4;
-// Radii are shrunk by a random share of up to this, so that spheres are in general position.
+// Radii are shrunk by a random share, at most this one, so that spheres are in general position.
 constexpr double largest_shrinkage = 0.02;
 // Radii change along a curve by at most this share of the distance: a ball's radius is at most a third of a
 // distance, which changes no faster than the position along the curve. Where flatness limits radii they
@@ -27,8 +27,8 @@ constexpr double largest_shrinkage = 0.02;
 constexpr double radius_slope = 1.0 / 3;
 constexpr double flat_radius_slope = 0.05;
 constexpr double sample_step = 0.5;  // distance of samples, in radii
-// Consecutive centres are at most this many radii apart. The circle of two balls is then seen from both
-// centres under less than 90 degrees, d^2 <= r1^2 + r2^2, even after shrinking.
+// Consecutive centres are at most this many radii apart. The circle of two balls then subtends less than 90
+// degrees at both centres, d^2 <= r1^2 + r2^2, even after shrinking.
 constexpr double step_per_radius = 1.2;
 // Equal steps whose sum exceeds 1.2 radii are at least this long, in radii.
 constexpr double least_step_per_radius = step_per_radius / 2;
@@ -201,7 +201,7 @@ Index CollarPlacement::add_ball(Index curve, const PlaceOnCurve& centre, double 
   return static_cast<Index>(system_.balls_.size() - 1);
 }
 
-// Between two vertices the first centres lie on the spheres of their balls.
+// On a curve between two vertices, the first and the last centre lie on the spheres of the vertices' balls.
 void CollarPlacement::add_on_curve(Index curve, std::span<const PlaceOnCurve> vertices) {
   const bool closed = plc_.curves[curve].closed;
   const double length = paths_.length(curve);

@@ -13,16 +13,18 @@ namespace collarmesh {
 /// would be too small (CollarOptions::too_small).
 class CollarPlacement {
  public:
-  /// Keeps references to all arguments. `system` has the creases, `gap` the largest allowed balls there.
+  /// Keeps references to all arguments. `system` has the creases; `gap` gives the gap sizes there, which
+  /// limit the balls.
   CollarPlacement(const Plc& plc, std::span<const Point> points, GapSize& gap, const CollarOptions& options,
                   CollarSystem& system);
   /// Places balls on all creases. Returns false if it was stopped.
   bool place_all();
-  /// Places the ball at a vertex. Precondition: the vertex is a crease's and has no ball yet.
+  /// Places the ball at a vertex. Precondition: the vertex belongs to a crease and has no ball yet.
   void place_at_vertex(Index vertex);
   /// Places the balls on a curve. They are centred on `vertices`, places of mesh vertices on the curve in
   /// their order, so that no centre lies just beside a vertex; vertices too near to others are skipped.
-  /// Preconditions: the curve is a crease and has no balls yet, and its ends have theirs.
+  /// Preconditions: the curve is a crease and has no balls yet, and the vertices at its ends have their
+  /// balls.
   void place_on_curve(Index curve, std::span<const PlaceOnCurve> vertices = {});
 
  private:

@@ -71,7 +71,7 @@ void CollarSystem::complete() {
   if (!balls_.empty()) build_over_balls(0);
 }
 
-// Adds the balls since the last call to the trees. Precondition: the system is not complete.
+// Adds to the trees the balls placed since the last call. Precondition: the system is not complete.
 void CollarSystem::index_balls(const Feature& crease) {
   assert(!creases_.empty());
   if (indexed_ == balls_.size()) return;

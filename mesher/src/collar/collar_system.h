@@ -96,13 +96,13 @@ class CollarSystem {
   bool contains(Index ball, const Point& p) const {
     return squared_distance(p, balls_[ball].centre) < balls_[ball].radius * balls_[ball].radius;
   }
-  /// Replaces `found` by balls that meet the ball B(p, radius): all, or `most` of them.
+  /// Replaces `found` by balls that meet the ball B(p, radius): all of them, but no more than `most`.
   void balls_meeting(const Point& p, double radius, std::size_t most, std::vector<Index>& found) const;
   /// Replaces `found` by the balls that meet the segment pq.
   void balls_on_segment(const Point& p, const Point& q, std::vector<Index>& found) const;
 
  private:
-  /// Bounds of the balls of creases, with the exact box.
+  /// Bounds of the balls of creases: a box for queries, and the exact box.
   struct OfCreases {
     CentredBox centred = CentredBox::empty();
     Box box;
@@ -113,8 +113,8 @@ class CollarSystem {
   };
   /// Builds the tree over creases, which may have no balls yet.
   void plant(const Plc& plc, std::span<const Point> points);
-  /// Adds the balls since the last call to the trees that queries use; all of them are on this vertex or
-  /// curve.
+  /// Adds to the trees for queries the balls placed since the last call; all these balls are on this vertex
+  /// or curve.
   void index_balls(const Feature& crease);
   /// Builds a tree over all balls from number `first` on. Returns their box.
   Box build_over_balls(Index first);
@@ -132,8 +132,8 @@ class CollarSystem {
   std::vector<Index> vertex_ball_;
   std::vector<Index> crease_vertices_;             // sorted
   std::unordered_set<std::uint64_t> consecutive_;  // keys of pairs of consecutive balls
-  // While balls are added, there is a tree over creases and a tree for the balls of each; then there is one
-  // over all balls.
+  // While balls are added, there is a tree over creases, and for each crease a tree over its balls;
+  // afterwards there is one tree over all balls.
   Hierarchy<OfCreases> creases_;
   std::vector<Index> leaves_;  // leaf in `creases_`, by vertex, then by curve; none if it is no crease
   // Root of the tree over a crease's balls, by the leaf's item; none without balls.

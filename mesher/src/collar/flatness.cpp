@@ -11,8 +11,8 @@ namespace collarmesh {
 
 namespace {
 
-// Chords as long as a radius may use up this share of the distance tolerance, and this share of the radius: a
-// polyline may turn by 30 degrees at one point.
+// Largest deviation of a feature from chords as long as a radius: as a share of the distance tolerance, and
+// as a share of the radius. The latter lets a polyline turn by 30 degrees at one point.
 constexpr double deviation_per_distance = 0.5;
 constexpr double deviation_per_radius = 0.14;
 // A ball on a closed curve or a loop covers at most this share of its length.
@@ -53,7 +53,7 @@ double Flatness::shrunk(double radius, double tolerance, const Deviation& deviat
   return radius;
 }
 
-// Returns the largest distance of the curve between two parameters from its chord.
+// Returns the largest distance of the part of a curve between two parameters from its chord.
 double Flatness::off_chord(Index curve, double from, double to) const {
   const Point a = paths_.point(curve, from), b = paths_.point(curve, to);
   double largest = 0;
@@ -63,14 +63,14 @@ double Flatness::off_chord(Index curve, double from, double to) const {
   return std::sqrt(largest);
 }
 
-// Returns the distance of a patch from the chord between the centre and its point in the direction of a
-// sheet.
+// Returns the distance of a patch from the chord between the centre and the patch's point in the direction of
+// a sheet.
 double Flatness::off_patch(const Sheet& sheet, const Point& centre, double radius) const {
   return off_spoke(sheet.patch, centre,
                    features_.nearest_point({2, sheet.patch}, centre + radius * sheet.direction));
 }
 
-// Returns the distance of the patch from the edge between the centre and a point of it.
+// Returns the distance of the patch from the edge between the centre and a point of the patch.
 double Flatness::off_spoke(Index patch, const Point& centre, const Point& end) const {
   double largest = 0;
   for (const double share : chord_shares) {

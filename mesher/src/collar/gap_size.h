@@ -15,8 +15,8 @@ class GapSize {
 
   /// Returns the gap size; may return `bound` if the gap size is `bound` or more.
   virtual double at_vertex(Index vertex, double bound = INFINITY) = 0;
-  /// Returns the gap size at a point of a curve, likewise. Precondition: p lies on the curve and is neither
-  /// of its ends.
+  /// Returns the gap size at a point of a curve, with the same meaning of `bound`. Precondition: p lies on
+  /// the curve and is neither of its ends.
   virtual double on_curve(Index curve, const Point& p, double bound = INFINITY) = 0;
 };
 

@@ -6,7 +6,7 @@
 
 namespace collarmesh {
 
-/// The kinds of cells in the order in which formats list them: those of volumes first.
+/// The kinds of cells in the order in which formats list them: cells with a volume first.
 enum class CellKind : std::uint8_t { tet, prism, pyramid, triangle, quadrangle, edge };
 
 inline constexpr std::size_t cell_kinds = 6;
@@ -17,7 +17,7 @@ inline constexpr std::size_t most_nodes_of_cell = 15;
 
 /// Places of the corners of a cell's edge.
 using EdgePlaces = std::array<std::uint8_t, 2>;
-/// Places of the corners of a side of a cell, counterclockwise as seen from outside; a triangle has three.
+/// Places of the corners of a side of a cell, counterclockwise as seen from outside; three for a triangle.
 struct SidePlaces {
   std::size_t corners;
   std::array<std::uint8_t, 4> places;
@@ -46,7 +46,7 @@ inline constexpr std::array<SidePlaces, 5> pyramid_sides{
 struct CellShape {
   std::size_t dimension, corners;
   std::span<const EdgePlaces> edges;
-  std::span<const SidePlaces> sides;  ///< of a volume
+  std::span<const SidePlaces> sides;  ///< sides of a cell with a volume
 
   constexpr std::size_t nodes(int order) const { return order == 2 ? corners + edges.size() : corners; }
 };

@@ -8,7 +8,7 @@
 
 namespace collarmesh {
 
-/// Lists, for each vertex of a mesh, the cells (tets, faces or edges) that have it as a corner.
+/// A list, for each vertex of a mesh, of the cells (tets, faces or edges) that have it as a corner.
 class CellsAtVertices {
  public:
   CellsAtVertices() = default;

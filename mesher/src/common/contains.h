@@ -6,7 +6,7 @@
 
 namespace collarmesh {
 
-/// Looks for an index in a short, unsorted range.
+/// Returns whether a short, unsorted range contains an index.
 bool contains(const auto& range, Index index) {
   return std::find(range.begin(), range.end(), index) != range.end();
 }

@@ -18,10 +18,10 @@ class DistanceTree {
 
   struct Nearest {
     double distance;
-    Index triangle;  ///< number given by the constructor's order; none if there are no triangles
+    Index triangle;  ///< number of the triangle in the constructor's list; none if there are no triangles
   };
-  /// Finds the triangle nearest to p. Ends early once one as near as `enough` is found. A `hint`, a triangle
-  /// that is probably near, makes it faster.
+  /// Finds the triangle nearest to p. Ends early once a triangle as near as `enough` is found. A `hint`, a
+  /// triangle that is probably near, makes the search faster.
   Nearest nearest(const Point& p, double enough = 0, Index hint = none) const;
 
  private:

@@ -10,7 +10,8 @@
 
 namespace collarmesh {
 
-/// Finds triangles or quadrangles of a mesh by their corners in any order. Cost: constant per face, expected.
+/// A search for triangles or quadrangles of a mesh by their corners in any order. Cost: constant per face,
+/// expected.
 template <std::size_t n>
 class PolygonFinder {
  public:

@@ -8,20 +8,20 @@
 
 namespace collarmesh {
 
-/// Keeps straight curves and planar patches flat when their nodes move onto exact geometry. The geometry may
-/// deviate from the line or plane by the tolerance of the shape, or by more than the tessellation's points
-/// do.
+/// The limits that keep straight curves and planar patches flat when their nodes move onto exact geometry.
+/// The geometry may deviate from the line or plane by the tolerance of the shape, or by more than the
+/// tessellation's points do.
 class FlatFeatures {
  public:
   /// Keeps a reference to the complex. Cost: linear in the triangles.
   explicit FlatFeatures(const Plc& plc);
 
-  /// Returns the exact geometry restricted to straight curves and planar patches. Places that are off a plane
-  /// by more than the certificate permits are moved back to that limit: min(4 d, planar tolerance) plus
-  /// rounding, where d is the distance of the complex's own points from the plane. For a straight curve the
-  /// limit is half of that, because the edges between nodes must also be near the curve's own points, which
-  /// are up to 2 d off the chords. Returns no point if no such place is near. Keeps references to this object
-  /// and to `exact`.
+  /// Returns the exact geometry with its places kept near straight curves and planar patches. Places that are
+  /// off a plane by more than the certificate permits are moved back to that limit: min(4 d, planar
+  /// tolerance) plus rounding, where d is the distance of the complex's own points from the plane. For a
+  /// straight curve the limit is half of that, because the edges between nodes must also be near the curve's
+  /// own points, which are up to 2 d off the chords. Returns no point if no such place is near. Keeps
+  /// references to this object and to `exact`.
   ExactGeometry limit(const ExactGeometry& exact) const;
 
   /// Applies this restriction to one place on the exact geometry of a curve (dimension 1) or patch (2).

@@ -29,8 +29,8 @@ inline std::uint64_t hash_of(const Point& p) {
 
 /// Finds an item in a flat hash table: the slots hold numbers of items, or none, and an item is in the slot
 /// of its hash or, if that was taken, in the next free one. Returns its slot, or the free slot where it
-/// belongs. `is_it(number)` compares items. Preconditions: the number of slots is a power of two, and some
-/// are free.
+/// belongs. `is_it(number)` tells whether an item is the one to find. Preconditions: the number of slots is a
+/// power of two, and some are free.
 template <class IsIt>
 Index& find_slot(std::span<Index> slots, std::uint64_t hash, const IsIt& is_it) {
   const std::size_t last = slots.size() - 1;

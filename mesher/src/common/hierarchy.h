@@ -17,8 +17,8 @@ namespace collarmesh {
 /// The order in which searches visit children if nothing else decides: the left one first, or the right one.
 enum class ChildOrder { left_first, right_first };
 
-/// A binary tree over a sequence of items. Every node has bounds of the items below it, by which searches
-/// leave it out. The classes that search decide what items and bounds are.
+/// A binary tree over a sequence of items. Every node has bounds of the items below it, which let searches
+/// skip the node. The classes that search decide what items and bounds are.
 template <class Bounds>
 class Hierarchy {
  public:
@@ -142,7 +142,7 @@ class Hierarchy {
   LargeVector<Node> nodes_;
 };
 
-/// Returns the box of two boxes; for Hierarchy::add.
+/// Returns the box around two boxes; for Hierarchy::add.
 inline Box joined(Box a, const Box& b) {
   a.add(b);
   return a;

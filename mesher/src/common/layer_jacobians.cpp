@@ -116,7 +116,7 @@ template <std::size_t n, std::size_t corners>
 double least_of(const std::array<Point, corners>& p, const std::array<Point, n - corners>& mid,
                 const std::vector<Derivatives<n>>& slopes) {
   std::array<Point, n> nodes;
-  // Relative to a corner, so that rounding depends on the size of the cell only.
+  // Nodes are taken relative to a corner, so that rounding depends on the size of the cell only.
   for (std::size_t i = 0; i < n; ++i) nodes[i] = (i < corners ? p[i] : mid[i - corners]) - p[0];
   double least = INFINITY;
   for (const Derivatives<n>& at : slopes) least = std::min(least, jacobian(nodes, at));

@@ -174,7 +174,7 @@ TetMesh tets_of_layers(const TetMesh& mesh) { return Cutter(mesh).cut(); }
 
 namespace {
 
-/// Finds the points of walls below those of layers.
+/// A search for the points of walls below those of layers.
 class WallSearch {
  public:
   explicit WallSearch(const TetMesh& mesh) : mesh_(mesh), below_(mesh.points.size(), none) {}

@@ -16,8 +16,8 @@
 
 namespace collarmesh {
 
-/// Measures by samples the distance between a smooth patch and the mesh's faces on it. The certificate and
-/// the stages that keep the tolerance use the same samples.
+/// A measurement, by samples, of the distance between a smooth patch and the mesh's faces on it. The
+/// certificate and the stages that keep the tolerance use the same samples.
 class PatchDistance {
  public:
   /// A sample point on one side, with the nearest place on the other side.

@@ -137,7 +137,7 @@ class FittingTetsAtVertex : public EdgesAtVertex {
 struct TriangleUse {
   static constexpr std::uint8_t listed_face = 4;
 
-  std::uint64_t larger_corners;  ///< the middle corner above 32 bits, and the largest corner
+  std::uint64_t larger_corners;  ///< upper 32 bits: the middle corner; lower ones: the largest corner
   Index cell;                    ///< the tet, or the face
   std::uint8_t corner;           ///< the tet's corner opposite the side, or listed_face
   bool odd;  ///< whether the order from smallest to largest is an odd permutation of counterclockwise, as

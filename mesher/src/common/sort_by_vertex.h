@@ -29,7 +29,7 @@ auto sorted_by_vertex(std::size_t count, std::size_t vertices, const Value& valu
   return sorted;
 }
 
-/// Sorts values in this way.
+/// Sorts values as `sorted_by_vertex` does.
 template <class T, class VertexOf>
 void sort_by_vertex(std::vector<T>& values, std::size_t vertices, const VertexOf& vertex_of) {
   values = sorted_by_vertex(

@@ -8,8 +8,8 @@
 
 namespace collarmesh {
 
-/// Runs work whose parallel parts use at most this many threads, and never more than there are cores; 0: all
-/// cores, or as many threads as the system allows.
+/// A limit on threads: the parallel parts of work that it runs use at most this many, and never more than
+/// there are cores; 0: all cores, or as many threads as the system allows.
 class ThreadLimit {
  public:
   explicit ThreadLimit(unsigned threads)

@@ -83,9 +83,9 @@ bool Triangulation::in_conflict_exact(Index cell, const Point& p) const {
 
 // Computes the sphere and its margin. Let e = 2^-53, L the longest edge from the first corner, and k = 16 e
 // L^3 / |det|. The centre and the radius are off by at most d = k (r + L) + 2 e |c| + 4 e r; where they come
-// from exact arithmetic k is 0, and 6 in place of 2. The comparison of |p c|^2 with r^2 is right if they
-// differ by more than 2 d (r + |pc| + d) + 8 e (r^2 + |pc|^2). This is at most margin * (r^2 + |pc|^2) with
-// the margin below, because r + |pc| is at most sqrt(2) (r^2 + |pc|^2) / r.
+// from exact arithmetic, k is 0 and 2 e |c| becomes 6 e |c|. The comparison of |p c|^2 with r^2 is right if
+// they differ by more than 2 d (r + |pc| + d) + 8 e (r^2 + |pc|^2). This is at most margin * (r^2 + |pc|^2)
+// with the margin below, because r + |pc| is at most sqrt(2) (r^2 + |pc|^2) / r.
 Triangulation::Sphere Triangulation::circumsphere(const std::array<Index, 4>& corners) const {
   constexpr double e = 0x1p-53;
   const Point& a = point(corners[0]);
@@ -101,7 +101,7 @@ Triangulation::Sphere Triangulation::circumsphere(const std::array<Index, 4>& co
     centre = predicates::circumcentre_exact(a, point(corners[1]), point(corners[2]), point(corners[3]));
     squared_radius = squared_distance(centre, a);
     of_coordinates =
-        6 * e;  // two numbers converted to double, at most a unit in the last place each, and divided
+        6 * e;  // two conversions to double, each off by at most a unit in the last place, and a division
   } else {
     const Vector offset = (ww * cross(u, v) + vv * cross(w, u) + uu * vw) / (2 * det);
     centre = a + offset;

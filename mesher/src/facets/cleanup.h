@@ -12,8 +12,8 @@ void remove_collinear_triangles(Draft& draft);
 void remove_twins_within_soups(Draft& draft);
 
 /// Removes duplicate triangles of different soups, except the first: touching solids then share one
-/// interface. A side on which a removed triangle had its soup's solid becomes a claim. Precondition: the
-/// triangles of each soup are oriented.
+/// interface. If the soup of a removed triangle had its solid on one side, it gets a claim (Claim) to that
+/// side. Precondition: the triangles of each soup are oriented.
 void merge_twins_across_soups(Draft& draft);
 
 }  // namespace collarmesh::facets

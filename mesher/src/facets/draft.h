@@ -22,7 +22,7 @@ struct Origin {
   Tag tag = 0;
   Index soup = 0;
   Index facet = 0;
-  bool oriented = true;  ///< whether the orientation shows on which side the solid of its soup is
+  bool oriented = true;  ///< whether the orientation tells on which side the solid of its soup lies
 };
 
 /// An edge that the input gives as a segment.

@@ -8,7 +8,7 @@
 /// are those of real arithmetic on the given doubles.
 namespace collarmesh::facets {
 
-/// Returns the sign of the signed area of abc seen against `axis`: positive if abc is counterclockwise in the
+/// Returns the sign of the area of abc projected along `axis`: positive if abc is counterclockwise in the
 /// plane of the coordinates axis + 1 and axis + 2.
 int planar_orientation(unsigned axis, const Point& a, const Point& b, const Point& c);
 
@@ -19,7 +19,7 @@ bool collinear(const Point& a, const Point& b, const Point& c);
 bool between(const Point& a, const Point& b, const Point& c);
 
 /// Returns whether c and d lie strictly on one side of the line ab. Precondition: all points are in one
-/// plane, and abc are not on a line.
+/// plane, and a, b and c are not on one line.
 bool same_side(const Point& a, const Point& b, const Point& c, const Point& d);
 
 /// Returns the sign of t0 - t1, where the line from p to q crosses the plane of triangle i at parameter ti.

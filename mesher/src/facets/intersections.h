@@ -14,8 +14,8 @@ namespace collarmesh::facets {
 /// log n + k) for k pairs of near neighbours.
 void find_intersections(const Draft& draft, const Simplices& simplices, Faults& faults);
 
-/// Returns the pairs that meet in this way, as numbers in the list of simplices: the smaller number first,
-/// sorted. Pairs of `settled` simplices (by number; empty: none) are known not to meet.
+/// Returns the pairs of simplices that `find_intersections` reports, as numbers in the list of simplices: the
+/// smaller number first, sorted. Pairs of `settled` simplices (by number; empty: none) are known not to meet.
 std::vector<std::pair<Index, Index>> intersecting_pairs(const Draft& draft, const Simplices& simplices,
                                                         const std::vector<bool>& settled = {});
 

@@ -141,8 +141,8 @@ class NearTouchingFinder {
                        [&](Index p) { return std::find(b.points.begin(), end, p) != end; });
   }
 
-  // Returns whether b surely keeps its distance from a triangle. Boxes of needles overlap by the million, so
-  // a quick test pays off.
+  // Returns whether b is surely farther than the limit from the triangle a. Boxes of needles overlap by the
+  // million, so a quick test pays off.
   bool apart(const Element& a, const Element& b) const {
     return a.size == 3 && std::ranges::any_of(a.axes, [&](const Vector& axis) {
              double low = INFINITY, high = -INFINITY, low_of_a = 0, high_of_a = 0;
@@ -236,8 +236,8 @@ class NearTouchingFinder {
   }
 
   const Plc& plc_;
-  double limit_, margin_ = 0;  // if boxes are farther apart than the margin, so are the elements than the
-                               // limit
+  double limit_, margin_ = 0;  // elements whose boxes are farther apart than the margin are farther apart
+                               // than the limit
   std::vector<Element> elements_;
   std::map<Pair, Nearest> found_;
 };

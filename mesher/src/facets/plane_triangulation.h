@@ -11,9 +11,9 @@ namespace collarmesh::facets {
 
 using PlaneKernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
-/// A constrained Delaunay triangulation between given points of a plane. Vertices know their point's index,
-/// faces carry a mark, and crossing constraints throw an exception. Few sources include this header, because
-/// it takes 13 s to compile.
+/// A constrained Delaunay triangulation between given points of a plane. Vertices store the index of their
+/// point, faces carry a mark, and crossing constraints throw an exception. Few sources include this header,
+/// because it is slow to compile.
 using PlaneTriangulation = CGAL::Constrained_Delaunay_triangulation_2<
     PlaneKernel,
     CGAL::Triangulation_data_structure_2<

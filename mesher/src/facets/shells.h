@@ -10,13 +10,13 @@
 
 namespace collarmesh::facets {
 
-/// Joins the triangle sides that see each other around an edge: by exact angle if three or more triangles
-/// meet, around the border if there is only one. The resulting sets are the shells of the complex. Their
-/// elements are the sides 2 t and 2 t + 1, and one element for the space far outside. Precondition: triangles
-/// meet in common edges and corners only.
+/// Joins the triangle sides that face each other around an edge: by exact angle if three or more triangles
+/// meet there, around the border if there is only one triangle. The resulting sets are the shells of the
+/// complex. Their elements are the sides 2 t and 2 t + 1, and one element for the space far outside.
+/// Precondition: triangles meet in common edges and corners only.
 DisjointSets find_shells(const Draft& draft, const EdgeTable& edges);
 
-/// Finds where straight lines meet the triangles.
+/// A search for the places where straight lines meet the triangles.
 class LineCaster {
  public:
   /// Keeps references to both. The triangles are the first items of the tree, in their order.

@@ -6,7 +6,7 @@
 
 namespace collarmesh {
 
-/// Walks from one Voronoi cell of the mesh to the next.
+/// A walk from one Voronoi cell of the mesh to the next.
 class VoronoiWalk {
  public:
   /// Keeps the mesh by reference.

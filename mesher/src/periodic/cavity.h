@@ -27,7 +27,7 @@ struct Cavity {
   std::vector<TetComplex::NewFace> floor;
 };
 
-/// Changes the tets of a mesh by cavities. Qualities are those of `shape_quality`.
+/// An editor that changes the tets of a mesh by cavities. Qualities are those of `shape_quality`.
 class CavityEditor {
  public:
   /// Tets below this quality have no certain sign in floating point.

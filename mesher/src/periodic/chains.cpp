@@ -37,7 +37,7 @@ Chain follow(std::vector<std::array<Index, 2>> edges, Index start) {
   return chain;
 }
 
-/// Changes one chain.
+/// An editor of one chain.
 class ChainEditor {
  public:
   ChainEditor(CavityEditor& editor, Index curve, Chain& chain)

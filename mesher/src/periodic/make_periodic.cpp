@@ -97,7 +97,7 @@ struct Surface {
     return places;
   }
   /// Returns the nodes inside a patch. `targets`: target edge lengths by vertex; if there are any, leaves out
-  /// nodes that are far nearer to others than these.
+  /// nodes that are far nearer to other nodes than these lengths.
   std::vector<SpacedPlace> spaced_inside(const TetMesh& mesh, Index patch,
                                          const std::vector<double>& targets) const {
     if (!targets.empty()) return sparse_nodes(mesh, faces[patch], targets);
@@ -132,7 +132,7 @@ struct Surface {
   std::vector<std::vector<Index>> faces;  // by patch
 };
 
-/// Makes the meshes of both groups of each pair correspond: curves, then patches.
+/// The procedure that makes the meshes of both groups of each pair correspond: curves, then patches.
 class Maker {
  public:
   Maker(TetMesh& mesh, const Plc& plc, Periodicity periodicity)

@@ -13,7 +13,8 @@ inline Motion translation(const Vector& by) {
 }
 
 /// Returns the rotation about the axis through a point. The direction may have any length; the rotation is
-/// counterclockwise as seen against it. Rotations by right angles about coordinate axes have no rounding.
+/// counterclockwise for a viewer at whom it points. Rotations by right angles about coordinate axes have no
+/// rounding.
 Motion rotation(const Point& through, const Vector& direction, double degrees);
 
 /// Returns the inverse of a motion.

@@ -211,8 +211,8 @@ void PatchEditor::remove(Index node) {
   make_delaunay(edges_of_created_faces());
 }
 
-// Finds a place for an apex below `start` that leaves the best tets. Returns the quality of the worst of them
-// and the place.
+// Finds the place below `start` at which an apex makes the best tets. Returns the quality of the worst of
+// these tets, and the place.
 std::pair<double, Point> PatchEditor::best_below(const Cavity& cavity, const Point& start) const {
   double size = 0;
   Vector sum{0, 0, 0};

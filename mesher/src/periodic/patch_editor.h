@@ -17,7 +17,7 @@ struct PatchChange {
   std::size_t inserted = 0, removed = 0, turned = 0;
 };
 
-/// Changes the triangles of a planar patch on the boundary, and the tets behind it.
+/// An editor of the triangles of a planar patch on the boundary, and of the tets behind it.
 class PatchEditor {
  public:
   using Edge = std::array<Index, 2>;
@@ -69,7 +69,7 @@ class PatchEditor {
   CavityEditor& editor_;
   Index patch_;
   Vector normal_;    // normal, pointing out of the region
-  Point viewpoint_;  // a point outside, from which sides are judged
+  Point viewpoint_;  // a point outside, for telling the left of an edge from its right
   std::unordered_map<std::uint64_t, std::array<Index, 2>> faces_at_;  // by edge
   std::unordered_map<Index, bool> stays_;  // nodes inside the patch, and whether each stays
   Index last_ = none;                      // the face that was made or found last

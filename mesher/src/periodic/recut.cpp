@@ -23,8 +23,8 @@ struct HashOfTriangle {
 template <class Value>
 using ByTriangle = std::unordered_map<std::array<Index, 3>, Value, HashOfTriangle>;
 
-// Largest number of groups that are moved: the copies of the complex number 2 to this power. Groups of
-// further pairs stay where they are.
+// Largest number of groups that are moved; 2 to this power is the largest number of copies of the complex.
+// Groups of further pairs stay where they are.
 constexpr std::size_t most_moved = 6;
 
 std::vector<Index> keys_of(const std::unordered_map<Index, Index>& map) {
@@ -72,8 +72,8 @@ void Recut::find_seams(const std::vector<PatchPair>& pairs, const std::vector<Fe
   }
 }
 
-// Chooses the tets to move, by distances along edges and across the other seams. So the new cuts are halfway
-// between the groups; the tets there only matter for pairs nearby.
+// Chooses the tets to move, by distances along edges and across the other seams. So the new cuts lie halfway
+// between the groups, or nearer to the group whose tets move (Moved).
 void Recut::find_shifts(Moved moved) {
   shifts_.assign(mesh_.tets.size(), 0);
   const double much = moved == Moved::first_half ? 1 : 1.7;
@@ -203,7 +203,8 @@ void Recut::add_vertices() {
   points_ = made_.points;
 }
 
-// Adds faces at the places of their tets. Only the seams of the other groups get faces.
+// Adds faces at the places of their tets. On a seam, the faces of both groups become one, on the patch of the
+// group that stays.
 void Recut::add_faces() {
   ByTriangle<Index> face_at;
   for (Index f = 0; f < mesh_.faces.size(); ++f) face_at.emplace(sorted(mesh_.faces[f]), f);
@@ -340,8 +341,9 @@ void Recut::note_vertices(const remeshing::TetComplex& complex) {
   points_.resize(kept);
 }
 
-// Returns the feature of the original complex for a feature of the tiled complex, as seen from the tets of a
-// copy.
+// Returns the feature of the original complex that a feature of the tiled complex is for the tets of the copy
+// with this shift. A feature on a seam stands for two originals, one in each group of the pair; the shift
+// tells which.
 Index Recut::feature_back(unsigned dimension, Index feature, Shift shift) const {
   if (feature == none) return none;
   const Shift own = copies_[feature / count(dimension)];
@@ -359,7 +361,7 @@ Index Recut::vertex_back(Place place, Shift shift) const {
 
 namespace {
 
-/// Builds a mesh of numbered vertices, which are created on first use.
+/// A mesh of numbered vertices, which are created on first use.
 class Restored {
  public:
   explicit Restored(const TetMesh& like) {

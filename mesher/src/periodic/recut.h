@@ -55,7 +55,7 @@ class Recut {
     Motion motion;                                          // motion of the moved part
     std::unordered_map<Index, Index> image_of;              // images of vertices on the group beside the
                                                             // moved part
-    std::unordered_map<Index, Index> on_other;              // images of keys
+    std::unordered_map<Index, Index> on_other;              // inverse of `image_of`
     std::array<std::map<Index, Index>, 3> image, original;  // images of features, by dimension
   };
   struct Place {

@@ -12,8 +12,8 @@ namespace collarmesh::periodicity {
 
 namespace {
 
-constexpr double slope = 0.1;  // increase of the tolerance per unit of distance from these curves, as beside
-                               // wedges
+constexpr double slope = 0.1;  // increase of the tolerance per unit of distance from curves that are images
+                               // of each other, as beside wedges
 
 struct Sample {
   Point place;

@@ -42,7 +42,7 @@ class SegmentTest {
   double smallest_cosine_;
 };
 
-// Collects the extent of points along a normal.
+// The extent of points along a normal.
 struct Extent {
   Vector normal;
   double low = INFINITY, high = -INFINITY;

@@ -14,7 +14,7 @@ struct FeatureSegment {
   Index a = 0, b = 0;
   Index edge = none;  ///< index in the edge table; none if no triangle has it
   Tag tag = 0;
-  bool given = false;  ///< from a soup with given features: angles do not end its curve
+  bool given = false;  ///< from a soup that gives its features: turns do not end its curve
 };
 
 /// Finds the segments: edges that the input gives as segments; edges that are not shared by exactly two

@@ -13,7 +13,7 @@ namespace collarmesh::plc {
 /// that of sorting the points.
 std::vector<Plc::Warning> lost_bodies(std::span<const PolygonSoup> soups, const Plc& plc, double distance);
 
-/// Regions whose volume no region of a repaired complex has (within 2%), with a point of each.
+/// Regions without a region of equal volume (within 2%) in a repaired complex, with a point of each.
 struct LostRegions {
   std::vector<Point> thin;    ///< regions no thicker than the tolerance allows
   double thin_volume = 0;     ///< volume of all thin regions

@@ -92,8 +92,8 @@ class PatchFans {
     return sides[0] == side ? sides[1] : sides[0];
   }
 
-  /// Returns how sharply a smooth patch folds in a fan around the point (degrees, see fold_angle); 180 if one
-  /// of its edges is at most as long as `noise_length`, because its direction is unreliable.
+  /// Returns how sharply a smooth patch folds in a fan around the point (degrees, see fold_angle); 180 if an
+  /// edge of the fan is no longer than `noise_length`, because the direction of such an edge is unreliable.
   double fold(Index point, const Fan& fan, double noise_length) const {
     const bool too_small = std::ranges::any_of(
         fan.rim, [&](Index q) { return distance(points_[point], points_[q]) <= noise_length; });
@@ -141,8 +141,8 @@ class PatchFans {
   std::vector<bool> visited_;  // corners that already are in a fan
 };
 
-// An edge has no reliable direction if it is shorter than this many planar tolerances; a triangle, if it is
-// lower.
+// An edge has no reliable direction if it is shorter than this many planar tolerances, and a triangle none if
+// its height is less.
 constexpr double noise = 10;
 // A patch has a vertex at a point where it folds to less than this angle (degrees).
 constexpr double folded = 90;
@@ -244,7 +244,7 @@ class AngleFinder {
     return norm(cross(b - a, c - a)) / std::max({distance(a, b), distance(b, c), distance(c, a)});
   }
 
-  // Returns the triangle itself or, if it is a needle, the nearest triangle of its patch that is not.
+  // Returns the triangle itself or, if it is a needle, the nearest triangle of its patch that is no needle.
   Index reliable_triangle(Index triangle) const {
     std::vector<Index> seen{triangle};
     for (std::size_t next = 0; next < seen.size() && seen.size() < 64; ++next) {

@@ -21,7 +21,7 @@ struct MergedFacet {
   std::vector<std::vector<Index>> polygons;
 };
 
-/// Finds facets with the same corners in any order.
+/// A search for facets with the same corners in any order.
 class RepeatedFacets {
  public:
   bool add(const MergedFacet& facet) {

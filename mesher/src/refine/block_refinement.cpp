@@ -14,10 +14,12 @@ namespace {
 
 // In smaller meshes too many vertices lie near the borders of blocks, or on curves.
 constexpr std::size_t least_vertices = 4096;
-// A round costs some time for every vertex of the mesh, so it needs this many entries.
+// A round costs some time for every vertex of the mesh, so it needs `least_entries` entries, and at least one
+// for each `vertices_per_entry` vertices.
 constexpr std::size_t least_entries = 2048, vertices_per_entry = 64;
-// A round was not worthwhile if it destroys less than this share of the entries it took. The next round then
-// waits until the mesh has grown by a share.
+// A round was not worthwhile if it took more than `entries_per_insertion` entries for each vertex that it
+// inserted. The next round then waits until the mesh has grown by one vertex for each `vertices_per_wait`
+// vertices.
 constexpr std::size_t entries_per_insertion = 48, vertices_per_wait = 32;
 constexpr std::size_t vertices_per_block = 4000, most_blocks = 256, samples_per_block = 64;
 constexpr std::size_t most_insertions_of_a_round = std::size_t{1} << 18;
@@ -91,8 +93,8 @@ bool BlockRefinement::due() {
   return most_insertions() >= least_entries;
 }
 
-// Returns the largest number of insertions that the budget of vertices and the caller's chance to cancel
-// allow.
+// Returns the largest number of insertions of a round. The budget of vertices limits it, and the caller must
+// be able to cancel between rounds.
 std::size_t BlockRefinement::most_insertions() const {
   const std::size_t wanted = domain_.options.max_vertices, vertices = mesh_.vertex_count();
   if (wanted == 0) return most_insertions_of_a_round;
@@ -199,7 +201,8 @@ bool BlockRefinement::may_belong_to_block(Index vertex) const {
 std::vector<std::vector<WorkQueue::Entry>> BlockRefinement::deal(const std::vector<WorkQueue::Entry>& taken) {
   constexpr std::uint16_t gone = Triangulation::no_owner - 1;
   std::vector<std::uint16_t> owner(taken.size());
-  // Less than usual, because there may be only a few thousand entries, which all threads should share.
+  // Smaller chunks than usual, because there may be only a few thousand entries, which all threads should
+  // share.
   constexpr std::size_t at_once = 1024;
   parallel_for_ranges(taken.size(), at_once, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
@@ -326,8 +329,8 @@ BlockRefinement::Fate BlockRefinement::destroy(const WorkQueue::Item& item, Bloc
   }
 }
 
-// Inserts a candidate. Returns false if the block has no room for it. If the zone's vertices know no part of
-// the complex, the new cells get the region of the old ones.
+// Inserts a candidate. Returns false if the block has no room for it. If no part of the complex is found from
+// the zone's vertices, the new cells get the region of the old ones.
 bool BlockRefinement::insert(const Candidate& candidate, Block block, Worker& worker) {
   ConflictZone& zone = worker.zone;
   const bool quiet = std::ranges::none_of(zone.vertices, [&](Index v) { return nodes_.any_at(v); });

@@ -21,7 +21,8 @@
 
 namespace collarmesh {
 
-/// Destroys many skinny or large cells, or triangles of the surface, at once, with several threads.
+/// The part that destroys many skinny or large cells, or triangles of the surface, at once, with several
+/// threads.
 /// A vertex may belong to a block if it lies on no vertex or curve of the complex, and no unresolved point,
 /// protective ball or collar is found from it. An insertion among such vertices only concerns the mesh, the
 /// surface and the quality of triangles and cells. So a round takes the first bucket of the queue, divides

@@ -5,8 +5,8 @@
 
 namespace collarmesh {
 
-/// A point that may be inserted to destroy a ball (paper, Procedure 2). The part that needs it makes it; the
-/// parts that it may encroach or that it may warp to examine it; the loop inserts it.
+/// A point that may be inserted to destroy a ball (paper, Procedure 2). One part makes a candidate; others
+/// test whether it encroaches their balls or warps to one of their points; the loop inserts it.
 struct Candidate {
   Point point;
   double squared_radius;  ///< squared radius of the ball to destroy

@@ -14,8 +14,8 @@
 
 namespace collarmesh {
 
-/// Decides which cells to destroy: skinny ones, by their radius-edge ratio or because they are flat, and
-/// large ones.
+/// The part that decides which cells to destroy: skinny ones, by their radius-edge ratio or because they are
+/// flat, and large ones.
 ///
 /// State: with a vertex ratio, the shortest edge at every vertex. Invariant: after an insertion the queue
 /// contains every new cell that must be destroyed, and older cells that have become so. The loop reports
@@ -53,7 +53,7 @@ class CellQuality {
   /// Queues a cell again if another insertion has been made and the cell still exists.
   void queue_again(const WorkQueue::Item& item, double squared_radius);
 
-  /// Judges the new cells. Precondition: surface, collar cells and sizes know these cells.
+  /// Judges the new cells. Precondition: these cells were reported to surface, collar cells and sizes.
   void cells_made(const ConflictZone& zone, Index vertex);
   /// Queues a cell if it must be destroyed. Several threads may call it at once, each with its own queue, if
   /// there is no vertex ratio and no sizes come from the caller or are kept at vertices.

@@ -10,7 +10,7 @@
 
 namespace collarmesh {
 
-/// Knows which cells lie inside the collars, and which vertices are near them.
+/// The marks of cells inside the collars, and of vertices near them.
 /// Invariants: a cell is inside if its circumcentre lies in a ball, or if it was taken in; a vertex v is near
 /// if B(v, R_v), which contains the circumcentres of its cells, meets a ball. A vertex may be marked as near
 /// although it no longer is, because cells become smaller; no mark is missing. Refinement ignores cells
@@ -29,14 +29,14 @@ class CollarCells {
   bool holds(const std::array<Index, 3>& vertices, const Point& p) const;
 
   void cells_made(const ConflictZone& zone, Index vertex);
-  /// Makes room for all cells before cells are made between vertices none of which is near.
+  /// Makes room for all cells. Call it before `quiet_cell_made`.
   void fit_mesh();
-  /// Reports a cell made between such vertices. Several threads may report different cells.
+  /// Reports a new cell, none of whose vertices is near. Several threads may report different cells.
   void quiet_cell_made(Index cell) {
     if (cell < inside_.size()) inside_[cell] = 0;
   }
 
-  /// Reports new balls: this vertex, or the circumcentre of this cell, may lie in one.
+  /// Report new balls: this vertex may be near one, or the circumcentre of this cell may lie in one.
   void note_near(Index vertex);
   void note_inside(Index cell);
   /// Checks again which of the near vertices still are near.

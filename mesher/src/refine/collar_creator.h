@@ -17,10 +17,10 @@
 
 namespace collarmesh {
 
-/// Creates the collars: all of them before refinement, or each in the pass (paper, section 3.2 and Procedures
-/// 3 and 4). A vertex ball is created when the vertex is inserted or, before that, when it is isolated and
-/// medial. The balls along a crease curve are created when all cells that it crosses outside its ends' balls
-/// are isolated with respect to it, or when one of its subsegments would be split.
+/// The part that creates the collars: all of them before refinement, or each in the pass (paper, section 3.2
+/// and Procedures 3 and 4). A vertex ball is created when the vertex is inserted or, before that, when it is
+/// isolated and medial. The balls along a crease curve are created when all cells that it crosses outside its
+/// ends' balls are isolated with respect to it, or when one of its subsegments would be split.
 /// Invariant: the centre of every ball and every corner point of the collars is an unresolved point or a mesh
 /// vertex. Only this class adds balls to the system, and reports them to cells, surface and curves. The loop
 /// starts it, reports insertions and decides when curves get their balls; the parts that stitch ask it for
@@ -62,8 +62,8 @@ class CollarCreator {
   /// vertex. Precondition: the vertex waits for its ball.
   void create_at_vertex(Index vertex, Index near, BallReason reason);
   /// Looks for crease vertices or curves that have become isolated. Creates the balls of vertices at once;
-  /// those of curves are created by `create_on_isolated_curves`. Precondition: all other parts know the new
-  /// cells.
+  /// those of curves are created by `create_on_isolated_curves`. Precondition: the new cells were reported to
+  /// all other parts.
   void cells_made(const ConflictZone& zone, Index vertex);
   /// Creates the balls of curves that have become isolated.
   void create_on_isolated_curves();

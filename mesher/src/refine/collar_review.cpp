@@ -186,7 +186,7 @@ bool CollarReview::judge_changed_triangles(const std::vector<Index>& cells) {
   return true;
 }
 
-// Returns the collar triangle of a face seen from either side, if it is one.
+// Returns the known collar triangle of a face, seen from either side; null if there is none.
 const CollarTriangle* CollarReview::known_triangle(FaceId face) const {
   const FaceId other = mesh_.opposite(face);
   if (other == no_face) return nullptr;

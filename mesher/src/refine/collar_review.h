@@ -11,8 +11,8 @@
 
 namespace collarmesh {
 
-/// Reviews the collar surface whenever all other work is done (paper, section 4), and queues its faults: poor
-/// triangles, and vertices of creases that are vertices of cells outside the collar.
+/// The part that reviews the collar surface whenever all other work is done (paper, section 4), and queues
+/// its faults: poor triangles, and vertices of creases that are vertices of cells outside the collar.
 ///
 /// State: the known triangles of the collar surface since the last review. Invariant, once started: every
 /// cell near collars that was created since then, or whose vertices lie on other features, is touched. So a
@@ -22,8 +22,8 @@ namespace collarmesh {
 /// candidate is not reviewed again before its cells change: it stays, and the certificate reports it.
 class CollarReview {
  public:
-  /// Keeps references to all arguments. Calls `stopped` now and then. The first review tells the collars that
-  /// no more balls will come.
+  /// Keeps references to all arguments. Calls `stopped` now and then. The first review completes the system
+  /// of collars, so that no more balls may come.
   CollarReview(const RefinedMesh& mesh, CollarSystem& collars, CollarCells& cells,
                const RestrictedSurface& surface, const CollarCreator& creator, CollarSurface& collar_surface,
                WorkQueue& queue, std::function<bool()> stopped)
@@ -81,7 +81,7 @@ class CollarReview {
   std::vector<Index> touched_cells_;    // the touched cells, and some that no longer exist or no longer are
                                         // touched
   CollarTriangles triangles_;
-  std::vector<FaceId> poor_;                  // triangles inside regions to review
+  std::vector<FaceId> poor_;                  // triangles to review, inside regions
   std::unordered_map<Index, Index> ball_at_;  // by mesh vertex on a crease
   std::vector<Index> exposed_;                // such vertices to review
   std::vector<Index> scratch_;

@@ -12,8 +12,8 @@ namespace {
 // A representation point this close to an arc, relative to the radius of its ball, is moved onto the arc:
 // inserting points of lower dimension first keeps collars small.
 constexpr double arc_reach = 0.7;
-// It is not moved if a mesh vertex is already this close to the arc's point, relative to the radius of the
-// empty ball.
+// A representation point is not moved onto an arc if a mesh vertex is already this close to the arc's point,
+// relative to the radius of the empty ball.
 constexpr double arc_clearance = 0.5;
 // Least distance of an arc's point from mesh vertices where a smooth patch bends, in distance tolerances.
 constexpr double bent_clearance = 0.1;

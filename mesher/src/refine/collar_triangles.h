@@ -16,7 +16,8 @@ struct CollarTriangle {
   bool several;             ///< its dual edge meets the collar surface more than once
   bool poor_alone = false;  ///< poor regardless of its neighbours
   bool poor = false;
-  /// A smooth patch that is too far from the triangle between one of its edges and the ball's centre; none.
+  /// A smooth patch that is too far from the triangle between an edge of the face and the ball's centre; none
+  /// if there is no such patch.
   Index bent_on = none;
   Point bent_at = {};  ///< a point inside a side of that triangle
 };

@@ -14,7 +14,7 @@ namespace {
 // A curve gets inner seeds if its length exceeds its chord by this factor, because its first ball would not
 // cover it.
 constexpr double seeded_length_per_chord = 1.2;
-// Subsegments are split off the centre by at most this share of their radius.
+// Subsegments are split at a distance of at most this share of their radius from their centre.
 constexpr double subsegment_offset = 0.1;
 // Least length of the rest of a subsegment beyond the ball at its end, relative to the ball's radius, unless
 // a vertex is there already.
@@ -107,7 +107,8 @@ void CurveChains::point_resolved(Index point) {
   if (!points_[point].dormant && open_creases_.note_resolved(curve)) chain_resolved(curve, piece);
 }
 
-// Creates the balls of a crease whose chain was split, unless they must wait until it is isolated.
+// Has balls created on a crease whose chain was split and is resolved: queues a piece, in place of whose
+// split they are placed; in the paper's profile marks the crease, since they must wait until it is isolated.
 void CurveChains::chain_resolved(Index curve, Index piece) {
   if (domain_.is_papers())
     open_creases_.touch(curve);
@@ -173,7 +174,8 @@ Index CurveChains::add(Index curve, const std::array<End, 2>& ends, Index near) 
   return index;
 }
 
-// Records the piece at an unresolved point. Vertices of the complex find their pieces through their curves.
+// Records the piece at an unresolved point. The pieces at a vertex of the complex are found through its
+// curves.
 void CurveChains::note_piece(Index point, Index subsegment) {
   if (point == none || point < domain_.plc.vertices.size()) return;
   if (point >= piece_at_.size()) piece_at_.resize(points_.size(), none);
@@ -319,7 +321,7 @@ std::optional<CurveChains::Split> CurveChains::split_of(Index subsegment) {
   const auto across = is_end(chained, nearest) ? std::nullopt
                                                : facing_sheets_.parameter_across(
                                                      s, place(chained, 1) - place(chained, 0), nearest);
-  // Split a little off the centre: otherwise halves of symmetric curves would be cocircular.
+  // Split a little beside the centre: otherwise halves of symmetric curves would be cocircular.
   const double parameter =
       across ? *across
              : s.centre_parameter + subsegment_offset * std::sqrt(s.squared_radius) * random_.in_cube().x;

@@ -24,13 +24,13 @@ namespace collarmesh {
 ///
 /// Chains run ahead of the mesh, like the paper's one-dimensional meshes: a subsegment ends at mesh vertices
 /// or at unresolved points. A subsegment that a vertex encroaches is split by an unresolved point, which is
-/// inserted when the mesh has quality again. So a vertex never forces other vertices to be inserted at once,
-/// and no protective ball contains a vertex for long. Invariants, between insertions: the subsegments of a
-/// curve without a collar cover it; a subsegment whose ball contains a mesh vertex, or that is resolved and
-/// too coarse, is in the queue; each ball is found from the mesh vertex nearest to its centre. The loop
-/// reports insertions and resolved points, and splits; SurfaceCheck asks for further splits; CollarCreator
-/// clips chains, and in the end replaces a crease's chain by its collar. It learns of the chains of creases
-/// through OpenCreases.
+/// inserted when no skinny cell is left. So a vertex never forces other vertices to be inserted at once, and
+/// no protective ball contains a vertex for long. Invariants, between insertions: the subsegments of a curve
+/// without a collar cover it; a subsegment whose ball contains a mesh vertex, or that is resolved and too
+/// coarse, is in the queue; each ball is found from the mesh vertex nearest to its centre. The loop reports
+/// insertions and resolved points, and splits; SurfaceCheck asks for further splits; CollarCreator clips
+/// chains, and in the end replaces a crease's chain by its collar. It learns of the chains of creases through
+/// OpenCreases.
 class CurveChains {
  public:
   /// A place at which a subsegment will be split.
@@ -91,7 +91,7 @@ class CurveChains {
   void split_ahead(const Split& split);
   /// Removes the ball of a subsegment before the vertex that splits it is inserted, possibly inside the ball.
   void drop_ball(const Split& split);
-  /// Splits a subsegment by a mesh vertex at the place. Precondition: sizes know it.
+  /// Splits a subsegment by a mesh vertex at the place. Precondition: the vertex was reported to the sizes.
   void split_at(const Split& split, Index vertex);
   /// Queues a subsegment that is too coarse again, if it still exists after another insertion.
   void queue_again(const Split& split);

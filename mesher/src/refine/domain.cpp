@@ -8,8 +8,8 @@ namespace collarmesh {
 namespace {
 
 constexpr double floor_per_diagonal = 1e-10;
-// Edges of the complex shorter than this share of the diagonal are tiny. Near them the floor has the same
-// ratio to their length as elsewhere to the diagonal, limited by double precision.
+// Edges of the complex shorter than this share of the diagonal are tiny. Near them the floor is lower, in
+// proportion to their length, but not below double precision.
 constexpr double tiny_per_diagonal = 1e-5, floor_per_tiny_edge = floor_per_diagonal / tiny_per_diagonal;
 constexpr double precise_per_diagonal = 1e-13, precise_per_coordinate = 500 * 2.2e-16;
 constexpr double reach_of_tiny_edge = 10;  // relative to the edge's length

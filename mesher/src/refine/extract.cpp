@@ -16,7 +16,7 @@ namespace collarmesh {
 
 namespace {
 
-/// Orders the cells by their least points; cells with the same one keep their order.
+/// Orders the cells by their least points; cells with the same least point keep their order.
 std::vector<Index> order_by_least_point(const std::vector<Index>& least_points, std::size_t points) {
   return order_by_group(points, least_points.size(), [&](std::size_t i) { return least_points[i]; });
 }
@@ -207,7 +207,7 @@ class Extraction {
   }
 
   // Removes the feature of vertices that lie in the plane of their patch, but may lie beside the patch: the
-  // middle of a triangle can be outside it.
+  // middle of a triangle can be outside the patch.
   void forget_features_off_the_surface() {
     std::vector<bool> on_surface(mesh_.points.size(), false);
     for (const auto& face : mesh_.faces)

@@ -14,12 +14,12 @@ namespace collarmesh {
 /// sampled alone, each sample would encroach the other sheet until both are sampled as densely as the gap is
 /// narrow. So a triangle or subsegment that a vertex encroaches from across a gap is split beneath that
 /// vertex. Samples in such pairs leave the balls of the other sheet's triangles and subsegments empty,
-/// whatever their size; only the quality of cells in a thin part makes them smaller. Outside the regions that
-/// quality is not needed, so there the edge between the vertices of a pair counts in no radius-edge ratio. In
-/// the paper's profile there are no pairs.
+/// however large these balls are; only the quality of cells in a thin part requires smaller ones. Outside the
+/// regions that quality is not needed, so there the edge between the vertices of a pair counts in no
+/// radius-edge ratio. In the paper's profile there are no pairs.
 ///
 /// State: the pairs. TriangleQuality and CurveChains query them for their triangles and subsegments,
-/// CellQuality for cells to spare; the loop records pairs.
+/// CellQuality for cells that may stay; the loop records pairs.
 class FacingSheets {
  public:
   /// Keeps all by reference.
@@ -36,7 +36,8 @@ class FacingSheets {
   /// sheet.
   std::optional<Candidate> candidate_across(FaceId face);
   /// Returns the parameter on a subsegment, which has this direction, nearest to a vertex that encroaches it
-  /// from across a gap; nothing if the vertex does not do so. Precondition: the vertex is none of its ends.
+  /// from across a gap; nothing if there is no gap between them. Precondition: the vertex is none of its
+  /// ends.
   std::optional<double> parameter_across(const Subsegment& s, const Vector& along, Index vertex) const;
 
   /// Records that these vertices face each other; the second one may be about to be inserted.
@@ -45,8 +46,8 @@ class FacingSheets {
   /// Several threads may call it at once, while no pairs are recorded.
   bool is_within(Index cell, double bound) const;
   /// Returns the width of the gap that a flat cell spans whose corners all lie on features: between vertices
-  /// of pairs, or of features that have no point in common. Infinite if it spans no gap. Thread-safe under
-  /// the same condition.
+  /// of pairs, or of features that have no point in common. Infinite if it spans no gap. Thread-safe while no
+  /// pairs are recorded.
   double gap_across(Index cell) const;
 
   std::size_t bytes() const;

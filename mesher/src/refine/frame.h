@@ -4,8 +4,9 @@
 
 namespace collarmesh {
 
-/// Moves input that lies far from the origin close to it without any rounding. On an axis where min > 0 and
-/// max <= 2 min (or mirrored), subtracting the bound nearer to zero is exact (Sterbenz).
+/// A translation without any rounding, which moves input that lies far from the origin close to it. On an
+/// axis where min > 0 and max <= 2 min (or mirrored), subtracting the bound nearer to zero is exact
+/// (Sterbenz).
 class Frame {
  public:
   Frame() = default;
@@ -19,7 +20,7 @@ class Frame {
 
   Point inside(const Point& p) const { return p - shift_; }
   Point outside(const Point& p) const { return p + shift_; }
-  /// Returns the nearest point whose outside coordinates are doubles; only such points are inserted.
+  /// Returns the nearest point whose input coordinates are doubles; only such points are inserted.
   Point rounded(const Point& p) const { return inside(outside(p)); }
   const Vector& shift() const { return shift_; }
 

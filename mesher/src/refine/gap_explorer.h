@@ -75,8 +75,8 @@ class GapExplorer final : public GapSize {
   double squared_distance_to(const std::array<Index, 3>& points, const Point& x) const {
     return squared_distance_to_triangle(x, points_[points[0]], points_[points[1]], points_[points[2]]);
   }
-  /// Returns whether a witness reaches into this cell, whose neighbours are adjacent_, with more than a part
-  /// inside one of these balls.
+  /// Returns whether a witness has a part in this cell, whose neighbours are adjacent_, that does not lie
+  /// wholly in one of these balls.
   bool reaches_into(Index cell, const std::array<Index, 3>& points, std::span<const CollarBall> except);
   /// Writes the part of a triangle in the cell of this vertex, whose neighbours are adjacent_, to polygon_.
   void cut_to_cell(Index vertex, const Point& a, const Point& b, const Point& c);

@@ -118,7 +118,7 @@ void require(bool holds, const std::string& message) {
 void require_valid(const MeshOptions& o) {
   RunOptions options;
   options.mesh = o;
-  options.coarsen = false;  // it validates its own options
+  options.coarsen = false;  // coarsening validates its own options
   validate(options);
   require(o.edges_per_hole >= 0, "edges per hole must not be negative; 0 switches them off");
   require(o.exterior_radius_edge >= 1, "the exterior radius-edge bound must be at least 1");

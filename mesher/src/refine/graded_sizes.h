@@ -36,7 +36,7 @@ class GradedSizes {
   /// Imposes a target edge length at this distance from the vertices.
   void impose(std::span<const Index> vertices, double size, double distance);
 
-  /// Sets the size of a new vertex. Precondition: the surface knows the regions of the new cells.
+  /// Sets the size of a new vertex. Precondition: the surface has labelled the new cells.
   void cells_made(const ConflictZone& zone, Index vertex);
 
   /// Spreads sizes over the whole mesh by Dijkstra's algorithm. Returns false without gradation, and after

@@ -43,12 +43,12 @@ class OpenCreases {
   /// Returns the chain of a crease. Precondition: the crease is open.
   const Chain& chain(Index curve) const { return creases_.at(curve).chain; }
 
-  /// Reports that its chain starts with one more unresolved point.
+  /// Reports that the chain of a curve starts with one more unresolved point.
   void note_unresolved(Index curve) {
     if (Crease* crease = find(curve)) ++crease->chain.unresolved;
   }
-  /// Reports that one of these points is resolved or no longer needed. Returns whether it was the last one
-  /// and the chain has been split.
+  /// Reports that one of the chain's unresolved points is resolved or no longer needed. Returns whether it
+  /// was the last one and the chain has been split.
   bool note_resolved(Index curve) {
     Crease* crease = find(curve);
     return crease != nullptr && --crease->chain.unresolved == 0 && crease->chain.split;

@@ -18,8 +18,8 @@ class RandomOffsets {
   /// Returns a vector with each coordinate from -1 to 1.
   Vector in_cube();
   /// Returns a vector in the cube of this half edge length, orthogonal to the normal unless that is zero,
-  /// that does not lead into a collar. (Between two sheets exact centres often lie on a third one.) Zero if
-  /// no such vector was found.
+  /// that does not lead into a collar. (Between two sheets, exact centres often lie on a third sheet.) Zero
+  /// if no such vector was found.
   Vector outside_collars(const Point& from, double length, const Vector& normal);
 
  private:

@@ -148,7 +148,7 @@ void Refinement::process(const WorkQueue::Item& item) {
 
 void Refinement::destroy_cell(const WorkQueue::Item& item) {
   const auto candidate = cells_.candidate(item.entry.id);
-  // The candidate may have yielded or warped to another point, whose insertion left this cell.
+  // The candidate may have yielded or warped to another point, whose insertion did not destroy this cell.
   if (candidate && destroy(*candidate)) cells_.queue_again(item, candidate->squared_radius);
 }
 
@@ -191,8 +191,8 @@ bool Refinement::destroy(Candidate candidate) {
   }
 }
 
-// Yields to a subsegment. Its ball is empty, so its middle or a medial end is as good a place for a vertex as
-// the candidate's.
+// Yields to a subsegment. The subsegment's ball is empty, so its middle or a medial end is as good a place
+// for a vertex as the candidate's.
 bool Refinement::yield_to(Index subsegment, const Candidate& candidate) {
   if (const Index end = curves_.end_to_resolve(subsegment, candidate); end != none) {
     insert_point(end);

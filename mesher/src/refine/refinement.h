@@ -35,8 +35,8 @@
 
 namespace collarmesh {
 
-/// Sparse Voronoi Refinement of a complex (paper, Procedures 1 to 3): the loop. Only the loop knows all
-/// parts, and it only knows their order (doc/architecture/refinement_parts.md).
+/// Sparse Voronoi Refinement of a complex (paper, Procedures 1 to 3): the loop. Only the loop calls all
+/// parts, and it contains nothing but their order (doc/architecture/refinement_parts.md).
 class Refinement {
  public:
   Refinement(const Plc& plc, const MeshOptions& options, const Execution& execution);

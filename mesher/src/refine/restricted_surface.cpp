@@ -271,7 +271,7 @@ void RestrictedSurface::join(std::span<Workspace> of_blocks) {
   }
 }
 
-// Returns whether there is room: every face of a new cell may need a record.
+// Returns whether enough records are free: every face of a new cell may need one.
 bool RestrictedSurface::has_room(const ConflictZone& zone, const Workspace& w) const {
   return w.free_records_.size() >= zone.border.size() / 2 * 5;
 }
@@ -292,7 +292,7 @@ void RestrictedSurface::mark(FaceId face, Index record) {
   marks_[cell_of(face)][corner_of(face)] = record;
 }
 
-// Removes the mark on this side and the record.
+// Removes the mark of a face on this side, and its record.
 void RestrictedSurface::unmark(FaceId face, Workspace& w) {
   labels_[cell_of(face)].marked &= static_cast<std::uint8_t>(~(1U << corner_of(face)));
   w.free_records_.push_back(record_of(face));

@@ -82,7 +82,8 @@ class RestrictedSurface {
   /// the cells; RefinedMesh::insert with the same zone is called next.
   void cells_vanish(const ConflictZone& zone) { cells_vanish(zone, workspace_); }
   /// Labels the new cells; finds restricted triangles between them, and checks those on the border again.
-  /// Precondition: `cells_vanish` had the same zone; SurfaceNodes and CollarCells know the new vertex.
+  /// Precondition: `cells_vanish` had the same zone; the new vertex was reported to SurfaceNodes and
+  /// CollarCells.
   void cells_made(const ConflictZone& zone, Index vertex);
 
   /// Scratch data of insertions by one thread, and the records that it may use.
@@ -110,8 +111,7 @@ class RestrictedSurface {
   /// Returns whether a block has enough records for an insertion with this zone.
   bool has_room(const ConflictZone& zone, const Workspace& workspace) const;
   /// Versions of the functions above for a block. Preconditions: `divide` gave the workspace, the zone lies
-  /// in its block, and `has_room` is true; without room a record would be added to those that all threads
-  /// share.
+  /// in its block, and `has_room` is true; otherwise a record would be added to those that all threads share.
   void cells_vanish(const ConflictZone& zone, Workspace& workspace);
   void cells_made(const ConflictZone& zone, Index vertex, Workspace& workspace);
   /// To be called for each new cell, in place of cells_vanish and cells_made, if no vertex of the zone has

@@ -56,7 +56,7 @@ Tag RipAndStitch::crease_tag(Index ball) const {
 }
 
 void RipAndStitch::stitch_books(const std::vector<CollarTriangle>& triangles) {
-  std::vector<std::pair<std::array<Index, 2>, Index>> curve_between;  // sorted balls, curve; sorted
+  std::vector<std::pair<std::array<Index, 2>, Index>> curve_between;  // two balls, their curve; sorted
   for (const auto& [balls, curve, parameters] : collars_.links())
     curve_between.push_back({sorted(balls[0], balls[1]), curve});
   std::ranges::sort(curve_between);

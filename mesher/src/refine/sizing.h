@@ -8,8 +8,8 @@
 
 namespace collarmesh {
 
-/// Turns the requested sizes into target edge lengths, and these into bounds on circumradii. The factors are
-/// measured (doc/architecture/refinement.md).
+/// A conversion of the requested sizes to target edge lengths, and of these to bounds on circumradii. The
+/// factors are measured (doc/architecture/refinement.md).
 ///
 /// Callers are CurveChains::too_coarse, TriangleQuality::target_size and CellQuality::judge, to decide about
 /// splits; GradedSizes::cells_made, for the size at a new vertex; CollarCreator::target_size, for the radii
@@ -22,8 +22,8 @@ class Sizing {
   /// exceeds the size by more. Sizes given as numbers of elements, across a gap or on a circle, are used as
   /// they are.
   static constexpr double edge_per_size = 1.08;
-  /// If the mesh will be coarsened, cells are left in gaps narrower than this share of the target edge
-  /// length: in wider gaps a bounded ratio costs little, and angles are better.
+  /// If the mesh will be coarsened, cells may exceed the ratio in gaps narrower than this share of the target
+  /// edge length: in wider gaps a bounded ratio costs little, and angles are better.
   static constexpr double narrow_gap_per_size = 0.1;
 
   /// Makes the sizes. Functions of a place throw OptionError if the field returns no positive size there; an

@@ -19,7 +19,8 @@ namespace collarmesh {
 namespace {
 
 constexpr unsigned most_rounds = 240;  // sheets of one patch near each other settle slowly
-// Six times a cell's volume over its longest edge cubed: below this value it may be zero but for rounding.
+// A cell may be flat but for rounding if six times its volume over its longest edge cubed is below this
+// value.
 constexpr double rounded_volume = 1e-13;
 constexpr std::size_t seeds_per_closed_patch = 4, seeds_per_missed_patch = 8;
 
@@ -151,8 +152,8 @@ bool SurfaceCheck::is_near_patch(const Point& p, Index patch, Index& near) const
 
 // Queues triangles on smooth patches whose edges or middle leave the patch by more than the tolerance.
 bool SurfaceCheck::refine_distant_triangles(const std::vector<FaceId>& faces) {
-  // A cache of edges that were found to be near a patch, as two triangles share most edges. If another edge
-  // replaces an entry, the edge is tested again.
+  // A cache of edges that were found to be near a patch, as two triangles share most edges. An edge whose
+  // entry was replaced is tested again.
   struct NearEdge {
     std::uint64_t edge;
     Index patch;
@@ -193,8 +194,8 @@ void SurfaceCheck::seed_missed_patch(Index patch) {
     seed(patch, domain_.points[point]);
 }
 
-// Adds a point of a patch as an unresolved point. If the point faces another sheet, it may be a vertex
-// already, but for rounding.
+// Adds a point of a patch as an unresolved point. If the point faces another sheet, there may be a vertex at
+// it already, up to rounding.
 void SurfaceCheck::seed(Index patch, const Point& at) {
   points_.add({.point = at, .feature = {2, patch}, .apart = domain_.floor_at(at)}, none);
 }

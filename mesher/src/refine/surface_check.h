@@ -10,14 +10,14 @@
 
 namespace collarmesh {
 
-/// Returns some of the candidates that are far from each other: each one is the candidate farthest from all
-/// before. Cost: candidates times count.
+/// Returns at most `count` candidates that are far from each other: chooses each as the candidate farthest
+/// from those chosen before. Cost: candidates times count.
 std::vector<Index> spread_points(std::span<const Index> candidates, const std::vector<Point>& points,
                                  std::size_t count);
 
-/// Checks the whole restricted surface when the queue is empty: whether the triangles of each patch form a
-/// manifold that ends at the patch's curves, whether any part of a smooth patch was missed, and flat cells.
-/// Queues every violation found.
+/// The part that checks the whole restricted surface when the queue is empty: whether the triangles of each
+/// patch form a manifold that ends at the patch's curves, whether any part of a smooth patch was missed, and
+/// whether cells are flat. Queues every violation found.
 ///
 /// State: the face that each corner and centre of the smooth patches' triangles was near to at the last
 /// check, so that a round only tests what has changed; the number of rounds. The loop calls it.

@@ -26,7 +26,7 @@ class SurfaceNodes {
   const TriangleHierarchy& hierarchy() const { return hierarchy_; }
   std::span<const Index> at(Index vertex) const { return {lists_[vertex].nodes, lists_[vertex].count}; }
   bool any_at(Index vertex) const { return lists_[vertex].count > 0; }
-  /// Returns the nodes of one vertex of a face, the one with fewest nodes: they cover everything that the
+  /// Returns the nodes of the vertex of a face that has the fewest nodes. They cover everything that the
   /// face's dual edge meets.
   std::span<const Index> fewest(FaceId face) const;
   /// Replaces `found` by the triangles that the dual edge of a face crosses, seen from the face's cell.
@@ -37,13 +37,13 @@ class SurfaceNodes {
     hierarchy_.crossings(p, q, {&root, 1}, found);
   }
   /// Returns the triangle of a patch nearest to p, if its squared distance is below `within_squared`, and
-  /// sets `within_squared` to that; else returns none.
+  /// sets `within_squared` to that distance; else returns none.
   Index nearest_triangle(const Point& p, Index patch, double& within_squared) const;
 
   void cells_made(const ConflictZone& zone, Index vertex);
 
   /// The data of a thread that inserts into blocks: scratch data, and the lists that it has made.
-  /// SurfaceNodes points into these lists, so it must be destroyed first.
+  /// SurfaceNodes points into these lists, so SurfaceNodes must be destroyed first.
   class Workspace {
    public:
     /// Returns the bytes of the lists: their sum over all threads does not depend on which thread made which.

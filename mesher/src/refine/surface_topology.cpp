@@ -51,7 +51,7 @@ std::vector<Side> sorted_sides(const std::vector<SurfaceTriangle>& triangles, st
 
 }  // namespace
 
-// Counts the triangles of each of a curve's patches at each segment of the curve.
+// Counts, at each segment of a curve, the triangles of the curve's patches, by patch.
 void SurfaceTopology::count_curve_sides() {
   std::vector<CurveEdge> segments;  // by curve: its first segment
   segments.reserve(domain_.plc.curves.size());

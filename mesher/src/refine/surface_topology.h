@@ -7,11 +7,11 @@
 
 namespace collarmesh {
 
-/// Checks the topology of the surface as it is extracted, with restricted and stitched triangles: along its
-/// curves each patch has as many triangles as in the complex, and two at each other edge; the triangles at a
-/// vertex are connected; the vertices lie on their patches. Sheets of a smooth patch that are closer than the
-/// distance tolerance violate this at first, because triangles may lead from one sheet to the other. Such
-/// triangles are split.
+/// The part that checks the topology of the surface as it is extracted, with restricted and stitched
+/// triangles: along its curves each patch has as many triangles as in the complex; each other edge has two;
+/// the triangles at a vertex are connected; the vertices lie on their patches. Sheets of a smooth patch that
+/// are closer than the distance tolerance violate this at first, because triangles may lead from one sheet to
+/// the other. Such triangles are split.
 /// State: the numbers of triangles along the complex's curves. The loop calls it at the end.
 class SurfaceTopology {
  public:

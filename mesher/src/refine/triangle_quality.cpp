@@ -163,7 +163,7 @@ double TriangleQuality::gap_at(const RestrictedTriangle& t, double widest) {
   for (unsigned side = 0; side < 2; ++side) {
     if (patch.regions[side] == 0) continue;
     const Vector way = side == 0 ? -1 * normal : normal;
-    // Starts off the plane of the triangle, which would cause ties.
+    // The ray starts at a small distance from the triangle, because a start in its plane would cause ties.
     nodes_.crossings(t.x + 1e-6 * widest * way, t.x + widest * way, crossings_);
     for (const auto& [triangle, direction] : crossings_)
       gap = std::min(

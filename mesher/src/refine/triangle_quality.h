@@ -12,10 +12,10 @@
 
 namespace collarmesh {
 
-/// Decides which restricted triangles to destroy: large ones and unresolved ones. A triangle is unresolved if
-/// its vertices do not all lie on its patch, if its dual edge crosses several sheets, or if its circumcentre
-/// is too far from the surface. (RestrictedSurface::restrict_face finds the first two when it makes the
-/// record.)
+/// The part that decides which restricted triangles to destroy: large ones and unresolved ones. A triangle is
+/// unresolved if its vertices do not all lie on its patch, if its dual edge crosses several sheets, or if its
+/// circumcentre is too far from the surface. (RestrictedSurface::restrict_face finds the first two when it
+/// makes the record.)
 /// State: the notes of the restricted surface. Invariant: after an insertion every triangle of the new cells
 /// is judged, and the queue contains those that must be destroyed. The loop and BlockRefinement report
 /// insertions and take candidates; SurfaceCheck and SurfaceTopology ask for triangles to split.
@@ -50,7 +50,8 @@ class TriangleQuality {
   /// Records that no point could be inserted to destroy a triangle, so that it is not tried again.
   void give_up(FaceId face) { surface_.note_given_up(face); }
 
-  /// Judges the triangles of new cells. Precondition: surface and sizes know the new cells and the vertex.
+  /// Judges the triangles of new cells. Precondition: the new cells and the vertex were reported to surface
+  /// and sizes.
   void cells_made(const ConflictZone& zone);
   /// Judges the triangles of new cells in a block. Several threads may call it, each with its own queue, if
   /// no sizes come from the caller or are kept at vertices.

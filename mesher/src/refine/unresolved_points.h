@@ -31,7 +31,8 @@ class UnresolvedPoints {
   UnresolvedPoints(const RefinedMesh& mesh, double theta, WorkQueue& queue)
       : mesh_(mesh), queue_(queue), theta_(theta) {}
 
-  /// Adds a point. `near` is a mesh vertex not far away, if one is known. Points are numbered in their order.
+  /// Adds a point. `near` is a mesh vertex not far away, if one is known. Points are numbered in the order in
+  /// which they are added.
   Index add(const Point& p, const Feature& feature, Index near = none) {
     return add(Unresolved{p, feature}, near);
   }

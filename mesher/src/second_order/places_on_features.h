@@ -6,8 +6,8 @@
 
 namespace collarmesh::second_order {
 
-/// Finds the places of nodes on curves and patches: on the exact geometry or, where there is none, on the
-/// complex.
+/// A search for the places of nodes on curves and patches: on the exact geometry or, where there is none, on
+/// the complex.
 class PlacesOnFeatures {
  public:
   /// Keeps references to both.
@@ -39,7 +39,7 @@ class PlacesOnFeatures {
   const Plc& plc_;
   FeatureShapes shapes_;
   FlatFeatures flat_;
-  ExactGeometry exact_;  // restricted to flat features; empty if there is none
+  ExactGeometry exact_;  // limited by `flat_`; empty if there is no exact geometry
 };
 
 }  // namespace collarmesh::second_order

@@ -34,12 +34,13 @@ constexpr double farthest = 0.5;
 constexpr double least_turn = 0.15;
 
 // Nodes move back by `step_factor`; below `least_share` of the full distance they go to the middle of their
-// edge.
+// edge. Moving forward again stops within `forward_precision` of the largest possible share.
 constexpr double step_factor = 0.8, least_share = 0.1, forward_precision = 0.04;
-constexpr unsigned steps_per_try = 3;  // after this many steps, nodes inside regions may find room again
+// `make_room` is tried at first and again each time after this many steps back.
+constexpr unsigned steps_per_try = 3;
 
-// A node on a planar patch or a straight curve moves to the exact geometry if that is farther away than this,
-// relative to the edge.
+// Relative to the edge: a node on a planar patch or a straight curve moves to the exact geometry if that is
+// farther away than `rounding`; a move by at most `slight` on a planar patch is a SlightMove.
 constexpr double rounding = 1e-12, slight = 1e-6;
 
 class Curving {
@@ -250,7 +251,7 @@ class Curving {
   }
 
   // Moves nodes back until all tets are valid. Any order ends with valid tets: curved nodes only move nearer
-  // to the middle of their edge, and a node inside that was moved back stays there.
+  // to the middle of their edge, and a node inside a region that was moved back stays there.
   void draw_back() {
     std::vector<Index> work = curved_;
     while (!work.empty() && !execution_.cancelled()) {

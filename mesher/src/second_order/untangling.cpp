@@ -12,11 +12,11 @@ namespace collarmesh::second_order {
 
 namespace {
 
-// Distance of the barrier below the least coefficient, relative to the straight tet's coefficient: this gap,
-// or this share of the least coefficient's distance from 1.
+// Distance of the barrier below the least coefficient, relative to the straight tet's coefficient:
+// `barrier_gap` or, if that is more, `barrier_share` of the least coefficient's distance from 1.
 constexpr double barrier_gap = 0.02, barrier_share = 0.1;
 constexpr unsigned most_barriers = 12, steps_per_barrier = 15, remembered_steps = 6, most_halvings = 12;
-// If the objective rises by less than this with one barrier, the nodes have no room.
+// If the least coefficient rises by less than this with one barrier, the nodes cannot move far enough.
 constexpr double least_rise = 0.01;
 // Moving nodes in a wider neighbourhood is slow, so it is given up after this many failures.
 constexpr std::size_t most_wide_failures = 100;

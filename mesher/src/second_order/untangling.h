@@ -12,11 +12,12 @@
 
 namespace collarmesh::second_order {
 
-/// Makes curved tets valid by moving nodes that lie on no smooth feature: nodes inside regions anywhere,
-/// nodes on planar patches in their planes. They follow the curved edges beside them as far as necessary.
-/// Minimizes the sum of squares of a barrier and of the differences between the Jacobian's coefficients and
-/// those of the straight tet. The barrier is just below the least coefficient and rises until that is high
-/// enough (Toulorge, Geuzaine, Remacle and Lambrechts, Robust untangling of curvilinear meshes, 2013).
+/// The procedure that makes curved tets valid by moving nodes that lie on no smooth feature: nodes inside
+/// regions anywhere, nodes on planar patches in their planes. They follow the curved edges beside them as far
+/// as necessary. Minimizes the sum of squares of a barrier and of the differences between the Jacobian's
+/// coefficients and those of the straight tet. The barrier is just below the least coefficient and rises
+/// until this coefficient is high enough (Toulorge, Geuzaine, Remacle and Lambrechts, Robust untangling of
+/// curvilinear meshes, 2013).
 class Untangling {
  public:
   /// Keeps all by reference. Precondition: the mesh has its nodes.

@@ -72,7 +72,7 @@ class PatchCurvature {
     return points_[entry->second];
   }
 
-  // Adds an edge. When the second triangle at the edge is added, its bend is known.
+  // Adds an edge. The edge's bend is known when it is added for its second triangle.
   void add_edge(Index a, Index b, const Vector& n) {
     const auto [entry, fresh] = normal_at_.try_emplace(edge_key(a, b), n);
     if (fresh) return;

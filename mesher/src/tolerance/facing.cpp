@@ -55,7 +55,7 @@ FacingSurfaces::Facing FacingSurfaces::from(const Point& x, Index triangle, unsi
   normal = normal / length;
   const Vector way = side == 0 ? -1 * normal : normal;
   const Index root = triangles_.root(), patch = plc_.triangles[triangle].patch;
-  // Starts off the plane of the triangle, which would cause ties.
+  // The ray starts at a small distance from the triangle, because a start in its plane would cause ties.
   triangles_.crossings(x + 1e-6 * widest * way, x + widest * way, {&root, 1}, crossings);
   for (const auto& [other, direction] : crossings) {
     const double distance = facing_distance(plc_, patch, x, normal, way, other, triangles_.corners(other));

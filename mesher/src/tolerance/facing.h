@@ -16,14 +16,14 @@ bool are_neighbours(const Plc& plc, Index patch, Index other);
 /// neighbours, because they may form a wedge.
 double least_facing(bool neighbours);
 
-/// Returns the distance of the point x of a patch, along a unit normal of the patch, from the plane of a
-/// triangle that the ray from x in the direction `way` (the normal or its opposite) crosses; infinite if the
-/// triangle does not face the patch. Patches that meet elsewhere face each other only if they are almost
+/// Returns the distance from a point x of a patch to the plane of a triangle, along a unit normal of the
+/// patch; infinite if the triangle does not face the patch. The ray from x in the direction `way` (the normal
+/// or its opposite) crosses the triangle. Patches that meet elsewhere face each other only if they are almost
 /// parallel, because otherwise gaps would close in wedges.
 double facing_distance(const Plc& plc, Index patch, const Point& x, const Vector& normal, const Vector& way,
                        Index triangle, const std::array<Point, 3>& corners);
 
-/// Finds the surface that faces a point of the surface, across a region, a gap or a cavity.
+/// A search for the surface that faces a point of the surface, across a region, a gap or a cavity.
 class FacingSurfaces {
  public:
   /// Keeps the complex by reference.

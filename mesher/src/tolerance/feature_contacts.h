@@ -6,8 +6,8 @@
 
 namespace collarmesh {
 
-/// Knows which features of a complex have a point in common. The distance between features without a common
-/// point depends on the input alone, not on the mesh.
+/// The pairs of features of a complex that have a point in common. The distance between features without a
+/// common point depends on the input alone, not on the mesh.
 class FeatureContacts {
  public:
   /// Keeps the complex by reference. Cost: near linear in the complex.
@@ -22,8 +22,8 @@ class FeatureContacts {
 
   const Plc& plc_;
   std::vector<std::vector<Index>> neighbours_;  // by patch: other patches that it meets, sorted
-  std::vector<bool> at_hub_;  // by patch: whether it has a vertex with many patches, which are not in that
-                              // list
+  std::vector<bool> at_hub_;  // by patch: whether it has a vertex with many patches; `neighbours_` does not
+                              // list these
 };
 
 }  // namespace collarmesh

@@ -10,9 +10,10 @@
 namespace collarmesh {
 
 /// Returns the width that short edges leave to a tet, relative to its longest edge: the length of the
-/// shortest edge that `forces` accepts (given by its corners). If exactly these edges join two groups of
-/// corners, returns the distance between the planes or lines through the groups: between a corner and a
-/// plane, or between two lines. 1 if there is no such edge.
+/// shortest of them. `forces` accepts the short edges, given by their corners; `across` has for each corner,
+/// as bits, the corners to which they join it. If exactly these edges join two groups of corners, returns the
+/// distance between the planes or lines through the groups: between a corner and a plane, or between two
+/// lines. Returns 1 if there are no short edges.
 double narrowness_of(const std::array<Point, 4>& p, const std::array<unsigned, 4>& across);
 template <class Forces>
 double narrowness_of(const std::array<Point, 4>& p, const Forces& forces) {

@@ -20,12 +20,12 @@ namespace collarmesh {
 
 namespace {
 
-// The largest distance from the surface, relative to the thickness of the material: if its opposite sides
-// bend away from each other (a rod), and if they bend the same way (a shell); and relative to the width of
-// gaps. doc/architecture/tolerance.md has the measurements.
+// The largest distance from the surface, relative to the thickness of the material where its opposite sides
+// bend away from each other (a rod) and where they bend the same way (a shell), and relative to the width of
+// gaps in the same two cases (a hole and a slot). doc/architecture/tolerance.md has the measurements.
 constexpr double share_of_rod = 0.05, share_of_shell = 0.15, share_of_hole = 0.1, share_of_slot = 0.5;
-// Share of a region's volume that chords may remove or add, by the estimate below. Where they would change
-// it by less, the shares of its thickness grow by up to `largest_factor`.
+// Share of a region's volume that chords may remove or add, by the estimate below. Where chords would change
+// the volume by less, the shares of thickness grow by up to `largest_factor`.
 constexpr double share_of_volume = 0.015, largest_factor = 2;
 // The share of the volume below a patch in a wedge that chords may remove, if they would otherwise remove
 // more than `much_of_wedge`.
@@ -162,7 +162,7 @@ class LocalTolerance {
                     least_share * largest_);
   }
 
-  // Returns how the surface bends as seen from the material on this side; positive for convex material.
+  // Returns how the surface bends; positive where the material on this side is convex.
   double bend(Index triangle, unsigned side) const {
     return side == 0 ? curvature_[triangle].sum : -curvature_[triangle].sum;
   }

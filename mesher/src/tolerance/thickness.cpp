@@ -62,7 +62,7 @@ Thickness::Opposites Thickness::at(Index triangle, unsigned side, Crossings& cro
   const Index patch = plc_.triangles[triangle].patch, region = plc_.patches[patch].regions[side];
   const double reach = plc_.bounds.diagonal();
   const Index root = triangles_.root();
-  // Starts off the plane of the triangle, which would cause ties.
+  // The ray starts at a small distance from the triangle, because a start in its plane would cause ties.
   triangles_.crossings(centre + 1e-9 * reach * way, centre + reach * way, {&root, 1}, crossings);
   for (const auto& [other, direction] : crossings) {
     const Index opposite_patch = plc_.triangles[other].patch;

@@ -13,8 +13,8 @@ namespace collarmesh {
 
 namespace {
 
-// Shells matter if covering them takes more than `least_squares` squares whose sides are the thickness, and
-// more than `least_ratio` times as many as with rectangles whose sides are the chords.
+// Shells matter if covering them takes more than `least_squares` squares whose sides are as long as the shell
+// is thick, and more than `least_ratio` times as many squares as rectangles whose sides are chords.
 constexpr double least_squares = 20'000, least_ratio = 30;
 
 /// Returns the distance to the opposite side of the wall or gap; infinite if there is none.
