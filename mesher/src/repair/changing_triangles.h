@@ -88,8 +88,8 @@ class ChangingTriangles {
 
   /// Calls visit(p, edge) for each corner p and each edge without it whose boxes meet, enlarged by half of
   /// `reach` on all sides, if a changed triangle has the corner or the edge; some pairs are visited several
-  /// times. Corners and edges may no longer exist. Spends these pairs. Cost: as above, regardless of the
-  /// number of triangles at a corner.
+  /// times. Corners and edges may no longer exist. Spends these pairs from `work`. Cost: as above, regardless
+  /// of the number of triangles at a corner.
   template <class Visit>
   void for_each_corner_near_edge(const std::vector<Index>& changed, const Visit& visit) {
     const std::vector<Index> corners = corners_of(changed);
@@ -157,7 +157,7 @@ class ChangingTriangles {
   std::size_t count_ = 0;
   std::vector<bool> alive_;
   std::vector<Vector> normals_;
-  // By point, by side and by side: doubly linked list of the sides that start at a point.
+  // Doubly linked lists of the sides that start at a point: `first_` by point, the others by side.
   std::vector<Index> first_, next_, previous_;
   std::vector<Index> degree_;  // by point: length of the list
   ItemTrees<Index> trees_, corner_trees_;

@@ -84,7 +84,7 @@ class SmallOnes {
   bool is_kept(Index p) const { return kept_[p]; }
 
  private:
-  // Returns the mean width, or infinity where a triangle is as wide as the size.
+  // Returns the mean width, or infinity if a triangle is as wide as the size.
   double width_of(const Plc::Patch& patch) const {
     double area = 0, border = 0;
     for (Index t = patch.first_triangle; t < patch.first_triangle + patch.triangle_count; ++t) {
@@ -278,8 +278,8 @@ class FeatureCollapser {
     return false;
   }
 
-  // Returns whether the facets on both sides of a narrow place face opposite ways, as those of a blade do: a
-  // wall would lose its thickness.
+  // Returns whether the facets on both sides of a narrow place face opposite ways, as those of a blade do:
+  // there, a collapse would take away a wall's thickness.
   bool is_at_wall(Index t) const {
     constexpr double opposed = -0.5;
     std::vector<Vector> normals;
@@ -435,7 +435,7 @@ class FeatureCollapser {
   std::set<Index> tips_;       // points of tips in the list
   std::vector<Index> narrow_;  // existing triangles that are narrow or have a sharp corner, in order
   Index looked_at_ = 0;        // triangles before this one have been looked at
-  // Of this round:
+  // The changes of this round:
   std::set<Index> touched_;                      // triangles that change
   std::vector<std::pair<Index, Index>> merges_;  // a point, and the one that takes its place
 };
@@ -469,8 +469,9 @@ std::vector<Shape> shapes_of_curves(const Plc& plc) {
   return shapes;
 }
 
-/// Returns the tags of the old features that new ones have most points in common with and, of several, are
-/// most parallel to; each is given once. Other new features get numbers after these.
+/// Returns a tag for each new feature: that of the old feature with which it has the most points in common,
+/// or of the most parallel one of several. Each old tag is given once; other new features get numbers after
+/// these.
 std::vector<Tag> numbers_from(const std::vector<Shape>& before, const std::vector<Tag>& tags,
                               const std::vector<Shape>& after) {
   std::map<std::array<double, 3>, std::vector<Index>> at;

@@ -182,7 +182,7 @@ std::vector<Index> SnapCuts::chain(Index a, Index b) const {
 // Cuts a triangle at the points on its sides. Each step makes a fan from the corner opposite a side with
 // points.
 void SnapCuts::add_cut(const Corners& triangle, const Origin& origin) {
-  std::vector<std::pair<Corners, unsigned>> stack{{triangle, 0}};  // and flags of the sides that are done
+  std::vector<std::pair<Corners, unsigned>> stack{{triangle, 0}};  // triangles, with flags of their finished sides
   while (!stack.empty()) {
     const auto [t, done] = stack.back();
     stack.pop_back();

@@ -35,7 +35,7 @@ class Overlay {
   SnapState& state_;
   SnapCuts& cuts_;
   PointGrid crossing_points_;
-  Index first_ = 0;  // number of the first point that it makes
+  Index first_ = 0;  // number of the first point that the overlay makes
   std::size_t count_ = 0;
   std::set<std::pair<Edge, Edge>> crossing_, crossed_before_;
 };

@@ -13,8 +13,8 @@
 
 namespace collarmesh::repairing {
 
-/// The data that the parts of snapping share: the triangles as they change, which of them each part has not
-/// looked at yet, and a record of the changes.
+/// The data that the parts of snapping share: the changing triangles, those that each part has yet to look
+/// at, and a record of the changes.
 class SnapState {
  public:
   /// The parts that look at triangles, as bits.
