@@ -17,7 +17,7 @@ class Tetrahedra {
  public:
   using Corners = std::array<Index, 4>;
 
-  /// A face as seen from one of its tetrahedra: the face opposite a corner of it.
+  /// A face of a tetrahedron, given by the opposite corner.
   struct Face {
     Index tet = none;
     unsigned corner = 0;
