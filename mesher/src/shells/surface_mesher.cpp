@@ -296,7 +296,8 @@ void SurfaceMesher::run() {
   repair_.improve(least_angle);
 }
 
-/// Removes vertices and moves those that stay, in turns, as long as that removes at least one in `few`.
+/// Removes vertices and moves those that stay, in turns, as long as each turn removes at least one vertex in
+/// `few`.
 void SurfaceMesher::remove_needless_vertices() {
   constexpr unsigned rounds = 2;
   constexpr std::size_t few = 30;

@@ -9,8 +9,8 @@
 
 namespace collarmesh::shells {
 
-/// Target edge lengths on curves and patches. They grow by at most the gradation per unit length with the
-/// distance from small ones, and from curves that are shorter than them.
+/// Target edge lengths on curves and patches. Away from places with small lengths, and from curves shorter
+/// than the lengths, they grow by at most the gradation per unit of distance.
 class SurfaceSizes {
  public:
   /// Keeps all by reference.
