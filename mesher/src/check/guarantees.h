@@ -32,7 +32,7 @@ inline constexpr char conforming[] = "conforming";    ///< a face has at most tw
 inline constexpr char radius_edge[] = "radius_edge";  ///< bound on tets that are neither thin nor in collars
 inline constexpr char thin_angles[] = "thin_angles";  ///< angles of tets that exceed the radius-edge bound
 inline constexpr char collar_dihedral[] = "collar_dihedral";  ///< dihedral angles in collars
-/// Each tet that has to have one has a corner on no face.
+/// Each tet that needs an interior node has a corner on no face.
 inline constexpr char interior_node[] = "interior_node";
 
 // Guarantees of the balls of the collars, if the mesh has them.
@@ -91,7 +91,7 @@ inline constexpr char curve_present[] = "curve_present";          ///< each curv
 inline constexpr char shell_orientation[] = "shell_orientation";  ///< faces of solids point outwards, those
                                                                   ///< of other surfaces are oriented alike
 
-/// Guarantees of the shapes of cells and of distances, which other sizes change.
+/// Guarantees of cell shapes and of distances, which meshes with other target sizes may miss.
 inline constexpr std::array<std::string_view, 14> of_shapes{
     radius_edge,    thin_angles,     collar_dihedral, interior_node, collar_centre,
     collar_gap,     collar_disjoint, collar_cells,    region_volume, volume_kept,

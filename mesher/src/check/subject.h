@@ -69,14 +69,15 @@ class ThinCells {
   explicit ThinCells(const Subject& subject);
 
   bool claimed(Index tet) const;
-  /// Returns whether a tet may be thin here.
+  /// Returns whether this tet may be thin.
   bool has_place(Index tet) const;
-  /// Returns the lower bound on its dihedral angles, degrees.
+  /// Returns the lower bound on a tet's dihedral angles, degrees.
   double smallest_angle(Index tet) const;
-  /// Returns whether its angles are within their bounds; `face_angle` is the largest angle of its faces,
+  /// Returns whether a tet's angles are within their bounds; `face_angle` is the largest angle of its faces,
   /// degrees.
   bool are_bounded(const TetQuality& quality, double face_angle, Index tet) const;
-  /// Returns whether its angles are this small only because of a forced edge. Precondition: they are bounded.
+  /// Returns whether a tet's angles are this small only because of a forced edge. Precondition: they are
+  /// bounded.
   bool is_forced(const TetQuality& quality, Index tet) const;
 
  private:
