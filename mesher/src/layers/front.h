@@ -76,7 +76,7 @@ class Front {
   std::vector<bool> on_wall;   ///< by vertex of the mesh: whether it is a corner of a wall's triangle
   std::vector<Index> node_at;  ///< four per tet: the front's node at each corner, or none
 
-  /// Returns the front's node of a sector: that at a corner of a tet.
+  /// Returns the front's node at a corner of a tet.
   Index node_of(Index tet, unsigned corner) const { return node_at[4 * std::size_t{tet} + corner]; }
   /// Returns the unit normal of a side, pointing inwards.
   Vector normal(const WallSide& side) const;

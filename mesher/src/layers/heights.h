@@ -42,7 +42,7 @@ class Heights {
     length_ = others.length_;
     cause_ = others.cause_;
   }
-  /// Lowers a distance to this one.
+  /// Lowers a node's distance to `to`.
   void lower(Index node, double to, Cause cause);
   /// Lowers distances in gaps: the stacks on both sides leave a part of each gap to the tets between.
   void fit_gaps();

@@ -154,7 +154,7 @@ void Stack::fill(const WallSide& side) {
   }
 }
 
-/// `corners`: the last one lies above the first.
+/// Adds a tet of a layer. The last of the `corners` lies above the first.
 void Stack::add_tet(std::array<Index, 4> corners, const WallSide& side, unsigned layer) {
   mesh_.tets.push_back(corners);
   mesh_.tet_region.push_back(side.region);
