@@ -93,8 +93,8 @@ void divide(MeshJob& job) {
   job.control.stop_if_asked();
 }
 
-/// Gives both sides of the patches to be split separate nodes, and checks that. The mesh was certified before
-/// the split.
+/// Gives both sides of the patches to be split separate nodes, and checks the result. The mesh was certified
+/// before the split.
 void split_patches(MeshJob& job) {
   if (!job.given.split.any()) return;
   job.control.begin("split", 0.98, 1);

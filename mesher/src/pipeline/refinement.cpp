@@ -16,7 +16,8 @@ namespace collarmesh::pipeline {
 namespace {
 
 // Factors and reserve for runs with exact geometry: the bounds must still hold after the vertices have moved
-// onto it. The factor on the distance leaves room for twice the triangles' share of it and some more.
+// onto it. The factor on the distance subtracts twice the distance of CAD triangles from the shape (a tenth
+// of the tolerance) and some more.
 constexpr double distance_left = 0.75, ratio_left = 0.99, angle_reserve = 0.05;
 
 // Layers are pushed into the tets, which makes angles worse where walls are one tet apart.
