@@ -15,7 +15,8 @@
 /// Names of groups of cells as formats write and read them.
 namespace collarmesh::io {
 
-/// Replace all characters but ASCII letters, digits and `-` by `_`; the second one also makes capitals.
+/// Replace all characters but ASCII letters, digits and `-` by `_`; the second one also turns letters into
+/// capitals.
 std::string word(std::string text);
 std::string capital_word(std::string text);
 

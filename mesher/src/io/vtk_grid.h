@@ -17,8 +17,8 @@ namespace collarmesh::io {
 /// Returns VTK's number of a kind of cells.
 int vtk_type_of(CellKind kind, int order);
 
-/// Returns the nodes in VTK's order, or those of VTK in ours: in its wedges the normal of the first triangle
-/// points away from the second one.
+/// Converts nodes from our order to VTK's, or back: in VTK's wedges the normal of the first triangle points
+/// away from the second one.
 CellNodes in_vtk_order(CellKind kind, const CellNodes& nodes);
 
 struct VtkArray {
@@ -103,8 +103,8 @@ struct VtkPieceError {
   std::string message;
 };
 
-/// Adds a piece to a mesh. Cells of a point are skipped. Throws VtkPieceError. Precondition: arrays have one
-/// value for each point or cell.
+/// Adds a piece to a mesh. Cells of a single point are skipped. Throws VtkPieceError. Precondition: arrays
+/// have one value for each point or cell.
 void add_vtk_piece(const VtkPiece& piece, TetMesh& mesh);
 
 /// Completes a mesh after the last piece: drops arrays that only some pieces have. Throws ReadError.
