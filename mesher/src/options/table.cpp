@@ -314,7 +314,7 @@ std::vector<Option> split_options() {
       {.name = "interaction",
        .words = {"free", "tie", "contact"},
        .place = choice_at<&RunOptions::split, &SplitOptions::interaction>,
-       .help = "Join the sides of split patches in .inp by ties, or by contact pairs",
+       .help = "In .inp files, join the sides of split patches by ties or contact pairs",
        .details = "the job defines the contact pairs' interaction by the name CONTACT",
        .commands = Option::mesh},
       {.name = "cohesive",
