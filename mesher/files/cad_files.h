@@ -42,7 +42,7 @@ class CadFiles {
   CadFiles& operator=(CadFiles&&) noexcept;
 
   static std::vector<std::string> formats();
-  /// Returns whether it is a CAD file, by its extension or by `format`.
+  /// Returns whether a file is a CAD file, by its extension or by `format`.
   static bool knows(const std::string& path, std::string_view format);
 
   /// Reads a file and appends its soups. Throws ReadError and PlcError.

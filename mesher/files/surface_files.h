@@ -9,8 +9,8 @@
 
 namespace collarmesh::files {
 
-/// Returns whether it is a format of io/soup_io.h or, if built with OpenMesh, .om. `format` overrides the
-/// extension.
+/// Returns whether a file has a format of io/soup_io.h or, if built with OpenMesh, .om. `format` overrides
+/// the extension.
 bool is_surface_format(const std::string& path, std::string_view format = {});
 std::vector<std::string> surface_formats();
 
