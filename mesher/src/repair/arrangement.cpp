@@ -185,7 +185,7 @@ class Cutter {
       return planar_orientation(axis, draft_.points[p], draft_.points[q], draft_.points[r]);
     };
     const int inwards = turn(t[0], t[1], t[2]);
-    std::array<std::array<int, 3>, 2> within{};  // by end and side of the triangle: > 0 if the end lies on the inner side
+    std::array<std::array<int, 3>, 2> within{};  // by end and side of the triangle; > 0: on the inner side
     for (unsigned end = 0; end < 2; ++end)
       for (unsigned k = 0; k < 3; ++k) within[end][k] = inwards * turn(t[k], t[(k + 1) % 3], e[end]);
     bool along = false;

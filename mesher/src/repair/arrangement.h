@@ -28,9 +28,9 @@ enum class KeptMerges {
 /// corners and edges. Points are constructed exactly, then rounded. Corners that come within `grain`
 /// (absolute) of other corners or edges are merged with them, unless the merge undoes cuts; intersections
 /// that merges cause are cut in further rounds. Merges that undid cuts are tried once more at the end, and
-/// undone if they undo cuts again. Triangles that cover each other become copies of one triangle: all copies
-/// stay, because their orientations tell what is inside; copies that come from triangles close to each other
-/// cancel, unless `cancel_twins` is false. Throws WorkStopped; the draft is then unusable. Pieces keep their
+/// undone if they undo cuts again. Triangles that cover each other become copies of one triangle: copies
+/// stay, because their orientations tell what is inside. Only opposite copies that merging makes cancel,
+/// unless `cancel_twins` is false. Throws WorkStopped; the draft is then unusable. Pieces keep their
 /// triangle's origin, except `Origin::facet`, which is renumbered. Cost: O(n log n), and for k intersecting
 /// pairs O(k log k) exact constructions.
 ArrangementReport arrange(facets::Draft& draft, double grain, Work* work = nullptr, bool cancel_twins = true,

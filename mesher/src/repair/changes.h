@@ -10,8 +10,8 @@ namespace collarmesh::repairing {
 /// connected by edges. If the changes at a place are undone, surfaces stay closed, but facets may intersect.
 class Changes {
  public:
-  /// Keeps both by reference. Precondition: the later state has the points of the earlier one, with the same
-  /// numbers. Cost: O(n log n).
+  /// Keeps references to both arguments. Precondition: the later state has the points of the earlier one,
+  /// with the same numbers. Cost: O(n log n).
   Changes(const facets::Draft& before, const facets::Draft& after);
 
   Index places() const { return places_; }

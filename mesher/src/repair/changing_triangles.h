@@ -21,9 +21,9 @@ namespace collarmesh::repairing {
 /// triangles.
 class ChangingTriangles {
  public:
-  /// Makes the lists. Two triangles are near each other if their boxes meet, along the axes of a frame and
-  /// enlarged by half of `reach` (absolute) on all sides, and if each comes within `reach` of the plane of
-  /// the other. Spends the pairs of boxes that meet from `work`.
+  /// Makes the lists of sides. Two triangles are near each other if each comes within `reach` (absolute) of
+  /// the plane of the other, and if their boxes meet: along the axes of a frame, enlarged by half of `reach`
+  /// on all sides. Spends the pairs of boxes that meet from `work`.
   ChangingTriangles(facets::Draft& draft, double reach, Work& work);
 
   /// Returns the number of triangles.
@@ -130,7 +130,7 @@ class ChangingTriangles {
 
  private:
   static constexpr std::size_t few = 8;  // while at most one triangle in eight has changed,
-                                         // each changed one is looked up alone
+                                         // changed ones are looked up one by one
 
   // Returns existing triangles from this number on.
   std::vector<Index> triangles_from(Index first) const;

@@ -79,7 +79,7 @@ struct LostVolume : PlcError {
 
 class Repairer {
  public:
-  /// Kind of input to repair. Solids: fills holes, and drops parts that enclose nothing. Sheets: keeps
+  /// Kind of input. In solids, repair fills holes and drops parts that enclose nothing; in sheets, it keeps
   /// everything, including open borders, and cuts intersections.
   enum class Of { solids, sheets };
 
@@ -566,7 +566,8 @@ std::vector<double> sorted_volumes(const Plc& plc) {
   return volumes;
 }
 
-// Throws PlcError unless both have the same regions, with nearly the same volumes, and the same groups.
+// Throws PlcError unless both complexes have the same regions, with nearly the same volumes, and the same
+// groups.
 void require_same_parts(const RepairedPlc& before, const RepairedPlc& after) {
   constexpr double most = 0.02;  // share that a region may lose or gain
   const std::vector<double> old = sorted_volumes(before.plc), now = sorted_volumes(after.plc);

@@ -98,7 +98,7 @@ class SmallOnes {
     return border > 0 ? 2 * area / border : INFINITY;
   }
 
-  // Keeps what has a name or a size, and what bounds a region thinner than the size.
+  // Keeps features with a name or a target edge length, and those that bound a region thinner than the size.
   void find_kept(const RepairOptions& options) {
     const std::vector<bool> thin = thin_regions();
     for (Index p = 0; p < kept_.size(); ++p)
@@ -434,13 +434,14 @@ class FeatureCollapser {
   std::vector<CollapsedFeature> collapsed_;
   std::set<Index> tips_;       // points of tips in the list
   std::vector<Index> narrow_;  // existing triangles that are narrow or have a sharp corner, in order
-  Index looked_at_ = 0;        // triangles before this one have been looked at
+  Index looked_at_ = 0;        // triangles before this one have been examined
   // The changes of this round:
   std::set<Index> touched_;                      // triangles that change
   std::vector<std::pair<Index, Index>> merges_;  // a point, and the one that takes its place
 };
 
-/// The points of a feature, and the direction of its normal or of its ends.
+/// The points of a feature, and its direction: a patch's mean normal, or from a curve's first point to its
+/// last one.
 struct Shape {
   std::set<std::array<double, 3>> points;
   Vector direction;

@@ -13,11 +13,11 @@ namespace collarmesh::repairing {
 /// Overlays triangles that run along each other: each gets the corners and edges of the other.
 class Overlay {
  public:
-  /// Keeps both by reference.
+  /// Keeps references to both arguments.
   Overlay(SnapState& state, SnapCuts& cuts)
       : state_(state), cuts_(cuts), crossing_points_(state.draft().points, state.limit()) {}
 
-  /// Overlays the triangles not looked at yet. Returns whether any were cut.
+  /// Overlays the triangles not examined yet. Returns whether any were cut.
   bool run();
 
   /// Returns how many crossings of edges and triangles got new points in the last run.
