@@ -40,7 +40,7 @@ class PatchSurfaces {
   /// The quality of a triangle's fit to a patch.
   struct Fit {
     double agreement = 1;  ///< see `agreement`
-    double excess = 0;     ///< distance of the triangle's centre from the patch, divided by the tolerance there
+    double excess = 0;  ///< distance of the triangle's centre from the patch, divided by the tolerance there
   };
   /// Returns the fit of a triangle. Distances below the share `enough` of the tolerance need not be exact:
   /// the result may be too large, up to that share.

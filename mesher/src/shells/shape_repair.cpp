@@ -200,7 +200,8 @@ bool ShapeRepair::divide_curve_beside(Index triangle, const Point& p) {
     if (edge == none) continue;
     const auto [a, b] = complex_.edges[edge].ends;
     const Vector to_a = complex_.vertices[a].point - p, to_b = complex_.vertices[b].point - p;
-    if (complex_.edges[edge].tip != none) {  // tips are not divided: only a vertex that makes a large angle encroaches
+    // Tips are not divided. A vertex at p encroaches upon a tip only if the angle at p exceeds 117 degrees.
+    if (complex_.edges[edge].tip != none) {
       if (dot(to_a, to_b) < least_cosine * norm(to_a) * norm(to_b)) return true;
       continue;
     }

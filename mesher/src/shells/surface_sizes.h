@@ -13,7 +13,7 @@ namespace collarmesh::shells {
 /// than the lengths, they grow by at most the gradation per unit of distance.
 class SurfaceSizes {
  public:
-  /// Keeps all by reference.
+  /// Keeps references to all arguments.
   SurfaceSizes(const Plc& plc, const CurvePaths& paths, const MeshOptions& options);
 
   double gradation() const { return gradation_; }
