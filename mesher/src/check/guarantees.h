@@ -6,8 +6,8 @@
 /// The names of the guarantees, as in Finding::guarantee. They are stable, because scripts look for them.
 ///
 /// To add a guarantee:
-/// 1. Give it a name here, or in the header of its part: layer_cells.h, layer_walls.h, periodic.h. If a mesh
-///    of other sizes misses it although it follows the shape, list it in `of_shapes`.
+/// 1. Give it a name here, or in the header of its part: layer_cells.h, layer_walls.h, periodic.h. If meshes
+///    with other target sizes may miss it although they follow the shape, list it in `of_shapes`.
 /// 2. If it concerns single tets or nodes, write a predicate into predicates.h and call it from tets.cpp or
 ///    second_order.cpp. Otherwise declare a check in subject.h and call it from `judge` in check.cpp, for
 ///    meshes without tets from `judge_shells` in shells.cpp.
@@ -39,8 +39,8 @@ inline constexpr char interior_node[] = "interior_node";
 inline constexpr char collar_centre[] = "collar_centre";  ///< a ball's centre is where its point is
 inline constexpr char collar_gap[] = "collar_gap";        ///< radius at most a third of the gap size
 inline constexpr char collar_disjoint[] =
-    "collar_disjoint";  ///< balls of different creases are apart; consecutive balls meet in a circle of their
-                        ///< own
+    "collar_disjoint";  ///< balls of different creases are apart; consecutive balls meet in a circle that no
+                        ///< third ball reaches
 inline constexpr char collar_cells[] = "collar_cells";  ///< stars have the centre of their ball as a corner,
                                                         ///< books those of two balls
 
