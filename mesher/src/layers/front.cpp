@@ -234,7 +234,7 @@ void Front::find_directions() {
     std::vector<Index> faces;
     for (const Index s : sides_at[n]) faces.push_back(sides[s].face);
     std::sort(faces.begin(), faces.end());
-    // A facet that ends at the node is met from both sides.
+    // A facet that ends at the node has both of its sides in the sector.
     if (std::adjacent_find(faces.begin(), faces.end()) != faces.end()) nodes[n].blocked = true;
     if (!nodes[n].blocked) find_direction(n, faces_at_[n], edges_of[n]);
   }

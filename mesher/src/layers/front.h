@@ -63,7 +63,7 @@ struct FrontNode {
 /// The front that layers push inwards: its nodes and triangles, as they are at the wall.
 class Front {
  public:
-  /// Keeps all by reference. `complex` is that of the mesh.
+  /// Keeps references to all arguments. `complex` is that of the mesh.
   Front(const remeshing::TetComplex& complex, const Plc& plc, const WallChoice& walls);
 
   std::vector<WallSide> sides;

@@ -11,7 +11,7 @@ namespace collarmesh::layering {
 /// Builds the mesh of a core and the layers between it and the walls.
 class Stack {
  public:
-  /// Keeps all by reference. `given`: the mesh before. `tets`: divides prisms and pyramids.
+  /// Keeps references to all arguments. `given`: the mesh before. `tets`: divides prisms and pyramids.
   Stack(const TetMesh& given, const Front& front, const Heights& heights, const Core& core, bool tets);
 
   TetMesh build();
