@@ -44,7 +44,7 @@ class ThreadCounter {
 /// A source of complexes built from facets.
 class SoupSource : public ComplexSource {
  public:
-  /// Keeps both by reference.
+  /// Keeps references to both arguments.
   SoupSource(std::span<const PolygonSoup> soups, const PlcOptions& options)
       : soups_(soups), options_(options) {}
 

@@ -27,8 +27,8 @@ constexpr double reserve_for_layers = 0.2;
 // reach smaller bounds.
 constexpr double reached_collar_angle = 130;
 
-/// Compares the number of vertices of a refinement with the number that its sizes ask for. The costly parts
-/// of the answer, that number and whether thin features may cause more, are computed only if a refinement
+/// Compares the number of vertices of a refinement with the number that its sizes ask for. That number, and
+/// whether thin features may cause more vertices, are costly, so they are computed only if a refinement
 /// inserts many.
 class VertexCounter {
  public:

@@ -417,10 +417,10 @@ bool Tries::may_keep_volumes() const {
          job_.made.result.mesh.tets.size() <= most_tets;
 }
 
-/// Makes the mesh again, nearer to the surfaces of regions whose volumes call for a warning. What chords take
-/// from one side of a wall and add on the other cancels only in part, which no estimate from the complex
-/// tells beforehand. Keeps the mesh with the better volumes. Each attempt gets half of the remaining time, so
-/// that a time limit cannot lose the mesh at hand.
+/// Makes the mesh again, nearer to the surfaces of regions whose volumes call for a warning. The volumes that
+/// chords take from one side of a wall and add on the other cancel only in part; no estimate from the complex
+/// predicts by how much. Keeps the mesh with the better volumes. Each attempt gets half of the remaining
+/// time, so that a time limit cannot lose the mesh at hand.
 void Tries::keep_volumes(const Plc& plc) {
   constexpr unsigned rounds = 2;
   constexpr double share_of_time = 0.5;
