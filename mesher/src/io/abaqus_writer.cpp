@@ -166,7 +166,7 @@ void write_elements_by_tag(FileWriter& out, const std::vector<Tag>& tags, const 
   std::map<Tag, std::vector<Index>> members;
   for (std::size_t i = 0; i < tags.size(); ++i) members[tags[i]].push_back(static_cast<Index>(i));
   for (const auto& [tag, with_tag] : members) {
-    const std::vector<Index>& elements = with_tag;  // for the lambda, which cannot capture a structured binding
+    const std::vector<Index>& elements = with_tag;  // a lambda cannot capture a structured binding
     out << "*ELEMENT, TYPE=" << type << ", ELSET=" << names.at(tag) << '\n';
     write_each(out, elements.size(), [&](TextBuffer& text, std::size_t i) {
       text << elements[i] + 1;

@@ -45,14 +45,15 @@ class CellNodes {
   }
 
   void add(Index node) { nodes_[count_++] = node; }
-  /// Returns a cell whose k-th node is this one's node order[k]; unchanged if the order is of other cells.
+  /// Returns a cell whose k-th node is this cell's node order[k]; unchanged if the order has another length.
   CellNodes in_order(std::span<const std::uint8_t> order) const {
     if (order.size() != count_) return *this;
     CellNodes result;
     for (const std::uint8_t k : order) result.add(nodes_[k]);
     return result;
   }
-  /// Returns the cell whose node order[k] is this one's k-th node; unchanged if the order is of other cells.
+  /// Returns the cell whose node order[k] is this cell's k-th node; unchanged if the order has another
+  /// length.
   CellNodes from_order(std::span<const std::uint8_t> order) const {
     if (order.size() != count_) return *this;
     CellNodes result = *this;
