@@ -1,5 +1,5 @@
-// A view of the mesh that turns and cuts: it draws the outer faces of the tetrahedra on one side of a plane or, of a mesh
-// of triangles alone, the triangles there. A cell is a tetrahedron or such a triangle.
+// A view of the mesh that turns and cuts: it draws the outer faces of the tetrahedra on one side of a plane or, for a
+// mesh of triangles alone, the triangles there. A cell is a tetrahedron or such a triangle.
 'use strict';
 
 const noNeighbour = -1;
