@@ -43,7 +43,7 @@ struct LayerCell {
   Index region = none, layer = 0;
   unsigned weight = 0;
   Index cell = none;
-  bool has_base = false;  // the nodes of the wall are corners
+  bool has_base = false;  // whether the nodes of the wall are corners of the cell
   Point middle;
 };
 

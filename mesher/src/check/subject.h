@@ -94,8 +94,8 @@ class ThinCells {
   std::optional<NarrowPlaces> narrow_;  // none if thin tets may be anywhere
 };
 
-/// Returns the feature of lowest dimension that the mesh shows each point to be on.
-/// Precondition: subject.match is filled in.
+/// Returns for each point the feature of lowest dimension on which the mesh has it. Precondition:
+/// subject.match is filled in.
 std::vector<TetMesh::VertexFeature> features_of(const Subject& subject);
 
 /// Items in groups by a key below `groups`; leaves out items whose key is none.
@@ -188,7 +188,7 @@ FeatureMatch match_features(const TetMesh& mesh, const Plc& plc, double rounding
 /// Finds the vertices of the complex in the mesh, by index or position.
 std::vector<Index> match_vertices(const TetMesh& mesh, const Plc& plc, double rounding);
 
-/// Returns the patches of faces that name none: by position and, if the tags are the complex's, by tag.
+/// Finds patches for faces without one: by position and, if the tags are the complex's, by tag.
 std::vector<Index> match_faces(const TetMesh& mesh, const Plc& plc, bool by_tag);
 
 /// Precondition of these functions: subject.match is filled in; check_vertices_present needs only its

@@ -32,7 +32,7 @@ class LocalChanges {
   /// Replaces the two tetrahedra at a face by three at the edge that joins the corners beyond it.
   std::optional<int> remove_face(const Tetrahedra::Face& face, const Obstacles& obstacles);
   /// Triangulates the ring of an edge again, with the fewest obstacles. If every triangulation makes a
-  /// tetrahedron without positive volume, or too many more obstacles, removes edges around it first,
+  /// tetrahedron without positive volume, or adds more than `most` obstacles, removes edges around it first,
   /// recursively to this depth.
   std::optional<int> remove_edge(Index a, Index b, unsigned depth, const Obstacles& obstacles, int most);
 

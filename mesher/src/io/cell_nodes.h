@@ -233,7 +233,7 @@ inline void add_cell(CellKind kind, const CellNodes& nodes, TetMesh& mesh) {
   });
 }
 
-/// The nodes of a side of a cell, counterclockwise as seen from outside, mid-edge nodes after the corners.
+/// Returns the nodes of a side of a cell, counterclockwise from outside, mid-edge nodes after the corners.
 inline CellNodes nodes_of_side(CellKind kind, const CellNodes& cell, std::size_t side) {
   const CellShape shape = shape_of(kind);
   const auto& [corners, places] = shape.sides[side];

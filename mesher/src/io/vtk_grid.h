@@ -60,16 +60,16 @@ constexpr std::string_view vtk_point_ids = "GlobalPointIds", vtk_cell_ids = "Glo
 /// added, too.
 std::vector<VtkArray> take_boundary(const TetMesh& mesh, VtkGrid& grid);
 constexpr std::string_view vtk_boundary_prefix = "boundary_";
-/// The arrays that continue arrays of cells.
+/// The cell arrays that arrays of the boundary continue.
 constexpr std::array<std::string_view, 6> vtk_boundary_arrays{"tag",          "region",  "region_back",
                                                               "region_front", "feature", vtk_cell_ids};
 
 /// Data of the whole grid that has the names of groups, a byte for each character (names_text.h): VTK has
 /// arrays of strings, but not all readers do.
 constexpr std::string_view vtk_names = "names";
-/// Returns that array, or nothing if there are no names.
+/// Returns the array of names, or nothing if there are no names.
 std::vector<VtkArray> names_array(const TetMesh& mesh);
-/// Returns the text in such an array.
+/// Returns the text in an array of names.
 std::string names_of(const std::vector<std::int64_t>& bytes);
 
 /// Returns the name of the values' type in .vtu files: "Float64".

@@ -1,5 +1,5 @@
-// Boundary layers: the front of the wall's triangles is pushed into the tets, and the room behind it is
-// filled.
+// Boundary layers: the front of the wall's triangles is pushed into the tets, and the space behind it is
+// filled with cells.
 #include <algorithm>
 #include <chrono>
 #include <map>

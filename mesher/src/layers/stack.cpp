@@ -100,7 +100,7 @@ void Stack::take_core() {
   mesh_.layers.tet_layer.assign(mesh_.tets.size(), 0);
 }
 
-/// Takes the faces and edges of walls from the mesh before, all others from the core.
+/// Takes the faces and edges of walls from the mesh without layers, all others from the core.
 void Stack::take_walls() {
   const auto take_face = [&](const TetMesh& from, std::size_t f, const std::array<Index, 3>& corners) {
     mesh_.faces.push_back(corners);

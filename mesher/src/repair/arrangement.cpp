@@ -60,7 +60,7 @@ struct Cuts {
   std::vector<std::array<ExactPoint, 2>> segments;
 };
 
-// One round of cutting: cuts intersecting pairs exactly, then rounds.
+// One round of cutting: cuts intersecting pairs exactly, then rounds the new points.
 class Cutter {
  public:
   Cutter(Draft& draft, const EdgeTable& edges, std::span<const Simplex> simplices)

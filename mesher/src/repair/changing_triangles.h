@@ -28,7 +28,7 @@ class ChangingTriangles {
 
   /// Returns the number of triangles.
   std::size_t count() const { return count_; }
-  /// Returns one more than the largest number.
+  /// Returns one more than the largest number of a triangle.
   Index end() const { return static_cast<Index>(draft_.triangles.size()); }
   bool alive(Index triangle) const { return alive_[triangle]; }
 
@@ -44,7 +44,7 @@ class ChangingTriangles {
       for (Index side = first_[point]; side != none; side = next_[side]) visit(side);
   }
   bool uses(Index point) const { return point < first_.size() && first_[point] != none; }
-  /// Returns the corner of a triangle at which the fewest triangles are.
+  /// Returns the corner of a triangle that belongs to the fewest triangles.
   Index least_busy(const facets::Corners& corners) const;
   /// Returns the sides on an edge, in order.
   std::vector<Index> sides(const Edge& edge) const;

@@ -38,7 +38,7 @@ double length_of(const Plc& plc, const Plc::Curve& curve) {
 /// The sides of a triangle and its height above the longest one.
 struct Needle {
   unsigned longest = 0, shortest = 0;
-  double least = 0, most = 0;  // lengths of these sides
+  double least = 0, most = 0;  // lengths of the shortest and the longest side
   double height = 0;
 };
 
@@ -432,7 +432,7 @@ class FeatureCollapser {
   std::set<Edge> features_, short_;  // pieces of curves, and of curves to be collapsed
   std::vector<int> rank_;            // by point, except added ones
   std::vector<CollapsedFeature> collapsed_;
-  std::set<Index> tips_;       // points of tips in the list
+  std::set<Index> tips_;       // points of the tips among the narrow triangles
   std::vector<Index> narrow_;  // existing triangles that are narrow or have a sharp corner, in order
   Index looked_at_ = 0;        // triangles before this one have been examined
   // The changes of this round:

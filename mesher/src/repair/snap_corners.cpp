@@ -13,7 +13,7 @@ namespace collarmesh::repairing {
 
 using namespace facets;
 
-// Orders by length, longer edges first, then by distance, nearer ones first.
+// Orders by length, longer edges first, then by distance, nearer corners first.
 bool CornerSnapper::NearEdge::operator<(const NearEdge& other) const {
   return std::tie(other.length, distance, edge, corner.point) <
          std::tie(length, other.distance, other.edge, other.corner.point);

@@ -207,7 +207,7 @@ void SurfaceMesher::flip_all() {
     for (const Index v : changed) {
       waiting[v] = false;
       for (const Index n : complex_.neighbours(v)) {
-        if (waiting[n]) continue;  // this edge is tested when it is the turn of n
+        if (waiting[n]) continue;  // the edge is tested later, as an edge of n
         const auto two = complex_.two_triangles_at(v, n);
         if (!two) continue;
         const Index c = complex_.triangles[(*two)[0]].third(v, n),
