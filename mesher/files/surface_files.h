@@ -14,8 +14,8 @@ namespace collarmesh::files {
 bool is_surface_format(const std::string& path, std::string_view format = {});
 std::vector<std::string> surface_formats();
 
-/// Reads a surface in these formats, or the tagged triangles of mesh files (io/mesh_surface_io.h). Throws
-/// ReadError.
+/// Reads a surface in one of the surface formats, or the tagged triangles of mesh files
+/// (io/mesh_surface_io.h). Throws ReadError.
 PolygonSoup read_surface(const std::string& path, std::string_view format = {});
 /// Writes a surface. Throws WriteError.
 void write_surface(const std::string& path, const PolygonSoup& soup, std::string_view format = {});

@@ -31,7 +31,7 @@ constexpr double tolerated = 10;
 constexpr double least_score = 0.2;
 // The score of a flat tet; inverted tets have lower scores.
 constexpr double flat_score = -100;
-// The unit to which squared penalties are rounded. Doubles add such multiples without rounding.
+// The unit to which squared penalties are rounded. Doubles add its multiples without rounding.
 constexpr double unit_of_lack = 0x1p-16;
 // The maximum number of sweeps that make room, and the steps that a vertex tries, relative to its shortest
 // edge.

@@ -197,7 +197,7 @@ function histogramsOf({ mesh, check }) {
     histogram('Circumradius / shortest edge', mesh.histograms.radius_edge, '')];
 }
 
-// Rows of the table of what was made.
+// Returns the rows of the table on the mesh.
 function shapesOf({ mesh, check }) {
   if (check.triangles)
     return [['Angles', `${number(check.triangles.min_angle)}° to ${number(check.triangles.max_angle)}°`],

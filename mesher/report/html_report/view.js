@@ -96,7 +96,7 @@ function cornersOf(mesh, cell) {
   return pointsOfCell(mesh, cell).map(point => new THREE.Vector3().fromArray(mesh.points, 3 * point));
 }
 
-// The smallest and the largest angle, in degrees: dihedral ones of a tetrahedron.
+// Returns the smallest and the largest angle of a cell, in degrees; for a tetrahedron, those of its dihedral angles.
 function anglesOf(mesh, cell) {
   const p = cornersOf(mesh, cell);
   if (!mesh.isSurface) return dihedralAngles(p);
@@ -360,7 +360,7 @@ class View {
     };
   }
 
-  // The faces to draw: those of kept tetrahedra without a kept neighbour, or all kept triangles.
+  // Returns the faces to draw: those of kept tetrahedra without a kept neighbour, or all kept triangles.
   outerFaces() {
     const { tets, neighbours, patches, isSurface } = this.mesh, inside = this.kept(), faces = [];
     const keep = Uint8Array.from({ length: (isSurface ? patches : tets).length / 4 }, (_, cell) => inside(cell) ? 1 : 0);

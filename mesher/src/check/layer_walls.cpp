@@ -51,7 +51,7 @@ struct LayerCell {
 struct WallSide {
   std::array<Index, 3> corners{};  // sorted
   Index region = none, face = none;
-  bool in_front = false;  // the side to which the triangle's normal points
+  bool in_front = false;  // whether this is the side to which the triangle's normal points
   unsigned count = 0;
 };
 

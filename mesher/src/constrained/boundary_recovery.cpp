@@ -120,7 +120,7 @@ BoundaryRecovery::BoundaryRecovery(Tetrahedra& mesh, const Plc& plc, RecoveryWay
   if (way_.reversed) std::ranges::reverse(edges_to_do_);
 }
 
-/// Flips edges between facets in one plane, so that most of them are edges of Delaunay tetrahedra.
+/// Flips edges between facets in one plane, so that most of these edges belong to Delaunay tetrahedra.
 void BoundaryRecovery::make_planar_facets_delaunay() {
   std::vector<std::uint64_t> to_do;
   to_do.reserve(edges_to_do_.size());

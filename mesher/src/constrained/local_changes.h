@@ -22,7 +22,7 @@ class Obstacles {
 /// a facet stay.
 class LocalChanges {
  public:
-  /// Keeps references to both. Required edges are given by their keys.
+  /// Keeps references to both arguments. Required edges are given by their keys.
   LocalChanges(Tetrahedra& mesh, const std::unordered_set<std::uint64_t>& required)
       : mesh_(mesh), required_(required) {}
 

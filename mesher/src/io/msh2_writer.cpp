@@ -42,7 +42,7 @@ MshPhysicals number_groups(const TetMesh& mesh) {
   return numbers;
 }
 
-/// Gmsh's elementary entities are the features, from 1; cells without a feature share one entity.
+/// Returns the number of a feature's elementary entity, from 1; cells without a feature share one entity.
 std::size_t entity(Index feature) {
   constexpr Index limit = std::numeric_limits<int>::max();
   return feature < limit ? std::size_t{feature} + 1 : 1;

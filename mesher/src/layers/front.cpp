@@ -90,7 +90,7 @@ void Front::add_side(Index tet, unsigned corner) {
   WallSide side;
   side.face = at.faces[corner];
   side.tet = tet;
-  side.corners = {a, c, b};  // seen from outside they are counterclockwise
+  side.corners = {a, c, b};  // a, b, c are counterclockwise from outside
   side.patch = mesh_.face_patch[side.face];
   side.region = at.region;
   if (!walls_.has_layers(side.patch, side.region)) {

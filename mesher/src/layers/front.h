@@ -51,8 +51,8 @@ struct WallSide {
 struct FrontNode {
   Index vertex = none;
   Vector direction{};  ///< unit; into the sector
-  /// Least over all patches of the mean cosine, weighted by angles, between the direction and the normals of
-  /// a patch's sides.
+  /// The mean cosine, weighted by angles, between the direction and the normals of a patch's sides: the least
+  /// of all patches.
   double cosine = 0;
   double least_cosine = 0;  ///< the least cosine of all sides
   bool blocked = false;     ///< there can be no layer
@@ -99,7 +99,7 @@ class Front {
   void list_sides();
   void find_directions();
   void find_direction(Index node, std::span<const Index> sector_faces, std::span<const Index> sector_edges);
-  /// The mean of unit normals of sides of one patch at a node, by their angles there.
+  /// The mean of unit normals of sides of one patch at a node, weighted by their angles there.
   struct PatchNormal {
     Index patch;
     double angle;

@@ -8,7 +8,7 @@ namespace collarmesh::layering {
 
 namespace {
 
-/// Returns the height of the layers up to this one, relative to all.
+/// Returns the height of the layers up to this one, relative to that of all layers.
 double share_below(const WallLayers& layers, unsigned layer) {
   WallLayers lower = layers;
   lower.count = layer;
@@ -133,7 +133,7 @@ void Stack::fill(const WallSide& side) {
   const auto raised = static_cast<unsigned>(
       std::count_if(side.nodes.begin(), side.nodes.end(), [&](Index n) { return is_raised(n); }));
   if (raised == 0) return;
-  unsigned first = 0;  // the raised node if there is one, the low node if two are raised
+  unsigned first = 0;  // the raised node if only one is raised, the low node if two are
   while (is_raised(side.nodes[first]) != (raised == 1)) {
     if (raised == 3) break;
     ++first;

@@ -33,7 +33,7 @@ class ThreadCounter {
     try {
       thread_ = std::jthread([] { usable_threads(); });
     } catch (const std::system_error&) {
-      // The first user of threads then determines their number.
+      // Without this thread, the first user of threads determines their number.
     }
   }
 
@@ -100,7 +100,7 @@ void split_patches(MeshJob& job) {
   job.control.begin("split", 0.98, 1);
   TetMesh& mesh = job.made.result.mesh;
   const checks::SplitMeasures before = checks::measure_before_split(mesh);
-  if (job.exact()) mesh.group_names = GroupNames::cad;  // so that the sides get such names
+  if (job.exact()) mesh.group_names = GroupNames::cad;  // so that the sides get names like CAD faces
   job.made.split = split(mesh, job.options.split);
   checks::check_split(mesh, job.made.split->interfaces.sides, before, job.made.check);
   job.control.stop_if_asked();

@@ -112,7 +112,7 @@ void Tries::mesh_any_repaired(SoupPipelineResult& all) {
   if (end == End::holds) return;
   bool has_mesh = end == End::missed, built_last = true;
   std::optional<Point> place;
-  // If places far thinner than the sizes spoil the mesh, changes there may help anywhere.
+  // If places far thinner than the sizes spoil the mesh, a change at any of them may help.
   if (!made.check.findings.empty() && !maker_.was_far_too_fine()) place = made.check.findings.front().where;
   for (const RepairOptions& repair : repairs_after(end, all)) {
     SoupPipelineResult other;
@@ -161,7 +161,7 @@ void Tries::mesh_any_repaired(SoupPipelineResult& all) {
 /// would hardly end, the larger tolerance leaves none nearly as sharp, and nothing is lost. Sets the repair
 /// that is used, and returns a note of it.
 std::string Tries::repair_sharp_creases(RepairOptions& repair, SoupPipelineResult& all) {
-  // In degrees, and the factor by which a larger tolerance must enlarge the smallest angle.
+  // An angle in degrees, and the factor by which a larger tolerance must enlarge the smallest angle.
   constexpr double too_sharp = 0.1, blunter = 3;
   if (!all.repair.repaired || all.repair.wrapped) return {};
   const std::vector<Crease> creases = find_creases(all.plc, too_sharp);

@@ -159,7 +159,7 @@ class Cutter {
     return true;
   }
 
-  // Adds the cuts of two triangles in one plane: the sides of each cut the other one.
+  // Adds the cuts of two triangles in one plane: each is cut by the sides of the other.
   bool add_coplanar(const facets::Corners& s, Index i, const facets::Corners& t, Index j) {
     const auto at = [&](Index p) -> const Point& { return draft_.points[p]; };
     for (const Index p : t)

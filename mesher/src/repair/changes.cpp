@@ -140,8 +140,8 @@ Draft Changes::without(const std::vector<bool>& taken_back, std::vector<Index>& 
   return mixed;
 }
 
-// Combines the segments of both states: a segment in one state only belongs to the place of the triangles at
-// it.
+// Combines the segments of both states: a segment that only one state has belongs to the place of the
+// triangles at it.
 void Changes::mix_segments(const std::vector<bool>& taken_back, Draft& mixed) const {
   std::vector<Segment> before = before_.segments, after = after_.segments;
   std::sort(before.begin(), before.end(), in_order);

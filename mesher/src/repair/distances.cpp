@@ -74,8 +74,8 @@ double diagonal_of(std::span<const CornerPoints> triangles) {
 }
 
 /// Finds the sample outside of a surface that is farthest from it. Winding numbers cost far more than
-/// distances, so they are only computed for the farthest of many samples. A sample in a ball around a sample
-/// inside, which reaches to the surface, is inside, too.
+/// distances, so they are only computed for the farthest of many samples. A sample inside has a ball around
+/// it, up to the surface, in which all other samples are inside, too.
 class FarthestOutside {
  public:
   explicit FarthestOutside(const WindingNumber& winding) : winding_(winding) {}

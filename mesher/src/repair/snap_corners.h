@@ -28,7 +28,7 @@ class CornerSnapper {
   void allow_cuts() { cut_before_.clear(); }
 
  private:
-  // A corner and an edge near it of which it is not an end.
+  // A corner, and an edge near it that does not end there.
   struct NearEdge {
     double length, distance;  // length of the edge; distance of the corner from it
     Edge edge;

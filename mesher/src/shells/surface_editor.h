@@ -32,7 +32,7 @@ class SurfaceEditor {
 
   /// Conditions for removing a vertex.
   struct Removal {
-    double longest;      ///< longest new edge, relative to what the options ask for
+    double longest;      ///< longest new edge, relative to the length that the options ask for
     double least_shape;  ///< least shape of the new triangles
   };
   /// A triangle that does not exist yet.

@@ -24,7 +24,7 @@ class SurfaceSizes {
   /// Returns the target edge length on a curve, considering the lengths of the curves at its ends.
   double on_curve(Index curve, double parameter) const;
   double at_vertex(Index vertex) const { return at_vertex_[vertex]; }
-  /// Returns what the options ask for on a curve, without regard to the lengths of curves.
+  /// Returns the edge length that the options ask for on a curve, without regard to the lengths of curves.
   double asked_on_curve(Index curve, double parameter) const;
   double asked_at_vertex(Index vertex) const;
   /// Returns whether the options give a gradation. If not, angles alone limit how fast edge lengths grow away
