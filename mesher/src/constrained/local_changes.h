@@ -36,7 +36,8 @@ class LocalChanges {
   /// recursively to this depth.
   std::optional<int> remove_edge(Index a, Index b, unsigned depth, const Obstacles& obstacles, int most);
 
-  /// Sets after how many more triangulated rings `remove_edge` stops removing other edges first.
+  /// Sets the number of further triangulated rings after which `remove_edge` no longer removes other edges
+  /// first.
   void set_budget(std::size_t rings) { budget_ = rings; }
 
   /// Inserts a point in or near some tetrahedra: replaces these, and as many neighbours as necessary, by

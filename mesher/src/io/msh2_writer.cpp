@@ -83,7 +83,7 @@ void write_msh2(const std::string& path, const TetMesh& mesh) {
           << numbers[type.dimension()].at(tags_of(mesh, kind)[i]) << ' '
           << (type.dimension() == 3 ? std::size_t{feature} : entity(feature));
       if (partitioned)
-        out << " 1 " << partitions[type.dimension()][i] + 1;  // their number, then the partition
+        out << " 1 " << partitions[type.dimension()][i] + 1;  // the number of partitions, then the partition
       for (const Index v : nodes_of(kind)(mesh, i).in_order(type.node_order()))
         out << ' ' << std::size_t{v} + 1;
       out << '\n';

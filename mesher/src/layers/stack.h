@@ -16,7 +16,7 @@ class Stack {
   Stack(const TetMesh& given, const Front& front, const Heights& heights, const Core& core, bool tets);
 
   TetMesh build();
-  /// Returns the places of that mesh's points.
+  /// Returns the places of the built mesh's points.
   const PlacesInLayers& places() const { return places_; }
 
  private:

@@ -51,8 +51,8 @@ bool in_order(const Segment& s, const Segment& t) {
   return key(s) < key(t);
 }
 
-// Returns the places whose triangles meet others. Triangles outside of all places are not compared with each
-// other.
+// Returns the places whose triangles meet other triangles. Triangles outside of all places are not compared
+// with each other.
 std::vector<Index> places_that_meet(Draft draft, const std::vector<Index>& place) {
   for (Index t = 0; t < draft.origins.size(); ++t) draft.origins[t].facet = t;
   const EdgeTable edges(draft.triangles, draft.points.size());
