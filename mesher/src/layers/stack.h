@@ -11,8 +11,8 @@ namespace collarmesh::layering {
 /// Builds the mesh of a core and the layers between it and the walls.
 class Stack {
  public:
-  /// Keeps references to all arguments. `given`: the mesh without layers. `tets`: whether to divide prisms
-  /// and pyramids into tets.
+  /// Keeps references to all arguments but `tets`. `given`: the mesh without layers. `tets`: whether to
+  /// divide prisms and pyramids into tets.
   Stack(const TetMesh& given, const Front& front, const Heights& heights, const Core& core, bool tets);
 
   TetMesh build();
