@@ -125,7 +125,7 @@ void add_mesh_options(CLI::App& app, MeshArguments& a) {
   add_options(app, Option::mesh, a);
 }
 
-/// Adds the files of commands that make one file of several.
+/// Adds the file arguments of commands that make one file from several.
 void add_conversion_files(CLI::App& app, MeshArguments& a, const std::string& inputs) {
   app.add_option("IN", a.inputs, inputs + "; -: standard input")->required()->type_name("FILE");
   app.add_option("-o,--output", a.output, "The file to write; -: standard output")
@@ -205,7 +205,7 @@ CLI::App* add_repair_command(CLI::App& app, RepairArguments& a) {
   return repair;
 }
 
-/// Returns a message that lists the known extensions, for an unknown one.
+/// Returns the reason why a path has no known format: a missing library, or its extension.
 std::string extension_list(const std::string& path) {
   if (const std::string missing = io::missing_library(path); !missing.empty())
     return "cannot be written: " + missing;
@@ -220,7 +220,7 @@ std::vector<std::string> all_inputs(const MeshArguments& a) {
   return inputs;
 }
 
-/// Checks an output file other than the mesh, for a run that writes one.
+/// Checks an output file other than the mesh: it must replace no file of the mesh or of the input.
 void check_second_output(const char* option, const std::string& file, const MeshArguments& a) {
   if (file.empty()) return;
   if (files::may_write(a.output, a.output_format, file))

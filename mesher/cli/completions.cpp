@@ -60,7 +60,8 @@ std::string short_text(const std::string& description) {
   return description.substr(0, description.find(';'));
 }
 
-/// Quotes text with single quotes, for any of the shells. Only in fish backslashes are escapes inside them.
+/// Quotes text with single quotes, for any of the shells. Only fish takes backslashes inside single quotes as
+/// escapes.
 std::string quoted_text(std::string_view text, bool backslashes_escape) {
   std::string result = "'";
   for (const char c : text)

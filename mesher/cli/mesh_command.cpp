@@ -72,7 +72,7 @@ std::string each_line_of(const std::string& file, const std::string& text) {
 /// Builds complexes from the input files. Prints the changes made for each.
 class InputSource : public ComplexSource {
  public:
-  /// Keeps all by reference.
+  /// Keeps references to all arguments.
   InputSource(const MeshArguments& arguments, files::ComplexInput& input, Stages& stages)
       : arguments_(arguments), input_(input), stages_(stages) {}
 

@@ -5,8 +5,8 @@
 
 namespace collarmesh::cli {
 
-/// Returns a message for a mistake on the command line, with a correction: one line without its end. CLI11's
-/// own messages mention its types and patterns.
+/// Returns a message for a mistake on the command line, with a correction: a single line, without a line end.
+/// CLI11's own messages mention its types and patterns.
 std::string usage_message(const CLI::App& app, const CLI::Error& error);
 
 /// Returns a message for a first argument that is no file but is spelled nearly like a command; otherwise

@@ -42,7 +42,7 @@ class CadFiles {
   CadFiles& operator=(CadFiles&&) noexcept;
 
   static std::vector<std::string> formats();
-  /// Returns whether it is a CAD file, by its extension or by `format`.
+  /// Returns whether a file is a CAD file, by its extension or by `format`.
   static bool knows(const std::string& path, std::string_view format);
 
   /// Reads a file and appends its soups. Throws ReadError and PlcError.
@@ -84,7 +84,7 @@ class CadFiles {
   /// Returns false if solids that touch or overlap could not be fused. Their soups then intersect, even with
   /// fine triangles.
   bool fused() const;
-  /// Returns text on which solids are open, at which edges and where; empty if none is.
+  /// Returns a text that says which solids are open, at which edges and where; empty if none is.
   std::string open_edges() const;
   /// Returns notes on the shapes. With `of_solids`, includes notes on open solids.
   std::vector<std::string> notes(bool of_solids) const;

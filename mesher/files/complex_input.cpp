@@ -266,8 +266,8 @@ Plc ComplexInput::build_valid(const PlcOptions& options, const RepairOptions& re
   return take(remove_noise(build_plc(soups_, options), soups_, options, repair, watched()));
 }
 
-/// Builds the complex like `build_valid`, but if there is noise and none is allowed, throws PlcError before
-/// repairing it, which would be the most expensive part.
+/// Builds the complex like `build_valid`, but throws PlcError if there is noise and none is allowed, before
+/// the repair, which would be the most expensive part.
 Plc ComplexInput::build_finer(const PlcOptions& options, const RepairOptions& repair, bool with_noise) {
   if (with_noise) return build_valid(options, repair);
   Plc plc = build_plc(soups_, options);
@@ -278,8 +278,8 @@ Plc ComplexInput::build_finer(const PlcOptions& options, const RepairOptions& re
 }
 
 /// Returns the complex with finer triangles on the faces whose triangles are too coarse for the mesh, if that
-/// complex is as good. If only one side of a wall gets finer triangles, the wall becomes thinner; in that
-/// case all faces get finer triangles.
+/// complex is valid without repair and its volumes are no worse. If only one side of a wall gets finer
+/// triangles, the wall becomes thinner; in that case all faces get finer triangles.
 Plc ComplexInput::resolved(Plc plc, const PlcOptions& options, const RepairOptions& repair) {
   constexpr double finer = 4, little = 2e-3;
   if (!reading_.tolerance || built_.repaired.repaired) return plc;

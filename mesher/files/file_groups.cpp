@@ -106,7 +106,7 @@ std::vector<fs::path> files_read(const fs::path& path, const std::string& format
 bool same_file(const fs::path& a, const fs::path& b) {
   std::error_code error;
   if (fs::equivalent(a, b, error) && !error) return fs::is_regular_file(a, error);
-  // A relative path would stay relative if no part of it exists.
+  // weakly_canonical leaves a relative path relative if no part of it exists.
   const auto canonical = [&](const fs::path& path) {
     return fs::weakly_canonical(fs::absolute(path, error), error);
   };

@@ -13,7 +13,7 @@ namespace {
 /// Builds complexes from files, one for each repair.
 class FilesSource : public ComplexSource {
  public:
-  /// Keeps both by reference.
+  /// Keeps references to both arguments.
   FilesSource(const RunOptions& options, files::ComplexInput& input) : options_(options), input_(input) {}
 
   RepairedPlc build(const RepairOptions& repair, const Execution&) override {

@@ -9,13 +9,13 @@
 
 namespace collarmesh::files {
 
-/// Returns whether it is a format of io/soup_io.h or, if built with OpenMesh, .om. `format` overrides the
-/// extension.
+/// Returns whether a file has a format of io/soup_io.h or, if built with OpenMesh, .om. `format` overrides
+/// the extension.
 bool is_surface_format(const std::string& path, std::string_view format = {});
 std::vector<std::string> surface_formats();
 
-/// Reads a surface in these formats, or the tagged triangles of mesh files (io/mesh_surface_io.h). Throws
-/// ReadError.
+/// Reads a surface in one of the surface formats, or the tagged triangles of mesh files
+/// (io/mesh_surface_io.h). Throws ReadError.
 PolygonSoup read_surface(const std::string& path, std::string_view format = {});
 /// Writes a surface. Throws WriteError.
 void write_surface(const std::string& path, const PolygonSoup& soup, std::string_view format = {});

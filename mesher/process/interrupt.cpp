@@ -113,7 +113,7 @@ void install_interrupt_handlers() {
   action.sa_flags = static_cast<int>(SA_RESTART);
   sigemptyset(&action.sa_mask);
   for (const int number : {SIGINT, SIGTERM}) sigaction(number, &action, nullptr);
-  for (const int number : {SIGHUP, SIGQUIT})  // keep what nohup set: it ignores them
+  for (const int number : {SIGHUP, SIGQUIT})  // if nohup has set them to be ignored, keep that
     if (sigaction(number, nullptr, &before) == 0 && before.sa_handler != SIG_IGN)
       sigaction(number, &action, nullptr);
   std::signal(SIGXCPU, on_processor_time);

@@ -34,7 +34,7 @@ constexpr std::string_view kept_prefix = "kept-";
 
 std::mutex staged_mutex;  // guards the following variables
 
-/// Locks that mutex. The thread may hold it already, if memory runs out while it does.
+/// Locks `staged_mutex`. The thread may hold it already, if memory runs out while it does.
 class StagedLock {
  public:
   StagedLock() {

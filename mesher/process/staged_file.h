@@ -10,8 +10,8 @@ namespace collarmesh::process {
 /// A file that appears under its name only when it is complete. It is made in a temporary folder beside its
 /// place, and `commit` moves it to its place, together with further files that its writer makes. A replaced
 /// file passes on its mode and, where permitted, its owner. The target "-" is standard output, to which the
-/// file is copied.
-/// The folder is locked while it is in use. Unlocked folders were left by killed runs, so they are removed.
+/// file is copied. The folder is locked while it is in use. Unlocked folders older than a minute were left by
+/// killed runs, so they are removed.
 class StagedFile {
  public:
   /// Makes the temporary folder. Throws WriteError if the folder of `target` cannot be written to.

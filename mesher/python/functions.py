@@ -20,9 +20,9 @@ def mesh(
     """Mesh the solids that surfaces bound, and certify the result.
 
     surfaces: paths of files, CAD shapes included; tuples (points, triangles) or (points, triangles, tags); and
-        `Complex`es. Points have shape (n, 3); triangles have shape (m, 3), are rows of points and oriented outwards;
-        tags have shape (m,) and are integers that the faces of the mesh get, too. Each surface bounds a region,
-        numbered from 1; a surface inside another one that is oriented inwards bounds a cavity.
+        `Complex`es. Points have shape (n, 3); triangles have shape (m, 3), contain rows of points and are oriented
+        outwards; tags have shape (m,) and are integers that the faces of the mesh get, too. Each surface bounds a
+        region, numbered from 1; a surface inside another one that is oriented inwards bounds a cavity.
     # options of mesh
     input_format: extension that replaces the files' own, ".stl".
     progress: True for a bar on standard error; or a callable that is called with the stage and the fraction of the whole
@@ -50,8 +50,8 @@ def remesh(
         `order=2` the result is of second order again.
     size: a length; lengths for each point or each tetrahedron of the mesh, as `sizes_from_errors` returns them; or a size
         field, as `size_field` in `collarmesh.mesh`. None: improve tetrahedra and keep the lengths.
-    against: the input that the mesh was made of, or a list of its surfaces, as in `collarmesh.mesh`. The result follows it
-        in place of the triangles of the mesh, on CAD shapes the exact faces, and is certified against it.
+    against: the input that the mesh was made of, or a list of its surfaces, as in `collarmesh.mesh`. The result follows
+        this input (on CAD shapes the exact faces) instead of the triangles of the mesh, and is certified against it.
     # options of remesh
     progress: as in `collarmesh.mesh`.
 

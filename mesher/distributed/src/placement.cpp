@@ -31,7 +31,7 @@ constexpr double tolerated = 10;
 constexpr double least_score = 0.2;
 // The score of a flat tet; inverted tets have lower scores.
 constexpr double flat_score = -100;
-// The unit to which squared penalties are rounded. Doubles add such multiples without rounding.
+// The unit to which squared penalties are rounded. Doubles add its multiples without rounding.
 constexpr double unit_of_lack = 0x1p-16;
 // The maximum number of sweeps that make room, and the steps that a vertex tries, relative to its shortest
 // edge.
@@ -297,8 +297,8 @@ class Placement {
     for_each_shared([](const PetscReal& there, PetscReal& here) { here = there; });
   }
 
-  /// Returns the sum of the penalties of the tets around a vertex; if it is at least `enough`, possibly only
-  /// a part of it that is.
+  /// Returns the sum of the penalties of the tets around a vertex; if the sum is at least `enough`, may
+  /// return only a part of it that is at least `enough`, too.
   double lack_around(Index vertex, const Point& place, double enough) const {
     double sum = 0;
     for (const Index t : tets_at_[vertex]) {
@@ -421,8 +421,8 @@ class Placement {
     return around;
   }
 
-  /// Moves vertices that moved back forward again if they have room by now. Returns false if none of them
-  /// has.
+  /// Moves forward again those of the vertices that moved back whose tets permit it by now. Returns false if
+  /// there are none.
   bool try_again(unsigned sweep) {
     std::vector<PetscInt> wishes(mesh_->points.size(), 0);
     for (std::size_t v = 0; v < wishes.size(); ++v) wishes[v] = has_way_[v] && back_[v] > 0 ? 1 : 0;

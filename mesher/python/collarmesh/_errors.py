@@ -34,7 +34,7 @@ def _at_corners(corners: Array, weights: Array, values: Array) -> Array:
 
 
 def _corners_by_material(mesh: Mesh) -> Array:
-    """Returns numbers of the corners of tetrahedra, another one for each material that meets at a point."""
+    """Returns numbers for the corners of tetrahedra; a point has one number for each material that meets there."""
     materials = numpy.unique(mesh.tet_tag, return_inverse=True)[1] if len(
         mesh.tet_tag) else numpy.zeros(len(mesh.tets), int)
     pairs = mesh.tets.astype(numpy.int64) + len(mesh.points) * materials.reshape(-1, 1)

@@ -15,7 +15,7 @@ def table_of(
     figures: MeshFigures,
     check: Mapping[str, Any],
 ) -> str:
-    """passed: None for a mesh that was not made here."""
+    """Returns the HTML. passed: None for a mesh that was not made here."""
     verdict = {True: "every guarantee holds", False: "a guarantee does not hold", None: "not certified"}[passed]
     rows: List[Tuple[str, str]] = [("Certificate", verdict)]
     rows += [("Finding", text) for text in _first(findings)] + [("Repair", text) for text in _first(repairs)]

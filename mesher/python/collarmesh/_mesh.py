@@ -95,7 +95,7 @@ def _sides_between_tags(tets: Array, tags: Array) -> Tuple[Array, Array]:
 
 
 def _beside(regions: Array) -> Array:
-    """The region behind each face, or before it if none is behind."""
+    """Returns the region behind each face, or in front of it if none is behind."""
     behind, before = regions.T
     return numpy.where(behind > 0, behind, before)
 
@@ -108,7 +108,7 @@ def _empty(name: str) -> Array:
 def _layer_cells(
     kind: str, cells: ArrayLike, tags: Optional[ArrayLike], columns: Tuple[int, int], order: int
 ) -> Dict[str, Array]:
-    """The arrays of prisms, pyramids or quads."""
+    """Returns the arrays of prisms, pyramids or quads."""
     nodes = _cells_with_nodes(cells, f"{kind}s", columns)
     if len(nodes) > 0 and nodes.shape[1] != columns[order - 1]:
         raise _core.OptionError(f"{kind}s: rows have {nodes.shape[1]} nodes, but those of order {order} have "
@@ -226,8 +226,8 @@ class Mesh:
             the tetrahedra with each tag, and a tag for each pair of tags that are neighbours.
         edges: (j, 2) or (j, 3), edges on curves; edge_tags: (j,).
         prisms: (p, 6) or (p, 15), pyramids: (q, 5) or (q, 13), with their tags, default 1; quads: (s, 4) or (s, 8),
-            quadrangles on boundaries and interfaces. Nodes are in the order above. With prisms or pyramids, faces are
-            to be given.
+            quadrangles on boundaries and interfaces. Their nodes are in the order of the attributes `prisms`,
+            `pyramids` and `quads`, then of their `..._mid_nodes`. With prisms or pyramids, faces are to be given.
         names: names of tags by dimension, {2: {3: "inlet"}}.
 
         Raises OptionError for wrong shapes and kinds and for indices out of range.
@@ -441,7 +441,7 @@ class Mesh:
                                     "which this is not made; make layers of tetrahedra")
 
     def _surface(self) -> Tuple[List[Any], Array]:
-        """The triangles and quadrangles with their tags."""
+        """Returns the triangles and quadrangles with their tags."""
         return [*self.faces, *self.quads], numpy.concatenate([self.face_tag, self.quad_tag])
 
     def _weights(self, shares: Array) -> Array:
@@ -494,8 +494,8 @@ class Mesh:
         return mesh_and_tags(comm, self.points, self.order, (tets, self.tet_tag), (faces, self.face_tag))
 
     def to_pyvista(self) -> Any:
-        """A pyvista.UnstructuredGrid of the tetrahedra with the data "tag", "region", "collar"; then prisms and pyramids if
-        there are any, with the data "layer".
+        """Return a pyvista.UnstructuredGrid of the tetrahedra with the data "tag", "region", "collar"; then prisms and
+        pyramids if there are any, with the data "layer".
 
         Raises ImportError without pyvista.
         """

@@ -6,7 +6,7 @@ from ._inputs import Array
 
 
 class PeriodicFaces(TypedDict):
-    """Two groups of patches. The mesh of the second is the image of the first's.
+    """Two groups of patches. The mesh of the second group is the image of that of the first.
 
     first, second: tags of patches.
     rotation, shift: (3, 3) and (3,); the motion takes a point p of the first to rotation @ p + shift.

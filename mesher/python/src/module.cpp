@@ -135,7 +135,7 @@ struct MeshCall : Call {
 /// Builds the complexes of a call's inputs.
 class InputSource : public ComplexSource {
  public:
-  /// Keeps all by reference.
+  /// Keeps references to both arguments.
   InputSource(const Options& options, files::ComplexInput& input) : options_(options), input_(input) {}
 
   RepairedPlc build(const RepairOptions& repair, const Execution&) override {

@@ -30,7 +30,8 @@ struct BudgetSpent : Error {
 /// work that does not check the flag soon enough.
 class Watch {
  public:
-  /// Returns the execution for the work. It sends reports to the calling thread, which asks Python.
+  /// Returns the execution for the work. It sends reports to the calling thread, which asks Python whether to
+  /// go on.
   Execution execution();
   /// Throws Cancelled if the work must end.
   void stop_if_asked() const;

@@ -14,7 +14,7 @@ function number(value) {
   return Number.isInteger(value) ? value.toLocaleString('en') : String(Number(value.toPrecision(4)));
 }
 
-// With enough digits to compare.
+// Returns a volume as text, with enough digits to compare.
 function volume(value) {
   return value.toLocaleString('en', { maximumSignificantDigits: 7 });
 }
@@ -24,18 +24,19 @@ function table(rows) {
     element('tr', {}, element('th', {}, name), element('td', {}, value))));
 }
 
-// Names of regions and faces, as everywhere on the page: those given, else those of CAD files, else numbers.
+// Returns the names of regions and faces for the whole page: those given, else those of CAD files, else numbers.
 function namesOf(report) {
   const cad = report.inputs.some(path => /\.(step|stp|iges|igs|brep|brp)$/i.test(path));
   const regions = new Map(report.complex.regions.map(r => [r.region, r.name || r.input.split('/').pop() || `region ${r.tag}`]));
   const all = [...regions.values()];
-  for (const { region, tag } of report.complex.regions)  // several of one file
+  for (const { region, tag } of report.complex.regions)  // several regions may come from one file
     if (all.filter(name => name === regions.get(region)).length > 1) regions.set(region, `${regions.get(region)} ${tag}`);
   const faces = new Map(report.complex.patch_list.map(p => [p.tag, p.name || (cad ? `Face${p.tag}` : `patch ${p.tag}`)]));
   return { region: number => regions.get(number) || `region ${number}`, face: tag => faces.get(tag) || `patch ${tag}` };
 }
 
-// Returns the colours of the file: of faces by number in face_tags, of regions by theirs. Undefined where it has none.
+// Returns the colours that the file gives: of faces by number in face_tags, of regions by number. Undefined without
+// colours.
 function coloursOf(report, shown) {
   const faces = new Map(report.complex.patch_list.map(p => [p.tag, p.colour]));
   const regions = new Map(report.complex.regions.map(r => [r.region, r.colour]));
@@ -75,7 +76,7 @@ const guarantees = [
 
 const ofTriangles = ['triangle_angles', 'shell_orientation'], ofTets = ['region_volume', 'radius_edge', 'thin_angles', 'collar_cells'];
 
-// Does the run give a guarantee of these names?
+// Does the run give the guarantees with these names?
 function given(report, names) {
   return (report.options.order === 2 || !names.includes('mid_nodes')) &&
     (report.layers || !names.includes('layer_jacobian')) &&
@@ -104,7 +105,7 @@ function histogram(title, { bin_width: width, tets, triangles: counts = tets }, 
   const chart = draw('svg', { viewBox: `0 0 ${w} ${h + 16}`, role: 'img', 'aria-label': title });
   const most = Math.max(1, ...counts);
   counts.forEach((count, i) => {
-    // A single element is seen, too.
+    // The bar of a single element must be visible, too.
     const height = count > 0 ? Math.max(1.5, h * count / most) : 0;
     const last = i + 1 === counts.length && unit === '';
     const rect = draw('rect', { x: left + i * bar, y: h - height, width: bar - 1, height, fill: '#4c86c6' });
@@ -167,13 +168,14 @@ function straightened(report, names, show) {
     element('ul', {}, ...nodes.slice(0, 50).map(line))];
 }
 
-// Tetrahedra whose small angles are due to short edges of the input.
+// Returns a text on tetrahedra whose small angles are due to short edges of the input.
 function forced(check) {
   return check.forced_tets > 0
     ? ` (${number(check.forced_tets)} of them smaller than asked for, in narrow places of the input)` : '';
 }
 
-// The largest ratio of each kind of tetrahedra, so that the histogram of all of them ends where these say.
+// Returns a text on the largest ratio of each kind of tetrahedra; the histogram of all tetrahedra ends at the largest
+// of these.
 function ratios(mesh) {
   const kinds = [['', mesh.max_radius_edge], [' (thin tetrahedra)', mesh.max_thin_radius_edge],
     [' (collars)', mesh.max_collar_radius_edge]];
@@ -195,7 +197,7 @@ function histogramsOf({ mesh, check }) {
     histogram('Circumradius / shortest edge', mesh.histograms.radius_edge, '')];
 }
 
-// Rows of the table of what was made.
+// Returns the rows of the table on the mesh.
 function shapesOf({ mesh, check }) {
   if (check.triangles)
     return [['Angles', `${number(check.triangles.min_angle)}° to ${number(check.triangles.max_angle)}°`],

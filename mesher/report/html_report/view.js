@@ -1,5 +1,5 @@
-// A view of the mesh that turns and cuts: it draws the outer faces of the tetrahedra on one side of a plane or, of a mesh
-// of triangles alone, the triangles there. A cell is a tetrahedron or such a triangle.
+// A view of the mesh that turns and cuts: it draws the outer faces of the tetrahedra on one side of a plane or, for a
+// mesh of triangles alone, the triangles there. A cell is a tetrahedron or such a triangle.
 'use strict';
 
 const noNeighbour = -1;
@@ -37,7 +37,7 @@ async function readStep(step) {
   return Object.assign(mesh, { title: `${step.stage}${step.detail && `: ${step.detail}`}`, complete: step.complete });
 }
 
-// By a hash table of faces, each in the place of the first tet that has it.
+// Finds the neighbours of tets by a hash table of faces. A face is stored at the place of the first tet that has it.
 function findNeighbours(tets) {
   const neighbours = new Int32Array(tets.length).fill(noNeighbour);
   let size = 1024;
@@ -63,7 +63,7 @@ function findNeighbours(tets) {
   return neighbours;
 }
 
-// The number of the tag by the sorted corners of the face.
+// Maps the sorted corners of each face to the number of its tag.
 function tagNumbers(patches) {
   const numbers = new Map();
   for (let f = 0; f < patches.length; f += 4)
@@ -71,18 +71,18 @@ function tagNumbers(patches) {
   return numbers;
 }
 
-// The three points of a drawn face.
+// Returns the three points of a drawn face.
 function pointsOfFace(mesh, face) {
   return mesh.isSurface ? [...mesh.patches.subarray(4 * face, 4 * face + 3)]
     : faceCorners[face & 3].map(i => mesh.tets[4 * (face >> 2) + i]);
 }
 
-// The cell that a drawn face belongs to.
+// Returns the cell that a drawn face belongs to.
 function cellOf(mesh, face) {
   return mesh.isSurface ? face : face >> 2;
 }
 
-// Undefined for a face that is on no patch.
+// Returns the number of a drawn face's tag; undefined for a face that is on no patch.
 function tagNumberOf(mesh, face) {
   if (mesh.isSurface) return mesh.patches[4 * face + 3];
   return mesh.tagNumber.get(pointsOfFace(mesh, face).sort((a, b) => a - b).join());
@@ -96,7 +96,7 @@ function cornersOf(mesh, cell) {
   return pointsOfCell(mesh, cell).map(point => new THREE.Vector3().fromArray(mesh.points, 3 * point));
 }
 
-// The smallest and the largest angle, in degrees: dihedral ones of a tetrahedron.
+// Returns the smallest and the largest angle of a cell, in degrees; for a tetrahedron, those of its dihedral angles.
 function anglesOf(mesh, cell) {
   const p = cornersOf(mesh, cell);
   if (!mesh.isSurface) return dihedralAngles(p);
@@ -117,7 +117,7 @@ const angleColours = [[0, '#b2182b'], [5, '#d6604d'], [10, '#f4a582'], [20, '#fd
 const regionColours = ['#7fa7c9', '#d9a05b', '#7fb685', '#c98ba6', '#b5a642', '#8f8fc6', '#c77b6b', '#6fb7b7'];
 const markColours = { plain: '#c3cdd8', marked: '#d1495b', ripped: '#e3a72f' };
 const background = 0xf4f6f8;
-// A label is shown for a patch of which this many pixels are in sight, in a small picture of this width.
+// A patch gets a label if at least this many of its pixels are visible in a small picture of this width.
 const leastPixels = 6, smallWidth = 240;
 
 // Neighbouring numbers get colours far apart: hues by the golden angle.
@@ -128,7 +128,7 @@ function faceColour(number) {
 const layerColours = [[0, '#b2182b'], [0.1, '#ef8a62'], [0.3, '#fddbc7'], [0.6, '#d1e5f0'], [0.9, '#4393c3']];
 const cellColours = { odd: '#e3a72f', even: '#f1d38c' };  // of layers, in cuts
 
-// Faces by the share of the thickness that their layers reach in the mean, cells inside by their layers.
+// Colours faces by the share of the thickness that their layers reach in the mean, and cells inside by their layers.
 function layerColour(mesh, face) {
   const number = tagNumberOf(mesh, face), marks = mesh.marks[face >> 2];
   if (number === undefined) return marks & 8 ? cellColours.odd : marks & 16 ? cellColours.even : markColours.plain;
@@ -141,7 +141,7 @@ function layerLegend(mesh) {
   return [...shares, [cellColours.odd, 'odd layers'], [cellColours.even, 'even layers'], [markColours.plain, 'others']];
 }
 
-// Inside of a region its own.
+// Returns the file's colour of a face; faces inside a region have the region's colour.
 function fileColour(mesh, number, region) {
   return mesh.colours && (mesh.colours.faces[number] || mesh.colours.regions.get(region)) || markColours.plain;
 }
@@ -160,7 +160,7 @@ function colourOf(mesh, face, by) {
   return mesh.marks[tet] & (by === 'collar' ? 1 : 2) ? markColours.marked : markColours.plain;
 }
 
-// The faces with each colour.
+// Lists the faces with each colour.
 function fileLegend(mesh, shown, names) {
   const named = new Map();
   mesh.colours.faces.forEach((colour, number) => {
@@ -184,7 +184,7 @@ function legend(mesh, shown, names, by) {
   return [[markColours.marked, by === 'collar' ? 'in a collar' : 'thin'], [markColours.plain, 'others']];
 }
 
-// Three great circles of each ball, as the ends of segments.
+// Returns three great circles of each ball, as the ends of segments.
 function circlesOf(balls) {
   const ends = [], pieces = 24;
   for (let b = 0; b < balls.length; b += 4)
@@ -247,7 +247,7 @@ class View {
     window.addEventListener('resize', () => { this.resize(); if (this.whole) this.reset(); });
   }
 
-  // A slider over the steps of the run, the last of which is the mesh. A step is read when it is asked for.
+  // Offers a slider over the steps of the run, the last of which is the mesh. A step is read when it is first shown.
   offerSteps(packed) {
     if (packed.length === 0) return;
     const last = Object.assign(this.mesh, { title: 'the mesh', complete: this.shown.complete, lines: [], balls: [] });
@@ -282,7 +282,7 @@ class View {
     this.rebuild();
   }
 
-  // A dot at each node that stays off its face.
+  // Returns a dot for each node that stays off its face.
   straightened(nodes) {
     const geometry = new THREE.BufferGeometry();
     const at = nodes.flatMap(({ where }) => where.map((x, i) => x - this.shown.centre[i]));
@@ -297,7 +297,7 @@ class View {
     control('names').addEventListener('input', () => this.draw());
     control('edges').addEventListener('input', () => { this.lines.visible = control('edges').checked; this.draw(); });
     control('reset').addEventListener('click', () => { control('axis').value = ''; this.reset(); });
-    if (!this.shown.complete) control('position').disabled = true;  // cells are there around the middle planes only
+    if (!this.shown.complete) control('position').disabled = true;  // the page only has cells around the middle planes
     let pressed = null;
     this.renderer.domElement.addEventListener('pointerdown', e => { pressed = [e.clientX, e.clientY]; });
     this.renderer.domElement.addEventListener('pointerup', e => {
@@ -323,7 +323,7 @@ class View {
     return new THREE.Vector3(0, 0, 1).applyQuaternion(this.camera.quaternion);
   }
 
-  // From the middle in this direction, so that every point is in the picture, with a margin of a twentieth.
+  // Returns the camera's distance from the centre at which all points are in the picture, with a margin of a twentieth.
   distanceToSeeAll(centre) {
     const back = this.backwards(), right = new THREE.Vector3(1, 0, 0).applyQuaternion(this.camera.quaternion);
     const up = new THREE.Vector3(0, 1, 0).applyQuaternion(this.camera.quaternion);
@@ -360,7 +360,7 @@ class View {
     };
   }
 
-  // The faces to draw: those of kept tetrahedra without a kept neighbour, or all kept triangles.
+  // Returns the faces to draw: those of kept tetrahedra without a kept neighbour, or all kept triangles.
   outerFaces() {
     const { tets, neighbours, patches, isSurface } = this.mesh, inside = this.kept(), faces = [];
     const keep = Uint8Array.from({ length: (isSurface ? patches : tets).length / 4 }, (_, cell) => inside(cell) ? 1 : 0);
@@ -410,7 +410,7 @@ class View {
     this.draw();
   }
 
-  // What is at this place (in the coordinates of the file): the tet, if it is known, else a cross.
+  // Marks a place (in the coordinates of the file) by its tet, if that is known, else by a cross.
   show(where, tet = null) {
     const at = new THREE.Vector3(...where.map((x, i) => x - this.shown.centre[i]));
     const lines = [];
@@ -445,7 +445,7 @@ class View {
     if (hit) this.tell(cellOf(this.mesh, this.faces[hit.faceIndex]), this.faces[hit.faceIndex]);
   }
 
-  // Says what the cell is, and which face was clicked.
+  // Shows the data of a cell, and which face was clicked.
   tell(tet, face = null) {
     const [smallest, largest] = anglesOf(this.mesh, tet), marks = this.mesh.marks[tet];
     const corners = cornersOf(this.mesh, tet).map(p => `(${p.toArray().map((x, i) => number(x + this.shown.centre[i])).join(', ')})`);
@@ -481,12 +481,12 @@ class View {
     this.placeLabels();
   }
 
-  // The number of a patch as a colour; no patch is black.
+  // Returns the number of a patch as a colour; no patch is black.
   numberColour(number) {
     return [(number + 1) >> 16 & 255, (number + 1) >> 8 & 255, (number + 1) & 255];
   }
 
-  // For each patch in sight its pixels in a small picture, in which the colours are numbers.
+  // Returns the pixels of each visible patch in a small picture whose colours are the patches' numbers.
   pixelsInSight() {
     const width = smallWidth, height = Math.max(1, Math.round(smallWidth / this.camera.aspect));
     const target = new THREE.WebGLRenderTarget(width, height), pixels = new Uint8Array(4 * width * height);
@@ -507,8 +507,8 @@ class View {
     return inSight;
   }
 
-  // Puts the name of each patch in sight onto its pixel that is nearest to the middle of all its pixels. There are
-  // none while the view moves.
+  // Puts the name of each visible patch onto its pixel that is nearest to the middle of all its pixels. Hides the names
+  // while the view moves.
   placeLabels() {
     const wanted = !this.moves && document.getElementById('names').checked && document.getElementById('colour').value === 'face';
     const inSight = wanted ? this.pixelsInSight() : new Map();

@@ -55,8 +55,8 @@ struct MeshSide {
   Index face;           ///< index of the mesh's face; none if it is not listed
 };
 
-/// Finds these triangles (if the mesh lists every side of its tets, faces inside a region count if they have
-/// a tag other than 0), in the order of their tets, and which tets are connected without crossing such a
+/// Finds the mesh sides (if the mesh lists every side of its tets, faces inside a region count if they have a
+/// tag other than 0), in the order of their tets, and which tets are connected without crossing such a
 /// triangle. Throws PlcError for sides that more than two tets share, and for listed faces that are no side
 /// of a tet; messages name points by `given`. Cost: O(n log n).
 struct MeshSides {

@@ -34,8 +34,8 @@ class CreaseCorners {
     std::sort(edges_.begin(), edges_.end());
   }
 
-  /// Returns 1 for a star, 2 for a book, 0 for neither. Each vertex on a crease is the centre of a ball.
-  /// Corners of its cells are on no crease, except that vertex and a neighbour on its crease.
+  /// Returns 1 for a star, 2 for a book, 0 for neither. Each vertex on a crease is the centre of a ball. The
+  /// only corners of the ball's cells on a crease are its centre and, in books, a neighbour of the centre.
   std::uint8_t kind_in_balls(const std::array<Index, 4>& tet) const {
     std::array<Index, 4> corners;
     const auto end =

@@ -142,11 +142,11 @@ class CurveCheck {
           last ? Polyline::Nearest{polyline.length(), distance(b, polyline.points().back())}
                : polyline.nearest(b, arc, reach);
       if (here.distance > allowed_ && polyline.nearest(b).distance <= allowed_) {
-        report_gap(b, "is left or run backwards");
+        report_gap(b, "has edges that leave it and return elsewhere, or run backwards,");
         return;
       }
       if (here.arc <= arc) {
-        report_gap(b, "is run backwards");
+        report_gap(b, "has edges that run backwards");
         return;
       }
       measure(here.distance, chain_[i], b);

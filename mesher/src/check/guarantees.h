@@ -6,8 +6,8 @@
 /// The names of the guarantees, as in Finding::guarantee. They are stable, because scripts look for them.
 ///
 /// To add a guarantee:
-/// 1. Give it a name here, or in the header of its part: layer_cells.h, layer_walls.h, periodic.h. If a mesh
-///    of other sizes misses it although it follows the shape, list it in `of_shapes`.
+/// 1. Give it a name here, or in the header of its part: layer_cells.h, layer_walls.h, periodic.h. If meshes
+///    with other target sizes may miss it although they follow the shape, list it in `of_shapes`.
 /// 2. If it concerns single tets or nodes, write a predicate into predicates.h and call it from tets.cpp or
 ///    second_order.cpp. Otherwise declare a check in subject.h and call it from `judge` in check.cpp, for
 ///    meshes without tets from `judge_shells` in shells.cpp.
@@ -37,15 +37,15 @@ inline constexpr char conforming[] = "conforming";    ///< a face has at most tw
 inline constexpr char radius_edge[] = "radius_edge";  ///< bound on tets that are neither thin nor in collars
 inline constexpr char thin_angles[] = "thin_angles";  ///< angles of tets that exceed the radius-edge bound
 inline constexpr char collar_dihedral[] = "collar_dihedral";  ///< dihedral angles in collars
-/// Each tet that has to have one has a corner on no face.
+/// Each tet that needs an interior node has a corner on no face.
 inline constexpr char interior_node[] = "interior_node";
 
 // Guarantees of the balls of the collars, if the mesh has them.
 inline constexpr char collar_centre[] = "collar_centre";  ///< a ball's centre is where its point is
 inline constexpr char collar_gap[] = "collar_gap";        ///< radius at most a third of the gap size
 inline constexpr char collar_disjoint[] =
-    "collar_disjoint";  ///< balls of different creases are apart; consecutive balls meet in a circle of their
-                        ///< own
+    "collar_disjoint";  ///< balls of different creases are apart; consecutive balls meet in a circle that no
+                        ///< third ball reaches
 inline constexpr char collar_cells[] = "collar_cells";  ///< stars have the centre of their ball as a corner,
                                                         ///< books those of two balls
 
@@ -96,7 +96,7 @@ inline constexpr char curve_present[] = "curve_present";          ///< each curv
 inline constexpr char shell_orientation[] = "shell_orientation";  ///< faces of solids point outwards, those
                                                                   ///< of other surfaces are oriented alike
 
-/// Guarantees of the shapes of cells and of distances, which other sizes change.
+/// Guarantees of cell shapes and of distances, which meshes with other target sizes may miss.
 inline constexpr std::array<std::string_view, 14> of_shapes{
     radius_edge,    thin_angles,     collar_dihedral, interior_node, collar_centre,
     collar_gap,     collar_disjoint, collar_cells,    region_volume, volume_kept,

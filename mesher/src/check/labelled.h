@@ -5,8 +5,8 @@
 namespace collarmesh::checks {
 
 /// Returns a mesh of tets with the features of a complex at its points, faces and edges, which are found by
-/// position. The mesh covers the complex; its shapes, and its distances from the complex, may break bounds.
-/// Throws PlcError if it does not cover it, with the first finding.
+/// position. Throws PlcError, with the first finding, if the mesh does not cover the complex. Cell shapes,
+/// and distances from the complex, may miss their bounds.
 TetMesh labelled(const TetMesh& mesh, const Plc& plc, const CheckOptions& options,
                  const Execution& execution);
 

@@ -255,7 +255,7 @@ class LayerCheck {
   }
 
   void check_regions(const CellSide& listed, const CellSide* one, const CellSide* other) {
-    std::array<Index, 2> wanted{};  // behind and in front of the corners in their order in CellSide
+    std::array<Index, 2> wanted{};  // regions behind and in front of the listed side
     for (const CellSide* side : {one, other})
       if (side != nullptr) wanted[side->turned ? 1 : 0] = region_of(*side);
     if (listed.turned) std::swap(wanted[0], wanted[1]);
@@ -403,7 +403,7 @@ class CoreAngles {
   std::vector<std::array<Index, 3>> faces_;
   std::vector<Index> patches_;
   std::optional<ForcedEdges> forced_;
-  std::vector<double> at_point_;  // empty where nothing meets that sharply
+  std::vector<double> at_point_;  // bounds that sharp creases lower; empty without such creases
 };
 
 }  // namespace

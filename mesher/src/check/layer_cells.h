@@ -14,7 +14,7 @@ inline constexpr char layer_arrays[] = "layer_arrays";  ///< equal lengths, indi
 inline constexpr char layer_jacobian[] = "layer_jacobian";
 inline constexpr char layer_conforming[] = "layer_conforming";  ///< cells meet in whole sides
 inline constexpr char layer_sides[] = "layer_sides";  ///< boundaries and interfaces are listed, once each
-/// Each edge has one, shared by all cells at the edge.
+/// Each edge has one mid-edge node, which all cells at the edge share.
 inline constexpr char layer_mid_nodes[] = "layer_mid_nodes";
 inline constexpr char layer_volume[] = "layer_volume";  ///< regions keep their volumes
 inline constexpr char core_angles[] = "core_angles";    ///< angles of the tets beside the layers

@@ -43,15 +43,15 @@ struct LayerCell {
   Index region = none, layer = 0;
   unsigned weight = 0;
   Index cell = none;
-  bool has_base = false;  // the nodes of the wall are corners
+  bool has_base = false;  // whether the nodes of the wall are corners of the cell
   Point middle;
 };
 
-/// A side of a triangle of a wall.
+/// One of the two sides of a wall's triangle.
 struct WallSide {
   std::array<Index, 3> corners{};  // sorted
   Index region = none, face = none;
-  bool in_front = false;  // the side to which the triangle's normal points
+  bool in_front = false;  // whether this is the side to which the triangle's normal points
   unsigned count = 0;
 };
 
@@ -72,7 +72,7 @@ class WallCheck {
     report_difference(before.edges, now.edges, "edge", [](const auto& edge) { return edge.ends[0]; });
   }
 
-  /// `straightened`: nodes that may have moved.
+  /// Checks that mid-edge nodes of walls stay. `straightened`: nodes that may have moved.
   void check_mid_nodes(const WallGeometry& before,
                        std::span<const SecondOrderReport::Straightened> straightened) {
     constexpr double rounding = 1e-9;
@@ -215,7 +215,7 @@ class WallCheck {
   /// region, above both.
   void check_stack(std::span<const WallSide> sides, std::span<const LayerCell> cells) {
     std::vector<unsigned> weights(sides[0].count + std::size_t{1}, 0);  // by layer
-    std::array<unsigned, 2> first{};                                    // of the first layer, by side
+    std::array<unsigned, 2> first{};                                    // weights in the first layer, by side
     unsigned bases = 0;
     for (const LayerCell& cell : cells) {
       if (cell.layer > sides[0].count) {

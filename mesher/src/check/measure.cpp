@@ -33,7 +33,7 @@ struct Direction {
 
   bool less_than(const Direction& other) const {
     const Real turn = x * other.y - y * other.x;
-    return turn > 0 || (turn == 0 && x > 0 && other.x < 0);  // the second case: 0 and pi
+    return turn > 0 || (turn == 0 && x > 0 && other.x < 0);  // second case: this angle is 0, the other pi
   }
   double degrees() const { return static_cast<double>(std::atan2(y, x)) * 180 / std::numbers::pi; }
 };

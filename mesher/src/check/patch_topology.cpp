@@ -177,7 +177,7 @@ class TopologyCheck {
   const CurveUses& uses_;
   Findings& findings_;
   std::vector<PatchEdge> sides_;
-  std::vector<Index> fans_;  // parents, by corner 3 * place + i
+  std::vector<Index> fans_;  // parents of the union-find, by corner 3 * place + i
 };
 
 }  // namespace

@@ -76,7 +76,7 @@ class PatchCheck {
     return points;
   }
 
-  // Returns the signed area of a triangle as seen along the plane's normal.
+  // Returns the signed area of a triangle, projected along the plane's normal.
   double area_in_plane(const Point& a, const Point& b, const Point& c) const {
     return 0.5 * dot(cross(b - a, c - a), patch_.normal);
   }
@@ -133,7 +133,8 @@ class PatchCheck {
                [&](const PatchDistance::Sample& sample, bool on_face) { measure(sample, on_face); });
   }
 
-  /// Returns a distance that needs no measuring: smaller ones change neither the maximum nor the verdict.
+  /// Returns a distance up to which distances need no measuring: they change neither the maximum nor the
+  /// verdict.
   double enough() const { return std::fmin(report_.max_surface_distance, least_allowed_); }
 
   void measure(const PatchDistance::Sample& sample, bool on_face) {

@@ -33,8 +33,8 @@ bool is_translation(const TetMesh::Motion& motion) { return motion.rows == TetMe
 /// - Evaluating R p + s: three products and two sums for each row, |error| <= 3 u |R| |p| elementwise, at
 ///   most 3 sqrt(3) u r in norm as the rows have length 1; then the last sum, u r. Together e = (1 + 3
 ///   sqrt(3)) u r (terms in u^2 are negligible). If R is the identity, only the last sum is rounded.
-/// - In a cell of three pairs, two sequences of maps lead to a corner. Judged by one pair, they differ by the
-///   evaluations along both, at most six including those of this check.
+/// - In a cell of three pairs, two sequences of maps lead to a corner. Their results differ by the
+///   rounding of all evaluations along both, at most six with those of this check.
 /// - A mid-edge node is the middle of two nodes: one sum on either side, u r each.
 /// - Corners that the input gives stay where they are: a translation from the middle of one box to that of
 ///   the other rounds three sums, u r each.

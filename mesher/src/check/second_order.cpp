@@ -60,7 +60,7 @@ void check_not_corners(const Subject& subject, Findings& findings) {
             node, At{subject.point(node)}, t);
 }
 
-// Checks that each edge has one node and each node one edge.
+// Checks that each edge has one mid-edge node, and each of these nodes one edge.
 void check_shared(const Subject& subject, Findings& findings) {
   std::vector<MidNode> nodes = mid_nodes(subject.mesh);
   const auto report = [&](const MidNode& first, const MidNode& second, const char* what) {

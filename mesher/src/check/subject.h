@@ -69,14 +69,15 @@ class ThinCells {
   explicit ThinCells(const Subject& subject);
 
   bool claimed(Index tet) const;
-  /// Returns whether a tet may be thin here.
+  /// Returns whether this tet may be thin.
   bool has_place(Index tet) const;
-  /// Returns the lower bound on its dihedral angles, degrees.
+  /// Returns the lower bound on a tet's dihedral angles, degrees.
   double smallest_angle(Index tet) const;
-  /// Returns whether its angles are within their bounds; `face_angle` is the largest angle of its faces,
+  /// Returns whether a tet's angles are within their bounds; `face_angle` is the largest angle of its faces,
   /// degrees.
   bool are_bounded(const TetQuality& quality, double face_angle, Index tet) const;
-  /// Returns whether its angles are this small only because of a forced edge. Precondition: they are bounded.
+  /// Returns whether a tet's angles are this small only because of a forced edge. Precondition: they are
+  /// bounded.
   bool is_forced(const TetQuality& quality, Index tet) const;
 
  private:
@@ -93,8 +94,8 @@ class ThinCells {
   std::optional<NarrowPlaces> narrow_;  // none if thin tets may be anywhere
 };
 
-/// Returns the feature of lowest dimension that the mesh shows each point to be on.
-/// Precondition: subject.match is filled in.
+/// Returns for each point the feature of lowest dimension on which the mesh has it. Precondition:
+/// subject.match is filled in.
 std::vector<TetMesh::VertexFeature> features_of(const Subject& subject);
 
 /// Items in groups by a key below `groups`; leaves out items whose key is none.
@@ -187,7 +188,7 @@ FeatureMatch match_features(const TetMesh& mesh, const Plc& plc, double rounding
 /// Finds the vertices of the complex in the mesh, by index or position.
 std::vector<Index> match_vertices(const TetMesh& mesh, const Plc& plc, double rounding);
 
-/// Returns the patches of faces that name none: by position and, if the tags are the complex's, by tag.
+/// Finds patches for faces without one: by position and, if the tags are the complex's, by tag.
 std::vector<Index> match_faces(const TetMesh& mesh, const Plc& plc, bool by_tag);
 
 /// Precondition of these functions: subject.match is filled in; check_vertices_present needs only its

@@ -44,7 +44,7 @@ struct Thicknesses {
   double area = 0;       // area from which rays were sent
   double area_with = 0;  // part of that area whose rays meet an opposite surface
   double input = 0, mesh = 0;
-  Point where;            // the ray that differs most
+  Point where;            // on the ray whose thickness differs most
   double farthest = 0;    // its difference
   Index opposite = none;  // the patch where that ray ends
 };
@@ -120,7 +120,7 @@ class ThicknessKept {
     const Index root = hierarchy_.root();
     hierarchy_.crossings(ray.from - distance * ray.way, ray.from + 2 * distance * ray.way, {&root, 1},
                          crossings);
-    double entered = INFINITY, left = INFINITY;  // relative to the places in the complex
+    double entered = INFINITY, left = INFINITY;  // differences from the places in the complex
     for (const auto& [triangle, direction] : crossings) {
       const Index face = faces_.face[triangle], of = subject_.match.face_patch[face];
       const auto& regions = mesh.face_regions[face];

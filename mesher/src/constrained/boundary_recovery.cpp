@@ -17,7 +17,8 @@ namespace {
 // Before an edge is removed, edges around it may be removed first, recursively to this depth.
 constexpr unsigned most_depth = 2;
 constexpr double most_errors = 512;  // rounding errors by which a point may be off its edge
-// Distances from a flat tetrahedron at which a point beside it is tried, as shares of the length of its side.
+// Largest and smallest distance from a flat tetrahedron at which a point beside it is tried, relative to the
+// longest side of the crossed face.
 constexpr double farthest_room = 0.1, nearest_room = 1e-6;
 // After this many triangulated rings for one edge or facet, no other edges are removed first any more.
 constexpr std::size_t most_rings = 1000;
@@ -119,7 +120,7 @@ BoundaryRecovery::BoundaryRecovery(Tetrahedra& mesh, const Plc& plc, RecoveryWay
   if (way_.reversed) std::ranges::reverse(edges_to_do_);
 }
 
-/// Flips edges between facets in one plane, so that most of them are edges of Delaunay tetrahedra.
+/// Flips edges between facets in one plane, so that most of these edges belong to Delaunay tetrahedra.
 void BoundaryRecovery::make_planar_facets_delaunay() {
   std::vector<std::uint64_t> to_do;
   to_do.reserve(edges_to_do_.size());
@@ -325,8 +326,8 @@ bool BoundaryRecovery::clear_edge(const std::vector<CrossedFace>& crossed, const
   return changed;
 }
 
-/// Adds a point on an edge: where it crosses a face, near its middle if possible; else between two such
-/// places, or a few rounding errors beside one, as the rounded point may lie beyond a feature.
+/// Adds a point on an edge: at its crossing with a face, preferably near the edge's middle; else between two
+/// crossings or a few rounding errors beside one, because the rounded point may lie beyond a feature.
 Index BoundaryRecovery::divide_at_crossing(Index a, Index b, std::vector<CrossedFace>& crossed) {
   if (++added_ > most_added_) fail(a, "An edge");
   std::ranges::sort(crossed, {}, [](const CrossedFace& c) { return std::fabs(c.place - 0.5); });
@@ -369,7 +370,7 @@ std::array<std::pair<double, Index>, 2> BoundaryRecovery::places_beside(
 }
 
 /// Adds a point inside a tetrahedron that the edge crosses, so that the mesh can be changed there; or beside
-/// it, because tetrahedra between points in one plane are as thin as rounding errors and have no room inside.
+/// it, because tetrahedra between points in one plane are as thin as rounding errors and cannot hold a point.
 bool BoundaryRecovery::add_room(const std::vector<CrossedFace>& crossed) {
   const auto add = [&](const CrossedFace& c, const Vector& off) {
     Point sum;

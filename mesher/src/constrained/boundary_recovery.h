@@ -34,7 +34,8 @@ struct RecoveryWay {
 /// that pass through its interior. Each change or point leaves fewer obstacles, so the process ends.
 class BoundaryRecovery {
  public:
-  /// Keeps both by reference. Precondition: the mesh's first points are those of the complex.
+  /// Keeps references to the mesh and the complex. Precondition: the mesh's first points are those of the
+  /// complex.
   BoundaryRecovery(Tetrahedra& mesh, const Plc& plc, RecoveryWay way = {});
 
   /// Recovers all features. Returns false if `go_on` returned false. Throws PlcError, with the place, if

@@ -26,7 +26,8 @@ constexpr double narrow = 4;
 // Limit of added points: `rail_points_per_point` times the number of points of the complex, plus
 // `some_rail_points`.
 constexpr std::size_t rail_points_per_point = 100, some_rail_points = 20'000;
-// Sums of opposite angles nearer to half a circle than this leave the choice of the diagonal open, radians.
+// Sums of opposite angles nearer to half a circle than `open_choice` leave the choice of the diagonal open;
+// `rounding_of_angles` is a margin for rounding. Radians.
 constexpr double open_choice = 1e-3, rounding_of_angles = 1e-6;
 constexpr unsigned most_flips_per_triangle = 20;
 
@@ -160,7 +161,7 @@ class Ladders {
     return parts(pa, ab, pc, pd) && parts(pc, cd, pa, pb);
   }
 
-  /// Marks the diagonals of strips: of each needle at most one edge, if possible the longest.
+  /// Marks the diagonals of strips: at most one edge of each needle, if possible the longest.
   void find_diagonals() {
     std::vector<std::tuple<bool, double, std::uint64_t>> candidates;
     for (const std::uint64_t key : keys_) {
@@ -252,7 +253,7 @@ class Ladders {
     }
   }
 
-  /// Replaces the other diagonal of a quadrilateral.
+  /// Replaces an edge by the other diagonal of its quadrilateral.
   void flip(std::uint64_t key, const Quad& quad) {
     for (const Index t : {quad.first, quad.second})
       for (unsigned k = 0; k < 3; ++k) {
@@ -292,8 +293,8 @@ class Ladders {
     }
   }
 
-  /// Where both diagonals of a cell are as good, chooses the one along one direction, so that those on
-  /// opposite walls do not cross.
+  /// Where both diagonals of a cell are equally good, chooses the one along the given direction, so that
+  /// diagonals on opposite walls do not cross.
   void choose_diagonals() {
     const std::vector<std::uint64_t> keys = keys_;
     for (const std::uint64_t key : keys) {
@@ -339,7 +340,7 @@ class Ladders {
   Index first_point_;  // the first point that was added
   std::vector<Triangle> triangles_;
   std::unordered_map<std::uint64_t, Edge> edges_;
-  std::vector<std::uint64_t> keys_;  // of all edges that there were, in order; some more than once
+  std::vector<std::uint64_t> keys_;  // of all edges, also of former ones, in order; some more than once
   std::vector<Rail> rails_;
   std::unordered_map<std::uint64_t, std::vector<Index>> chains_;  // by rail: its points
 };

@@ -22,7 +22,7 @@ class Obstacles {
 /// a facet stay.
 class LocalChanges {
  public:
-  /// Keeps references to both. Required edges are given by their keys.
+  /// Keeps references to both arguments. Required edges are given by their keys.
   LocalChanges(Tetrahedra& mesh, const std::unordered_set<std::uint64_t>& required)
       : mesh_(mesh), required_(required) {}
 
@@ -32,11 +32,12 @@ class LocalChanges {
   /// Replaces the two tetrahedra at a face by three at the edge that joins the corners beyond it.
   std::optional<int> remove_face(const Tetrahedra::Face& face, const Obstacles& obstacles);
   /// Triangulates the ring of an edge again, with the fewest obstacles. If every triangulation makes a
-  /// tetrahedron without positive volume, or too many more obstacles, removes edges around it first,
+  /// tetrahedron without positive volume, or adds more than `most` obstacles, removes edges around it first,
   /// recursively to this depth.
   std::optional<int> remove_edge(Index a, Index b, unsigned depth, const Obstacles& obstacles, int most);
 
-  /// Sets after how many more triangulated rings `remove_edge` stops removing other edges first.
+  /// Sets the number of further triangulated rings after which `remove_edge` no longer removes other edges
+  /// first.
   void set_budget(std::size_t rings) { budget_ = rings; }
 
   /// Inserts a point in or near some tetrahedra: replaces these, and as many neighbours as necessary, by

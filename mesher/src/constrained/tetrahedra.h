@@ -17,7 +17,7 @@ class Tetrahedra {
  public:
   using Corners = std::array<Index, 4>;
 
-  /// A face as seen from one of its tetrahedra: the face opposite a corner of it.
+  /// A face of a tetrahedron, given by the opposite corner.
   struct Face {
     Index tet = none;
     unsigned corner = 0;
@@ -62,7 +62,7 @@ class Tetrahedra {
   Index add_point(const Point& p);
   /// Removes the last point, which must not be a corner.
   void drop_point() { points_.pop_back(), tet_at_.pop_back(); }
-  /// Replaces tetrahedra by others that fill the same space. Their faces on its border stay.
+  /// Replaces tetrahedra by others that fill the same space. Faces on the border of that space stay.
   void replace(std::span<const Index> old, std::span<const Corners> created);
 
   /// Returns a mark. Changes after the mark can be undone in reverse order until `keep` is called.

@@ -46,7 +46,7 @@ Change Remedies::propose(Operations& operations, Index tet) const {
   for (const auto& [i, j] : cell_shapes::corner_pairs)
     if (!found()) operations.split_edge(corners[i], corners[j], enough * wanted_, change);
   if (found() || !rule_.is_blunt(quality(tet))) return change;
-  // For a flat tet, such as one between the pairs of a wall.
+  // Reconnection helps flat tets, such as those between two prisms of a thin wall.
   if (refill_) operations.reconnect(tet, change);
   if (found()) return change;
   // A longer edge is better than a missed guarantee, so any length is allowed here.

@@ -13,7 +13,8 @@ namespace collarmesh::remeshing::improvement {
 /// each with its own operations.
 class Remedies {
  public:
-  /// Keeps both by reference. `refill`: fill the space around flat tets again where nothing else helps.
+  /// Keeps references to the mesh and the rule. `refill`: fill the space around flat tets again where nothing
+  /// else helps.
   Remedies(const EditableMesh& edited, const SliverRule& rule, const ImproveOptions& options,
            bool refill = true);
 

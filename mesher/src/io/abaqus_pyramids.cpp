@@ -43,7 +43,7 @@ std::size_t HalvedPyramids::first_corner(Index pyramid) const {
   return static_cast<std::size_t>(std::min_element(corners.begin(), corners.begin() + 4) - corners.begin());
 }
 
-/// The nodes of a pyramid with the smallest corner of its base first.
+/// Returns the nodes of a pyramid with the smallest corner of its base first.
 CellNodes HalvedPyramids::turned(Index pyramid) const {
   const CellNodes nodes = nodes_of(CellKind::pyramid)(mesh_, pyramid);
   const std::size_t first = first_corner(pyramid);

@@ -77,7 +77,7 @@ class Lines {
   std::size_t at_ = 0, end_ = 0, line_ = 1;
 };
 
-/// "*ELEMENT, TYPE=C3D4": in lower case, blanks inside names kept.
+/// A keyword line such as "*ELEMENT, TYPE=C3D4": in lower case, with blanks inside names kept.
 struct Keyword {
   std::string name;
   std::map<std::string, std::string, std::less<>> parameters;

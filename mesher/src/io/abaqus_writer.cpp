@@ -63,7 +63,7 @@ bool is_volume(std::string_view name) {
   return name.starts_with(prefix) && parse(name.substr(prefix.size()), region);
 }
 
-/// Returns names that also differ from those of our own element sets.
+/// Returns names of regions that also differ from those of our own element sets.
 NamesByTag names_of_regions(const TetMesh& mesh) {
   DistinctNames known(std::string::npos);
   known.add(capital_word(abaqus_everything));
@@ -166,7 +166,7 @@ void write_elements_by_tag(FileWriter& out, const std::vector<Tag>& tags, const 
   std::map<Tag, std::vector<Index>> members;
   for (std::size_t i = 0; i < tags.size(); ++i) members[tags[i]].push_back(static_cast<Index>(i));
   for (const auto& [tag, with_tag] : members) {
-    const std::vector<Index>& elements = with_tag;  // as above
+    const std::vector<Index>& elements = with_tag;  // a lambda cannot capture a structured binding
     out << "*ELEMENT, TYPE=" << type << ", ELSET=" << names.at(tag) << '\n';
     write_each(out, elements.size(), [&](TextBuffer& text, std::size_t i) {
       text << elements[i] + 1;

@@ -45,7 +45,7 @@ void write_nblock(FileWriter& out, const TetMesh& mesh) {
 /// Ansys' elements for a kind of cells. Prisms and pyramids are hexahedra with coinciding nodes.
 struct AnsysType {
   CellKind kind;
-  int number;                           ///< by ET
+  int number;                           ///< number of the type, as ET sets it
   std::array<std::size_t, 2> nodes;     ///< by order
   std::array<std::uint8_t, 20> places;  ///< our node at each place
 };

@@ -45,14 +45,15 @@ class CellNodes {
   }
 
   void add(Index node) { nodes_[count_++] = node; }
-  /// Returns a cell whose k-th node is this one's node order[k]; unchanged if the order is of other cells.
+  /// Returns a cell whose k-th node is this cell's node order[k]; unchanged if the order has another length.
   CellNodes in_order(std::span<const std::uint8_t> order) const {
     if (order.size() != count_) return *this;
     CellNodes result;
     for (const std::uint8_t k : order) result.add(nodes_[k]);
     return result;
   }
-  /// Returns the cell whose node order[k] is this one's k-th node; unchanged if the order is of other cells.
+  /// Returns the cell whose node order[k] is this cell's k-th node; unchanged if the order has another
+  /// length.
   CellNodes from_order(std::span<const std::uint8_t> order) const {
     if (order.size() != count_) return *this;
     CellNodes result = *this;
@@ -232,7 +233,7 @@ inline void add_cell(CellKind kind, const CellNodes& nodes, TetMesh& mesh) {
   });
 }
 
-/// The nodes of a side of a cell, counterclockwise as seen from outside, mid-edge nodes after the corners.
+/// Returns the nodes of a side of a cell, counterclockwise from outside, mid-edge nodes after the corners.
 inline CellNodes nodes_of_side(CellKind kind, const CellNodes& cell, std::size_t side) {
   const CellShape shape = shape_of(kind);
   const auto& [corners, places] = shape.sides[side];

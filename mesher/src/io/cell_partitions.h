@@ -5,7 +5,7 @@
 #include "collarmesh/tet_mesh.h"
 
 /// The partitions of faces, edges and points of a partitioned mesh: each belongs to the lowest partition of
-/// the tets around it, or to the lowest of all without such a tet. Cost: linear.
+/// the tets around it or, if there are none, to the lowest of all. Cost: linear.
 namespace collarmesh::io {
 
 /// Partition numbers that are read must be below this: formats have 32 bits for them, and some count from 1.
@@ -13,7 +13,7 @@ constexpr Index most_partitions = 0x7fffffff;
 
 std::vector<Index> partitions_of_faces(const TetMesh& mesh);
 std::vector<Index> partitions_of_edges(const TetMesh& mesh);
-/// Returns the same for nodes, including mid-edge nodes.
+/// Returns the partitions of points, including mid-edge nodes.
 std::vector<Index> partitions_of_points(const TetMesh& mesh);
 
 /// Returns the numbers of the partitions that have tets, ascending.

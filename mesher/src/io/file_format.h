@@ -8,7 +8,7 @@ namespace collarmesh::io {
 /// Returns the given format, or else the extension of the path, in lower case with its dot.
 std::string format_of(const std::string& path, std::string_view format = {});
 
-/// Returns the entry of a table of formats, by their extensions, for a file; null if there is none.
+/// Returns the entry for a file in a table of formats by extension; null if there is none.
 template <class Formats>
 const typename Formats::value_type* find_format(const Formats& formats, const std::string& path,
                                                 std::string_view format) {

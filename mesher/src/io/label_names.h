@@ -15,11 +15,12 @@
 /// Names of groups of cells as formats write and read them.
 namespace collarmesh::io {
 
-/// Replace all characters but ASCII letters, digits and `-` by `_`; the second one also makes capitals.
+/// Replace all characters but ASCII letters, digits and `-` by `_`; the second function also turns letters
+/// into capitals.
 std::string word(std::string text);
 std::string capital_word(std::string text);
 
-/// Return the group's name with letters, digits, `_` and `-` only; the second one in capitals and with a
+/// Return the group's name with letters, digits, `_` and `-` only; the second function in capitals and with a
 /// letter in front, as Abaqus and Ansys require.
 std::string word_name(const TetMesh& mesh, std::size_t dimension, Tag tag);
 std::string capital_name(const TetMesh& mesh, std::size_t dimension, Tag tag);

@@ -18,7 +18,7 @@ namespace collarmesh::io {
 
 namespace {
 
-/// MFEM's number of a kind of cells.
+/// Returns MFEM's number of a kind of cells.
 constexpr int geometry_of(CellKind kind) {
   switch (kind) {
     case CellKind::tet: return 4;

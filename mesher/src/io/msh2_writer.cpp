@@ -42,7 +42,7 @@ MshPhysicals number_groups(const TetMesh& mesh) {
   return numbers;
 }
 
-/// Gmsh's elementary entities are the features, from 1; cells without a feature share one entity.
+/// Returns the number of a feature's elementary entity, from 1; cells without a feature share one entity.
 std::size_t entity(Index feature) {
   constexpr Index limit = std::numeric_limits<int>::max();
   return feature < limit ? std::size_t{feature} + 1 : 1;
@@ -83,7 +83,7 @@ void write_msh2(const std::string& path, const TetMesh& mesh) {
           << numbers[type.dimension()].at(tags_of(mesh, kind)[i]) << ' '
           << (type.dimension() == 3 ? std::size_t{feature} : entity(feature));
       if (partitioned)
-        out << " 1 " << partitions[type.dimension()][i] + 1;  // their number, then the partition
+        out << " 1 " << partitions[type.dimension()][i] + 1;  // the number of partitions, then the partition
       for (const Index v : nodes_of(kind)(mesh, i).in_order(type.node_order()))
         out << ' ' << std::size_t{v} + 1;
       out << '\n';

@@ -120,8 +120,8 @@ void assign_cells(const TetMesh& mesh, CellKind kind, EntityTable& table, std::v
   });
 }
 
-/// Assigns nodes to the entity of the last cell that has them. Of each cell of a kind, its nodes from number
-/// `from` on.
+/// Assigns the nodes of cells of a kind, in each cell those from number `from` on, to the entity of the last
+/// cell that has them.
 void place_nodes(const TetMesh& mesh, CellKind kind, std::size_t from, MshEntities& result) {
   const auto dimension = static_cast<std::uint8_t>(shape_of(kind).dimension);
   for (std::size_t i = 0; i < count_of(mesh, kind); ++i) {

@@ -105,7 +105,8 @@ class PairLinks {
 /// The masters of entities so far.
 class Masters {
  public:
-  /// Adds a link. Returns whether the entity had no master, and is not itself a master of that master.
+  /// Adds a link, unless the entity has a master already, or is itself a master of its new one. Returns
+  /// whether it was added.
   bool add(const MshLink& link) {
     std::map<int, int>& masters = of_[link.dimension];
     for (int at = link.master;;) {

@@ -41,7 +41,7 @@ struct Cell {
   Index partition = none;
 };
 
-/// A part of an entity, in one partition or between several, of which this keeps the first.
+/// A part of an entity, in one partition or between several, of which only the first is kept.
 struct PartitionEntity {
   std::size_t parent_dimension = 0;
   int parent = 0;

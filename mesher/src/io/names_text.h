@@ -12,7 +12,7 @@ namespace collarmesh::io {
 /// if there are no names.
 std::string names_text(const TetMesh& mesh);
 
-/// Gives a mesh the names in such a text. Ignores other lines.
+/// Gives a mesh the names in a text made by `names_text`. Ignores other lines.
 void take_names(std::string_view text, TetMesh& mesh);
 
 }  // namespace collarmesh::io

@@ -59,7 +59,8 @@ inline std::map<Tag, std::size_t> numbered_tags(const std::vector<Tag>& tags, st
   return numbers;
 }
 
-/// Returns the tags themselves if all are positive numbers of 32 bits, otherwise numbers as above.
+/// Returns the tags themselves if all are positive numbers of 32 bits, otherwise numbers from 1 in their
+/// order.
 inline std::map<Tag, std::size_t> positive_numbers(const std::vector<Tag>& tags) {
   std::map<Tag, std::size_t> numbers = numbered_tags(tags);
   if (std::all_of(numbers.begin(), numbers.end(), [](const auto& each) {

@@ -186,7 +186,7 @@ void write_list(const std::string& path, const VtkGrid& like, const std::vector<
   out.commit();
 }
 
-/// Writes the pieces. `told`: the partitions are the mesh's own, so they are written as an array.
+/// Writes the pieces. `told`: the partitions are also written as an array, because they are the mesh's own.
 void write_pieces(const std::string& path, const TetMesh& mesh, bool told, bool with_ghosts) {
   const std::vector<Index> numbers = partition_numbers(mesh), owners = partitions_of_points(mesh);
   std::vector<Members> members = members_by_partition(mesh, numbers, with_ghosts);

@@ -59,7 +59,8 @@ inline std::vector<SideOfCell> sides_of_faces(const TetMesh& mesh, CellKind kind
   return found;
 }
 
-/// Returns such sides of triangles and quadrangles by tag, without those of faces beside no cell.
+/// Returns the sides that `sides_of_faces` finds for triangles and quadrangles, by tag. Leaves out faces
+/// beside no cell.
 inline std::map<Tag, std::vector<SideOfCell>> sides_by_tag(const TetMesh& mesh) {
   std::map<Tag, std::vector<SideOfCell>> by_tag;
   for_each_kind(mesh, 2, [&](CellKind kind) {

@@ -56,7 +56,7 @@ class CellFile {
 std::int64_t read_nodes(const std::string& path, TetMesh& mesh) {
   const std::string text = read_bytes(path);
   TextScanner scan(path, text);
-  std::vector<Tag> markers;  // their meaning differs
+  std::vector<Tag> markers;  // not used, because their meaning differs between files
   return read_tetgen_nodes(scan, read_tetgen_node_header(scan), mesh.points, markers);
 }
 

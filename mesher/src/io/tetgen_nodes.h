@@ -19,7 +19,7 @@ TetgenNodeHeader read_tetgen_node_header(TextScanner& scan);
 /// Reads the flag that says whether lines end with a marker; false if it is missing.
 bool read_tetgen_marker_flag(TextScanner& scan);
 
-/// Returns the number of the first point, 0 or 1. Tags stay empty without markers.
+/// Reads points. Returns the number of the first point, 0 or 1. Tags stay empty without markers.
 std::int64_t read_tetgen_nodes(TextScanner& scan, const TetgenNodeHeader& header, std::vector<Point>& points,
                                std::vector<Tag>& tags);
 

@@ -21,7 +21,7 @@ Tag marker(TextScanner& scan, bool given) {
   return given && !scan.at_line_end() ? scan.integer("a boundary marker") : 0;
 }
 
-/// The points of a .poly file that declares none are in the .node file beside it.
+/// Reads the .node file beside a .poly file that declares no points.
 std::int64_t read_node_file(const std::string& poly_path, PolygonSoup& soup) {
   const std::string path = std::filesystem::path(poly_path).replace_extension(".node").string();
   const std::string text = read_bytes(path);

@@ -20,8 +20,8 @@ namespace {
 
 constexpr int names_to_try = 100;
 
-/// Flushes a file to the disk, before it gets its name, with the mode of the file that had it. Returns the
-/// system's error number, 0: none. File systems that cannot flush report one of these two errors.
+/// Gives a temporary file the mode of the file at `path`, if there is one, and flushes it to the disk.
+/// Returns the system's error number, 0: none. EINVAL and ENOTSUP mean that the file system cannot flush.
 int settle(const std::string& temporary, const std::string& path) {
   struct stat before = {};
   if (stat(path.c_str(), &before) == 0 && chmod(temporary.c_str(), before.st_mode & 07777) != 0) return errno;

@@ -13,8 +13,8 @@ namespace collarmesh::io {
 constexpr int unv_nodes = 2411, unv_elements = 2412, unv_groups = 2467;
 constexpr int unv_group_element = 8;
 
-/// The types of elements with their order of nodes: around the edges, mid-edge nodes in between. There are no
-/// pyramids; they are bricks whose upper nodes are one.
+/// The types of elements with their order of nodes: around the edges, mid-edge nodes in between. The format
+/// has no pyramids: they are written as bricks whose upper nodes are one.
 struct UnvType {
   int number;
   CellKind kind;
@@ -24,7 +24,7 @@ struct UnvType {
 
   constexpr std::span<const std::uint8_t> node_order() const { return {places.data(), nodes}; }
 };
-/// The first one of a kind and order is written.
+/// The first type of a kind and order is the one that is written.
 constexpr std::array<UnvType, 22> unv_types{
     {{111, CellKind::tet, 1, 4, {0, 1, 2, 3}},
      {118, CellKind::tet, 2, 10, {0, 4, 1, 5, 2, 6, 7, 8, 9, 3}},

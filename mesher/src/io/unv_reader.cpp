@@ -1,6 +1,7 @@
 // Reads the universal file format of I-DEAS (.unv): nodes (2411, 781), elements (2412, 780) and groups (2467
-// and its forerunners). Groups become tags: groups with names of ours the tags that these stand for, others
-// numbers in their order; without groups the materials become tags. Names other than patch_7 are kept.
+// and its forerunners). Groups become tags: a group with a name of ours becomes the tag that the name stands
+// for, others are numbered in their order. Without groups the materials become tags. Names other than patch_7
+// are kept.
 #include <fmt/format.h>
 
 #include <algorithm>

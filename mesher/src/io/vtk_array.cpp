@@ -74,7 +74,7 @@ std::uint64_t header_number(std::string_view header, std::size_t i, const VtkSto
                                    : value_at<std::uint32_t>(header, 4 * i, storage.order);
 }
 
-/// Decodes a number of bytes, then the bytes; some writers encode the number separately.
+/// Decodes the number of bytes, then the bytes themselves; some writers encode the number separately.
 std::string decode_plain(Stored& stored, const VtkStorage& storage) {
   const std::string header = stored.peek(storage.header_bytes);
   if (header.size() < storage.header_bytes)

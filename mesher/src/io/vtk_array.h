@@ -16,7 +16,7 @@ NumberType vtk_type(std::string_view name);
 
 enum class VtkCompression { none, zlib, lz4 };
 
-/// How the whole file stores arrays.
+/// The way in which a file stores its arrays.
 struct VtkStorage {
   std::endian order = std::endian::little;
   std::size_t header_bytes = 4;  ///< bytes of each number that describes blocks

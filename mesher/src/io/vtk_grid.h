@@ -17,8 +17,8 @@ namespace collarmesh::io {
 /// Returns VTK's number of a kind of cells.
 int vtk_type_of(CellKind kind, int order);
 
-/// Returns the nodes in VTK's order, or those of VTK in ours: in its wedges the normal of the first triangle
-/// points away from the second one.
+/// Converts nodes from our order to VTK's, or back: in VTK's wedges the normal of the first triangle points
+/// away from the second one.
 CellNodes in_vtk_order(CellKind kind, const CellNodes& nodes);
 
 struct VtkArray {
@@ -60,16 +60,16 @@ constexpr std::string_view vtk_point_ids = "GlobalPointIds", vtk_cell_ids = "Glo
 /// added, too.
 std::vector<VtkArray> take_boundary(const TetMesh& mesh, VtkGrid& grid);
 constexpr std::string_view vtk_boundary_prefix = "boundary_";
-/// The arrays that continue arrays of cells.
+/// The cell arrays that arrays of the boundary continue.
 constexpr std::array<std::string_view, 6> vtk_boundary_arrays{"tag",          "region",  "region_back",
                                                               "region_front", "feature", vtk_cell_ids};
 
 /// Data of the whole grid that has the names of groups, a byte for each character (names_text.h): VTK has
 /// arrays of strings, but not all readers do.
 constexpr std::string_view vtk_names = "names";
-/// Returns that array, or nothing if there are no names.
+/// Returns the array of names, or nothing if there are no names.
 std::vector<VtkArray> names_array(const TetMesh& mesh);
-/// Returns the text in such an array.
+/// Returns the text in an array of names.
 std::string names_of(const std::vector<std::int64_t>& bytes);
 
 /// Returns the name of the values' type in .vtu files: "Float64".
@@ -103,8 +103,8 @@ struct VtkPieceError {
   std::string message;
 };
 
-/// Adds a piece to a mesh. Cells of a point are skipped. Throws VtkPieceError. Precondition: arrays have one
-/// value for each point or cell.
+/// Adds a piece to a mesh. Cells of a single point are skipped. Throws VtkPieceError. Precondition: arrays
+/// have one value for each point or cell.
 void add_vtk_piece(const VtkPiece& piece, TetMesh& mesh);
 
 /// Completes a mesh after the last piece: drops arrays that only some pieces have. Throws ReadError.

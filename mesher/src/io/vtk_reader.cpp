@@ -161,7 +161,7 @@ class LegacyReader {
     wanted_ = wanted;
   }
 
-  /// Returns false if there is no attribute of that name.
+  /// Reads an attribute. Returns false if the name is of no attribute.
   bool read_attribute(const std::string& name) {
     if (name == "scalars")
       read_scalars();

@@ -24,8 +24,8 @@ constexpr unsigned rings_moved = 5, sweeps = 12;
 constexpr unsigned most_halvings = 6;
 // A move must leave each tet this share of its quality, or at least the quality `good_quality`.
 constexpr double quality_left = 0.2, good_quality = 0.15;
-// While the front moves, tets are improved to angles above the bound by this factor; at the end, as far as
-// the options ask.
+// While the front moves, tets are improved until their angles are this multiple of the bound; at the end, as
+// far as the options ask.
 constexpr double above_bound = 1.05;
 // Slow means of improvement are used if at most this many tets are poor.
 constexpr std::size_t most_of_few = 20;
@@ -302,7 +302,7 @@ std::vector<double> Core::shares_of(const std::vector<Vector>& moves, const std:
       moved.push_back(t);
   std::vector<std::uint8_t> spoilt(moved.size(), 0);
   std::vector<double> before(moved.size());
-  // In the last pass; tets without such vertices need no second look.
+  // Vertices whose share changed in the last pass; tets without such vertices need no second look.
   std::vector<bool> changed(mesh_.points.size(), true);
   for (unsigned pass = 0;; ++pass) {
     parallel_for_ranges(moved.size(), at_once, [&](std::size_t begin, std::size_t end) {
@@ -346,7 +346,7 @@ void Core::improve_tets(double angle, bool thoroughly) {
   improve_by(angle, thoroughly, any_ratio);
 }
 
-/// `ratio`: tets above this radius-edge ratio must keep their bounds on angles.
+/// Improves tets once. `ratio`: tets above this radius-edge ratio must keep their bounds on angles.
 void Core::improve_by(double angle, bool thoroughly, double ratio) {
   ImproveOptions options = options_;
   options.min_dihedral = std::min(angle, options.min_dihedral);

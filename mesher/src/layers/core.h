@@ -17,7 +17,7 @@ namespace collarmesh::layering {
 /// The tets outside the layers. Nodes at the front have copies, which move away from the wall.
 class Core {
  public:
-  /// Keeps all by reference, but copies the mesh.
+  /// Copies the mesh, and keeps references to the other arguments.
   Core(const TetMesh& mesh, const Plc& plc, const Front& front, const Heights& heights,
        const ImproveOptions& improvement, const Execution& execution);
 

@@ -3,9 +3,9 @@
 // Uses the method of Frank and Wolfe, in its variant that moves weight from the normal with the largest
 // cosine to the one with the smallest.
 //
-// Where walls meet sharply, uses Gilbert's algorithm, which only adds weight. After as many steps its result
-// is still nearer to the mean of the normals. There, layers become higher and cover more with it than with
-// the steepest direction.
+// Where walls meet sharply, uses Gilbert's algorithm, which only adds weight. After the same number of steps
+// its result is nearer to the mean of the normals. In such places, layers along it become higher and cover
+// more than layers along the steepest direction.
 #include "layers/direction.h"
 
 #include <algorithm>
@@ -70,7 +70,7 @@ Vector DirectionSearch::nearest_to_origin(const std::vector<Vector>& of) const {
   return nearest;
 }
 
-/// Returns a point of the hull near to that one, on the side of the mean of the normals.
+/// Returns a point of the hull near the one nearest to the origin, on the side of the mean of the normals.
 Vector DirectionSearch::nearest_from_mean() const {
   Vector nearest{};
   for (const Vector& n : walls_) nearest = nearest + in_plane(n) / static_cast<double>(walls_.size());

@@ -90,7 +90,7 @@ void Front::add_side(Index tet, unsigned corner) {
   WallSide side;
   side.face = at.faces[corner];
   side.tet = tet;
-  side.corners = {a, c, b};  // seen from outside they are counterclockwise
+  side.corners = {a, c, b};  // a, b, c are counterclockwise from outside
   side.patch = mesh_.face_patch[side.face];
   side.region = at.region;
   if (!walls_.has_layers(side.patch, side.region)) {
@@ -234,7 +234,7 @@ void Front::find_directions() {
     std::vector<Index> faces;
     for (const Index s : sides_at[n]) faces.push_back(sides[s].face);
     std::sort(faces.begin(), faces.end());
-    // A facet that ends at the node is met from both sides.
+    // A facet that ends at the node has both of its sides in the sector.
     if (std::adjacent_find(faces.begin(), faces.end()) != faces.end()) nodes[n].blocked = true;
     if (!nodes[n].blocked) find_direction(n, faces_at_[n], edges_of[n]);
   }

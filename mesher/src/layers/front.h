@@ -51,8 +51,8 @@ struct WallSide {
 struct FrontNode {
   Index vertex = none;
   Vector direction{};  ///< unit; into the sector
-  /// Least over all patches of the mean cosine, weighted by angles, between the direction and the normals of
-  /// a patch's sides.
+  /// The mean cosine, weighted by angles, between the direction and the normals of a patch's sides: the least
+  /// of all patches.
   double cosine = 0;
   double least_cosine = 0;  ///< the least cosine of all sides
   bool blocked = false;     ///< there can be no layer
@@ -63,7 +63,7 @@ struct FrontNode {
 /// The front that layers push inwards: its nodes and triangles, as they are at the wall.
 class Front {
  public:
-  /// Keeps all by reference. `complex` is that of the mesh.
+  /// Keeps references to all arguments. `complex` is that of the mesh.
   Front(const remeshing::TetComplex& complex, const Plc& plc, const WallChoice& walls);
 
   std::vector<WallSide> sides;
@@ -76,7 +76,7 @@ class Front {
   std::vector<bool> on_wall;   ///< by vertex of the mesh: whether it is a corner of a wall's triangle
   std::vector<Index> node_at;  ///< four per tet: the front's node at each corner, or none
 
-  /// Returns the front's node of a sector: that at a corner of a tet.
+  /// Returns the front's node at a corner of a tet.
   Index node_of(Index tet, unsigned corner) const { return node_at[4 * std::size_t{tet} + corner]; }
   /// Returns the unit normal of a side, pointing inwards.
   Vector normal(const WallSide& side) const;
@@ -99,7 +99,7 @@ class Front {
   void list_sides();
   void find_directions();
   void find_direction(Index node, std::span<const Index> sector_faces, std::span<const Index> sector_edges);
-  /// The mean of unit normals of sides of one patch at a node, by their angles there.
+  /// The mean of unit normals of sides of one patch at a node, weighted by their angles there.
   struct PatchNormal {
     Index patch;
     double angle;

@@ -18,7 +18,8 @@ std::string text_of(Cause cause);
 /// The distances by which a front's nodes are pushed along their directions.
 class Heights {
  public:
-  /// Sets the distances that are asked for, and 0 where there can be no layers. Keeps all by reference.
+  /// Sets the distances that are asked for, and 0 where there can be no layers. Keeps references to all
+  /// arguments.
   Heights(const Front& front, const TetMesh& mesh, const Plc& plc, const WallChoice& walls);
 
   std::size_t size() const { return length_.size(); }
@@ -42,7 +43,7 @@ class Heights {
     length_ = others.length_;
     cause_ = others.cause_;
   }
-  /// Lowers a distance to this one.
+  /// Lowers a node's distance to `to`.
   void lower(Index node, double to, Cause cause);
   /// Lowers distances in gaps: the stacks on both sides leave a part of each gap to the tets between.
   void fit_gaps();

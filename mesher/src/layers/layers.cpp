@@ -1,5 +1,5 @@
-// Boundary layers: the front of the wall's triangles is pushed into the tets, and the room behind it is
-// filled.
+// Boundary layers: the front of the wall's triangles is pushed into the tets, and the space behind it is
+// filled with cells.
 #include <algorithm>
 #include <chrono>
 #include <map>
@@ -21,10 +21,10 @@ namespace collarmesh {
 namespace layering {
 namespace {
 
-// Layers are made again at most this many times, without those at places where the last try failed. The last
-// tries also leave them out in ever wider rings around these places.
+// Layers are made again at most this many times, without those at places where the last try failed. After
+// `last_levels` tries, layers are also left out in ever wider rings around these places.
 constexpr unsigned most_tries = 9, last_levels = 4;
-// If a try fails with heights that hardly change the tets, this share of them is tried, then none.
+// If a try fails with heights that hardly change the tets, this share of the heights is tried, then none.
 constexpr double further_share = 0.25;
 // Number of times that layers are left out where curved cells fold, in ever wider rings. After that, edges of
 // walls get straighter.
@@ -46,7 +46,7 @@ class LayerMaker {
         complex_(mesh),
         front_(complex_, plc, walls_) {}
 
-  /// `second_order`: gets a report if the mesh has second order.
+  /// Makes the layers. `second_order`: gets a report if the mesh has second order.
   LayersReport run(SecondOrderReport& second_order) {
     if (make() == Outcome::cancelled) report_.cancelled = true;
     second_order = std::move(made_second_order_);

@@ -8,7 +8,7 @@ namespace collarmesh::layering {
 
 namespace {
 
-/// Returns the height of the layers up to this one, relative to all.
+/// Returns the height of the layers up to this one, relative to that of all layers.
 double share_below(const WallLayers& layers, unsigned layer) {
   WallLayers lower = layers;
   lower.count = layer;
@@ -100,7 +100,7 @@ void Stack::take_core() {
   mesh_.layers.tet_layer.assign(mesh_.tets.size(), 0);
 }
 
-/// Takes the faces and edges of walls from the mesh before, all others from the core.
+/// Takes the faces and edges of walls from the mesh without layers, all others from the core.
 void Stack::take_walls() {
   const auto take_face = [&](const TetMesh& from, std::size_t f, const std::array<Index, 3>& corners) {
     mesh_.faces.push_back(corners);
@@ -133,7 +133,7 @@ void Stack::fill(const WallSide& side) {
   const auto raised = static_cast<unsigned>(
       std::count_if(side.nodes.begin(), side.nodes.end(), [&](Index n) { return is_raised(n); }));
   if (raised == 0) return;
-  unsigned first = 0;  // the raised node if there is one, the low node if two are raised
+  unsigned first = 0;  // the raised node if only one is raised, the low node if two are
   while (is_raised(side.nodes[first]) != (raised == 1)) {
     if (raised == 3) break;
     ++first;
@@ -154,7 +154,7 @@ void Stack::fill(const WallSide& side) {
   }
 }
 
-/// `corners`: the last one lies above the first.
+/// Adds a tet of a layer. The last of the `corners` lies above the first.
 void Stack::add_tet(std::array<Index, 4> corners, const WallSide& side, unsigned layer) {
   mesh_.tets.push_back(corners);
   mesh_.tet_region.push_back(side.region);

@@ -11,11 +11,12 @@ namespace collarmesh::layering {
 /// Builds the mesh of a core and the layers between it and the walls.
 class Stack {
  public:
-  /// Keeps all by reference. `given`: the mesh before. `tets`: divides prisms and pyramids.
+  /// Keeps references to all arguments but `tets`. `given`: the mesh without layers. `tets`: whether to
+  /// divide prisms and pyramids into tets.
   Stack(const TetMesh& given, const Front& front, const Heights& heights, const Core& core, bool tets);
 
   TetMesh build();
-  /// Returns the places of that mesh's points.
+  /// Returns the places of the built mesh's points.
   const PlacesInLayers& places() const { return places_; }
 
  private:
@@ -45,7 +46,7 @@ class Stack {
   const Core& core_;
   bool tets_;
   TetMesh mesh_;
-  std::vector<Index> first_inner_;  // by node of the front: its node above the first layer; none
+  std::vector<Index> first_inner_;  // by node of the front: its node above the first layer, or none
   std::vector<Index> merged_;       // by vertex of the core: its number in the mesh
   PlacesInLayers places_;
   std::vector<Tag> tag_of_region_;

@@ -39,7 +39,7 @@ class WallChoice {
   std::vector<WallLayers> walls_;
   std::vector<std::string> only_in_;      // by wall: the region that the text names; empty: none
   std::vector<std::set<Index>> regions_;  // by wall: the regions that get its layers; empty: any
-  std::vector<Index> wall_of_;            // by patch: index of its layers; none
+  std::vector<Index> wall_of_;            // by patch: index of its layers, or none
 };
 
 /// Returns the height of all layers relative to the first one.

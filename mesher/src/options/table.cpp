@@ -209,7 +209,7 @@ std::vector<Option> quality_options() {
       {.name = "theta THETA",
        .place = in_mesh<&MeshOptions::theta>,
        .high = 0.449,
-       .help = "Insert a point of the input in place of a gap ball's centre within this share of the "
+       .help = "Instead of a gap ball's centre, insert a point of the input within this share of the "
                "ball's radius; 0: never",
        .commands = refining},
       {.name = "distance LENGTH",
@@ -314,7 +314,7 @@ std::vector<Option> split_options() {
       {.name = "interaction",
        .words = {"free", "tie", "contact"},
        .place = choice_at<&RunOptions::split, &SplitOptions::interaction>,
-       .help = "Join the sides of split patches in .inp by ties, or by contact pairs",
+       .help = "In .inp files, join the sides of split patches by ties or contact pairs",
        .details = "the job defines the contact pairs' interaction by the name CONTACT",
        .commands = Option::mesh},
       {.name = "cohesive",
@@ -327,8 +327,9 @@ std::vector<Option> layer_options() {
   return {
       {.name = "layers FACES",
        .place = at<&RunOptions::layers, &LayerOptions::walls>,
-       .help = "Put layers of prisms on these faces: names or numbers with commas between them, or all; with "
-               "heights behind: FACES:first=0.1,growth=1.2,count=3 or FACES:thickness=0.5,count=3",
+       .help =
+           "Put layers of prisms on these faces: names or numbers with commas between them, or all; "
+           "heights follow after a colon: FACES:first=0.1,growth=1.2,count=3 or FACES:thickness=0.5,count=3",
        .details = "the first height is a tenth of the edges there unless given; see "
                   "[Boundary layers](layers.md)"},
       {.name = "layers-tets",
@@ -341,7 +342,7 @@ std::vector<Option> periodic_options() {
            .place = at<&RunOptions::periodic, &PeriodicOptions::pairs>,
            .help = "Mesh two groups of planar patches alike: x, y or z, the low and the high end of the "
                    "shape; or A=B, "
-                   "names or numbers, with a motion behind: A=B:translation, A=B:rotation,z,90",
+                   "names or numbers, followed by a motion: A=B:translation, A=B:rotation,z,90",
            .details = "see [Periodic cells](periodic.md#pairs)"}};
 }
 
@@ -377,7 +378,9 @@ std::vector<Option> complex_options() {
        .place = at<&RunOptions::complex, &PlcOptions::box_margin>,
        .low = 0.01,
        .high = 1000,
-       .help = "Distance of that box from what is in it, relative to the largest side of its bounding box",
+       .help =
+           "Distance of that box from the shape inside, relative to the largest side of the shape's bounding "
+           "box",
        .commands = refining | Option::check | Option::info},
       {.name = "feature-angle DEGREES",
        .place = at<&RunOptions::complex, &PlcOptions::feature_angle>,
@@ -419,8 +422,8 @@ std::vector<Option> complex_options() {
        .high = 0.1,
        .help =
            "Collapse curves, narrow patches and sharp tips of patches that are smaller than this share of "
-           "the target size and have no name, size or group, and walls and gaps as thin that cannot be "
-           "meshed otherwise; 0: keep all",
+           "the target size and have no name, size or group, and equally thin walls and gaps that cannot "
+           "be meshed otherwise; 0: keep all",
        .details = "see [Features to the size](repair.md#features-to-the-size)",
        .commands = refining | Option::check},
       {.name = "wrap-offset T",
@@ -488,7 +491,8 @@ std::vector<Option> run_options() {
        .place = at<&RunOptions::scale>,
        .low = 1e-100,
        .high = 1e100,
-       .help = "Coordinates are multiplied by this when they are written: 0.001 makes metres of millimetres"},
+       .help =
+           "Coordinates are multiplied by this when they are written: 0.001 converts millimetres to metres"},
       {.name = "scale FACTOR",
        .place = at<&RunOptions::scale>,
        .low = 1e-100,
@@ -512,7 +516,7 @@ std::vector<Option> run_options() {
        .words = {"auto", "json", "none"},
        .place = choice_at<&RunOptions::progress>,
        .help = "auto: a bar on a terminal; json: one object a line; none: no progress",
-       .details = "with `json`, `info` tells each prediction as soon as it is made",
+       .details = "with `json`, `info` reports each prediction as soon as it is made",
        .commands = writing | Option::info},
       {.name = "verbose",
        .letter = 'v',

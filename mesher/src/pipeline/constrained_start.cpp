@@ -76,8 +76,8 @@ Plc divided_strips(const MeshJob& job, double size, const Vector& diagonals) {
   return with_ladders(*job.plc, size, may_move, diagonals);
 }
 
-/// Makes, improves and coarsens tetrahedra between the rungs of strips. Returns the number of those that miss
-/// their bounds; all of them if there are many before they are coarsened.
+/// Makes, improves and coarsens tetrahedra between the rungs of strips. Returns the number of tets that miss
+/// their bounds. If many do before coarsening, gives up and returns the number of all tets.
 std::size_t fill_ladders(MeshJob& job, const Plc& divided) {
   constexpr std::size_t tets_per_poor_before = 30;
   fill(job, divided);

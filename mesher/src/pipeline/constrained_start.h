@@ -20,7 +20,7 @@ bool keeps_lengths(const TetMesh& mesh, double size);
 /// is asked of distances and shapes.
 bool may_have_rods(const MeshJob& job);
 
-/// Makes a mesh of rings around rods, if all bodies of the complex are thin rods. Returns whether they are,
+/// Makes a mesh of rings around rods, if all bodies of the complex are thin rods. Returns whether all are,
 /// and all tets keep the bounds on their shapes. Throws Ended.
 bool fill_rods(MeshJob& job);
 

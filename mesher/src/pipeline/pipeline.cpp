@@ -33,7 +33,7 @@ class ThreadCounter {
     try {
       thread_ = std::jthread([] { usable_threads(); });
     } catch (const std::system_error&) {
-      // The first user of threads then determines their number.
+      // Without this thread, the first user of threads determines their number.
     }
   }
 
@@ -44,7 +44,7 @@ class ThreadCounter {
 /// A source of complexes built from facets.
 class SoupSource : public ComplexSource {
  public:
-  /// Keeps both by reference.
+  /// Keeps references to both arguments.
   SoupSource(std::span<const PolygonSoup> soups, const PlcOptions& options)
       : soups_(soups), options_(options) {}
 
@@ -93,14 +93,14 @@ void divide(MeshJob& job) {
   job.control.stop_if_asked();
 }
 
-/// Gives both sides of the patches to be split separate nodes, and checks that. The mesh was certified before
-/// the split.
+/// Gives both sides of the patches to be split separate nodes, and checks the result. The mesh was certified
+/// before the split.
 void split_patches(MeshJob& job) {
   if (!job.given.split.any()) return;
   job.control.begin("split", 0.98, 1);
   TetMesh& mesh = job.made.result.mesh;
   const checks::SplitMeasures before = checks::measure_before_split(mesh);
-  if (job.exact()) mesh.group_names = GroupNames::cad;  // so that the sides get such names
+  if (job.exact()) mesh.group_names = GroupNames::cad;  // so that the sides get names like CAD faces
   job.made.split = split(mesh, job.options.split);
   checks::check_split(mesh, job.made.split->interfaces.sides, before, job.made.check);
   job.control.stop_if_asked();

@@ -25,7 +25,7 @@ namespace collarmesh::pipeline {
 
 namespace {
 
-/// Sets the size to which features are compared, and the tags of those with a size. No feature is collapsed
+/// Sets the size with which features are compared, and the tags of those with a size. No feature is collapsed
 /// where sizes depend on the place.
 void find_feature_size(const MeshOptions& mesh, RepairOptions& repair) {
   if (mesh.size_field) return;
@@ -112,7 +112,7 @@ void Tries::mesh_any_repaired(SoupPipelineResult& all) {
   if (end == End::holds) return;
   bool has_mesh = end == End::missed, built_last = true;
   std::optional<Point> place;
-  // If places far thinner than the sizes spoil the mesh, changes there may help anywhere.
+  // If places far thinner than the sizes spoil the mesh, a change at any of them may help.
   if (!made.check.findings.empty() && !maker_.was_far_too_fine()) place = made.check.findings.front().where;
   for (const RepairOptions& repair : repairs_after(end, all)) {
     SoupPipelineResult other;
@@ -161,7 +161,7 @@ void Tries::mesh_any_repaired(SoupPipelineResult& all) {
 /// would hardly end, the larger tolerance leaves none nearly as sharp, and nothing is lost. Sets the repair
 /// that is used, and returns a note of it.
 std::string Tries::repair_sharp_creases(RepairOptions& repair, SoupPipelineResult& all) {
-  // In degrees, and the factor by which a larger tolerance must enlarge the smallest angle.
+  // An angle in degrees, and the factor by which a larger tolerance must enlarge the smallest angle.
   constexpr double too_sharp = 0.1, blunter = 3;
   if (!all.repair.repaired || all.repair.wrapped) return {};
   const std::vector<Crease> creases = find_creases(all.plc, too_sharp);
@@ -219,7 +219,7 @@ bool Tries::may_overlay() const {
 }
 
 /// Repairs the input with a larger tolerance, up to the feature size, so that opposite sides of thin walls
-/// and gaps become one. Returns whether the mesh of that keeps every guarantee and loses no part; otherwise
+/// and gaps become one. Returns whether the resulting mesh keeps every guarantee and loses no part; otherwise
 /// restores everything. `most`: the number of vertices that the sizes ask for.
 bool Tries::overlay_thin_features(RepairOptions& repair, SoupPipelineResult& all, std::size_t most) {
   const double diagonal = all.plc.bounds.diagonal(), size = smallest_size(job_.given.mesh, diagonal),
@@ -417,10 +417,10 @@ bool Tries::may_keep_volumes() const {
          job_.made.result.mesh.tets.size() <= most_tets;
 }
 
-/// Makes the mesh again, nearer to the surfaces of regions whose volumes call for a warning. What chords take
-/// from one side of a wall and add on the other cancels only in part, which no estimate from the complex
-/// tells beforehand. Keeps the mesh with the better volumes. The mesh at hand is never lost to a limit of
-/// time, as half of the time that is left remains.
+/// Makes the mesh again, nearer to the surfaces of regions whose volumes call for a warning. The volumes that
+/// chords take from one side of a wall and add on the other cancel only in part; no estimate from the complex
+/// predicts by how much. Keeps the mesh with the better volumes. Each attempt gets half of the remaining
+/// time, so that a time limit cannot lose the mesh at hand.
 void Tries::keep_volumes(const Plc& plc) {
   constexpr unsigned rounds = 2;
   constexpr double share_of_time = 0.5;

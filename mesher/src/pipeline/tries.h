@@ -68,7 +68,7 @@ class Tries {
   MeshMaker maker_;
   std::size_t most_asked_for_ = 0;  // number of vertices above which a refinement counted as too fine
   bool has_exploded_ = false;
-  // What made the kept mesh.
+  // The seed and the treatment of narrow cells that made the kept mesh.
   std::uint64_t seed_;
   NarrowCells narrow_cells_ = NarrowCells::bounded_if_cheap;
 };

@@ -85,7 +85,7 @@ SolidAngles solid_angles(const Plc& plc) {
       if (const auto wheel = wheels.find(edge(triangle.points[i], triangle.points[(i + 1) % 3]));
           wheel != wheels.end())
         wheel->second.add(triangle);
-  std::vector<std::pair<double, int>> wedges;  // at the ends of curves: the sum of angles and their number
+  std::vector<std::pair<double, int>> wedges;  // by curve: the sum of angles, and the number of wedges
   for (const Plc::Curve& curve : plc.curves) {
     const auto wheel = wheels.find(middle_segment(curve));
     wedges.push_back(curve.patches.empty() || wheel == wheels.end() ? std::pair{full_circle, 1}

@@ -23,7 +23,7 @@ void Operations::insert_in_cavity(Index tet, double least, Change& change) {
   }
 }
 
-// Extends the cavity by the tet behind the worst new one, as long as that improves the worst one.
+// Extends the cavity by the tet behind the worst new tet, as long as that improves the worst new tet.
 void Operations::grow_and_insert(std::vector<Index> cavity, double least, Change& change) {
   if (!find_cone_of_cavity(cavity)) return;
   auto [place, quality] = best_place(centre_of_hull(), none, everywhere, -1);

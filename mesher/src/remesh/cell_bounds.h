@@ -35,7 +35,7 @@ inline constexpr Index inserted_on_surface = none - 1;
 
 /// The bounds of a coarsened mesh that depend on the place: the largest dihedral angle of cells that touch a
 /// crease and, if a radius-edge bound holds away from creases and narrow places, these places. Other rules
-/// contain the bounds of thin tets and the bound itself.
+/// contain the bounds of thin tets and the radius-edge bound itself.
 class CellBounds {
  public:
   /// Factor on the quality of a tet that `allow` forbids, so that other tets in its place are better.

@@ -16,7 +16,7 @@ namespace collarmesh::remeshing {
 /// work anyhow, need not raise the smallest quality. Each thread has its own object.
 class Operations {
  public:
-  /// Keeps both by reference.
+  /// Keeps references to both arguments.
   Operations(const EditableMesh& edited, const ShapeRule& rule)
       : edited_(edited),
         complex_(edited.complex),
@@ -45,7 +45,7 @@ class Operations {
   /// Inserts a vertex on an edge inside a region or a patch, at the best place, if the tets around it are all
   /// better than `least`.
   void split_edge(Index a, Index b, double least, Change& change);
-  /// Inserts a vertex on such an edge even if the tets at it are better now.
+  /// Does the same even if the tets at the edge are better now.
   void split_edge_anyhow(Index a, Index b, double least, Change& change);
   /// Inserts a vertex inside a region. Removes a tet or all tets at one of its edges, and as many around them
   /// as make the worst new tet better, and fills the cavity from the vertex. Does so only if all new tets are
@@ -87,7 +87,7 @@ class Operations {
     Index patch;  ///< the patch, planar or smooth, or none
   };
   static constexpr Freedom everywhere{{Vector{1, 0, 0}, Vector{0, 1, 0}, Vector{0, 0, 1}}, 3, none};
-  /// A cavity seen from an apex, a present or a future vertex: each of its tets and mesh faces joins the apex
+  /// A cavity and its apex, a present or a future vertex: each tet and mesh face of the cavity joins the apex
   /// to a part of its border.
   struct Cone {
     std::vector<Index> tets;

@@ -14,7 +14,7 @@ namespace collarmesh::remeshing {
 /// or if the tet must not be made, for example because its volume is negative.
 using FillingQuality = std::function<double(const std::array<Index, 4>&, double)>;
 
-/// Fills a polyhedron with tets between its vertices, so that the worst is as good as possible (small
+/// Fills a polyhedron with tets between its vertices, so that the worst tet is as good as possible (small
 /// polyhedron reconnection: Liu, Chen, Sun 2007). `hull` has its triangles, each oriented so that it makes a
 /// positive tet with a point above it inside the polyhedron. The tets have positive volumes, and all their
 /// faces that are not in the hull cancel; so they cover every point inside exactly once, and no point

@@ -121,7 +121,7 @@ class SmoothSurfaces {
   double accepted_ratio_ = 0;
   bool on_trial_ = false;
   UndoLog<std::vector<Index>> old_first_samples_{first_sample_};
-  std::vector<std::pair<Index*, Index>> old_links_;  // entries of next_sample and what they were
+  std::vector<std::pair<Index*, Index>> old_links_;  // entries of next_sample, with their former values
 };
 
 }  // namespace collarmesh::remeshing

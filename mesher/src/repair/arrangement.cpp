@@ -60,7 +60,7 @@ struct Cuts {
   std::vector<std::array<ExactPoint, 2>> segments;
 };
 
-// One round of cutting: cuts intersecting pairs exactly, then rounds.
+// One round of cutting: cuts intersecting pairs exactly, then rounds the new points.
 class Cutter {
  public:
   Cutter(Draft& draft, const EdgeTable& edges, std::span<const Simplex> simplices)
@@ -159,7 +159,7 @@ class Cutter {
     return true;
   }
 
-  // Adds the cuts of two triangles in one plane: the sides of each cut the other one.
+  // Adds the cuts of two triangles in one plane: each is cut by the sides of the other.
   bool add_coplanar(const facets::Corners& s, Index i, const facets::Corners& t, Index j) {
     const auto at = [&](Index p) -> const Point& { return draft_.points[p]; };
     for (const Index p : t)
@@ -185,7 +185,7 @@ class Cutter {
       return planar_orientation(axis, draft_.points[p], draft_.points[q], draft_.points[r]);
     };
     const int inwards = turn(t[0], t[1], t[2]);
-    std::array<std::array<int, 3>, 2> within{};  // by end and side of the triangle
+    std::array<std::array<int, 3>, 2> within{};  // by end and side of the triangle; > 0: on the inner side
     for (unsigned end = 0; end < 2; ++end)
       for (unsigned k = 0; k < 3; ++k) within[end][k] = inwards * turn(t[k], t[(k + 1) % 3], e[end]);
     bool along = false;

@@ -21,20 +21,18 @@ struct ArrangementReport {
 /// Which merges of near corners are kept.
 enum class KeptMerges {
   all,                 ///< all merges, unless rounds of cutting do not end with them
-  where_nothing_meets  ///< only merges at places whose facets then meet nothing
+  where_nothing_meets  ///< only merges after which no facets intersect at their place
 };
 
 /// Cuts the triangles and segments of a draft along their intersections until they only meet in common
-/// corners and edges. Points are constructed exactly, then rounded.
-/// Corners that come within `grain` (absolute) of other corners or edges are merged with them, unless that
-/// undoes the cuts; intersections that this causes are cut in further rounds. Merges that undid cuts are
-/// tried once more at the end, and undone if they undo cuts again.
-/// Triangles that cover each other become copies of one triangle: all copies stay, because their orientations
-/// tell what is inside; copies that come from triangles close to each other cancel, unless `cancel_twins` is
-/// false.
-/// Throws WorkStopped; the draft is then unusable. Pieces keep their triangle's origin, except
-/// `Origin::facet`, which is renumbered. Cost: O(n log n), and for k intersecting pairs O(k log k) exact
-/// constructions.
+/// corners and edges. Points are constructed exactly, then rounded. Corners that come within `grain`
+/// (absolute) of other corners or edges are merged with them, unless the merge undoes cuts; intersections
+/// that merges cause are cut in further rounds. Merges that undid cuts are tried once more at the end, and
+/// undone if they undo cuts again. Triangles that cover each other become copies of one triangle: copies
+/// stay, because their orientations tell what is inside. Only opposite copies that merging makes cancel,
+/// unless `cancel_twins` is false. Throws WorkStopped; the draft is then unusable. Pieces keep their
+/// triangle's origin, except `Origin::facet`, which is renumbered. Cost: O(n log n), and for k intersecting
+/// pairs O(k log k) exact constructions.
 ArrangementReport arrange(facets::Draft& draft, double grain, Work* work = nullptr, bool cancel_twins = true,
                           KeptMerges kept = KeptMerges::all);
 

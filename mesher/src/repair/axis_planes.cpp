@@ -64,7 +64,8 @@ class AxisFlattener {
     return thin;
   }
 
-  // Points that have moved stay, so that none moves by more than the tolerance.
+  // Moves facets onto one plane. Points that have moved before stay, so that none moves by more than the
+  // tolerance.
   void move(std::span<const FlatFacet> facets, std::vector<bool>& stays) {
     const double plane = plane_of(facets);
     for (const FlatFacet& facet : facets)
@@ -79,7 +80,7 @@ class AxisFlattener {
       }
   }
 
-  // Returns the coordinate that has the largest area.
+  // Returns the coordinate at which the facets have the largest area.
   double plane_of(std::span<const FlatFacet> facets) const {
     std::map<double, double> area;
     for (const FlatFacet& facet : facets)

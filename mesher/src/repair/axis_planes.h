@@ -16,10 +16,10 @@ struct FlattenReport {
 
 /// Moves facets that are perpendicular to a coordinate axis, and nearer to each other than `tolerance`
 /// (absolute) along it, onto one plane: the one that most of their area lies on. Sheets that nearly coincide
-/// meet in ever more places when their cuts are rounded; on such planes, rounding moves nothing off the
-/// plane, so they are cut exactly. Facets count as perpendicular if they are flat within 1e-7 of the
-/// diagonal. Points that the input gives as vertices stay, and so do soups that are thinner than the
-/// tolerance. Cost: O(n log n).
+/// meet in ever more places when their cuts are rounded; rounding moves nothing off an axis plane, so sheets
+/// there are cut exactly. Facets count as perpendicular if they are flat within 1e-7 of the diagonal. Points
+/// that the input gives as vertices stay, and so do soups that are thinner than the tolerance. Cost: O(n log
+/// n).
 FlattenReport flatten_axis_planes(facets::Draft& draft, double tolerance);
 
 }  // namespace collarmesh::repairing

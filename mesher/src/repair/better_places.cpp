@@ -13,8 +13,8 @@ namespace {
 
 using namespace facets;
 
-// Returns the cost of each place (connected changed triangles, see `Changes`): the sum over the troubles that
-// are nearest to it.
+// Returns for each place (connected changed triangles, see `Changes`) the sum of the costs of the troubles to
+// which it is the nearest place, within `reach`.
 std::vector<double> costs(const Draft& draft, const std::vector<Index>& place_of, Index places,
                           const std::vector<Trouble>& troubles, double reach) {
   std::vector<double> cost(places, 0);

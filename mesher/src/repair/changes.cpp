@@ -51,8 +51,8 @@ bool in_order(const Segment& s, const Segment& t) {
   return key(s) < key(t);
 }
 
-// Returns the places whose triangles meet others. Triangles outside of all places are not compared with each
-// other.
+// Returns the places whose triangles meet other triangles. Triangles outside of all places are not compared
+// with each other.
 std::vector<Index> places_that_meet(Draft draft, const std::vector<Index>& place) {
   for (Index t = 0; t < draft.origins.size(); ++t) draft.origins[t].facet = t;
   const EdgeTable edges(draft.triangles, draft.points.size());
@@ -140,8 +140,8 @@ Draft Changes::without(const std::vector<bool>& taken_back, std::vector<Index>& 
   return mixed;
 }
 
-// Combines the segments of both states: a segment in one state only belongs to the place of the triangles at
-// it.
+// Combines the segments of both states: a segment that only one state has belongs to the place of the
+// triangles at it.
 void Changes::mix_segments(const std::vector<bool>& taken_back, Draft& mixed) const {
   std::vector<Segment> before = before_.segments, after = after_.segments;
   std::sort(before.begin(), before.end(), in_order);

@@ -10,8 +10,8 @@ namespace collarmesh::repairing {
 /// connected by edges. If the changes at a place are undone, surfaces stay closed, but facets may intersect.
 class Changes {
  public:
-  /// Keeps both by reference. Precondition: the later state has the points of the earlier one, with the same
-  /// numbers. Cost: O(n log n).
+  /// Keeps references to both arguments. Precondition: the later state has the points of the earlier one,
+  /// with the same numbers. Cost: O(n log n).
   Changes(const facets::Draft& before, const facets::Draft& after);
 
   Index places() const { return places_; }
@@ -37,9 +37,9 @@ class Changes {
   Index places_ = 0;
 };
 
-/// Returns the later state without the changes at the places in `taken_back` and at all others whose facets
-/// would meet other facets outside of common edges and corners; adds these places to `taken_back`. Facets
-/// that meet in the earlier state may remain. Cost: O(n log n) for each of at most a few rounds.
+/// Returns the later state without the changes at the places in `taken_back` and at all other places whose
+/// facets would meet other facets outside of common edges and corners; adds these places to `taken_back`.
+/// Facets that meet in the earlier state may remain. Cost: O(n log n) for each of at most a few rounds.
 facets::Draft without_what_meets(const Changes& changes, std::vector<bool>& taken_back);
 
 }  // namespace collarmesh::repairing

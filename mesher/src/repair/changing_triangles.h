@@ -21,14 +21,14 @@ namespace collarmesh::repairing {
 /// triangles.
 class ChangingTriangles {
  public:
-  /// Makes the lists. Two triangles are near each other if their boxes meet, along the axes of a frame and
-  /// enlarged by half of `reach` (absolute) on all sides, and if each comes within `reach` of the plane of
-  /// the other. Spends the pairs of boxes that meet from `work`.
+  /// Makes the lists of sides. Two triangles are near each other if each comes within `reach` (absolute) of
+  /// the plane of the other, and if their boxes meet: along the axes of a frame, enlarged by half of `reach`
+  /// on all sides. Spends the pairs of boxes that meet from `work`.
   ChangingTriangles(facets::Draft& draft, double reach, Work& work);
 
   /// Returns the number of triangles.
   std::size_t count() const { return count_; }
-  /// Returns one more than the largest number.
+  /// Returns one more than the largest number of a triangle.
   Index end() const { return static_cast<Index>(draft_.triangles.size()); }
   bool alive(Index triangle) const { return alive_[triangle]; }
 
@@ -44,7 +44,7 @@ class ChangingTriangles {
       for (Index side = first_[point]; side != none; side = next_[side]) visit(side);
   }
   bool uses(Index point) const { return point < first_.size() && first_[point] != none; }
-  /// Returns the corner of a triangle at which the fewest triangles are.
+  /// Returns the corner of a triangle that belongs to the fewest triangles.
   Index least_busy(const facets::Corners& corners) const;
   /// Returns the sides on an edge, in order.
   std::vector<Index> sides(const Edge& edge) const;
@@ -88,8 +88,8 @@ class ChangingTriangles {
 
   /// Calls visit(p, edge) for each corner p and each edge without it whose boxes meet, enlarged by half of
   /// `reach` on all sides, if a changed triangle has the corner or the edge; some pairs are visited several
-  /// times. Corners and edges may no longer exist. Spends these pairs. Cost: as above, regardless of the
-  /// number of triangles at a corner.
+  /// times. Corners and edges may no longer exist. Spends these pairs from `work`. Cost: as above, regardless
+  /// of the number of triangles at a corner.
   template <class Visit>
   void for_each_corner_near_edge(const std::vector<Index>& changed, const Visit& visit) {
     const std::vector<Index> corners = corners_of(changed);
@@ -130,7 +130,7 @@ class ChangingTriangles {
 
  private:
   static constexpr std::size_t few = 8;  // while at most one triangle in eight has changed,
-                                         // each changed one is looked up alone
+                                         // changed ones are looked up one by one
 
   // Returns existing triangles from this number on.
   std::vector<Index> triangles_from(Index first) const;
@@ -157,7 +157,7 @@ class ChangingTriangles {
   std::size_t count_ = 0;
   std::vector<bool> alive_;
   std::vector<Vector> normals_;
-  // By point, by side and by side: doubly linked list of the sides that start at a point.
+  // Doubly linked lists of the sides that start at a point: `first_` by point, the others by side.
   std::vector<Index> first_, next_, previous_;
   std::vector<Index> degree_;  // by point: length of the list
   ItemTrees<Index> trees_, corner_trees_;

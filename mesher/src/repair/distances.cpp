@@ -74,8 +74,8 @@ double diagonal_of(std::span<const CornerPoints> triangles) {
 }
 
 /// Finds the sample outside of a surface that is farthest from it. Winding numbers cost far more than
-/// distances, so they are only computed for the farthest of many samples, and not for those nearer to a
-/// sample inside than the surface is.
+/// distances, so they are only computed for the farthest of many samples. A sample inside has a ball around
+/// it, up to the surface, in which all other samples are inside, too.
 class FarthestOutside {
  public:
   explicit FarthestOutside(const WindingNumber& winding) : winding_(winding) {}
@@ -89,7 +89,7 @@ class FarthestOutside {
     if (waiting_.size() == most) finish();
   }
 
-  /// Looks at the samples added since the last time.
+  /// Examines the samples added since the last call.
   void finish() {
     constexpr double half = 0.5;
     std::ranges::stable_sort(waiting_, std::ranges::greater(), &Sample::distance);

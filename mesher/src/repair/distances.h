@@ -26,7 +26,7 @@ RepairDistances measure_distances(std::span<const CornerPoints> input, std::span
                                   std::span<const CornerPoints> filled);
 
 /// The volume that the input encloses, and the part of it that a repaired surface no longer encloses, by
-/// winding numbers at places all over the box.
+/// winding numbers at places all over its bounding box.
 struct KeptVolume {
   double input = 0;  ///< absolute; 0 unless most winding numbers are nearly integers, because otherwise the
                      ///< surface is not closed

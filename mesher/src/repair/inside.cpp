@@ -216,7 +216,8 @@ class BoundaryKeeper {
 
   // Removes open sheets: patches at edges where the soup is open. Such a patch bounds nothing if the winding
   // number there, without the patch, is that of a single place and not the mean of inside and outside. Starts
-  // with the smallest patch: half a box with a wall inside stays closed without the other half, too.
+  // with the smallest patch: if a box has a wall inside, half of the box could be removed instead, because
+  // the wall closes the other half.
   void remove_open_sheets(Index soup, std::vector<int>& weights) {
     constexpr std::size_t most = 100;
     for (std::size_t count = 0; count < most; ++count) {

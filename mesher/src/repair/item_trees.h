@@ -35,7 +35,7 @@ class ItemTrees {
       late_ = Tree();
   }
 
-  /// Calls visit(item) for items whose boxes meet this one.
+  /// Calls visit(item) for the items whose boxes meet the given box.
   template <class Visit>
   void for_each_meeting(const Box& box, const Visit& visit) const {
     for (const Tree* part : {&all_, &late_})

@@ -20,9 +20,9 @@ struct PolygonCuts {
   std::vector<Edge> edges;    ///< edges between any of these points
 };
 
-/// Returns the constrained Delaunay triangulation of a nearly planar polygon, as seen along `normal`, with
-/// the points and edges inside it. The triangles are oriented like the polygon. Returns nothing if points
-/// coincide or edges cross in this projection.
+/// Returns the constrained Delaunay triangulation of a nearly planar polygon, in the projection along
+/// `normal`, with the points and edges inside it. The triangles are oriented like the polygon. Returns
+/// nothing if points coincide or edges cross there.
 std::optional<std::vector<facets::Corners>> cut_polygon(const std::vector<Point>& points,
                                                         const Vector& normal, const PolygonCuts& cuts);
 

@@ -79,7 +79,7 @@ struct LostVolume : PlcError {
 
 class Repairer {
  public:
-  /// Kind of input to repair. Solids: fills holes, and drops parts that enclose nothing. Sheets: keeps
+  /// Kind of input. In solids, repair fills holes and drops parts that enclose nothing; in sheets, it keeps
   /// everything, including open borders, and cuts intersections.
   enum class Of { solids, sheets };
 
@@ -243,7 +243,7 @@ class Repairer {
       orient_components(draft_, edges, one_sided);
       report_.filled = fill_holes(draft_, next_tag(), &work_);
     }
-    if (!is_two_sided(draft_)) {  // if it is two-sided, only the faces may seem closed, as two sides of an
+    if (!is_two_sided(draft_)) {  // in a two-sided draft, what seems closed may be the two sides of an
                                   // open surface
       const FlakeReport flakes = drop_flakes(draft_, tolerance_);
       add_places(report_.flakes, flakes.places.size(), flakes.volume, flakes.places);
@@ -448,8 +448,8 @@ class Repairer {
   RepairReport report_;
 };
 
-// Returns the options for one try of `build_repaired_plc`. If the soups can be wrapped in the end, earlier
-// tries get less work.
+// Returns the options for one try of `build_repaired_plc`. If wrapping is the last resort, each earlier try
+// gets less work.
 RepairOptions for_try(RepairOptions options, double factor) {
   constexpr std::size_t share_of_work = 4;
   options.tolerance *= factor;
@@ -471,7 +471,7 @@ RepairedPlc with_lost_regions(RepairedPlc complex, std::span<const PolygonSoup> 
   return complex;
 }
 
-// Returns warnings of lines that are no curves of the complex, in soups without facets.
+// Returns warnings about the lines of soups without facets that are no curves of the complex.
 std::vector<Plc::Warning> lost_lines(std::span<const PolygonSoup> soups, const Plc& plc) {
   std::map<Tag, Point> lost;
   for (const PolygonSoup& soup : soups)
@@ -566,7 +566,8 @@ std::vector<double> sorted_volumes(const Plc& plc) {
   return volumes;
 }
 
-// Throws PlcError unless both have the same regions, with nearly the same volumes, and the same groups.
+// Throws PlcError unless both complexes have the same regions, with nearly the same volumes, and the same
+// groups.
 void require_same_parts(const RepairedPlc& before, const RepairedPlc& after) {
   constexpr double most = 0.02;  // share that a region may lose or gain
   const std::vector<double> old = sorted_volumes(before.plc), now = sorted_volumes(after.plc);

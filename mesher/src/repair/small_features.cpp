@@ -38,7 +38,7 @@ double length_of(const Plc& plc, const Plc::Curve& curve) {
 /// The sides of a triangle and its height above the longest one.
 struct Needle {
   unsigned longest = 0, shortest = 0;
-  double least = 0, most = 0;  // lengths of these sides
+  double least = 0, most = 0;  // lengths of the shortest and the longest side
   double height = 0;
 };
 
@@ -84,7 +84,7 @@ class SmallOnes {
   bool is_kept(Index p) const { return kept_[p]; }
 
  private:
-  // Returns the mean width, or infinity where a triangle is as wide as the size.
+  // Returns the mean width, or infinity if a triangle is as wide as the size.
   double width_of(const Plc::Patch& patch) const {
     double area = 0, border = 0;
     for (Index t = patch.first_triangle; t < patch.first_triangle + patch.triangle_count; ++t) {
@@ -98,7 +98,7 @@ class SmallOnes {
     return border > 0 ? 2 * area / border : INFINITY;
   }
 
-  // Keeps what has a name or a size, and what bounds a region thinner than the size.
+  // Keeps features with a name or a target edge length, and those that bound a region thinner than the size.
   void find_kept(const RepairOptions& options) {
     const std::vector<bool> thin = thin_regions();
     for (Index p = 0; p < kept_.size(); ++p)
@@ -278,8 +278,8 @@ class FeatureCollapser {
     return false;
   }
 
-  // Returns whether the facets on both sides of a narrow place face opposite ways, as those of a blade do: a
-  // wall would lose its thickness.
+  // Returns whether the facets on both sides of a narrow place face opposite ways, as those of a blade do:
+  // there, a collapse would take away a wall's thickness.
   bool is_at_wall(Index t) const {
     constexpr double opposed = -0.5;
     std::vector<Vector> normals;
@@ -432,15 +432,16 @@ class FeatureCollapser {
   std::set<Edge> features_, short_;  // pieces of curves, and of curves to be collapsed
   std::vector<int> rank_;            // by point, except added ones
   std::vector<CollapsedFeature> collapsed_;
-  std::set<Index> tips_;       // points of tips in the list
+  std::set<Index> tips_;       // points of the tips among the narrow triangles
   std::vector<Index> narrow_;  // existing triangles that are narrow or have a sharp corner, in order
-  Index looked_at_ = 0;        // triangles before this one have been looked at
-  // Of this round:
+  Index looked_at_ = 0;        // triangles before this one have been examined
+  // The changes of this round:
   std::set<Index> touched_;                      // triangles that change
   std::vector<std::pair<Index, Index>> merges_;  // a point, and the one that takes its place
 };
 
-/// The points of a feature, and the direction of its normal or of its ends.
+/// The points of a feature, and its direction: a patch's mean normal, or from a curve's first point to its
+/// last one.
 struct Shape {
   std::set<std::array<double, 3>> points;
   Vector direction;
@@ -469,8 +470,9 @@ std::vector<Shape> shapes_of_curves(const Plc& plc) {
   return shapes;
 }
 
-/// Returns the tags of the old features that new ones have most points in common with and, of several, are
-/// most parallel to; each is given once. Other new features get numbers after these.
+/// Returns a tag for each new feature: that of the old feature with which it has the most points in common,
+/// or of the most parallel one of several. Each old tag is given once; other new features get numbers after
+/// these.
 std::vector<Tag> numbers_from(const std::vector<Shape>& before, const std::vector<Tag>& tags,
                               const std::vector<Shape>& after) {
   std::map<std::array<double, 3>, std::vector<Index>> at;

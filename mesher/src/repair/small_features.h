@@ -12,7 +12,7 @@ namespace collarmesh::repairing {
 /// A small feature that was collapsed, and an edge or a triangle of it in the draft.
 struct CollapsedFeature {
   SmallFeature feature;
-  facets::Corners corners{none, none, none};  ///< sorted; of an edge, the last one is `none`
+  facets::Corners corners{none, none, none};  ///< sorted; the last one of an edge is `none`
 };
 
 /// Collapses the features of a complex that are smaller than `size` (absolute) in the draft that it was built

@@ -13,7 +13,7 @@ namespace collarmesh::repairing {
 
 using namespace facets;
 
-// Orders by length, longer edges first, then by distance, nearer ones first.
+// Orders by length, longer edges first, then by distance, nearer corners first.
 bool CornerSnapper::NearEdge::operator<(const NearEdge& other) const {
   return std::tie(other.length, distance, edge, corner.point) <
          std::tie(length, other.distance, other.edge, other.corner.point);
@@ -49,8 +49,8 @@ std::vector<CornerSnapper::NearEdge> CornerSnapper::near_edges() {
   return found;
 }
 
-// Chooses the edges that are cut in this round. If an edge has no room for a corner, its triangles are looked
-// at again in the next round.
+// Chooses the edges that are cut in this round. If a corner is too near to others on its edge, the edge's
+// triangles are examined again in the next round.
 void CornerSnapper::choose(const std::vector<NearEdge>& found) {
   struct EdgeState {
     std::vector<Index> sides;
@@ -71,8 +71,8 @@ void CornerSnapper::choose(const std::vector<NearEdge>& found) {
   }
 }
 
-// Returns whether cutting an edge makes progress: either the new edges are shorter than it, or it was not cut
-// since the last overlay. So the process ends.
+// Returns whether cutting an edge makes progress, so that the process ends: either the new edges are shorter
+// than the edge, or it was not cut since the last overlay.
 bool CornerSnapper::may_cut(const NearEdge& near, std::span<const Index> sides) {
   const bool shorter = std::all_of(sides.begin(), sides.end(), [&](Index side) {
     const Index opposite = apex(state_.draft().triangles, side);
@@ -81,7 +81,7 @@ bool CornerSnapper::may_cut(const NearEdge& near, std::span<const Index> sides) 
   return shorter || cut_before_.insert(near.edge).second;
 }
 
-// Returns whether a corner is far enough from other corners that the edge gets.
+// Returns whether a corner is far enough from the other corners to be inserted into its edge.
 bool CornerSnapper::has_room(const NearEdge& near) const {
   const std::vector<SnapCuts::OnEdge>* others = cuts_.on(near.edge);
   if (others == nullptr) return true;

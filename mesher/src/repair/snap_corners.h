@@ -18,17 +18,17 @@ class CornerSnapper {
  public:
   enum class Outcome { nothing_near, snapped, too_many };
 
-  /// Keeps both by reference.
+  /// Keeps references to both arguments.
   CornerSnapper(SnapState& state, SnapCuts& cuts) : state_(state), cuts_(cuts) {}
 
-  /// Cuts edges of triangles not looked at yet, unless that makes more than `most_triangles` triangles.
+  /// Cuts edges of triangles not examined yet, unless that makes more than `most_triangles` triangles.
   Outcome snap(std::size_t most_triangles);
 
   /// Allows each edge to be cut once more, even if its pieces are not shorter.
   void allow_cuts() { cut_before_.clear(); }
 
  private:
-  // A corner near an edge without being one of its ends.
+  // A corner, and an edge near it that does not end there.
   struct NearEdge {
     double length, distance;  // length of the edge; distance of the corner from it
     Edge edge;

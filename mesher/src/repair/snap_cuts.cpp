@@ -144,7 +144,7 @@ std::vector<Edge> SnapCuts::constraints(Index t, const Corners& corners) const {
   return result;
 }
 
-// Inserts a point into the piece that contains it, as seen along the piece's normal.
+// Inserts a point into the piece that contains it, in the projection along the piece's normal.
 void SnapCuts::insert(Index p, std::vector<Corners>& pieces) const {
   std::size_t best = 0;
   double depth = -INFINITY;
@@ -182,7 +182,7 @@ std::vector<Index> SnapCuts::chain(Index a, Index b) const {
 // Cuts a triangle at the points on its sides. Each step makes a fan from the corner opposite a side with
 // points.
 void SnapCuts::add_cut(const Corners& triangle, const Origin& origin) {
-  std::vector<std::pair<Corners, unsigned>> stack{{triangle, 0}};  // and flags of the sides that are done
+  std::vector<std::pair<Corners, unsigned>> stack{{triangle, 0}};  // with flags of the finished sides
   while (!stack.empty()) {
     const auto [t, done] = stack.back();
     stack.pop_back();

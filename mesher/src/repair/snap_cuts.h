@@ -25,11 +25,11 @@ class SnapCuts {
 
   /// Adds a point to an edge; the point is at the distance `moved` from it.
   void add(const Edge& edge, const OnEdge& point, double moved);
-  /// Adds a point to a triangle if it lies inside, as seen along the triangle's normal. Returns whether the
-  /// triangle has the point now.
+  /// Adds a point to a triangle if it lies inside in the projection along the triangle's normal. Returns
+  /// whether the triangle has the point now.
   bool add_if_inside(Index triangle, Index point);
-  /// Records that an edge of another triangle comes near this one: its pieces there become edges of this one,
-  /// too.
+  /// Records that an edge of another triangle comes near this triangle: the edge's pieces there become edges
+  /// of this triangle, too.
   void add_along(Index triangle, const Edge& edge) { along_[triangle].push_back(edge); }
 
   bool empty() const { return on_edge_.empty() && inside_.empty(); }

@@ -13,11 +13,11 @@ namespace collarmesh::repairing {
 /// Overlays triangles that run along each other: each gets the corners and edges of the other.
 class Overlay {
  public:
-  /// Keeps both by reference.
+  /// Keeps references to both arguments.
   Overlay(SnapState& state, SnapCuts& cuts)
       : state_(state), cuts_(cuts), crossing_points_(state.draft().points, state.limit()) {}
 
-  /// Overlays the triangles not looked at yet. Returns whether any were cut.
+  /// Overlays the triangles not examined yet. Returns whether any were cut.
   bool run();
 
   /// Returns how many crossings of edges and triangles got new points in the last run.
@@ -35,7 +35,7 @@ class Overlay {
   SnapState& state_;
   SnapCuts& cuts_;
   PointGrid crossing_points_;
-  Index first_ = 0;  // number of the first point that it makes
+  Index first_ = 0;  // number of the first point that the overlay makes
   std::size_t count_ = 0;
   std::set<std::pair<Edge, Edge>> crossing_, crossed_before_;
 };

@@ -24,7 +24,8 @@ SnapState::SnapState(Draft& draft, double limit, SnapWhat what, Work& work, cons
   }
 }
 
-// Returns whether a triangle takes part: if only borders do, whether it has one.
+// Returns whether a triangle takes part in snapping. If only borders do, the triangle must have a border
+// edge.
 bool SnapState::takes_part(Index triangle) const {
   const Corners& c = draft_.triangles[triangle];
   return takes_part(edge_key(c[0], c[1])) || takes_part(edge_key(c[1], c[2])) ||

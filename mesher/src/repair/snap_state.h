@@ -13,11 +13,11 @@
 
 namespace collarmesh::repairing {
 
-/// The data that the parts of snapping share: the triangles as they change, which of them each part has not
-/// looked at yet, and a record of the changes.
+/// The data that the parts of snapping share: the changing triangles, those that each part has yet to
+/// examine, and a record of the changes.
 class SnapState {
  public:
-  /// The parts that look at triangles, as bits.
+  /// The parts that examine triangles, as bits.
   enum By : std::uint8_t { by_corners = 1, by_overlay = 2, by_both = 3 };
 
   /// A change, for the report.
@@ -27,7 +27,7 @@ class SnapState {
     double moved;
   };
 
-  /// Keeps references to the draft and the work. All triangles have to be looked at except those that are
+  /// Keeps references to the draft and the work. All triangles have to be examined except those that are
   /// `known` (empty: none).
   SnapState(facets::Draft& draft, double limit, SnapWhat what, Work& work, const std::vector<bool>& known);
 
@@ -49,12 +49,12 @@ class SnapState {
   void put(const facets::Corners& corners, const facets::Origin& origin);
   void take(Index triangle);
 
-  /// Returns the existing triangles that this part has not looked at yet, in order, and counts them as looked
-  /// at.
+  /// Returns the existing triangles that this part has not examined yet, in order, and counts them as
+  /// examined.
   std::vector<Index> take_unseen(By by);
-  /// Makes the corner snapper look at this triangle again in the next round.
+  /// Makes the corner snapper examine this triangle again in the next round.
   void defer(Index triangle);
-  /// Returns for each triangle of the compacted draft whether this part still has to look at it.
+  /// Returns for each triangle of the compacted draft whether this part still has to examine it.
   std::vector<bool> unseen(By by) const;
 
   /// Returns the triangles added since the last call; some no longer exist.
@@ -74,9 +74,9 @@ class SnapState {
   SnapWhat what_;
   Work& work_;
   ChangingTriangles triangles_;
-  std::vector<std::uint8_t> flags_;           // by triangle: bits of the parts that have not looked at it yet
-  std::array<std::vector<Index>, 2> unseen_;  // triangles not looked at, by corners and by overlay; some no
-                                              // longer exist
+  std::vector<std::uint8_t> flags_;  // by triangle: bits of the parts that have not examined it yet
+  /// Triangles not examined by corners, and by overlay; some no longer exist.
+  std::array<std::vector<Index>, 2> unseen_;
   std::vector<Index> added_, touched_;
   std::vector<Done> done_;
 };

@@ -22,7 +22,7 @@ using namespace facets;
 constexpr std::size_t most_rounds = 50, most_rounds_after_overlay = 12;
 constexpr std::size_t most_overlays = 10, few_crossings = 100;
 
-// Snaps in rounds. Each round only looks at triangles that the one before has changed.
+// Snaps in rounds. Each round only examines triangles that the round before has changed.
 class Snapper {
  public:
   Snapper(Draft& draft, double distance_limit, SnapWhat what, Work& work, const std::vector<bool>& known,
@@ -74,7 +74,7 @@ class Snapper {
     return std::move(report_);
   }
 
-  // Undoes the changes since `before` at places with triangles that these parts still have to look at.
+  // Undoes the changes since `before` at places with triangles that these parts still have to examine.
   SnapReport keep_settled(const Draft& before, std::size_t done_before, SnapState::By by) {
     const Draft after = state_.triangles().compacted();
     const std::vector<bool> unseen = state_.unseen(by);

@@ -74,7 +74,7 @@ std::size_t drop(Draft& draft, const std::vector<bool>& removed) {
   return count;
 }
 
-// Returns the components of triangles connected by corners, by point.
+// Returns the components of triangles that are connected by common corners, as sets of points.
 DisjointSets components_of(const Draft& draft) {
   DisjointSets sets(draft.points.size());
   for (const Corners& t : draft.triangles) {

@@ -10,7 +10,8 @@ namespace {
 // At more than this distance, in radii of a node, the node's triangles are taken together.
 constexpr double far = 3;
 
-// Returns the signed solid angle of a triangle (Van Oosterom and Strackee 1983), positive behind it.
+// Returns the signed solid angle of a triangle (Van Oosterom and Strackee 1983), positive for points behind
+// it.
 double solid_angle(const WeightedTriangle& t, const Point& p) {
   const Vector a = t.corners[0] - p, b = t.corners[1] - p, c = t.corners[2] - p;
   const double la = norm(a), lb = norm(b), lc = norm(c);

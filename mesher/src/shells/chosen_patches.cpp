@@ -26,7 +26,7 @@ std::set<Tag> tags_of(const Plc& plc, const std::vector<std::string>& names) {
   return chosen;
 }
 
-/// New numbers of the kept features, and old numbers of these.
+/// The new numbers of the kept features, and their old numbers.
 struct Renumbering {
   std::vector<Index> number, old;
 

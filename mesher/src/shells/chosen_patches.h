@@ -17,7 +17,8 @@ struct ChosenPatches {
   void adapt(ShapeMeasures& exact) const;
 };
 
-/// Chooses patches. Throws OptionError, with the known names, if no patch has a name or number.
+/// Chooses patches. Throws OptionError, with the known names, if one of `names` is not the name or number of
+/// a patch.
 ChosenPatches choose_patches(const Plc& whole, const std::vector<std::string>& names);
 
 }  // namespace collarmesh::shells

@@ -13,7 +13,7 @@ namespace {
 class EdgesAlong {
  public:
   EdgesAlong(const std::function<double(double)>& size_at, double from, double to) {
-    constexpr double least_step = 1e-4, steps_per_size = 8;  // relative to the curve's length
+    constexpr double least_step = 1e-4, steps_per_size = 8;  // `least_step` is relative to the length
     const double length = to - from;
     double at = from, count = 0, size = size_at(from);
     places_.push_back(from);

@@ -47,7 +47,7 @@ void for_narrow_triangles(const SurfaceComplex& complex, const Visit& visit) {
 /// distance is measured in triangles with all corners on curves; it becomes more exact as these are divided.
 class NarrowPlaces {
  public:
-  /// Keeps all by reference.
+  /// Keeps references to all arguments.
   NarrowPlaces(SurfaceComplex& complex, SurfaceEditor& editor, const SurfaceSizes& sizes,
                const Execution& execution);
 

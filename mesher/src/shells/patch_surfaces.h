@@ -40,13 +40,13 @@ class PatchSurfaces {
   /// The quality of a triangle's fit to a patch.
   struct Fit {
     double agreement = 1;  ///< see `agreement`
-    double excess = 0;     ///< distance of its centre from the patch, divided by the tolerance there
+    double excess = 0;  ///< distance of the triangle's centre from the patch, divided by the tolerance there
   };
   /// Returns the fit of a triangle. Distances below the share `enough` of the tolerance need not be exact:
   /// the result may be too large, up to that share.
   Fit fit(const Corners& t, Index patch, double enough = 0) const;
-  /// Returns the larger distance from the patch of two points inside a segment, divided by the tolerance
-  /// there. `enough`: as for `fit`.
+  /// Returns the larger of the distances of two points inside a segment from the patch, divided by the
+  /// tolerance there. `enough`: as for `fit`.
   double excess_between(Index patch, const Point& a, const Point& b, double enough) const;
   /// Returns points of a smooth patch that are farther than this share of the tolerance from the triangles on
   /// it, each with the nearest triangle; at most one point per triangle.

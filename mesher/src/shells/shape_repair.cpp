@@ -15,7 +15,7 @@ constexpr double shortest = 0.015;
 // Vertices with more triangles, which a tessellation may have, are not moved or removed; their neighbours
 // are.
 constexpr std::size_t most_triangles = 24;
-// The gain of shape for which a vertex is moved.
+// The smallest gain of shape for which a vertex is moved.
 constexpr double least_gain = 0.1;
 
 }  // namespace
@@ -200,8 +200,8 @@ bool ShapeRepair::divide_curve_beside(Index triangle, const Point& p) {
     if (edge == none) continue;
     const auto [a, b] = complex_.edges[edge].ends;
     const Vector to_a = complex_.vertices[a].point - p, to_b = complex_.vertices[b].point - p;
-    if (complex_.edges[edge].tip != none) {  // tips are not divided: a vertex may be so near that angles stay
-                                             // good
+    // Tips are not divided. A vertex at p encroaches upon a tip only if the angle at p exceeds 117 degrees.
+    if (complex_.edges[edge].tip != none) {
       if (dot(to_a, to_b) < least_cosine * norm(to_a) * norm(to_b)) return true;
       continue;
     }
@@ -292,7 +292,7 @@ bool ShapeRepair::refine(Index triangle) {
 std::size_t ShapeRepair::run(std::size_t most_vertices) {
   constexpr unsigned most_passes = 40, contracting_passes = 3, first_passes = 12;
   const double wanted = least_angle + margin;
-  // The shape noted for a triangle that was refined, above every shape wanted.
+  // The shape recorded for a refined triangle, above every wanted shape.
   constexpr double refined = 180;
   std::size_t limit = complex_.vertices.size() + most_vertices, fewest = complex_.triangles.size();
   std::vector<Index> poor_ones;

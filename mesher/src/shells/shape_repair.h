@@ -15,7 +15,7 @@ namespace collarmesh::shells {
 /// the shortest edge if that suffices (A. Ungor, Off-centers, 2004).
 class ShapeRepair {
  public:
-  /// Keeps all by reference.
+  /// Keeps references to all arguments.
   ShapeRepair(SurfaceComplex& complex, SurfaceEditor& editor, const Execution& execution);
 
   /// Works until all triangles are good or nothing helps, with at most `most_vertices` new vertices. Returns
@@ -60,7 +60,7 @@ class ShapeRepair {
   const Execution& execution_;
   double narrowest_ = 0;
   struct Tried {
-    std::size_t changes = 0;  // sum over its corners
+    std::size_t changes = 0;  // sum of its corners' numbers of changes
     double wanted = 0;
   };
   std::vector<Tried> tried_;          // by triangle: the last attempt that failed

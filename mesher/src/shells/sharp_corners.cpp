@@ -84,9 +84,9 @@ SharpCorners::Corner SharpCorners::find(const SurfaceComplex& complex, Index ver
   return corner;
 }
 
-/// Returns a length for tips as long as the sizes permit that leaves no much shorter edge behind a tip. The
-/// chords of tips may cross no chords except those of the other curves in the corner, because the corner's
-/// triangle closes it.
+/// Returns the largest length for tips that the sizes permit and that leaves no much shorter edge behind a
+/// tip. The chords of tips may cross no chords except those of the other curves in the corner, because the
+/// corner's triangle closes it.
 double SharpCorners::tip_length(const Plc& plc, const CurvePaths& paths, const SurfaceSizes& sizes,
                                 const ChordLimits& limits, const Corner& corner) const {
   constexpr unsigned most_steps = 40;

@@ -192,7 +192,7 @@ std::optional<std::array<Index, 2>> SurfaceEditor::edges_around(Index vertex) co
   return in_order ? std::array{edges[0], edges[1]} : std::array{edges[1], edges[0]};
 }
 
-/// Returns the distance from its curve of a chord in place of two edges, divided by the tolerance.
+/// Returns the distance between a chord that replaces two edges and its curve, divided by the tolerance.
 double SurfaceEditor::sag_across(const std::array<Index, 2>& two) const {
   const auto& before = complex_.edges[two[0]];
   const auto& behind = complex_.edges[two[1]];
@@ -377,8 +377,8 @@ void SurfaceEditor::flip_around(Index vertex) {
   }
 }
 
-/// Returns the fit of the triangles around a vertex, at their centres and along their sides at it: the least
-/// agreement, and the sum of the excesses above the allowed one.
+/// Returns the fit of the triangles around a vertex, at their centres and along their sides at the vertex:
+/// the least agreement, and the sum of the excesses above the allowed one.
 PatchSurfaces::Fit SurfaceEditor::misfit_around(Index vertex) const {
   PatchSurfaces::Fit all;
   const auto add = [&](double excess) { all.excess += std::max(0.0, excess - most_excess_); };

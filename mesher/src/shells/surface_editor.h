@@ -32,7 +32,7 @@ class SurfaceEditor {
 
   /// Conditions for removing a vertex.
   struct Removal {
-    double longest;      ///< longest new edge, relative to what the options ask for
+    double longest;      ///< longest new edge, relative to the length that the options ask for
     double least_shape;  ///< least shape of the new triangles
   };
   /// A triangle that does not exist yet.
@@ -68,7 +68,7 @@ class SurfaceEditor {
     };
     std::vector<Neighbour> neighbours;
     std::vector<std::pair<Index, Index>> changes;  ///< changes of the neighbours and of their neighbours
-    /// Places on curves of the edges at the neighbours.
+    /// Edges at the neighbours, except those at the vertex, with the arc lengths of their ends (`Edge::at`).
     std::vector<std::pair<Index, std::array<double, 2>>> places;
   };
   Surroundings surroundings(Index vertex) const;
@@ -83,7 +83,8 @@ class SurfaceEditor {
     const auto& [from, to] = complex_.edges[edge].at;
     return divide_curve_edge(edge, 0.5 * (from + to));
   }
-  /// Inserts a vertex near p into a triangle or, if p is near a side, into that side. Returns it, or none.
+  /// Inserts a vertex near p into a triangle or, if p is near a side, into that side. Returns the vertex, or
+  /// none.
   Index insert(Index triangle, const Point& p);
   /// Flips edges opposite a new vertex, and then those opposite it in the new triangles.
   void flip_around(Index vertex);
@@ -113,7 +114,7 @@ class SurfaceEditor {
   double size_of_edge(Index a, Index b) const {
     return 0.5 * (complex_.vertices[a].size + complex_.vertices[b].size);
   }
-  /// Returns what the options ask for, see SurfaceComplex::Vertex.
+  /// Returns the edge length that the options ask for, see SurfaceComplex::Vertex.
   double asked_of_edge(Index a, Index b) const {
     return sizes_.gradation_is_given() ? size_of_edge(a, b)
                                        : 0.5 * (complex_.vertices[a].asked + complex_.vertices[b].asked);

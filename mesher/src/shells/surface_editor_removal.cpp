@@ -16,7 +16,7 @@ constexpr double least_agreement_left = 0.6;
 // Vertices with more triangles stay.
 constexpr std::size_t most_triangles_removed = 12;
 
-/// Returns the corner of a triangle that follows upon v.
+/// Returns the corner of a triangle after v.
 Index after(const SurfaceComplex::Triangle& t, Index v) {
   const auto& c = t.corners;
   return c[0] == v ? c[1] : c[1] == v ? c[2] : c[0];
@@ -41,8 +41,8 @@ std::optional<SurfaceEditor::Hole> SurfaceEditor::hole_from(Index vertex, Index 
   return std::nullopt;
 }
 
-/// Returns the holes that removing a vertex leaves in the patches; nothing if it is not surrounded by one
-/// patch, or by one or more between its edges on a curve.
+/// Returns the holes that removing a vertex leaves in the patches; nothing unless the vertex is surrounded by
+/// one patch or, on a curve, by one or more patches between its edges there.
 std::optional<std::vector<SurfaceEditor::Hole>> SurfaceEditor::holes_around(Index vertex) const {
   const auto& v = complex_.vertices[vertex];
   std::vector<Hole> holes;
@@ -113,7 +113,8 @@ bool SurfaceEditor::chord_permits(Index vertex, std::span<const Hole> holes, con
   if (a == b || complex_.edge_at(a, b) != none || length(a, b) > rule.longest * asked_of_edge(a, b) ||
       sag_across(*around) > most_excess_)
     return false;
-  // Where the hole is a triangle, its third side becomes the chord: only its two triangles may be there.
+  // If a hole is a single triangle, its third side becomes the chord. This side may have no triangles but
+  // those of such holes and the ones beyond it.
   std::size_t flat = 0;
   for (const Hole& hole : holes) {
     const bool between = std::minmax(hole.border.front(), hole.border.back()) == std::minmax(a, b);

@@ -207,7 +207,7 @@ void SurfaceMesher::flip_all() {
     for (const Index v : changed) {
       waiting[v] = false;
       for (const Index n : complex_.neighbours(v)) {
-        if (waiting[n]) continue;  // this edge is looked at when it is the turn of n
+        if (waiting[n]) continue;  // the edge is tested later, as an edge of n
         const auto two = complex_.two_triangles_at(v, n);
         if (!two) continue;
         const Index c = complex_.triangles[(*two)[0]].third(v, n),
@@ -296,7 +296,8 @@ void SurfaceMesher::run() {
   repair_.improve(least_angle);
 }
 
-/// Removes vertices and moves those that stay, in turns, as long as that removes at least one in `few`.
+/// Removes vertices and moves those that stay, in turns, as long as each turn removes at least one vertex in
+/// `few`.
 void SurfaceMesher::remove_needless_vertices() {
   constexpr unsigned rounds = 2;
   constexpr std::size_t few = 30;

@@ -9,11 +9,11 @@
 
 namespace collarmesh::shells {
 
-/// Target edge lengths on curves and patches. They grow by at most the gradation per unit length with the
-/// distance from small ones, and from curves that are shorter than them.
+/// Target edge lengths on curves and patches. Away from places with small lengths, and from curves shorter
+/// than the lengths, they grow by at most the gradation per unit of distance.
 class SurfaceSizes {
  public:
-  /// Keeps all by reference.
+  /// Keeps references to all arguments.
   SurfaceSizes(const Plc& plc, const CurvePaths& paths, const MeshOptions& options);
 
   double gradation() const { return gradation_; }
@@ -24,7 +24,7 @@ class SurfaceSizes {
   /// Returns the target edge length on a curve, considering the lengths of the curves at its ends.
   double on_curve(Index curve, double parameter) const;
   double at_vertex(Index vertex) const { return at_vertex_[vertex]; }
-  /// Returns what the options ask for on a curve, without regard to the lengths of curves.
+  /// Returns the edge length that the options ask for on a curve, without regard to the lengths of curves.
   double asked_on_curve(Index curve, double parameter) const;
   double asked_at_vertex(Index vertex) const;
   /// Returns whether the options give a gradation. If not, angles alone limit how fast edge lengths grow away

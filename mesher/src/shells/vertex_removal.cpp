@@ -9,7 +9,7 @@ namespace collarmesh::shells {
 
 namespace {
 
-// Longest new edges, relative to what the options ask for.
+// Longest new edges, relative to the length that the options ask for.
 constexpr double longest = 1.25;
 
 }  // namespace
@@ -20,7 +20,7 @@ VertexRemoval::VertexRemoval(const SurfaceComplex& complex, SurfaceEditor& edito
 
 /// Returns the vertices to try, those with the shortest edges first.
 std::vector<Index> VertexRemoval::candidates() {
-  constexpr double long_enough = 0.9;  // relative to what the options ask for
+  constexpr double long_enough = 0.9;  // relative to the length that the options ask for
   tried_.resize(complex_.vertices.size(), 0);
   std::vector<std::pair<double, Index>> by_length;
   for (Index v = 0; v < complex_.vertices.size(); ++v) {

@@ -12,7 +12,7 @@ namespace collarmesh::shells {
 /// grow only slowly away from short curves and narrow places.
 class VertexRemoval {
  public:
-  /// Keeps all by reference.
+  /// Keeps references to all arguments.
   VertexRemoval(const SurfaceComplex& complex, SurfaceEditor& editor, ShapeRepair& repair,
                 const Execution& execution);
 

@@ -356,7 +356,7 @@ class Splitter {
 
   TetMesh& mesh_;
   const SplitOptions& options_;
-  FaceFinder finder_;                          // finds faces by corners, from before the split
+  FaceFinder finder_;                          // finds faces before the split by corners
   std::vector<std::array<Index, 4>> tets_;     // after the split
   std::vector<std::array<Index, 6>> mids_;     // after the split
   std::vector<bool> chosen_;                   // by face

@@ -52,7 +52,7 @@ class CgnsFile : public Hdf5File {
     describe_root();
   }
 
-  /// Returns the path of the node. Nodes without values have the type MT.
+  /// Adds a node without values, of type MT. Returns its path.
   std::string add(const std::string& parent, const std::string& name, const char* label) {
     return add_node(parent, name, label, "MT");
   }
@@ -138,7 +138,8 @@ std::size_t sort_outside_first(const TetMesh& mesh, CellKind kind, std::vector<I
   return static_cast<std::size_t>(inside - faces.begin());
 }
 
-/// Sections of one group, which have one name and follow each other, belong to the family of the first one.
+/// Puts the sections of one group, which have one name and follow each other, into the family of the first
+/// one.
 void name_families(std::vector<Section>& sections) {
   std::string group;
   for (std::size_t i = 0; i < sections.size(); ++i) {

@@ -76,7 +76,7 @@ class Hdf5File {
     target_.commit();
   }
 
-  /// Throws WriteError unless a step is done.
+  /// Throws WriteError unless a step has succeeded.
   void require(bool done) const {
     if (!done) target_.fail(0);
   }

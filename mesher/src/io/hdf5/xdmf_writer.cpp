@@ -63,7 +63,7 @@ std::vector<Cells> cells_by_dimension(const TetMesh& mesh) {
   return all;
 }
 
-/// A file and the one with its values; dolfinx requires the same name for both.
+/// An XDMF file and the HDF5 file with its values; dolfinx requires the same name for both.
 class GridFile {
  public:
   explicit GridFile(const std::filesystem::path& path)
