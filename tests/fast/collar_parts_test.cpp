@@ -62,7 +62,7 @@ struct Parts : testing::KnownCurves {
       if (chains.due(item.entry) && !creator.create_at_subsegment(item.entry.id))
         chains.split_ahead(*chains.split_of(item.entry.id));
   }
-  // Returns the pieces of a curve by their parameters, sorted.
+  // Returns the pieces of a curve as ranges of its parameter, sorted.
   std::vector<std::array<double, 2>> pieces_of(Index curve) const {
     std::vector<std::array<double, 2>> pieces;
     chains.visit([&](Index, const Subsegment& s) {
