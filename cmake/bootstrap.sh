@@ -95,7 +95,7 @@ build() {
   }
   exec 9>"$build_dir/.lock"
   command -v flock >/dev/null && flock 9
-  # A folder that a developer has configured keeps what it has.
+  # A folder that a developer has configured keeps its configuration.
   if [ ! -f "$build_dir/CMakeCache.txt" ]; then
     set -- -DCOLLARMESH_IN_GROUPS=ON "$@"
     ! command -v ninja >/dev/null || generator=(-G Ninja)

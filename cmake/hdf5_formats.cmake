@@ -1,5 +1,6 @@
-# Optional formats on HDF5: .xdmf and .cgns (package libhdf5-dev) and .med (package libmedc-dev). Debian builds MED
-# with the HDF5 of OpenMPI; a program must not hold two of them, so then XDMF takes that one too.
+# Optional formats on HDF5: .xdmf and .cgns (package libhdf5-dev) and .med (package libmedc-dev). Debian
+# builds MED with the HDF5 of OpenMPI; a program must not contain two HDF5 libraries, so .xdmf and .cgns then
+# use OpenMPI's, too.
 option(COLLARMESH_HDF5_FORMATS "Write .xdmf, .cgns and .med where HDF5 and MED are found" ${PROJECT_IS_TOP_LEVEL})
 
 set(COLLARMESH_HAS_XDMF OFF)

@@ -1,11 +1,12 @@
-# Modules: parts that bring many libraries, loaded when one is needed, as loading them costs more than a small
-# mesh. Where they are, and how programs find them.
+# Modules are parts that need many libraries. Programs load a module only when they need it, because loading
+# it takes longer than making a small mesh. Sets where modules are, and how programs find them.
 set(COLLARMESH_MODULE_DIR ${CMAKE_INSTALL_LIBDIR}/collarmesh)
 set(COLLARMESH_MODULE_BUILD_DIR ${PROJECT_BINARY_DIR}/lib/collarmesh)
 list(APPEND CMAKE_BUILD_RPATH ${COLLARMESH_MODULE_BUILD_DIR})
 
-# The run path of an installed target in `folder` (absolute). It is that of the build folder, too, where modules are in
-# ../lib: CMake ends one that it is to exchange with a colon, which stands for the current folder.
+# Sets the run path of an installed target in `folder` (absolute). The target in the build folder has the same
+# run path, which also contains ../lib: CMake would end a run path that it is to replace with a colon, which
+# stands for the current folder.
 function(collarmesh_run_path target folder)
   file(RELATIVE_PATH path ${folder} ${CMAKE_INSTALL_FULL_LIBDIR}/collarmesh)
   set(run_path $ORIGIN/${path} $ORIGIN/../lib/collarmesh)

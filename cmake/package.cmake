@@ -8,7 +8,7 @@ install(FILES LICENSE freecad_workbench/README.md DESTINATION ${CMAKE_INSTALL_DA
 # Whoever makes packages for others puts in their own name.
 set(COLLARMESH_MAINTAINER "The collarmesh maintainers <collarmesh@example.org>" CACHE STRING "of the Debian package")
 
-# What Debian asks for beside the files: who may copy it, and what changed. `cmake --install` leaves it out.
+# Texts that Debian requires in a package: the licence and the changes. `cmake --install` leaves them out.
 file(WRITE ${PROJECT_BINARY_DIR}/package/doc/copyright "Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/
 Upstream-Name: collarmesh
 

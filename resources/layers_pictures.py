@@ -23,7 +23,8 @@ TETS, ODD, EVEN, PYRAMIDS = gallery.GREY, (0.93, 0.66, 0.32), (0.97, 0.84, 0.60)
 
 
 def cut_open(grid, normal, at, near=lambda centres: True):
-    """Returns whole cells behind a plane: tets, odd and even layers, pyramids. `near`: says of which centres."""
+    """Returns whole cells behind a plane: tets, odd and even layers, pyramids. `near`: chooses cells by their
+    centres."""
     kinds = np.array([grid.GetCellType(c) for c in range(grid.GetNumberOfCells())])
     solid = np.isin(kinds, (vtk.VTK_TETRA, vtk.VTK_WEDGE, vtk.VTK_PYRAMID))
     kept = solid & gallery.behind(grid, normal, at) & near(gallery.centres(grid))

@@ -42,7 +42,7 @@ VIEW = (0.9, -2.2, 0.9)
 # Runs
 
 def chisel(path):
-    """A prism of 1.5 whose cross-section ends in an edge of 35 degrees."""
+    """A prism, 1.5 long, whose cross-section ends in an edge of 35 degrees."""
     points = [(x, y, z) for y in (0, 1.5) for x, z in PROFILE]
     write_off(path, points, [(0, 1, 2, 3), (7, 6, 5, 4), (0, 4, 5, 1), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 4, 0)])
 

@@ -291,8 +291,8 @@
       <translation>Erweitert</translation>
     </message>
     <message>
-      <source>All layers are {height} mm high.</source>
-      <translation>Alle Schichten sind {height} mm hoch.</translation>
+      <source>All layers together are {height} mm high.</source>
+      <translation>Alle Schichten zusammen sind {height} mm hoch.</translation>
     </message>
     <message>
       <source>Another number gives another mesh of the same quality</source>

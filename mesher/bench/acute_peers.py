@@ -39,7 +39,7 @@ def measure_mesh(program: Path, mesh: Path) -> dict:
 
 
 def cell(mesher, shape: AcuteInput, folder: Path, program: Path) -> str:
-    """Returns its result for the shape, or the reason of its failure."""
+    """Returns the mesher's result for the shape, or the reason of its failure."""
     folder.mkdir(parents=True, exist_ok=True)
     mesh = folder / mesher.mesh_file
     mesh.unlink(missing_ok=True)

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""How the error of a solution falls with the number of unknowns when meshes are adapted to it (`Mesh.adapt` with
-`estimated_errors` and `sizes_from_errors`), beside meshes of equal sizes: the edge of an L-shaped domain, Fichera's corner, and
-wires in a block with dolfinx; a plate with a hole and a notched bar with CalculiX. Then meshes that are adapted up and down
-many times: what is left of volumes, curves, and names, and how well lengths fit.
+"""How the error of a solution falls with the number of unknowns when meshes are adapted to it (`Mesh.adapt`
+with `estimated_errors` and `sizes_from_errors`), beside meshes of equal sizes: the edge of an L-shaped
+domain, Fichera's corner, and wires in a block with dolfinx; a plate with a hole and a notched bar with
+CalculiX. Then meshes that are adapted up and down many times: how much volumes, curves and names change, and
+how well lengths fit.
 
 Errors are those of the energy: the root of the energy of the difference from the solution. With linear elements the best rate
 is the third root of the number of unknowns. Energies of the solutions come from elements of second order on the last mesh.
@@ -57,7 +58,7 @@ def fichera(collarmesh):
 
 
 def wires_in_block(collarmesh):
-    """Returns a block with two square wires through it, which are left out: electrodes."""
+    """Returns a block without two square wires that run through it: electrodes."""
     points, facets = extruded([(-1, -1), (1, -1), (1, 1), (-1, 1)], 0, 0.5)
     del facets[:2]
     rims = []
@@ -74,8 +75,8 @@ def wires_in_block(collarmesh):
 
 
 def quarter_plate(collarmesh):
-    """Returns a quarter of a plate, 4 by 4 by 0.4, with a hole of 12 sides, whose corners are edges of the shape: on a round
-    hole coarse and fine meshes would be those of other domains."""
+    """Returns a quarter of a plate, 4 by 4 by 0.4, with a hole of 12 sides, whose corners are edges of the
+    shape: with a round hole, coarse and fine meshes would have different domains."""
     arc = [(math.cos(a), math.sin(a)) for a in np.linspace(math.pi / 2, 0, 4)]
     arc[0], arc[-1] = (0, 1), (1, 0)
     return collarmesh.Complex(*extruded([(4, 0), (4, 4), (0, 4), *arc], 0, 0.4))
@@ -91,10 +92,10 @@ def notched_bar(collarmesh):
 
 @dataclass
 class Solution:
-    values: Array    # of each node, shape (n, k)
+    values: Array    # values at the nodes, shape (n, k)
     unknowns: int
     energy: float
-    squared_error: Optional[float] = None    # of its energy, where the solution is known
+    squared_error: Optional[float] = None    # of the error's energy, where the solution is known
 
 
 class Poisson:
@@ -104,8 +105,8 @@ class Poisson:
                  gradient: Optional[Callable] = None) -> None:
         self.load, self.values, self.where, self.gradient = load, values, where, gradient
 
-    # The energy of the error is that of the solution less that of the elements for loads, and the other way
-    # around for values on the boundary.
+    # The energy of the error is the solution's less the elements' for loads, and the elements' less the
+    # solution's for values on the boundary.
     def squared_error(self, energy: float, exact: float) -> float:
         return exact - energy if self.load else energy - exact
 
@@ -157,7 +158,7 @@ class Elasticity:
             at = np.flatnonzero((np.abs(points[mesh.faces][:, :, 0] - place) < 1e-9).all(1))
             corners = points[mesh.faces[at]]
             areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
-            nodes = mesh.faces[at] if order == 1 else mesh.face_mid_nodes[at]   # all of a quadratic face's load
+            nodes = mesh.faces[at] if order == 1 else mesh.face_mid_nodes[at]   # mid-edge nodes carry the load
             np.add.at(forces, nodes, (traction * areas / 3)[:, None])
         return forces
 
@@ -274,7 +275,7 @@ def study(collarmesh, problem: Problem, loops: int, first: int, growth: float, l
     passed = mesh.passed
     fine = mesh if isinstance(equation, Poisson) else with_second_order(collarmesh, mesh)
     exact = equation.solve(fine, order=2).energy
-    # From the error of first order and the ratio of orders the reference is right to some percent of the last error.
+    # The error of second order is only some percent of the last error of first order.
     log(f"{problem.name}: energy of second order {exact:.8g}")
     even = []
     for share in (1, 0.7, 0.5, 0.35, 0.25, 0.18):
@@ -289,7 +290,8 @@ def study(collarmesh, problem: Problem, loops: int, first: int, growth: float, l
         return math.sqrt(max(squared, 0) / exact)
 
     by_size = ([s.unknowns for s in even], [error(s) for s in even])
-    # The unknowns that equal sizes need for the error of the last adapted mesh, at their own rate.
+    # Estimates how many unknowns meshes of equal sizes, at their own rate, need for the error of the last
+    # adapted mesh.
     last, slope = adapted[-1], rate(*by_size)
     needed = by_size[0][-1] * (by_size[1][-1] / error(last)) ** (1 / slope)
     low, high = extreme_angles(mesh)

@@ -96,7 +96,7 @@ def asked(question: tuple[str, ...], option: str, default: float) -> float:
 
 
 def judge(judging: str, case: Case, question: tuple[str, ...], mesh: Path, report: dict) -> dict | str:
-    """Returns its result, or the reason of its failure."""
+    """Returns the judge's result, or the reason of its failure."""
     check = report["check"]
     smallest_thin = min(8, report["complex"]["smallest_angle"] / 2,
                         check["min_forced_dihedral"] if check["forced_tets"] else math.inf)

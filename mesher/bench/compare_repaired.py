@@ -4,16 +4,17 @@ measured here with numpy and scipy alone, CAD files are tessellated by FreeCAD.
 
 compare_repaired.py FILES... [--program collarmesh] [--limit 30] [--samples 20000] [--options '--repair-tolerance 1e-4']
 
-Each file goes through `collarmesh repair`. For the result and the input, samples spread over the triangles are
-compared with the nearest triangles of the other, both ways, in shares of the diagonal. What of the input lies inside
-(a winding number above 3/4) is left out, as walls inside are meant to vanish. "told" is the larger of the distances that
-the program tells.
+Each file goes through `collarmesh repair`. For the result and the input, samples spread over the triangles
+are compared with the nearest triangles of the other, both ways, in shares of the diagonal. Parts of the input
+inside the result (winding number above 3/4) are left out, because repair is meant to remove walls inside.
+"told" is the larger of the distances that the program reports.
 
-Volumes: that of the result by its triangles (of several regions: as told), and that of the input where its winding number is above 1/2 either way
-(surfaces: random points of the box; CAD files: OpenCASCADE's volume of the solids). "differs" is the share of the input's
-volume in which the two disagree, at the same points. Bodies are the input's connected parts that are closed; for
-each a point half-way between two opposite sides says whether it (or, of a cavity, its void) is still there. Rows come
-with the largest distance first."""
+Volumes: the result's is that of its triangles (with several regions, the reported one); the input's is that
+of the places where the winding number is above 1/2 or below -1/2 (surfaces: random points of the box; CAD
+files: OpenCASCADE's volume of the solids). "differs" is the share of the input's volume in which the two
+disagree, at the same points. Bodies are the input's connected parts that are closed; for each a point
+half-way between two opposite sides says whether it (or, of a cavity, its void) is still there. Rows come with
+the largest distance first."""
 
 from __future__ import annotations
 
@@ -109,7 +110,7 @@ def read_off(path: Path) -> np.ndarray:
 
 
 def read_ply(path: Path) -> np.ndarray:
-    import meshio   # binary and text, many kinds of numbers
+    import meshio   # reads binary and text with many kinds of numbers
     mesh = meshio.read(path)
     polygons = [list(row) for block in mesh.cells if block.type in ("triangle", "quad", "polygon")
                 for row in block.data]
@@ -336,8 +337,8 @@ def repair(path: Path, folder: Path, options: argparse.Namespace) -> tuple[np.nd
 
 
 def input_volume(given: Given, repaired: np.ndarray, count: int, random: np.random.Generator) -> tuple[float, float, float]:
-    """Returns the input's volume, its standard deviation, and the share of it in which input and result
-    differ."""
+    """Returns the input's volume, its standard deviation, and the share of the volume in which input and
+    result differ."""
     corners = given.triangles.reshape(-1, 3)
     low, high = corners.min(0), corners.max(0)
     most = max(len(given.triangles), len(repaired))

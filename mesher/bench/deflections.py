@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""How far thin parts bend under their own weight by CalculiX, at default options, with elements of both orders: a tube and a
-strip clamped at one end, the roof of Scordelis and Lo, and a spring, beside Gmsh's meshes (HXT) at the same size and the
-deflections of beam and shell theory. Stiffness goes with the third power of what a thin wall is thick, so what a mesh loses
-there shows. Prints a Markdown table."""
+"""How far thin parts bend under their own weight by CalculiX, at default options, with elements of both
+orders: a tube and a strip clamped at one end, the roof of Scordelis and Lo, and a spring, beside Gmsh's
+meshes (HXT) at the same size and the deflections of beam and shell theory. Stiffness grows with the third
+power of a thin wall's thickness, so it shows if a mesh loses thickness. Prints a Markdown table."""
 
 from __future__ import annotations
 

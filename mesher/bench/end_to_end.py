@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """collarmesh beside TetGen and Gmsh HXT at the same numbers of tetrahedra, in one run.
 
-For the unit box and five parts of a corpus: each mesher's size is searched until it makes the wanted
-number of tets (nearly), then the programs run in turn, some rounds, each pinned to one core, after memory was
-fetched for them. Prints Markdown tables of medians. Sizes found are kept in the folder for temporary files.
+For the unit box and five parts of a corpus: each mesher's size is searched until it makes nearly the wanted
+number of tets. Then the programs run in turn, some rounds, each pinned to one core; before each run memory is
+made ready (processes.fetch_memory). Prints Markdown tables of medians. Sizes found are kept in the folder for
+temporary files.
 """
 
 from __future__ import annotations

@@ -2,11 +2,12 @@
 """How many elements CAD files get at a size, and how near they are to the exact shape: collarmesh with its defaults beside
 Gmsh (HXT), both at a twentieth of the diagonal, with elements of the first and of the second order.
 
-Distances, relative to the diagonal, are those of a dense tessellation by OpenCASCADE (FreeCAD's Shape.tessellate within
-1e-4 of the diagonal, so that is their error): of points on the mesh's outer faces, curved ones by their six nodes, to the
-tessellation, and of the tessellation's vertices to the mesh (walls between solids count, which outer faces of a mesh do
-not have where it is conforming there). Volumes are those of all solids together, beside OpenCASCADE's. Angles are those between the planes of the corners. --out keeps
-every run, and a run that it holds is not made again."""
+Distances are relative to the diagonal. They lead from points on the mesh's outer faces (curved ones by their
+six nodes) to a dense tessellation by OpenCASCADE (FreeCAD's Shape.tessellate, with an error of 1e-4), and
+from its vertices to the mesh's outer faces. The tessellation has the walls between solids, but the outer
+faces of a conforming mesh do not, so walls count as distant. Volumes are those of all solids together, beside
+OpenCASCADE's. Angles are those between the planes of the corners. --out keeps every run, and a run that it
+holds is not made again."""
 
 from __future__ import annotations
 
@@ -102,7 +103,7 @@ def lattice(n: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def boundary(points: np.ndarray, tets: np.ndarray, n: int = 4) -> Triangles:
-    """The faces of one tetrahedron only, each cut into n * n triangles on the (curved) face."""
+    """Returns the faces that only one tetrahedron has, each cut into n * n triangles on the (curved) face."""
     corners = np.concatenate([tets[:, face] for face in faces])
     _, first, count = np.unique(np.sort(corners, axis=1), axis=0, return_index=True, return_counts=True)
     outer = first[count == 1]
@@ -123,14 +124,15 @@ def boundary(points: np.ndarray, tets: np.ndarray, n: int = 4) -> Triangles:
 
 
 def volume_of(points: np.ndarray, tets: np.ndarray) -> float:
-    """The volume of curved elements, by two cuts of their faces; the error goes with the pieces squared."""
+    """Returns the volume of curved elements, extrapolated from two divisions of their faces; the error is
+    proportional to the square of the pieces' size."""
     points = points - points.mean(0)
     coarse, fine = (abs(boundary(points, tets, n).volume()) for n in (2, 4))
     return (4 * fine - coarse) / 3
 
 
 def reference(path: Path, folder: Path) -> tuple[Triangles, float, float] | None:
-    """The dense tessellation, the diagonal and the volume."""
+    """Returns the dense tessellation, the diagonal and the volume."""
     kept = folder / (path.name + ".npz")
     if not kept.exists():
         part = kept.with_suffix(".part.npz")

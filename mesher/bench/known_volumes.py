@@ -68,7 +68,8 @@ class Family:
             self.given[f"{name}.step"] = volumes
 
     def shells(self, name: str, shells: list[Surface]) -> None:
-        """Adds closed surfaces, each inside the one before it; a region lies between two of them."""
+        """Adds closed surfaces, each inside the one before it: a region lies between each and the next, and
+        one inside the last."""
         volumes = [s.volume for s in shells] + [0.0]
         self.surfaces(name, shells, [a - b for a, b in zip(volumes, volumes[1:])])
 
@@ -144,7 +145,7 @@ def torus(radius: float, wire: float, around: int, along: int) -> Surface:
 
 
 def prism(outline: list[tuple[float, float]], low: float, high: float) -> Surface:
-    """Returns the area of a polygon that is star-shaped as seen from the origin or convex."""
+    """Returns the prism over a polygon that is star-shaped as seen from the origin or convex."""
     n = len(outline)
     points = [(x, y, z) for z in (low, high) for x, y in outline]
     polygons = [[k, (k + 1) % n, n + (k + 1) % n, n + k] for k in range(n)]

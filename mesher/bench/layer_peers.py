@@ -158,7 +158,8 @@ def judge(row: Row, path: Path, area: float, volume: float) -> None:
 
 
 def volume_of_prisms(p: np.ndarray) -> float:
-    """By two points across the height and three in the triangle, exact for these products of polynomials."""
+    """Integrates by two points across the height and three in the triangle, exact for these products of
+    polynomials."""
     found = 0.0
     for z in (0.5 - math.sqrt(1 / 12), 0.5 + math.sqrt(1 / 12)):
         for x, y in ((1 / 6, 1 / 6), (2 / 3, 1 / 6), (1 / 6, 2 / 3)):
@@ -170,7 +171,7 @@ def volume_of_prisms(p: np.ndarray) -> float:
 
 
 def volume_of_pyramids(p: np.ndarray) -> float:
-    """As the mean over both divisions of the base."""
+    """Returns the mean over both divisions of the bases."""
     halves = [np.abs(triple(p[:, j] - p[:, i], p[:, k] - p[:, i], p[:, 4] - p[:, i])).sum()
               for i, j, k in ((0, 1, 2), (0, 2, 3), (0, 1, 3), (1, 2, 3))]
     return sum(halves) / 12

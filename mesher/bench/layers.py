@@ -60,7 +60,7 @@ def triple(a, b, c):
 
 
 def prism_jacobians(p: np.ndarray) -> np.ndarray:
-    """At the corners and at 3 x 3 integration points, by shape functions; p: cells x 6 x 3."""
+    """Returns Jacobians at the corners and at 3 x 3 integration points, by shape functions; p: cells x 6 x 3."""
     third, sixth = 1 / 3, 1 / 6
     across = [(0, 0), (1, 0), (0, 1), (third, third), (sixth, sixth), (4 * sixth, sixth), (sixth, 4 * sixth)]
     found = []
@@ -74,7 +74,7 @@ def prism_jacobians(p: np.ndarray) -> np.ndarray:
 
 
 def pyramid_jacobians(p: np.ndarray) -> np.ndarray:
-    """At the corners of the base and below the apex, up to a positive factor; p: cells x 5 x 3."""
+    """Returns Jacobians at the corners of the base and below the apex, up to a positive factor; p: cells x 5 x 3."""
     found = []
     for x in (0.0, 0.2113, 0.5, 0.7887, 1.0):
         for y in (0.0, 0.2113, 0.5, 0.7887, 1.0):
@@ -120,9 +120,9 @@ def measure(row: Row, path: Path, first: float) -> None:
 
 
 def measure_first_heights(row: Row, prisms: np.ndarray, layers: np.ndarray, first: float) -> None:
-    """The 95th percentile of the errors of the first heights, where no node has less than nine tenths of what was asked.
-
-    A node has one height above a wall, but its triangles, which deviate from a curved wall to both sides, several."""
+    """Measures the 95th percentile of the errors of the first heights, where no node has less than nine tenths of the height
+    asked for. A node has one height above a wall, but several above its triangles, which deviate from a curved wall to
+    both sides."""
     p = prisms[layers == 1]
     if not len(p):
         return
@@ -135,7 +135,7 @@ def measure_first_heights(row: Row, prisms: np.ndarray, layers: np.ndarray, firs
 
 
 def cpu_seconds() -> float:
-    """Returns those of all programs that have been run."""
+    """Returns the CPU seconds of all programs that have been run."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
 

@@ -2,8 +2,9 @@
 """Ten planar domains, of kinds that papers and collections on 2D meshing show, beside Ruppert's refinement as CGAL has it
 (Triangle's algorithm) and Gmsh: planar_domains.py collarmesh planar_cgal [SIZES_PER_DIAGONAL]. The coordinates are made here.
 
-Without a size the angles alone decide, as with `triangle -pq`: 20.7 degrees, the largest bound for which Ruppert's refinement is
-proved to end. With one, edges have 1/40 of the diagonal (or 1/SIZES_PER_DIAGONAL)."""
+Without a size the angles alone decide, as with `triangle -pq`: 20.7 degrees, the largest bound for which
+Ruppert's refinement is proved to end. With a size, edges are 1/40 of the diagonal long (or
+1/SIZES_PER_DIAGONAL)."""
 
 import math
 import pathlib
@@ -17,8 +18,8 @@ ANGLE = 20.7
 
 
 class Domain:
-    """A domain: loops of points, of which the first one surrounds the others; these are holes with a point in
-    each. May have segments inside."""
+    """A domain between loops of points. The outline surrounds the holes, each of which has a point inside.
+    There may be segments inside the domain."""
 
     def __init__(self, name, source, outline, holes=(), inside=()):
         self.name, self.source, self.outline = name, source, outline
@@ -47,7 +48,7 @@ class Domain:
         number = {p: i + 1 for i, p in enumerate(points)}
         polygons = [[number[p] for p in loop] for loop in self.loops()]
         polygons += [[number[a], number[b]] for a, b in self.inside] + [[i + 1]
-                                                                        for i in range(len(points))]  # keeps all of them
+                                                                        for i in range(len(points))]  # keeps all points
         lines = [f"{len(points)} 3 0 0"] + [f"{i + 1} {x!r} {y!r} 0" for i, (x, y) in enumerate(points)]
         lines += ["1 0", f"{len(polygons)} {len(self.holes)}"] + \
             [f"{len(p)} " + " ".join(map(str, p)) for p in polygons]
@@ -77,7 +78,8 @@ def letter():
 
 
 def wavy(radius, waves, count):
-    """Returns a closed outline by its radii: [(number of waves, share, phase)]."""
+    """Returns `count` points of a circle with waves added to its radius. `waves`: [(number around the circle,
+    amplitude relative to `radius`, phase)]."""
     points = []
     for i in range(count):
         a = 2 * math.pi * i / count

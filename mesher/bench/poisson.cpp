@@ -2,8 +2,9 @@
 // poisson MESH [plate|shell|wedge]
 //
 // Without a second argument the mesh is scaled to a diagonal of 1 and the values are given on all of its
-// boundary. The domains of the second one are thin and have next to no inner nodes: values are given at their
-// ends only, and the solution does not change across them, so that its normal derivative is zero elsewhere.
+// boundary. The domains that a second argument names are thin, and their meshes have next to no inner nodes:
+// values are given at their ends only, and the solution does not change across them, so that its normal
+// derivative is zero elsewhere.
 #include <fmt/format.h>
 
 #include <cmath>

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Time and counts against the number of segments of loose polylines, and against their spread, by this version and
-by an older one on request: cells per vertex of the triangulation at its largest, the largest number of cells that
-one insertion destroyed (away from vertices where very many features meet), vertices that came while skinny cells
-waited, looks at location objects for each of these. Prints Markdown tables."""
+"""Time and counts against the number of segments of loose polylines, and against their spread, by this
+version and by an older one on request: cells per vertex of the triangulation at its largest, the largest
+number of cells that one insertion destroyed (away from vertices where very many features meet), vertices that
+were inserted while skinny cells waited, and looks per location object. Prints Markdown tables."""
 
 from __future__ import annotations
 

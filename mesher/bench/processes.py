@@ -48,9 +48,9 @@ for _ in range(int(sys.argv[1]) // block):
 
 def fetch_memory(most: int = 4 << 30) -> None:
     """Uses up to this many bytes of memory and returns them. A virtual machine gets memory that was unused
-    for a while slowly from its host (2.4 s for a gigabyte, 0.05 s the next time), so the run that is measured
-    next finds it ready. A separate process does this, because programs inherit the largest resident set of
-    their parent."""
+    for a while slowly from its host (2.4 s for a gigabyte, 0.05 s the next time). The run that is measured
+    next then finds that memory ready. A separate process does this, because programs inherit the largest
+    resident set of their parent."""
     free = os.sysconf("SC_AVPHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     subprocess.run([sys.executable, "-c", use_memory, str(min(most, free * 3 // 4))], check=True)
 

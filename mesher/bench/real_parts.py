@@ -3,10 +3,10 @@
 defaults, by Gmsh (HXT), by TetGen and by CGAL's Alpha_wrap_3 followed by Mesh_3 (wrap_mesh.cpp), all at a twentieth of
 the diagonal. TetGen and the wrap get surfaces only: the triangles as they are, equal points made one.
 
-Outcomes: meshed (all tets have positive volume), guarantee missed (collarmesh's exit code 7), unusable mesh (no
-error, but no tets or flat or inverted ones), refused (an error said so), past the limit (of CPU seconds or memory),
-crashed. Prints Markdown tables of outcomes and of what the meshes are; --out keeps every run, and a run that it holds
-is not made again."""
+Outcomes: meshed (all tets have positive volume), guarantee missed (collarmesh's exit code 7), unusable mesh
+(no error, but no tets or flat or inverted ones), refused (an error said so), past the limit (of CPU seconds
+or memory), crashed. Prints Markdown tables of outcomes and of the meshes' measures; --out keeps every run,
+and a run that it holds is not made again."""
 
 from __future__ import annotations
 

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""A Poisson problem with a known solution on thin domains, where one layer of tetrahedra spans the thickness: a plate (10
-by 10 by 0.2), a shell (a tube of radius 5, 10 high and 0.2 thick) and a wedge of 5 degrees, as CAD shapes, meshed by
-collarmesh and by Gmsh (HXT) at the same sizes with elements of both orders, solved by one solver (`poisson`). Values are
-given at the ends only; the solution does not change across the thickness. The error of the gradient per unknown is the
-error times the unknowns to half the order, since it falls so over a surface: quality apart from number. Prints a Markdown
-table."""
+"""A Poisson problem with a known solution on thin domains, where one layer of tetrahedra spans the thickness:
+a plate (10 by 10 by 0.2), a shell (a tube of radius 5, 10 high and 0.2 thick) and a wedge of 5 degrees, as
+CAD shapes, meshed by collarmesh and by Gmsh (HXT) at the same sizes with elements of both orders, solved by
+one solver (`poisson`). Values are given at the ends only; the solution does not change across the thickness.
+The error of the gradient per unknown is the error times the number of unknowns to the power of half the
+order, because over a surface the error falls with that power: it compares quality apart from numbers. Prints
+a Markdown table."""
 
 from __future__ import annotations
 

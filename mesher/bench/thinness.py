@@ -3,11 +3,12 @@
 
 thinness.py [--families wedge step ...] [--thinness 1e-1 1e-2 ...] [--program collarmesh] [--limit 60] [--options '--order 2']
 
-Each body is about 10 target edge lengths wide, and its feature's thickness is a share of that length. A cell has the
-vertices that refinement inserted (in the last try), the tets and the CPU seconds of the whole run; then the exit code unless
-it is 0, and how many regions there are where some are missing. "power" is that of 1 / thickness by which vertices grow down
-to --feature-size and below it, in the steepest step. Volumes are compared with the exact ones: the largest difference of a
-region, relative to that region; of all together where a region is missing. Rows go to --out as they come."""
+Each body is about 10 target edge lengths wide, and its feature's thickness is a share of that length. A cell
+has the vertices that refinement inserted (in the last try), the tets and the CPU seconds of the whole run;
+then the exit code unless it is 0, and how many regions there are where some are missing. "power" is the power
+of 1 / thickness with which the number of vertices grows, down to --feature-size and below it, in the steepest
+step. Volumes are compared with the exact ones: the largest difference of a region, relative to that region;
+if a region is missing, the difference of all regions together. Rows go to --out as they come."""
 
 from __future__ import annotations
 
@@ -30,7 +31,7 @@ from processes import run_limited
 from tables import machine, seconds, si, table
 
 size = 1.0
-wide = 10.0   # of every block, in y
+wide = 10.0   # width of every block, in y
 memory = 12 << 30
 
 
@@ -101,7 +102,7 @@ def slit(h: float) -> Body:
 
 
 def sliver_face(h: float) -> Body:
-    """An edge that is cut off by a face so wide."""
+    """An edge that is cut off by a face of this width."""
     c = h / math.sqrt(2)
     return profile((0, 0), (10, 0), (10, 6 - c), (10 - c, 6), (0, 6))
 
@@ -120,7 +121,7 @@ def flake(h: float) -> Body:
 
 
 def blocks_apart(h: float) -> Body:
-    """Two blocks, one above the other, so far apart."""
+    """Two blocks, one above the other, with a gap of this width."""
     low, high = profile((0, 0), (10, 0), (10, 3), (0, 3)), profile((0, 3 + h), (10, 3 + h), (10, 6), (0, 6))
     return Body(low.volumes + high.volumes, low.shells + high.shells)
 
@@ -136,7 +137,7 @@ def layer(h: float) -> Body:
 
 
 def cylinders(h: float) -> Body:
-    """Two prisms of 96 sides, edge against edge, so far apart."""
+    """Two prisms of 96 sides, edge against edge, with a gap of this width."""
     angles = [2 * math.pi * k / 96 for k in range(96)]
     outline = [(3 * math.cos(a), 3 * math.sin(a)) for a in angles]
     bodies = [profile(*((x + at, z) for x, z in outline)) for at in (-3 - h / 2, 3 + h / 2)]
@@ -144,7 +145,7 @@ def cylinders(h: float) -> Body:
 
 
 def cad_cylinders(h: float) -> Body:
-    """Two round cylinders of a STEP file, so far apart."""
+    """Two round cylinders of a STEP file, with a gap of this width."""
     return Body(2 * [math.pi * 9 * wide], step=f"[cylinder(3, {wide}, 0, {3 + h / 2}), cylinder(3, {wide}, 0, {-3 - h / 2})]")
 
 
@@ -175,7 +176,8 @@ class Row:
 
 
 def difference(made: list[float], exact: list[float]) -> float:
-    """By size, as regions are numbered in an order of their own."""
+    """Returns the largest relative difference. Compares sorted volumes, because regions are numbered in an
+    order of their own."""
     if len(made) != len(exact):
         return abs(sum(made) / sum(exact) - 1)
     return max(abs(a / b - 1) for a, b in zip(sorted(made), sorted(exact)))
@@ -191,7 +193,7 @@ def measure(family: str, thinness: float, options: argparse.Namespace) -> Row:
         row = Row(family, thinness, done.exit_code, done.cpu)
         lines = [line for line in done.output.splitlines() if not line.startswith(("repaired:", "  "))]
         row.said = lines[0] if done.exit_code and lines else ""
-        with contextlib.suppress(FileNotFoundError, KeyError, TypeError, AttributeError):   # what a failed run tells
+        with contextlib.suppress(FileNotFoundError, KeyError, TypeError, AttributeError):   # a failed run reports less
             report = json.loads((folder / "report.json").read_text())
             row.vertices = report["statistics"]["vertices_inserted"]
             row.tets = report["mesh"]["tets"]
@@ -202,7 +204,7 @@ def measure(family: str, thinness: float, options: argparse.Namespace) -> Row:
 
 def steepest(rows: list[Row]) -> str:
     powers = [math.log(b.vertices / a.vertices) / math.log(a.thinness / b.thinness) for a, b in zip(rows, rows[1:])
-              if a.vertices and b.vertices]  # none are inserted into constrained tetrahedra
+              if a.vertices and b.vertices]  # constrained tetrahedra get no inserted vertices
     return f"{max(max(powers), 0):.1f}" if powers else ""
 
 

@@ -2,10 +2,10 @@
 """Whole runs of collarmesh and of Gmsh HXT with its optimization, with one thread and with two, at equal
 numbers of tetrahedra.
 
-The programs run in turn, some rounds, on so many cores as they may have threads, after memory was fetched for them. Ours refines, coarsens,
-improves, checks and writes; HXT meshes the surface, refines, optimizes and writes. `volume` is the time of
-what both do between a surface and a mesh: refine, coarsen and improve here, "meshing 3D" there. Prints
-Markdown tables of medians of wall seconds.
+The programs run in turn, some rounds, on as many cores as they may use threads; before each run memory is
+made ready (processes.fetch_memory). Ours refines, coarsens, improves, checks and writes; HXT meshes the
+surface, refines, optimizes and writes. `volume` is the time of what both do between a surface and a mesh:
+refine, coarsen and improve here, "meshing 3D" there. Prints Markdown tables of medians of wall seconds.
 """
 
 from __future__ import annotations

@@ -100,7 +100,8 @@ void separate_fans(const std::vector<Index>& neighbour, SelectedSurface& surface
       seen.size() - static_cast<std::size_t>(std::unique(seen.begin(), seen.end()) - seen.begin());
 }
 
-/// Orders triangles so that each touches earlier ones: OpenMesh can link a face in that order.
+/// Orders triangles so that each, except the first of a component, shares an edge with an earlier one; in
+/// that order OpenMesh can link all faces.
 void order_by_neighbours(const std::vector<Index>& neighbour, SelectedSurface& surface) {
   const std::size_t count = surface.triangles.size();
   std::vector<Index> order;

@@ -16,7 +16,7 @@ namespace collarmesh::testing {
 
 namespace {
 
-// Exact, so that triangles made by rounding errors beside a facet do not count as parts of it.
+// The kernel is exact, so that triangles made by rounding errors beside a facet do not count as parts of it.
 using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
 using Triangulation = CGAL::Constrained_Delaunay_triangulation_2<
     Kernel,

@@ -192,7 +192,7 @@ TEST(CadMeshingInside, EndsLinesOnCurvedFaces) {
   const TopoDS_Shape cylinder = BRepPrimAPI_MakeCylinder(radius, 20).Shape(),
                      spoke = BRepBuilderAPI_MakeEdge(gp_Pnt(0, 0, height), gp_Pnt(-12, -9, height)).Shape();
   const Tag first = count(cylinder, TopAbs_EDGE) + 1;
-  const double angle = 1.2;  // angle at which the chord meets it: too large for a crease
+  const double angle = 1.2;  // angle between the chord and the surface: too large for a crease
   const double depth = radius * std::cos(angle), half = radius * std::sin(angle);
   const TopoDS_Shape chord =
       BRepBuilderAPI_MakeEdge(gp_Pnt(depth, -2 * radius, height), gp_Pnt(depth, 2 * radius, height)).Shape();

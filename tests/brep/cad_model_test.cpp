@@ -183,7 +183,7 @@ TEST(CadModel, EdgesAloneAreLines) {
   EXPECT_NEAR(distance(*nearest, {4, 2, 0}), 0, 1e-12);
 }
 
-// Wires and points that belong to no face and lie outside solids are not meshed, which a note tells.
+// Wires and points that belong to no face and lie outside solids are not meshed, and a note says so.
 TEST(CadModel, TellsOfEdgesAndPointsOutsideOfSolids) {
   const TopoDS_Shape solid = box();
   EXPECT_TRUE(CadModel(solid, "part").notes().empty());
@@ -218,7 +218,7 @@ TEST(CadModel, CutsEdgesInsideWhereTheyMeetOneAnother) {
   const TopoDS_Shape first = line(gp_Pnt(2, 5, 5), gp_Pnt(8, 5, 5));
   struct Meeting {
     TopoDS_Shape other;
-    double length;              // of both edges, with their common part counted once
+    double length;              // length of both edges, with their common part counted once
     std::size_t curves;         // number of curves that they are cut into
     std::vector<Point> places;  // places where they meet
     const char* note = nullptr;
@@ -248,7 +248,7 @@ TEST(CadModel, CutsEdgesInsideWhereTheyMeetOneAnother) {
   }
 }
 
-// Where the line ends on the face, the face gets a vertex; the part outside is left out.
+// The face gets a vertex where the line meets it; the part of the line outside is left out.
 TEST(CadModel, EndsEdgesAtTheFacesThatTheyMeet) {
   const double top = 30, inside = 10;
   for (const double end : {top, 2 * top}) {
@@ -411,7 +411,8 @@ TEST(CadModel, LeavesOutCurvedEdgesNearToOthers) {
   EXPECT_TRUE(lines.notes().empty());
 }
 
-// Coarse triangles of the pin cross those of the hole; with finer ones the wire is there.
+// Coarse triangles of the pin cross those of the hole. The wire near the plate's top is kept only with finer
+// triangles.
 TEST(CadFiles, HaveAsManySoupsWhenCutAgain) {
   const gp_Ax2 axis(gp_Pnt(20, 15, 0), gp::DZ()), turned(axis.Location(), gp::DZ(), gp_Dir(1, 0.2, 0));
   const TopoDS_Shape plate = BRepAlgoAPI_Cut(BRepPrimAPI_MakeBox(40, 30, 10).Shape(),

@@ -96,7 +96,7 @@ TEST(FoldedTriangles, AreCutAnew) {
     EXPECT_EQ(border(triangles), border(grid.triangles));
   }
   EXPECT_GT(folded, 50U);
-  EXPECT_LT(left, folded / 4);  // where no point may move that far
+  EXPECT_LT(left, folded / 4);  // folds remain where no point may move far enough
 }
 
 // A needle at the border lies on the triangle beside it. No inner point can be merged, so a side is flipped.

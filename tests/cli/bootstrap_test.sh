@@ -1,5 +1,5 @@
 #!/bin/bash
-# Which packages the launcher installs, and how, with stand-ins for apt and its friends.
+# Tests which packages the launcher installs, and how, with stand-ins for apt and similar programs.
 set -u
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 work=$(mktemp -d)
@@ -12,7 +12,7 @@ stand_in() {
   chmod +x "$work/$1"
 }
 
-# expect DESCRIPTION EXIT-CODE OUTPUT-PATTERN: what `install_packages build` does now.
+# expect DESCRIPTION EXIT-CODE OUTPUT-PATTERN: check the exit code and the output of `install_packages build`.
 expect() {
   local output code=0
   output=$(export PATH="$work:$PATH" && . "$root/cmake/bootstrap.sh" && install_packages build 2>&1) || code=$?
@@ -49,7 +49,8 @@ stand_in apt-get 'echo "E: no network"; exit 100'
 expect "a failure shows why" 1 'E: no network'
 expect "a failure says what to do" 1 'apt-get install .*libcgal-dev'
 
-# built_anew DESCRIPTION EXIT-CODE PACKAGE: is the program built anew (1) once this package was installed?
+# built_anew DESCRIPTION EXIT-CODE PACKAGE: is the program built anew (exit code 1) after this package was
+# installed?
 built_anew() {
   local code=0
   : >"$work/info/$3"

@@ -511,7 +511,7 @@ class Repairs(HostileTest):
 
 class Ends(HostileTest):
     def test_slivers_between_bodies(self):
-        """They are meshed, refused, or end at a budget that is kept."""
+        """Such bodies are meshed, refused, or end at a budget, which is kept."""
         for path in sorted((HOSTILE / "hang").iterdir()):
             for budget in (("--max-vertices", "20000"), ("--max-memory", "40M")):
                 with self.subTest(path=path.name, budget=budget):

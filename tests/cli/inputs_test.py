@@ -119,7 +119,7 @@ class InABox(ProgramTest):
 
 
 class MeshesOfOtherPrograms(ProgramTest):
-    """They pass, or fail for their elements, but not for their labels."""
+    """Meshes of other programs pass, or fail for their elements, but not for their labels."""
 
     def other_program(self, *command):
         if shutil.which(command[0]) is None:

@@ -105,7 +105,7 @@ class Numbers(ProgramTest):
         self.expect(2, self.box, "-o", self.out, "--patch-size", "7=0.1", says=["7", "1, 2, 3, 4, 5, 6"])
 
     def test_where_parts_touch_one_number_stays(self):
-        """The summary tells which number stays, and so does the error for the other one."""
+        """The summary says which number stays, and so does the error for an option that uses the other one."""
         parts = []
         for first, low in ((1, 0), (7, 1)):
             points = box_points((low, 0, 0), (low + 1, 1, 1))

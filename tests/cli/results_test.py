@@ -179,7 +179,7 @@ class Reports(ProgramTest):
         self.assertIn("warning: ", self.expect(0, "info", outside, writes=True).stdout)
 
     def test_lines_outside_of_every_region_are_told(self):
-        """Nothing else says that the mesh does not contain them."""
+        """Only this warning says that the mesh does not contain the lines."""
         corners = [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)] + [(2, 0.5, 0.5), (3, 0.5, 0.5)]
         sides = ["1 2 4 3", "5 6 8 7", "1 2 6 5", "3 4 8 7", "1 3 7 5", "2 4 8 6"]
         points = "".join(f"{i} {x} {y} {z}\n" for i, (x, y, z) in enumerate(corners, 1))

@@ -32,7 +32,7 @@ class Budgets(ProgramTest):
         self.assertIsNone(json.loads(report.read_text())["options"]["max_memory"])
 
     def test_options_without_an_end(self):
-        """They end at a budget, after a warning."""
+        """Runs that would not terminate with such options end at a budget, after a warning."""
         sphere, bracket = MODELS / "sphere.off", MODELS / "bracket.off"
         for option, value in (("--radius-edge", "1"), ("--distance", "1e-9")):
             with self.subTest(option=option):
@@ -94,7 +94,8 @@ class Cancelling(ProgramTest):
                 self.assert_nothing_left()
 
     def test_interrupt_ends_every_stage(self):
-        """The time limit sets the same flag. A stage that does not check it continues with the next stage."""
+        """An interrupt sets the same flag as the time limit. After a stage that does not check it, the next
+        stage would begin."""
         command = [PROGRAM, str(self.box), "-o", str(self.out), "--size", "0.03", "--order", "2", "--progress", "json"]
 
         def stages(stop_at=None):

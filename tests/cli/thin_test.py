@@ -9,7 +9,7 @@ WIDE, DEEP, BLOCK, TOP, THICKNESS = 10, 4, 3, 9, 0.004
 
 
 def fin_text():
-    """Returns a block with a fin that stands on it, across all of it."""
+    """Returns a block with a fin across its whole top."""
     left, right = 5, 5 + THICKNESS
     outline = [(0, 0), (WIDE, 0), (WIDE, BLOCK), (right, BLOCK), (right, TOP), (left, TOP), (left, BLOCK), (0, BLOCK)]
     n = len(outline)

@@ -21,7 +21,8 @@ class AnyNumberOfThreads(ProgramTest):
     def expect_the_same(self, *arguments, formats=("vtu", "msh")):
         for suffix in formats:
             written = []
-            counts = COUNTS if suffix == formats[0] else (1, 3, max(COUNTS))  # the mesh is that of the first format
+            # Further formats store the same mesh, so fewer counts suffice.
+            counts = COUNTS if suffix == formats[0] else (1, 3, max(COUNTS))
             for threads in counts:
                 self.expect(0, *arguments, "-o", f"mesh.{suffix}", "--threads", threads)
                 written.append((self.folder / f"mesh.{suffix}").read_bytes())

@@ -11,7 +11,7 @@ file(REMOVE_RECURSE ${WORK})
 file(MAKE_DIRECTORY ${WORK})
 execute_process(COMMAND ninja -C ${BUILD} -t compdb OUTPUT_FILE ${WORK}/commands.json RESULT_VARIABLE result)
 if(NOT result EQUAL 0)
-  file(WRITE ${WORK}/commands.json "[]")  # all is compiled
+  file(WRITE ${WORK}/commands.json "[]")  # no commands to compare with, so everything is compiled
 endif()
 set(ENV{CMAKE_CXX_COMPILER_LAUNCHER} "${PYTHON};${CMAKE_CURRENT_LIST_DIR}/reuse.py;${WORK}/commands.json;${BUILD};${WORK}/_deps/collarmesh-build;${LAUNCHER}")
 must(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK} -G ${GENERATOR} -D CMAKE_BUILD_TYPE=${BUILD_TYPE} -D CMAKE_CXX_FLAGS=${CXX_FLAGS}

@@ -20,6 +20,6 @@ endif()
 if(EXISTS ${WORK}/build/openmesh_consumer)
   must(${WORK}/build/openmesh_consumer)
 endif()
-# What is installed loads no library from the current folder.
+# Installed programs load no library from the current folder.
 must(${CMAKE_COMMAND} -E env COLLARMESH_PROGRAM=${WORK}/prefix/bin/collarmesh ${PYTHON} ${TESTS}/cli/hostile_test.py Libraries)
 must(${WORK}/prefix/bin/collarmesh check ${WORK}/box.vtu --against ${MODEL})

@@ -19,7 +19,7 @@ JUDGE = os.environ.get("COLLARMESH_JUDGE", "")
 TIME_LIMIT = 120  # seconds
 LONG = bool(os.environ.get("COLLARMESH_LONG"))
 MOST_TETS = math.inf if LONG else 4000  # larger additional meshes are not judged
-DAYS = 1 if LONG else 6  # until the judge has seen every mesh
+DAYS = 1 if LONG else 6  # days until the judge has seen every mesh
 
 
 class Failed(Exception):
@@ -34,8 +34,8 @@ def run(*arguments, limit=TIME_LIMIT):
 
 
 def verdict(mesh, *against, radius_edge=2):
-    """Runs the judge where it is the day of meshes of this name and bound; returns its last line if it finds no fault. The
-    judge knows no thin tetrahedra, so coarsened meshes need an infinite bound. Raises Failed."""
+    """Runs the judge if meshes of this name and bound are due today; returns its last line if it finds no
+    fault. The judge knows no thin tetrahedra, so coarsened meshes need an infinite bound. Raises Failed."""
     if (zlib.crc32(f"{pathlib.Path(mesh).name} {radius_edge}".encode()) + datetime.date.today().toordinal()) % DAYS:
         return "not judged today"
     result = run(sys.executable, JUDGE, mesh, *against, "--rho", radius_edge)

@@ -1,4 +1,4 @@
-// Triangles of a polygon with the largest least shape, against all ways of cutting it.
+// The triangulation of a polygon whose worst triangle is best, compared with all triangulations.
 #include "shells/best_triangles.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,8 @@ namespace {
 using Polygon = std::vector<Point>;
 using MayJoin = std::function<bool(unsigned, unsigned)>;
 
-/// Returns the largest least shape of the polygon's part between two corners, by trying all triangulations.
+/// Returns the shape of the worst triangle in the best triangulation of the polygon's part between two
+/// corners, by trying all triangulations.
 double best_shape(const Polygon& polygon, const MayJoin& may_join, unsigned first, unsigned last) {
   if (last - first < 2) return INFINITY;
   const bool whole = first == 0 && last + 1 == polygon.size();

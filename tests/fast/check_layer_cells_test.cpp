@@ -13,7 +13,7 @@ namespace {
 
 using testing::LayerMesh;
 
-/// The guarantees that a mesh misses.
+/// Returns the names of the guarantees that a mesh misses.
 std::string missed(const TetMesh& mesh) {
   CheckReport report;
   checks::check_layer_cells(mesh, report);

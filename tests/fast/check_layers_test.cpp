@@ -26,7 +26,7 @@ namespace {
 using testing::layer_mesh;
 using testing::second_order;
 
-/// The complex of the mesh's own faces.
+/// Returns the complex that the mesh's own faces make.
 Plc complex_of(const TetMesh& mesh) {
   PolygonSoup soup;
   soup.points.assign(mesh.points.begin(), mesh.points.begin() + 19);
@@ -38,7 +38,7 @@ Plc complex_of(const TetMesh& mesh) {
   return build_plc(std::span(&soup, 1));
 }
 
-/// The bounds are not those of so coarse a mesh.
+/// Returns bounds that so coarse a mesh keeps.
 CheckOptions loose() {
   CheckOptions options;
   options.bounds.radius_edge = 100;

@@ -377,7 +377,8 @@ TEST(CheckWrongMeshes, CurveVertexOffTheCurve) {
       const Point& q = m.mesh.points[i];
       return m.mesh.features[i].dimension == 1 && q.y == 0 && q.z == 0;
     });
-    m.mesh.points[p].z += off;  // it stays in the plane of one patch and leaves the other's
+    m.mesh.points[p].z += off;  // the vertex stays in the plane of one patch and leaves the other patch's
+                                // plane
     const Names names = broken(m);
     EXPECT_EQ(names.count(curve_distance), 1U) << off;
     EXPECT_EQ(names.count(patch_plane), 1U) << off;

@@ -17,8 +17,8 @@ struct Seeded : testing::KnownCurves {
   SurfaceCheck check{domain, mesh, nodes, collars, collar_cells, surface, triangles, points, chains, outcome};
 };
 
-// A vertex is made beneath another one across a gap, perhaps where a seed waits for its turn. It lies at the
-// seed's place but for rounding; the tiny edge between them would end the refinement.
+// Refinement may insert a vertex opposite one on the other side of a gap, just where a seed is waiting, up to
+// rounding. The seed must take that vertex: a second one would make a tiny edge, at which refinement stops.
 TEST(ClosedPatchSeeds, TakeAVertexThatIsThereButForRounding) {
   const PolygonSoup soup = testing::icosphere(1, 4);
   const Plc plc = build_plc({&soup, 1}, {.feature_angle = 60});

@@ -1,4 +1,4 @@
-// The parts that make collars and judge surfaces, with the test in place of the loop.
+// The parts that make collars and judge surfaces; the test does the work of the refinement loop.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -55,14 +55,14 @@ struct Parts : testing::KnownCurves {
     creator.create_at_vertex(vertex, mesh.last_vertex(), BallReason::vertex_inserted);
     chains.point_resolved(vertex);
   }
-  // Splits all subsegments whose balls contain vertices, as the loop does.
+  // Splits all subsegments whose balls contain vertices, as the refinement loop does.
   void split_encroached() {
     WorkQueue::Item item;
     while (queue.first_priority() == WorkQueue::encroached_subsegments && queue.pop(item))
       if (chains.due(item.entry) && !creator.create_at_subsegment(item.entry.id))
         chains.split_ahead(*chains.split_of(item.entry.id));
   }
-  // Returns the pieces of a curve by their parameters, sorted.
+  // Returns the pieces of a curve as ranges of its parameter, sorted.
   std::vector<std::array<double, 2>> pieces_of(Index curve) const {
     std::vector<std::array<double, 2>> pieces;
     chains.visit([&](Index, const Subsegment& s) {
@@ -166,7 +166,7 @@ TEST(CollarParts, InThePassNoBallIsPlacedAtTheStart) {
   parts.creator.create_at_vertex(end, parts.mesh.last_vertex(), BallReason::vertex_inserted);
   EXPECT_EQ(observed, 1U);
   EXPECT_FALSE(parts.creator.waits_for_ball(end));
-  EXPECT_NE(parts.open_creases.chain(open[0]).ends[0], none);  // the point where it leaves the ball
+  EXPECT_NE(parts.open_creases.chain(open[0]).ends[0], none);  // the point where the crease leaves the ball
   EXPECT_TRUE(parts.collar_cells.near(parts.mesh.last_vertex()));
 }
 
@@ -177,7 +177,7 @@ TEST(CollarParts, ACreaseGetsItsBallsInsteadOfASplit) {
   const Index curve = parts.open_creases.curves().at(0);
   for (const Index end : plc.curves[curve].ends) parts.resolve_vertex_with_ball(end);
   const auto& chain = parts.open_creases.chain(curve);
-  EXPECT_GT(chain.unresolved, 0U);  // there are no vertices yet where it leaves the balls
+  EXPECT_GT(chain.unresolved, 0U);  // there are no vertices yet where the crease leaves its balls
   for (const Index point : std::array<Index, 2>(chain.ends)) {
     const UnresolvedPoints::Unresolved p = parts.points[point];
     parts.points.resolve(point, parts.mesh.vertex_count());
@@ -258,7 +258,7 @@ TEST(CollarParts, AChainThatIsSplitBeginsOnTheSphereOfTheBallAtItsEnd) {
   }
 }
 
-// The explorer tests first what was nearest last time; this must not change any answer.
+// The explorer first tests the feature that was nearest last time; this must not change any answer.
 TEST(CollarParts, ExplorersThatRememberAnswerAsThoseThatDoNot) {
   std::size_t isolated = 0, others = 0;
   for (const auto& shape : {testing::acute::lens(40), testing::acute::star_prism(9, 0.4)}) {
@@ -339,7 +339,7 @@ TEST(CollarParts, RepairsEndWithACollarSurfaceThatCanBeStitched) {
     for (const Index v : parts.mesh.face_vertices(t.face)) EXPECT_FALSE(parts.collar_surface.on_crease(v));
   }
   EXPECT_GT(inside, 10U);
-  // Without an insertion in between, the answer is known.
+  // Since nothing was inserted, the answer is known already.
   EXPECT_FALSE(parts.review.check());
   RipAndStitch stitching(parts.domain, parts.mesh, parts.nodes, parts.collars, parts.surface, parts.points,
                          parts.chains, parts.creator, parts.collar_surface);
@@ -348,7 +348,7 @@ TEST(CollarParts, RepairsEndWithACollarSurfaceThatCanBeStitched) {
   EXPECT_EQ(static_cast<std::size_t>(
                 std::count_if(tets.begin(), tets.end(), [](const auto& tet) { return tet.collar == 1; })),
             inside);
-  EXPECT_GT(tets.size(), inside);  // books
+  EXPECT_GT(tets.size(), inside);  // the stitching also makes books
   for (const auto& tet : tets) {
     const auto& v = tet.corners;
     EXPECT_GT(six_volume(parts.mesh.point(v[0]), parts.mesh.point(v[1]), parts.mesh.point(v[2]),
@@ -402,7 +402,7 @@ TEST(SurfaceParts, AClosedPatchIsSeededAndAMissedOneMore) {
   const std::size_t seeds = parts.points.size();
   EXPECT_GT(seeds, 3U);
   for (Index point = 0; point < seeds; ++point) EXPECT_EQ(parts.points[point].feature, (Feature{2, 0}));
-  EXPECT_TRUE(parts.check.check());  // it has no triangle yet
+  EXPECT_TRUE(parts.check.check());  // the patch has no triangle yet
   EXPECT_GT(parts.points.size(), 2 * seeds);
 }
 

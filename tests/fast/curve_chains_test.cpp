@@ -15,7 +15,7 @@
 namespace collarmesh::curve_chains_test {
 namespace {
 
-/// Curves with the parts that they need; the test replaces the loop.
+/// Curves with the parts that they need; the test does the work of the refinement loop.
 struct Curves : testing::KnownCurves {
   explicit Curves(const Plc& plc, double size) : KnownCurves(plc, options(size)) { chains.start(); }
   static MeshOptions options(double size) {
@@ -45,7 +45,7 @@ struct Curves : testing::KnownCurves {
     return n;
   }
   std::size_t count() const { return count(true) + count(false); }
-  /// Does what the queue asks for, as the loop does, until it is empty. Returns the number of splits.
+  /// Handles all entries of the queue, as the refinement loop does. Returns the number of splits.
   std::size_t work_off() {
     std::size_t splits = 0;
     for (WorkQueue::Item item; queue.pop(item);) {
@@ -131,7 +131,8 @@ TEST(CurveChains, ASubsegmentIsResolvedWhenItsEndsAreInTheMesh) {
   EXPECT_EQ(curves.count(true), 12U);
 }
 
-// Otherwise the whole skeleton would be inserted at once, one end after the other.
+// If ends encroached their own subsegments, the whole skeleton would be inserted at once, one end after the
+// other.
 TEST(CurveChains, TheirOwnEndsEncroachNoSubsegments) {
   const Plc plc = unit_box();
   Curves curves(plc, 10);
@@ -146,7 +147,7 @@ TEST(CurveChains, ACandidateThatEncroachesAnUnresolvedOneMakesWayForAMedialEnd) 
   Curves curves(plc, 10);
   const Point near = curves.points[plc.curves[0].ends[0]].point,
               far = curves.points[plc.curves[0].ends[1]].point;
-  // The vertices approach it from far away: its ball is found from ever nearer ones.
+  // Inserts vertices around the edge, none of them in its ball. The ball is found from ever nearer vertices.
   std::mt19937_64 random(2);
   std::uniform_real_distribution<double> unit(-0.3, 1.3);
   for (int k = 0; k < 200; ++k) {
@@ -160,14 +161,14 @@ TEST(CurveChains, ACandidateThatEncroachesAnUnresolvedOneMakesWayForAMedialEnd) 
   ASSERT_NE(subsegment, none);
   EXPECT_EQ(curves.chains.curve_of(subsegment), 0U);
   EXPECT_EQ(curves.chains.end_to_resolve(subsegment, candidate), plc.curves[0].ends[0]);
-  // Puts a vertex beside each end, which makes it a bad place for another one.
+  // Puts a vertex beside each end, so that the end is a bad place for a mesh vertex.
   curves.insert_and_tell(near + 1e-4 * (near - far));
   EXPECT_EQ(curves.chains.end_to_resolve(subsegment, candidate), plc.curves[0].ends[1]);
   curves.insert_and_tell(far + 1e-4 * (far - near));
   EXPECT_EQ(curves.chains.end_to_resolve(subsegment, candidate), none);
 }
 
-// No vertex is inserted for it, because the mesh may have skinny cells.
+// Splitting ahead inserts no vertices, because the mesh may have skinny cells.
 TEST(CurveChains, WhatAVertexEncroachesIsSplitAheadOfTheMesh) {
   const Plc plc = unit_box();
   Curves curves(plc, 10);

@@ -66,7 +66,7 @@ TEST(CurvedTet, AMidNodeBeyondTheQuarterOfItsEdgeInverts) {
 // The determinant is negative only in the middle of an edge, which its values at corners do not show.
 TEST(CurvedTet, FindsAnInversionBetweenTheCorners) {
   CurvedTet nodes = unit_tet();
-  nodes[5] = {0.5, 0, 0.05};  // along ab the directions to c and d turn around once, together
+  nodes[5] = {0.5, 0, 0.05};  // along ab the directions to c and d make one full turn together
   nodes[8] = {0.5, 0.05, 0};
   for (std::size_t i = 0; i < 4; ++i) {
     std::array<double, 4> corner{};

@@ -48,7 +48,8 @@ class DelaunayBlocks : public ::testing::Test {
     for (Index v = 8; v < mesh_.vertex_count(); ++v) owners_[v] = octant(mesh_.point(v));
   }
 
-  // Inserts the circumcentres of all cells that lie in one block, as long as there is room.
+  // Inserts the circumcentres of all cells that lie in one block, as long as the block may take more
+  // vertices.
   static Index refine(const Triangulation& mesh, Triangulation::Block& block,
                       const std::vector<Index>& cells) {
     ConflictZone zone;

@@ -194,8 +194,8 @@ TEST_P(DelaunayTriangulation, HasTheCellsOfTheOracle) {
     theirs.insert(key);
   }
   EXPECT_NEAR(double(mine.size()), double(theirs.size()), 0.1 * double(theirs.size()));
-  // Up to ties (the box's corners tie in every set): a cell that only one of both has must have a fifth point
-  // on its sphere.
+  // Expects that the triangulations differ only by ties (the box's corners tie in every set): a cell that
+  // only one of them has must have a fifth point on its sphere.
   std::vector<Cell> missing;
   std::set_difference(mine.begin(), mine.end(), theirs.begin(), theirs.end(), std::back_inserter(missing));
   for (const Cell& cell : missing) {
@@ -222,7 +222,7 @@ INSTANTIATE_TEST_SUITE_P(PointSets, DelaunayTriangulation,
                          [](const auto& info) { return info.param.name; });
 
 TEST(DelaunayTriangulationZone, OfAVertexWithManyNeighboursIsLinked) {
-  // A vertex inside a sphere of others: too many for the square table.
+  // A vertex inside a sphere of 600 others has too many neighbours for the square table.
   const PointSet sphere = on_sphere(600);
   Box box;
   box.add(Point{-4, -4.1, -4.2});

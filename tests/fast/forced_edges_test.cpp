@@ -1,4 +1,4 @@
-// Edges that the input forces to be short, and the angles that they leave to a tet, by brute force.
+// Edges that the input forces to be short, and the width and angle that they leave to a tet, by brute force.
 #include "tolerance/forced_edges.h"
 
 #include <gtest/gtest.h>
@@ -57,7 +57,7 @@ TEST(FeatureContacts, AreThoseWithACommonPoint) {
   expect_contacts_by_points(complex_of(testing::two_boxes()));
   expect_contacts_by_points(complex_of(testing::l_shape()));
   expect_contacts_by_points(complex_of(testing::cylinder(1, 2, 24), 40));
-  // 80 flat faces meet in its tip: too many to be listed as neighbours of each other.
+  // 80 flat faces meet in the cone's tip: too many to be listed as neighbours of each other.
   expect_contacts_by_points(complex_of(testing::cone(1, 1, 80), 0));
 }
 
@@ -75,7 +75,8 @@ double longest(const Corners& p) {
   return most;
 }
 
-// The faces of a unit box at two opposite corners: one pair of them has no point in common.
+// Three faces of a unit box: `below` and `above` are opposite and have no point in common; `beside` touches
+// both.
 struct OppositeFaces {
   Plc plc = complex_of(testing::box());
   Index below = none, above = none, beside = none;

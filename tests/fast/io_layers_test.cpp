@@ -1,5 +1,5 @@
-// Prisms, pyramids and quadrangles in files: each format that has a place for them gives them back, others
-// say so.
+// Prisms, pyramids and quadrangles in files: formats that can store them give them back, other formats say
+// that they cannot.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ using testing::TemporaryFolder;
 
 constexpr std::array volumes{CellKind::tet, CellKind::prism, CellKind::pyramid};
 
-/// What a format has a place for, besides points, cells and the tags of faces.
+/// The data that a format can store besides points, cells and the tags of faces.
 struct Format {
   const char* extension;
   bool all_digits = true, regions = true, cell_tags = true, edges = true, layers = false, features = false;
@@ -103,8 +103,8 @@ void sort_faces(Cells& cells, MidNodes& middle, std::vector<Tag>& tags,
   }
 }
 
-/// Faces in the order of their corners, the smallest first: .inp has them by tag. The smallest corner of
-/// pyramids first: .inp has them so in second order.
+/// Returns the mesh with faces sorted, each beginning with its smallest corner, because .inp sorts faces by
+/// tag. Pyramids begin with their smallest corner, as .inp in second order stores them.
 TetMesh canonical(TetMesh mesh) {
   sort_faces(mesh.faces, mesh.face_mid_nodes, mesh.face_tag, mesh.face_regions, mesh.face_patch);
   LayerCells& layers = mesh.layers;
@@ -135,7 +135,7 @@ TEST(IoLayers, TheSampleIsRight) {
   EXPECT_EQ(mesh.layers.pyramids.size(), 5);
 }
 
-/// The sample in both orders, as far as the format has a place for them.
+/// Returns the sample in both orders, as far as the format can store it.
 std::vector<TetMesh> samples_of(const std::string& extension) {
   std::vector<TetMesh> meshes{layer_mesh()};
   const std::vector<std::string> second = io::formats_with_layers(2);
@@ -193,7 +193,7 @@ TEST(IoLayers, QuadranglesFindTheirRegionsAndMidNodes) {
   mesh.layers.quad_mid_nodes.clear();
   for (auto& quad : mesh.layers.quads) std::reverse(quad.begin(), quad.end());
   io::complete_mesh("mesh", mesh);
-  // Turned over, interfaces have the other region behind them.
+  // Interfaces that were turned over have the other region behind them.
   for (std::size_t f = 0; f < mesh.layers.quads.size(); ++f) {
     const auto& [back, front] = right.layers.quad_regions[f];
     const auto& regions = mesh.layers.quad_regions[f];

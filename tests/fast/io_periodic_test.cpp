@@ -131,7 +131,8 @@ Conditions conditions_of(const std::string& path) {
   return found;
 }
 
-/// Expects that displacements satisfy all equations: a rotation of everything (turned) or a strain (moved).
+/// Expects that displacements satisfy all equations. They are a strain for moved faces, a rotation for turned
+/// ones.
 void expect_solved(const Conditions& found, const std::map<Index, Vector>& displacements) {
   std::set<std::pair<Index, std::size_t>> dependent;
   for (const auto& equation : found.equations) {

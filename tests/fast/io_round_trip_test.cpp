@@ -235,7 +235,7 @@ TEST(IoRoundTrip, FormatOverridesTheExtension) {
   const TemporaryFolder folder;
   const TetMesh mesh = sample_mesh(1);
   for (const std::string& format : io::read_tet_mesh_formats()) {
-    if (format == ".ele") continue;  // several files
+    if (format == ".ele") continue;  // a mesh of several files
     io::write_tet_mesh(folder.file("mesh.dat"), mesh, format);
     EXPECT_EQ(io::read_tet_mesh(folder.file("mesh.dat"), format).tets.size(), mesh.tets.size()) << format;
   }

@@ -29,7 +29,7 @@ PolygonSoup tetrahedron(Tag first_tag) {
   return soup;
 }
 
-/// A box with a square hole in its top, given as a complex, and a cell behind it.
+/// Returns a plate with a square hole, a segment and a region point.
 PolygonSoup plate() {
   PolygonSoup soup;
   for (const double z : {0.0, 1.0})

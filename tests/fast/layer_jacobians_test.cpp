@@ -11,7 +11,7 @@
 namespace collarmesh::layer_jacobians_test {
 namespace {
 
-/// Random corners around those of the unit prism or pyramid.
+/// Returns random corners around those of the unit prism or pyramid.
 template <std::size_t n>
 std::array<Point, n> shaken(std::array<Point, n> p, double by, std::mt19937_64& random) {
   std::uniform_real_distribution<double> away(-by, by);
@@ -32,7 +32,7 @@ Point place(const PyramidCorners& p, double x, double y, double z) {
   return (1 - z) * base + z * p[4];
 }
 
-/// The Jacobian of the map by differences.
+/// Returns the Jacobian of the map by finite differences.
 template <class Corners>
 double sampled(const Corners& p, double x, double y, double z) {
   constexpr double h = 1e-5;
@@ -112,7 +112,8 @@ constexpr std::array<std::array<unsigned, 2>, 8> edges_of_pyramid{
 TEST(LayerJacobians, StraightCellsOfSecondOrderAreLinearOnes) {
   std::mt19937_64 random(4);
   for (int k = 0; k < 100; ++k) {
-    // The reference cells are twice as high, and twice as long and wide.
+    // The reference prism of second order is twice as high as the linear one, the reference pyramid twice as
+    // long and wide.
     const PrismCorners prism = shaken(unit_prism, 0.2, random);
     double at_corners = INFINITY;
     for (unsigned i = 0; i < 3; ++i) {

@@ -42,7 +42,7 @@ TEST(LayerDirection, DoesNotDependOnHowManyTrianglesAWallHas) {
   EXPECT_NEAR(distance(found->direction, Vector{1, 1, 0} / std::sqrt(2.0)), 0, 1e-9);
 }
 
-/// No direction has a larger smallest cosine: compared with many.
+/// Compares with many directions: none has a larger smallest cosine.
 TEST(LayerDirection, IsTheSteepest) {
   const std::vector<Vector> normals{{0.6, 0, 0.8}, {-0.6, 0, 0.8}, {0, 0.28, 0.96}, {0.48, 0.64, 0.6}};
   DirectionSearch search;
@@ -60,7 +60,7 @@ TEST(LayerDirection, IsTheSteepest) {
     }
 }
 
-/// A plane, and triangles on both sides of a curved wall.
+/// The walls are a plane and two triangles of a curved wall; the means are those of each wall.
 TEST(LayerDirection, IsAsSteepAboveMeansOfWalls) {
   const double sine = std::sqrt(0.5);
   DirectionSearch search;
@@ -134,7 +134,7 @@ TEST(LayerRings, GrowByNeighbours) {
   EXPECT_TRUE(within_rings(path, {}, 3).empty());
 }
 
-/// A tet in the middle of a cube, of this height above a triangle.
+/// Returns a mesh of one tet, which has this height above a triangle and lies in the middle of the unit cube.
 TetMesh flat_tet(double height) {
   TetMesh mesh;
   mesh.points = {{0.4, 0.4, 0.5}, {0.6, 0.4, 0.5}, {0.5, 0.6, 0.5}, {0.5, 0.47, 0.5 + height}};

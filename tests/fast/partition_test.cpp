@@ -184,8 +184,8 @@ TEST(LevelPartitions, MoveNoMoreThanNeeded) {
   std::vector<GraphIndex> after = even;
   level_partitions(rows({9}), 3, 3, after);
   EXPECT_EQ(after, even);
-  std::vector<GraphIndex> one_too_many{0, 0, 0, 0, 1, 1, 1, 2, 2};  // one tet moves on, over the partition in
-                                                                    // between
+  std::vector<GraphIndex> one_too_many{0, 0, 0, 0, 1, 1, 1, 2, 2};  // partition 0 passes a tet to 1, and 1
+                                                                    // passes one to 2
   level_partitions(rows({9}), 3, 3, one_too_many);
   EXPECT_EQ(one_too_many, even);
 }

@@ -93,7 +93,7 @@ TEST(PlcCreases, PyramidSidesMeetInTheApex) {
   const auto creases = find_creases(build(testing::polygonal_cone(4, 60, 1)), 89);
   const auto meeting = of_kind(creases, Kind::facets_in_vertex);
   ASSERT_EQ(meeting.size(), 1U);
-  // Their nearest rays are sides of the triangle between them.
+  // The nearest rays of two opposite sides are edges of the side between them.
   const double radius = std::tan(30 * pi / 180);
   EXPECT_NEAR(meeting[0].angle,
               2 * std::asin(radius / std::numbers::sqrt2 / std::hypot(1, radius)) * 180 / pi, 1e-6);

@@ -145,7 +145,7 @@ TEST(PlcFacets, CollinearTrianglesAreReplacedByCuts) {
   facet({9, 10, 6});
   facet({10, 5, 6});
   facet({5, 7, 6});
-  // Between the long edge 5 4 and the chain 4 9 10 5.
+  // Closes the surface between the long edge 5 4 and the chain 4 9 10 5 by triangles without area.
   facet({4, 5, 8});
   facet({4, 8, 9});
   facet({8, 5, 10});

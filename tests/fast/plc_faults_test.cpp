@@ -170,7 +170,7 @@ TEST(PlcFaults, FeaturesThatNearlyTouch) {
   for (const std::array<Index, 3>& side : {std::array<Index, 3>{1, 2, 3}, {0, 2, 1}, {0, 3, 2}, {0, 1, 3}})
     on_a_corner.add_facet(side);
   expect_fault({below, on_a_corner}, Kind::intersection, "come within 1e-10 of each other at (0.5, 0.5, 1");
-  // Its lowest edge, along y, passes above an edge of the other box along x.
+  // The upper body's lowest edge, along y, passes above an edge of the lower box, along x.
   PolygonSoup on_an_edge;
   on_an_edge.points = {{0.5, 0.8, 1 + gap}, {0.5, 1.4, 1 + gap}, {0.3, 1.1, 1.5}, {0.7, 1.1, 1.5}};
   for (const std::array<Index, 3>& side : {std::array<Index, 3>{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}})

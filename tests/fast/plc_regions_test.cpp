@@ -240,7 +240,7 @@ TEST(PlcRegions, NamesComeFromTheirSoups) {
   EXPECT_EQ(plc.patches.back().file, 1U);
 }
 
-// A box as a complex, whose facets do not tell the inside.
+// Returns a box whose inside is given by a region point instead of its facets' orientation.
 PolygonSoup named_box(const Point& low, const Point& high, const std::string& name) {
   PolygonSoup soup = polygonal_box(low, high);
   soup.name = name;
@@ -284,7 +284,7 @@ TEST(PlcRegions, ARegionBearsTheNameOfTheFileThatEnclosesIt) {
     std::transform(order.begin(), order.end(), expected.begin(), [&](std::size_t k) { return of_row[k]; });
     EXPECT_EQ(names(build({row[order[0]], row[order[1]], row[order[2]]})), expected);
   } while (std::next_permutation(order.begin(), order.end()));
-  // One inside the other, with a side in common.
+  // One box inside the other, with a side in common.
   for (const bool swapped : {false, true}) {
     std::vector<PolygonSoup> nested{named_box({0, 0, 0}, {4, 4, 4}, "a"),
                                     named_box({1, 1, 0}, {2, 2, 1}, "bb")};

@@ -17,7 +17,7 @@ constexpr std::size_t most_steps = 100'000;
 // A polyhedron whose fillings are judged by six times the volume of tets.
 struct Polyhedron {
   std::vector<Point> points;
-  std::vector<Triangle> hull;  // each has its positive side inside
+  std::vector<Triangle> hull;  // the positive side of each triangle is inside
 
   double volume_of(const Tet& t) const {
     return dot(cross(points[t[1]] - points[t[0]], points[t[2]] - points[t[0]]), points[t[3]] - points[t[0]]) /
@@ -76,7 +76,7 @@ TEST(PolyhedronFilling, FindsNothingWhereThereIsNothing) {
   for (const bool forwards : {false, true}) EXPECT_TRUE(prism(0, forwards).filled().empty());
 }
 
-// The octahedron has three fillings, one for each diagonal; the shortest one gives the best.
+// The octahedron has three fillings, one for each diagonal; the shortest diagonal gives the best filling.
 TEST(PolyhedronFilling, TakesTheBest) {
   Polyhedron octahedron{{{-1, 0, 0}, {1, 0, 0}, {0, -2, 0}, {0, 2, 0}, {0, 0, -3}, {0, 0, 3}}, {}};
   for (const Index x : {0U, 1U})

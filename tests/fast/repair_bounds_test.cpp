@@ -54,9 +54,9 @@ TEST(RepairBounds, GivesUpBeyondItsWork) {
     EXPECT_NE(std::string(error.what()).find("given up"), std::string::npos) << error.what();
     EXPECT_FALSE(error.faults.empty());
   }
-  // With enough work it is repaired; the amount of work that suffices is always the same.
+  // With a large enough bound the surface is repaired; repair always takes the same amount of work.
   EXPECT_TRUE(repair({&soup, 1}).report.repaired);
-  // Wrapping does not use that work.
+  // Wrapping is not limited by this bound on work.
   options.mode = RepairMode::wrap;
   options.wrap_offset = coarse_offset;
   EXPECT_TRUE(build_repaired_plc({&soup, 1}, {}, options).report.wrapped);

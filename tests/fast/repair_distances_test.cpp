@@ -65,7 +65,7 @@ TEST(RepairDistances, ABoxAboveASheet) {
   const RepairDistances above = between(sheet, testing::box({0, 0, 0.25}, {1, 1, 1.5}));
   EXPECT_NEAR(above.of_repaired, 1.5, 1e-12);
   EXPECT_NEAR(above.of_input, 0.25, 1e-12);
-  // Inside the box it does not count.
+  // A sheet inside the box does not count.
   const RepairDistances around = between(sheet, testing::box({-1, -1, -0.5}, {2, 2, 0.5}));
   EXPECT_NEAR(around.of_repaired, std::sqrt(2 + 0.25), 1e-12);
   EXPECT_EQ(around.of_input, 0);
@@ -79,12 +79,13 @@ TEST(RepairDistances, FilledHolesDoNotCountButAreThere) {
   const RepairDistances d = measure_distances(side(false), side(false), side(true));
   EXPECT_EQ(d.of_repaired, 0);
   EXPECT_EQ(d.of_input, 0);
-  // As part of the repaired surface they count: the centre of the side is 1/2 from the other triangles.
+  // If the filled hole is passed as part of the repaired surface, it counts: the side's centre is 1/2 from
+  // the other triangles.
   const RepairDistances whole = measure_distances(side(false), triangles_of(cube), {});
   EXPECT_NEAR(whole.of_repaired, 0.5, 0.02);
 }
 
-// Compares with random points and sums of solid angles instead of a lattice and hierarchies.
+// Compares with distances at random points and sums of solid angles; the code uses a lattice and hierarchies.
 TEST(RepairDistances, AreThoseOfRandomPoints) {
   Random random(31);
   for (unsigned member = 0; member < members(4); ++member) {
@@ -100,7 +101,8 @@ TEST(RepairDistances, AreThoseOfRandomPoints) {
       const Point p = random_point(a[random() % a.size()], random);
       if (direct_winding_number(repaired, p) < 0.5) of_input = std::max(of_input, distance_to(p, b));
     }
-    // 400 points on the surface miss the farthest place by at most the mean distance between some of them.
+    // Some of 400 random points are near the farthest place, so the sampled distance is only slightly too
+    // small.
     EXPECT_NEAR(d.of_repaired, of_repaired, 0.06);
     EXPECT_NEAR(d.of_input, of_input, 0.06);
     EXPECT_GT(d.of_repaired, of_repaired - 0.02);
@@ -108,7 +110,7 @@ TEST(RepairDistances, AreThoseOfRandomPoints) {
   }
 }
 
-// A whole repair: parts thinner than the tolerance vanish, and the report tells that.
+// A whole repair: parts thinner than the tolerance vanish, and the report says so.
 TEST(RepairDistances, OfAFinThatVanishes) {
   const PolygonSoup finned = finned_box(1e-7);
   const RepairedPlc r = build_repaired_plc({&finned, 1});
@@ -176,7 +178,7 @@ TEST(LostRegions, AThinLayerIsTold) {
     const PolygonSoup block = layered_block(thickness);
     const RepairedPlc r = build_repaired_plc({&block, 1});
     const bool vanishes = thickness < 1e-5;
-    // Its two sides cancel, so the regions below and above become one.
+    // The two sides of the thin layer cancel, so the regions below and above it become one.
     EXPECT_EQ(r.plc.regions.size(), vanishes ? 2U : 4U);
     EXPECT_EQ(r.report.vanished.count, vanishes ? 1U : 0U);
     EXPECT_EQ(r.report.united.count, vanishes ? 1U : 0U);

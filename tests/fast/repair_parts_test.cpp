@@ -99,8 +99,8 @@ WindingNumber winding_of(const PolygonSoup& soup, int weight = 1) {
 TEST(WindingNumber, OfNothingIsZero) { EXPECT_EQ(WindingNumber({}).at({1, 2, 3}), 0); }
 
 // The error of two terms of the expansion of far triangles falls with the square of their distance in radii:
-// with 4 radii in place of 3 the sum is still off by up to 0.03. Decisions are made at 1/2, so 0.05 is close
-// enough.
+// even from 4 radii on, instead of 3, the sum would be off by up to 0.03. Decisions are made at 1/2, so 0.05
+// is close enough.
 TEST(WindingNumber, IsTheDirectSum) {
   Random random(1);
   for (unsigned member = 0; member < members(12); ++member) {
@@ -260,8 +260,8 @@ TEST(Arrangement, RandomPairsAndHandfuls) {
   }
 }
 
-// Spheres turned by tiny angles: their cuts are slivers, and merging corners of slivers can make facets meet
-// ever anew, so merges are only kept where they do not.
+// Spheres turned by tiny angles: their cuts are slivers. Merging corners of slivers can make facets intersect
+// again and again, so only merges after which nothing intersects are kept.
 TEST(Arrangement, EndsWhereSheetsNearlyCoincide) {
   for (unsigned member = 0; member < members(6); ++member) {
     const double angle = std::pow(0.1, 2 + member % 3), grain = member % 2 == 0 ? 1e-3 : 1e-2;
@@ -365,11 +365,11 @@ Draft arranged_spheres(Random& random) {
   return draft;
 }
 
-// Some places do not settle and stay as they are: 8% here.
+// Snapping does not settle at some places, which stay as they are: 8% here.
 TEST(Snapping, LeavesLittleNear) {
   Random random(7);
   constexpr unsigned spheres =
-      testing::sanitized ? 4 : 20;  // a small number proves nothing about how many settle
+      testing::sanitized ? 4 : 20;  // few spheres prove nothing about the share that settles
   std::size_t before = 0, after = 0;
   for (unsigned member = 0; member < spheres; ++member) {
     Draft draft = arranged_spheres(random);
@@ -383,7 +383,7 @@ TEST(Snapping, LeavesLittleNear) {
   }
 }
 
-// Nothing is near before snapping, and hardly anything afterwards.
+// No corners are near each other before snapping, and hardly any afterwards.
 TEST(Snapping, BringsNothingNear) {
   Random random(7);
   unsigned spoiled = 0;
@@ -635,7 +635,7 @@ TEST(KeepOneSide, OfFacesThatMeetInNoCommonEdgeIsTheBox) {
   EXPECT_EQ(repaired.report.flakes.count, 0U);
 }
 
-// A sheet with two sides encloses nothing; it would not with one side either.
+// A sheet with two sides encloses nothing, and neither would one side of it.
 TEST(KeepOneSide, SheetsAreLeft) {
   PolygonSoup pillow;
   pillow.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
@@ -703,7 +703,7 @@ TEST(Changes, ArePlacesThatCanBeTakenBackAlone) {
   EXPECT_NEAR(volumes[0] + volumes[1], whole + less, 1e-12);
 }
 
-// The same boxes: a corner moves back where it makes trouble; the other one stays moved.
+// The same boxes: the corner whose move causes trouble moves back; the other one stays moved.
 TEST(Changes, ThatMakeTroubleAreTakenBack) {
   const std::vector<PolygonSoup> soups{soup_of({{0, 0, 0}, {1, 1, 1}}), soup_of({{5, 0, 0}, {6, 1, 1}})};
   const Draft before = draft_of(joined(soups));

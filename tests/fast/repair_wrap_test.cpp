@@ -1,4 +1,4 @@
-// The closed surface around everything.
+// Wrapping: a closed surface around the whole input.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -79,7 +79,7 @@ TEST(Wrap, PointsThatAreNotFiniteAreErrors) {
   EXPECT_THROW(wrap(std::vector{soup}, 0.2, 0.1), PlcError);
 }
 
-// It is the last resort: input that can be repaired is not wrapped.
+// Wrapping is the last resort: input that can be repaired is not wrapped.
 TEST(Wrap, OnRequestAndWhereRepairFails) {
   RepairOptions options;
   options.mode = RepairMode::wrap;

@@ -86,14 +86,15 @@ void spoil(TetMesh& mesh, std::mt19937& random) {
   }
 }
 
-// Returns whether all corners are distinct; `check_arrays` finds repeated corners before.
+// Returns whether all corners are distinct; repeated corners are found earlier, by `check_arrays`.
 bool has_distinct_corners(const TetMesh& mesh) {
   return std::all_of(mesh.tets.begin(), mesh.tets.end(), [](const std::array<Index, 4>& tet) {
     return std::set<Index>(tet.begin(), tet.end()).size() == 4;
   });
 }
 
-/// Returns by vertex whether each triangle whose smallest corner it is satisfies `FittingTetsAtVertex::fit`.
+/// Returns for each vertex whether all triangles with this smallest corner satisfy
+/// `FittingTetsAtVertex::fit`.
 std::vector<bool> vertices_where_tets_fit(const TetMesh& mesh, const Triangles& triangles) {
   std::vector<bool> fit(mesh.points.size(), true);
   for (const auto& [corners, uses] : triangles) {
@@ -133,7 +134,7 @@ void expect_simplices(const TetMesh& mesh) {
       edges_at.find(mesh, vertex, cells);
       EXPECT_EQ(std::set<Index>(tets_at.ends().begin(), tets_at.ends().end()),
                 std::set<Index>(edges_at.ends().begin(), edges_at.ends().end()));
-      // If it says that tets fit, they do. If they fit, it may still not say so, beside other regions.
+      // If `fit` returns true, the tets fit. Beside other regions it may return false although they fit.
       EXPECT_TRUE(fit[vertex] || !tets_at.fit());
       const bool one_region = std::all_of(cells.begin(), cells.end(), [&](Index cell) {
         return cell < mesh.tets.size() && mesh.tet_region[cell] == mesh.tet_region[cells[0]];
@@ -165,7 +166,7 @@ TEST(SimplicesAtVertex, OfSpoiltGrids) {
   EXPECT_GT(spoilt, 60U);
 }
 
-// More tets than are counted by number, and more than a hash table has slots initially.
+// Vertices with more neighbours than `most_counted`, and with more than a hash table has slots initially.
 TEST(SimplicesAtVertex, OfAVertexOfManyTets) {
   for (const Index rim : {20U, 31U, 33U, 300U}) {
     TetMesh mesh;
@@ -178,7 +179,7 @@ TEST(SimplicesAtVertex, OfAVertexOfManyTets) {
   }
 }
 
-// A triangle then has many uses; finding them must not take a quadratic number of steps.
+// A triangle of such a tet has many uses; finding them must not take a quadratic number of steps.
 TEST(SimplicesAtVertex, OfATetGivenManyTimes) {
   TetMesh mesh;
   mesh.points.resize(4);

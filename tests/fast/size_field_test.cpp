@@ -46,7 +46,8 @@ TEST(SizeFieldJson, CylindersAndTurnedBoxes) {
   EXPECT_DOUBLE_EQ(cylinder_field({1, 2, 5}), 0.1 + 0.5 * 3);        // beside it
   EXPECT_DOUBLE_EQ(cylinder_field({1, -2, 1}), 0.1 + 0.5 * 2);       // below it
   EXPECT_DOUBLE_EQ(cylinder_field({1, 6, 0}), 0.1 + 0.5 * 2);        // above it
-  EXPECT_NEAR(cylinder_field({1 + 5, 8, 0}), 0.1 + 0.5 * 5, 1e-12);  // past the rim: 3, 4, 5
+  EXPECT_NEAR(cylinder_field({1 + 5, 8, 0}), 0.1 + 0.5 * 5, 1e-12);  // diagonally past the rim, at distance
+                                                                     // 5: 3 outwards, 4 up
 
   const SizeField straight = size_field_from_json(
       R"({"sources": [{"box": {"min": [1, 2, 3], "max": [3, 3, 7]}, "size": 0.1}]})", cylinder());

@@ -93,7 +93,7 @@ TEST(SmallFeatures, NarrowPatchBecomesACurve) {
   }
 }
 
-// Its rim is far narrower than the feature size, but between sides that face opposite ways.
+// The fin's rim is far narrower than the feature size, but lies between sides that face opposite ways.
 TEST(SmallFeatures, FinsKeepTheirThickness) {
   constexpr double half = 2.5e-3, middle = side / 2, height = 15;
   const std::vector<Point> polygon{{0, 0, 0},
@@ -117,7 +117,7 @@ TEST(SmallFeatures, PatchesAboveTheSizeStay) {
   RepairOptions none = to_the_size();
   none.feature_size = 0;
   expect_unchanged(collapsed(narrow, none), narrow);
-  expect_unchanged(collapsed(narrow, {}), narrow);  // the size is not known
+  expect_unchanged(collapsed(narrow, {}), narrow);  // the target size is not known
   RepairOptions off = to_the_size();
   off.mode = RepairMode::off;
   expect_unchanged(collapsed(narrow, off), narrow);

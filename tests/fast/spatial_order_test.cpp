@@ -32,7 +32,8 @@ std::vector<Point> random_points(std::size_t n, double spread) {
   return points;
 }
 
-// Every split has octree cells on both sides: no place of the first part lies beyond one of the second part.
+// Returns the depth of the hierarchy of splits. Checks that every split has octree cells on both sides: no
+// place of the first part lies beyond one of the second part.
 std::size_t depth(std::span<const SpatialKey> keys) {
   if (keys.size() < 2) return 0;
   const std::size_t at = spatial_split(keys);
@@ -188,7 +189,8 @@ TEST(BoxTree, LeavesOutPairsWithinAGroup) {
   }
 }
 
-// Boxes much smaller than a cell of the curve through all of them: parts of the order remain separate.
+// Boxes much smaller than one cell of the space-filling curve through all boxes: parts of the order remain
+// separate.
 TEST(SpatialOrder, TellsApartWhatIsFarSmallerThanTheWhole) {
   auto boxes = random_boxes(4000);
   for (Box& box : boxes) {

@@ -1,5 +1,5 @@
-// Which complexes have curved walls far thinner than the chords of their elements, and how large places are
-// that are thinner than a limit.
+// Complexes with curved walls far thinner than the chords of their elements, and the sizes of places that are
+// thinner than a limit.
 #include "tolerance/thin_shells.h"
 
 #include <gtest/gtest.h>
@@ -49,14 +49,15 @@ TEST(ThinShells, AreTubes) {
   EXPECT_FALSE(has_thin({tube(6)}));
 }
 
-// Around a thin rod chords are as short as it is thin; planar sheets need no elements as short as their gap.
+// Around a thin rod chords are as short as the rod is thin; planar sheets need no elements as short as the
+// gap between them.
 TEST(ThinShells, AreNeitherRodsNorPlates) {
   EXPECT_FALSE(has_thin({cylinder(0.02, 20, 24)}));
   EXPECT_FALSE(has_thin({box({0, 0, 0}, {20, 20, 0.01})}));
   EXPECT_FALSE(has_thin({icosphere(6, 8)}));
 }
 
-// Without curved walls that are wide enough refinement is cheap.
+// If curved walls are too small, refinement is cheap anyway.
 TEST(ThinShells, AreNotSmallOnes) { EXPECT_FALSE(has_thin({hollow_ball(0.3, 0.02)})); }
 
 TEST(ThinPlaces, AreCountedInSquaresAsLongAsTheyAreThin) {

@@ -29,7 +29,7 @@ class UnresolvedPointsTest : public ::testing::Test {
     points_.cells_made(zone_, vertex);
     return vertex;
   }
-  /// Returns the point that a candidate that destroys a ball of this radius would warp to.
+  /// Returns the point to which a candidate would warp if it destroyed a ball of this radius.
   Index target(const Point& centre, double radius, std::uint8_t dimension = 3) {
     find_zone(centre);
     return points_.warp_target(zone_, {centre, radius * radius, centre, {dimension, 0}, none});

@@ -5,7 +5,7 @@
 //   FAULT_COUNT  a file that gets the number of calls at the end, and how many of them were before writing
 //   FAULT_FORKS  set: of the kind `new`, each call fails in turn in a child that is forked there, until the
 //                program makes its second temporary folder; FAULT_COUNT gets the number of calls tried and,
-//                as lines, the wrong ends
+//                as lines, those after which the child ended wrongly
 // The kind `file` fails with no space on the device.
 #include <dlfcn.h>
 #include <fcntl.h>

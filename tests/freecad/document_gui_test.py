@@ -191,7 +191,7 @@ async def gmsh_and_back(document, part, obj):
 
 
 async def netgen_by_its_button(document, part):
-    """In this FreeCAD its object has no context menu in Python."""
+    """In this version of FreeCAD, Netgen's object has no context menu in Python."""
     old = ObjectsFem.makeMeshNetgen(document, "FromNetgen")
     old.Shape = part
     document.recompute()
@@ -224,7 +224,7 @@ async def buttons_are_grey_where_they_do_nothing(document, part, obj):
                 "Collarmesh_TakeOver"}
     gmsh = ObjectsFem.makeMeshGmsh(document, "OfGmsh")
     for_ours = {REFINEMENT_COMMAND, GROUP_COMMAND, "Collarmesh_SizeSphere", "Collarmesh_SizeDistance"}
-    sizes = {"Collarmesh_SizeSphere", "Collarmesh_SizeDistance"}  # for the only mesh, its part, and the selected mesh
+    sizes = {"Collarmesh_SizeSphere", "Collarmesh_SizeDistance"}  # for the only mesh, or that of the selected part
     for chosen, clickable in (([], sizes), ([part], {MESH_COMMAND, *sizes}), ([part, document.Box], sizes),
                               ([obj], for_ours), ([document.Box], {MESH_COMMAND}), ([gmsh], {"Collarmesh_TakeOver"})):
         FreeCADGui.Selection.clearSelection()

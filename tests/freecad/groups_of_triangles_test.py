@@ -30,7 +30,7 @@ def grooved():
 
 
 class OfTriangles(analysis.Analysis):
-    """Groups are named by places here: the nearest node of their elements."""
+    """An analysis of triangles. A place stands for the group with the element nearest to it."""
 
     def __init__(self, shape):
         super().__init__(Part.Shape())
@@ -166,7 +166,8 @@ class Groups(unittest.TestCase):
         self.assertEqual(self.nodes_of(constraint), self.nodes_of_group(faces.Groups[1]))
 
     def test_force_on_a_group_and_a_face_of_a_part(self):
-        """Each gets its share of the force by area; the group, on all of its faces."""
+        """The group and the face get shares of the force by their areas; the group's share is spread over all
+        of its faces."""
         faces, fem_mesh = constraint_faces.make(self.obj), self.obj.FemMesh
         curved = max(faces.Groups, key=faces.Groups.count)
         box = self.document.addObject("Part::Box", "Box")

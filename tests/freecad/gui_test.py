@@ -102,7 +102,7 @@ async def bad_shapes_are_told(obj, part):
 
 
 async def refinements_and_groups(document, obj, part):
-    """Tests their buttons, and the effect on the mesh."""
+    """Tests the buttons of refinements and groups, and their effect on the mesh."""
     part.Shape = plate()
     obj.CharacteristicLengthMax = 4
     for command in (REFINEMENT_COMMAND, GROUP_COMMAND):

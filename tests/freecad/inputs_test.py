@@ -85,7 +85,7 @@ class Shapes(WithDocument):
         self.assertIn("Solid2", groups(fem_mesh))
         container = self.add("App::Part", "Container")
         container.addObject(compound)
-        for box in boxes:  # only visible objects count, which were copied along
+        for box in boxes:  # only visible objects count, and the boxes came into the container with the compound
             box.Visibility = False
         self.document.recompute()
         self.assertAlmostEqual(volume(collarmesh_workbench.mesh(container, size=2).FemMesh), 250, places=4)

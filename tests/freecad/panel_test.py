@@ -92,7 +92,7 @@ def stand_in(folder, text):
 
 @contextlib.contextmanager
 def held_program():
-    """The mesher's runs, which begin only when the file that this yields is there."""
+    """Lets the mesher's runs wait until the file exists whose path this yields; predictions do not wait."""
     with tempfile.TemporaryDirectory() as folder:
         go = pathlib.Path(folder, "go")
         wait = f"import time\nwhile '--predict' not in sys.argv and not os.path.exists({str(go)!r}):\n    time.sleep(0.05)"
@@ -340,7 +340,7 @@ async def sizes_are_checked_before_a_run():
         size.setText(text)
         await click(child("run"))
         require(meshing_process.run_of(obj) is None, f"{text} does not run")
-        if child("question").isVisible():  # it would be another question
+        if child("question").isVisible():  # a question about something else
             await click(child("run"))
         require(f"Size of the elements: " in said() and words in said(), f"{text}: {said()}")
     size.setText("4 mm")
@@ -445,8 +445,8 @@ async def the_result_is_told():
 
 
 async def a_mesh_that_is_out_of_date_says_so():
-    """While the panel is open and when it opens. Results are grey then; a new run, or restoring the shape,
-    ends that."""
+    """The panel says so while it is open and when it is opened, and shows the results in grey, until a new
+    run or until the shape is restored."""
     document, part, obj = new_part(plate())
     document.UndoMode = 1
     await open_panel(obj)
@@ -607,7 +607,7 @@ async def notes_and_repairs_are_told_once():
 
 
 async def nodes_off_their_faces_are_listed():
-    """Shows them as the program reports them: with their faces, which a click selects."""
+    """The list shows such nodes as the program reports them: with their faces, which a click selects."""
     document, part, obj = new_part(Part.makeTorus(10, 3), "Ring")
     obj.CharacteristicLengthMax, obj.ElementOrder = 2.7, "2nd"
     await open_panel(obj)
@@ -748,8 +748,8 @@ def dismiss_message():
 
 
 async def another_panel_stays():
-    """FreeCAD shows one panel at a time. While one is open that it does not close itself, our command says
-    so."""
+    """FreeCAD shows one panel at a time. If a panel is open that FreeCAD does not close by itself, our
+    command says so."""
 
     class Other:
         def __init__(self):

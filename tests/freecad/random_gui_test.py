@@ -64,7 +64,8 @@ class Sequence:
             part.Mesh = self.random.choice((Mesh.createBox(10, 8, 6), Mesh.createSphere(5, 20)))
 
     async def faces_for_constraints(self):
-        """Makes them by the panel or the menu, puts a constraint on some of them, or removes them."""
+        """Makes faces for constraints by the panel or the menu, puts a constraint on some of them, or removes
+        them."""
         await self._click("constraint_faces")
         obj = self._any(lambda each: mesh_properties.is_ours(each) and constraint_faces.can_be_made(each))
         if obj is None:

@@ -81,7 +81,7 @@ class Estimate(unittest.TestCase):
         self.assertGreater(result_errors.estimate(solution_of(self.meshes[1], bent)).relative, 0.05)
 
     def test_estimate_is_near_the_error(self):
-        """On first order, the true error of an interpolated quadratic field is known from its strains."""
+        """With first order, the true error of an interpolated quadratic field is known from its strains."""
         solution = solution_of(self.meshes[1], lambda points: 1e-4 * points[:, [0, 1, 2]] ** 2)
         strain = result_errors.strains(solution)
         exact = numpy.zeros_like(strain)

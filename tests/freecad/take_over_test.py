@@ -157,7 +157,7 @@ class TakeOver(WithPart):
         self.assertEqual(new.MeshSizeFromCurvature, 6)
 
     def test_netgen_of_freecad_1(self):
-        """Uses a stand-in with the properties of the object there."""
+        """Uses a stand-in with the properties of the object in FreeCAD 1."""
         old = self.document.addObject("Fem::FemMeshObjectPython", "FromNetgen")
         for kind, name, value in (
             ("App::PropertyLink", "Shape", self.part), ("App::PropertyLength",

@@ -121,8 +121,8 @@ def grid_of_boxes(random_):
 
 
 def touches_in_an_edge(chosen):
-    """Returns whether chosen cells enclose other cells, or share only an edge or corner: then volumes of
-    cells do not tell the volumes of regions."""
+    """Returns whether chosen cells enclose other cells, or share only an edge or corner: then the regions'
+    volumes do not follow from the cells' volumes."""
     return any(c not in chosen for c in itertools.product(*(range(min(v), max(v) + 1) for v in zip(*chosen))))
 
 
@@ -211,8 +211,8 @@ def rounded(made, _):
 
 
 def some_turned(made, random_):
-    """Returns whether reversed facets keep their meaning: neighbours tell the right orientation, but nested
-    bodies depend on it."""
+    """Reverses some facets, except of nested bodies, whose meaning depends on their orientation; otherwise
+    neighbours tell the right one."""
     if made.name not in ("separate", "grid"):
         return made
     faces = list(made.faces)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Takes facets away from a surface as long as a command ends as it does with all of them.
+"""Removes facets from a surface as long as a command ends in the same way as with all facets.
 
     shrink.py IN.off OUT.off -- COMMAND ...
 

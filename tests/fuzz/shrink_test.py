@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""shrink.py leaves the one facet of a box that a command fails for.
+"""shrink.py keeps only that facet of a box for which a command fails.
 
     shrink_test.py MODELS
 """

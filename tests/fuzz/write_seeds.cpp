@@ -1,4 +1,5 @@
-// What the fuzzers begin with: the sample mesh of both orders, its surface for the formats of surfaces.
+// Writes the inputs with which the fuzzers begin: the sample mesh of both orders, and its surface for the
+// formats of surfaces.
 //   write_seeds FOLDER FORMAT...
 // makes FOLDER/FORMAT/first.FORMAT and so on. It is an error if a format that can be read is not named.
 #include <algorithm>
@@ -53,7 +54,7 @@ void join_tetgen_files(std::filesystem::path path) {
   std::ofstream(path.replace_extension(".ele"), std::ios::binary) << joined;
 }
 
-/// Prisms and pyramids, where the format has a place for them.
+/// Writes meshes with prisms and pyramids, if the format can store them.
 void write_layers(const std::filesystem::path& folder, const std::string& format) {
   const auto keeps = [&](int order) {
     const std::vector<std::string> formats = io::formats_with_layers(order);

@@ -3,7 +3,7 @@
 
     write_seeds_of_others.py FOLDER
 
-FOLDER holds what write_seeds made. What is not installed is left out and named.
+FOLDER holds the files of write_seeds. Programs that are not installed are left out and named.
 """
 import os
 import shutil

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Which folder includes which: the code against the table "Who includes whom" of the page on architecture.
+"""Compares the includes between folders with the table "Who includes whom" of the page on architecture.
 
     includes_test.py ROOT
 """

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""What CTest's results (JUnit) say: the slowest tests are listed, and a test that was skipped is a failure, unless
-it needs what no package list brings.
+"""Reads CTest's results (JUnit): lists the slowest tests, and counts a skipped test as a failure, unless it
+needs something that no package list brings.
 
     results.py RESULTS.xml
 """

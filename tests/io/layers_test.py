@@ -71,7 +71,8 @@ def corner_volumes(points, cells, kind):
 
 
 def check_cells(label, points, cells, kind, turned=False):
-    """Cells are not inverted, and their mid-edge nodes lie amid their edges. `turned`: they turn the other way."""
+    """Cells are not inverted, and their mid-edge nodes lie amid their edges. `turned`: the cells have the
+    opposite orientation."""
     if len(cells) == 0:
         return
     if kind in ("tetra", "wedge", "pyramid"):
@@ -113,7 +114,8 @@ def with_meshio(folder):
         skip("python3-meshio")
     everything = tuple(CORNERS)
     volumes, faces = ("tetra", "wedge", "pyramid"), ("triangle", "quad")
-    # What meshio finds, and the kinds that turn the other way there. It turns VTK's prisms of first order alone.
+    # The kinds of cells that meshio finds, and those with the opposite orientation there. For VTK, meshio
+    # itself reverses prisms of first order alone.
     formats = {".vtu": (volumes, ("wedge",)), ".vtk": (everything, ("wedge",)), ".msh": (everything, ()),
                ".msh2": (everything, ()), ".mesh": (everything, ()), ".inp": (("tetra", "wedge"), ()),
                ".bdf": ((*volumes, *faces), ()), ".su2": (volumes, ("wedge",)),
@@ -147,7 +149,7 @@ def with_meshio(folder):
 
 
 def turned_of_med(kind, cells):
-    """MED's cells of second order in the order of corners, then edges."""
+    """Returns MED's cells of second order with the opposite orientation."""
     order = {"tetra10": [0, 2, 1, 3, 6, 5, 4, 7, 9, 8],
              "wedge15": [0, 2, 1, 3, 5, 4, 8, 7, 6, 11, 10, 9, 12, 14, 13],
              "pyramid13": [0, 3, 2, 1, 4, 8, 7, 6, 5, 9, 12, 11, 10]}.get(kind)
@@ -235,7 +237,7 @@ def with_gmsh(folder):
                           if "Error" in line or "Warning" in line]
             expect(run.returncode == 0 and not complaints, f"{label}: {run.returncode} {complaints}")
             check_meshio_mesh(label, read_with_meshio(out), sample, tuple(CORNERS))
-        # Without pyramids, of which .unv has none.
+        # The sample without pyramids, which .unv cannot store.
         sample = Sample(folder, order, ".unv", kind="prisms")
         run = subprocess.run([gmsh, sample.files[".unv"], "-0", "-save_all", "-format", "msh2", "-o", out],
                              capture_output=True, text=True)
@@ -314,7 +316,7 @@ def with_calculix(folder):
     modulus, poisson = 2.0, 0.3
     stress = modulus / (1 + poisson) * (strain + poisson / (1 - 2 * poisson) * np.trace(strain) * np.eye(3))
     wanted = stress[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
-    # In second order a pyramid's base that is no parallelogram is not exact.
+    # In second order, pyramids whose base is no parallelogram are not exact.
     for kind, order, exact in (("layers", 1, 1e-5), ("prisms", 1, 1e-5), ("prisms", 2, 1e-5), ("layers", 2, 1e-2)):
         label = f"ccx of {kind} of order {order}"
         sample = Sample(folder, order, ".inp", kind=kind)
@@ -418,7 +420,7 @@ def with_convert(folder):
     collarmesh("convert", path, "-o", skin)
     said = collarmesh("check", path, "--against", skin)
     expect("every guarantee holds" in said and "6 prisms" in said, f"check: {said}")
-    # Files in turn, and back.
+    # Converts from format to format, and compares the last file with the first one.
     for start, formats in ((path, (".msh", ".msh2", ".unv", ".mesh", ".inp", ".vtk")),
                            (second.files[".vtu"], (".msh", ".msh2", ".inp", ".unv", ".vtk"))):
         before, at = collarmesh("info", start), start
@@ -428,7 +430,7 @@ def with_convert(folder):
             at = out
         after = collarmesh("info", at)
         expect(before.split("boundary")[0] == after.split("boundary")[0], f"converted: {before} {after}")
-    # What has no place for them says so, and writes nothing.
+    # Formats that cannot store these cells say so, and nothing is written.
     for target in ("a.xdmf", "a.pvtu", "a.ele"):
         said = collarmesh("convert", path, "-o", os.path.join(folder, target), code=8)
         expect("prisms and pyramids" in said and not os.path.exists(os.path.join(folder, target)), f"{target}: {said}")

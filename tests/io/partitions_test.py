@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What other programs find in partitioned meshes, with ghost cells and without, order 1 and 2.
+"""Reads partitioned meshes with other programs: with ghost cells and without, order 1 and 2.
 
     partitions_test.py PROGRAM MODELS OTHER
 

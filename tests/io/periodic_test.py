@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Periodic faces in files, as other programs take them: of a cube of tetrahedra that this script makes.
+"""Periodic faces in files, as other programs read them: the faces of a cube of tetrahedra that this script
+makes.
 
     periodic_test.py PROGRAM   (the module collarmesh on PYTHONPATH)
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What other programs make of our files, first and second order.
+"""Reads our files, of first and second order, with other programs.
 
     programs_read_ours.py WRITE_SAMPLE_MESH PROGRAM
 

@@ -134,7 +134,8 @@ def nastran(folder):
             expect(len(found) == 1 and str(*found) in names, f"property {found} of the tag {tag}")
         if len(np.unique(sample.region)) == 2:
             expect({"steel", "air", "Wall left", "outlet"} <= set(names.values()), f"names {names}")
-    # Tests few digits, no decimal point in shortest form, and exponents: each must fit its field.
+    # Tests numbers with few digits, without a decimal point in their shortest form, and with exponents: each
+    # must fit its field.
     run(folder, PROGRAM, MODELS / "box.off", "-o", "b.bdf", "--scale", "1.2345678901234e-87")
     expect(max(len(line) for line in (folder / "b.bdf").read_text().splitlines()) <= 80, "lines of 80 characters")
     expect(abs(meshio.read(folder / "b.bdf").points.max() / 3.7037036703702e-87 - 1) < 1e-8, "very small numbers")

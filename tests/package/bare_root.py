@@ -23,7 +23,7 @@ def enter():
 
 
 def make(root):
-    """Fills a folder."""
+    """Makes a root with only the C library and its loader."""
     root = pathlib.Path(root)
     for folder in ("proc", "tmp", "lib64"):
         (root / folder).mkdir(parents=True)
@@ -36,6 +36,6 @@ def make(root):
 
 
 def run(root, *command):
-    """Runs a program in it; returns the completed process."""
+    """Runs a program in the root that `make` has made; returns the completed process."""
     return subprocess.run([*enter(), root, *map(str, command)], capture_output=True, text=True,
                           env={"PATH": "/usr/sbin:/usr/bin:/sbin:/bin", "LD_LIBRARY_PATH": "/tmp"})

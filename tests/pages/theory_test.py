@@ -30,7 +30,8 @@ def gap_balls(points, combinations):
 
 
 class Square:
-    """A patch, the unit square, with vertices on it and around it, none of which encroaches what it must not."""
+    """The unit square as a patch, with vertices on its border. Vertices are added that encroach no piece of
+    the border and no gap ball."""
 
     def __init__(self, random):
         self.random = random
@@ -189,7 +190,8 @@ class DirectInsertion(unittest.TestCase):
         cls.inner = [i for i, p in enumerate(grid) if (p > 0).all() and (p < 3).all()]
 
     def cell(self, q):
-        """Returns R_q and r_q."""
+        """Returns R_q, the radius of the largest ball at q, and r_q, half the distance of q from the nearest
+        point."""
         apart = distances(self.points, self.points[q])
         return self.radii[(self.cells == q).any(1)].max(), numpy.partition(apart, 1)[1] / 2
 

@@ -17,7 +17,7 @@ struct Case {
   std::string name;
   std::vector<PolygonSoup> soups;
   double size;
-  double least_share;  // least share of the vertices that is inserted in blocks
+  double least_share;  // least share of the vertices that must be inserted in blocks
 };
 
 void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
@@ -55,8 +55,8 @@ INSTANTIATE_TEST_SUITE_P(Shapes, BlockRefinement,
                                            Case{"wedge", testing::acute::wedge(50).soups, 0.02, 0.2}),
                          [](const auto& info) { return info.param.name; });
 
-// Blocks do what the loop does: the mesh is as fine, its tets are as good, and its surface has as many
-// vertices.
+// Blocks make the same kind of mesh as the loop: as fine, with tets as good and as many vertices on the
+// surface.
 TEST(BlockRefinementSize, IsThatOfTheLoop) {
   const Case cases[]{{"box", {testing::box()}, 0.032, 0},
                      {"sphere", {testing::icosphere(1, 12)}, 0.06, 0},

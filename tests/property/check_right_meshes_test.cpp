@@ -93,7 +93,8 @@ double largest_distance(const MeshedComplex& m, bool centres_only) {
 
 TEST(CheckRightMeshes, SurfaceDistanceIsThatOfAllSamples) {
   for (MeshedComplex m : {meshed_ball(4, 4), meshed_cylinder(12, 4)}) {
-    // First a corner, then a whole side is off: by more than anything else, while centres are off by less.
+    // Moves one corner off the surface, then a second one and so a whole side, each time farther than any
+    // centre is off.
     for (const std::size_t moved : {1U, 2U}) {
       const auto smooth = std::find_if(m.mesh.face_patch.begin(), m.mesh.face_patch.end(),
                                        [&](Index patch) { return !m.plc.patches[patch].planar; });

@@ -28,7 +28,7 @@ struct Shape {
   double size;
   double feature_angle;
   double smallest;     ///< lower bound on dihedral angles, degrees
-  std::size_t most;    ///< upper bound on the tets that are left: the measured number plus 8%
+  std::size_t most;    ///< upper bound on the number of tets: the measured number plus 8%
   unsigned seeds = 1;  ///< number of seeds over which tets are averaged
 };
 
@@ -85,9 +85,8 @@ TEST(Coarsen, KeepsEveryGuaranteeOfThinShapes) {
 }
 
 // One seed says little about a few hundred tets, and one contraction removes more than a hundredth of sixty.
-// (Of the wedge of 1 degree, over 15 seeds: 0.1% with balls placed up front and in the pass, at most 1.2% for
-// one seed. When the rounds ended without trying all vertices again: 0.5 and 0.8% over 48 seeds, up to 6% for
-// one.)
+// (Over 48 seeds, the wedge of 1 degree loses 0.5% with balls placed up front, 0.8% with balls placed in the
+// pass, up to 6% for one seed.)
 TEST(Coarsen, RemovesHardlyAnythingAgain) {
   constexpr std::size_t few = 1000, of_one_contraction = 6;
   for (const Shape& shape : thin_shapes()) {

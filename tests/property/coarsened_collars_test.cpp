@@ -38,8 +38,7 @@ double largest_dihedral(const TetMesh& mesh, const std::array<Index, 4>& tet) {
   return largest;
 }
 
-// The circumcentre c, relative to the first corner, has a product with each edge there that is half of the
-// edge's square.
+// The circumcentre c, relative to the first corner, satisfies dot(c, e) = e^2 / 2 for each edge e there.
 double radius_edge(const TetMesh& mesh, const std::array<Index, 4>& tet) {
   const Point& a = mesh.points[tet[0]];
   const Vector u = mesh.points[tet[1]] - a, v = mesh.points[tet[2]] - a, w = mesh.points[tet[3]] - a;
@@ -138,7 +137,7 @@ TEST(CoarsenedCollars, AreJudged) {
   EXPECT_EQ(kinds(wrong, {}), std::set<std::string>{"collar_cells"});
 }
 
-// Without that bound some tets of a box have a ratio above 2.
+// Without a bound on the ratio, some tets of a box have a ratio above 2.
 TEST(CoarsenedCollars, KeepTheRatioThatIsAskedForAwayFromNarrowPlaces) {
   for (const double ratio : {1.5, 2.0, 3.0}) {
     SCOPED_TRACE(ratio);

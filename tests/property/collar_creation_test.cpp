@@ -117,8 +117,8 @@ void expect_created_in_time(const acute::Shape& shape) {
       if (!contains_crease(plc, refinement.feature_of(v), ball)) {
         EXPECT_GE(d, gap * (1 - 1e-9));
       }
-      // A vertex at the centre is there only up to rounding. Radii along round rims are far smaller than the
-      // gap.
+      // Leaves out the vertex at the ball's centre, which is there up to rounding. Radii along round rims are
+      // far smaller than the gap.
       if (d > 1e-12 * ball.radius) {
         EXPECT_GT(d, epsilon_0(options) * (at_vertex ? gap : 3 * ball.radius));
       }

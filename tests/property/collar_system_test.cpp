@@ -345,7 +345,8 @@ TEST(CollarSystem, QueriesEqualBruteForceWhileBallsCome) {
   }
 }
 
-// Mesh vertices on a crease that have room for a ball become centres, and the system keeps its definition.
+// Mesh vertices on a crease that have room for a ball become its centres, and the balls still satisfy the
+// definition.
 TEST(CollarSystem, CentresBallsOnVerticesOfTheirCurve) {
   for (const acute::Shape& shape : {acute::lens(40), acute::cut_torus(0.5), acute::round_cone(30)}) {
     SCOPED_TRACE(shape.name);

@@ -138,8 +138,8 @@ TEST(Constrained, TakesNoMorePointsWhereSheetsAreNearer) {
   }
 }
 
-// Edges of its needles can only be recovered by removing single faces after edges, and by points beside flat
-// tets.
+// Edges of the corpus' needles can only be recovered by removing single faces after edges, and by points
+// beside flat tets.
 TEST(Constrained, RecoversAllEdgesOfNeedlesInTheCorpus) {
   const char* corpus = std::getenv("COLLARMESH_CORPUS");
   if (corpus == nullptr || *corpus == '\0') GTEST_SKIP() << "COLLARMESH_CORPUS names no folder";
@@ -269,7 +269,7 @@ TEST(ConstrainedStart, DoesNotDependOnThreads) {
   EXPECT_EQ(made[0].edges, made[1].edges);
 }
 
-/// A polygon in x and z, counterclockwise from x to z, drawn along y to 10.
+/// Returns the prism over a polygon in x and z (counterclockwise from x to z), from y = 0 to 10.
 PolygonSoup extruded(const std::vector<std::array<double, 2>>& outline) {
   const auto n = static_cast<Index>(outline.size());
   PolygonSoup soup;

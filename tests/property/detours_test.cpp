@@ -131,7 +131,7 @@ TEST(Detours, MakeTheMeshBetter) {
   EXPECT_GT(taken, 0U);
 }
 
-// Few tets are in narrow places, where most trials fail: planar, smooth, with curves.
+// Planar and smooth shapes, with curves. Most trials fail in narrow places, of which these meshes have few.
 TEST(Detours, LeaveTheMeshAsItWas) {
   using namespace testing;
   std::size_t refused = 0;

@@ -87,7 +87,8 @@ TEST(Extraction, KnowsNeighboursAndTheComplexFindsTheRest) {
       }
     const auto stitched = std::count_if(mesh.tet_collar.begin(), mesh.tet_collar.end(),
                                         [](std::uint8_t collar) { return collar != 0; });
-    EXPECT_LE(open, 8 * static_cast<std::size_t>(stitched));  // at most both sides of all their sides
+    EXPECT_LE(open, 8 * static_cast<std::size_t>(stitched));  // each stitched tet has 4 sides, each counted
+                                                              // from both of its tets
     EXPECT_GT(shared, open);
   }
 }
@@ -126,7 +127,7 @@ TEST(Extraction, LaysInMemoryWhatIsNearTogether) {
     const auto [least, greatest] = std::minmax_element(tet.begin(), tet.end());
     spread += *greatest - *least;
   }
-  // For a random order it would be 0.6 of all points.
+  // In a random order the spread would be 0.6 of all points.
   EXPECT_LT(spread / static_cast<double>(mesh.tets.size()), 0.15 * static_cast<double>(mesh.points.size()));
 }
 

@@ -47,7 +47,7 @@ TEST(FacingSheets, CostsOfASlotGrowAsItsRim) {
     return vertices_in(meshed_at_size(slotted_block(width), 0.5, 0));
   };
   const auto wide = static_cast<double>(vertices(0.02)), narrow = static_cast<double>(vertices(0.005));
-  EXPECT_LT(narrow, 6 * wide);  // proportional to the area it would be 16 times
+  EXPECT_LT(narrow, 6 * wide);  // if proportional to the area, the cost would be 16 times as large
 }
 
 TEST(FacingSheets, CurvedOnesDoNotMakeEachOtherFiner) {

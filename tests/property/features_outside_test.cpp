@@ -44,7 +44,7 @@ void expect_left_out(const PolygonSoup& soup) {
   EXPECT_LT(meshed.result.statistics.vertices_inserted, 3000U);
 }
 
-// Their corners are acute. Collars were made for them once, whose surface was never resolved.
+// Loose triangles have acute corners. Collars for these would have a surface that refinement never resolves.
 TEST(FeaturesOutside, LooseTrianglesAreLeftOut) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> place(0, 1);
@@ -83,7 +83,7 @@ TEST(FeaturesOutside, DistancesAreThoseOfTheTrianglesInside) {
   EXPECT_EQ(faults(mesh_of(plc, options)), "");
 }
 
-// The balls of a crease need no distance from them.
+// The balls of a crease need no distance from features outside.
 TEST(FeaturesOutside, CollarsAreNoSmallerForThem) {
   const PolygonSoup alone = wedge(20, 1);
   PolygonSoup soup = alone;

@@ -68,7 +68,7 @@ struct Domain {
   std::vector<PolygonSoup> soups;
   double feature_angle;
   double coarse, fine;  // coarse and fine size
-  double distance;      // distance with which the surface is as coarse as the inside
+  double distance;      // surface distance at which the surface is as coarse as the inside
 };
 
 // The error is proportional to size^order, with order k + 1 in L2 and k in H1 for elements of order k.

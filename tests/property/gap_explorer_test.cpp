@@ -43,7 +43,7 @@ std::vector<Place> places_of(const Plc& plc) {
   return places;
 }
 
-// Returns whether to look after this quality phase: after every phase early on, later ever less often.
+// Returns whether to compare after this quality phase: after every phase early on, later ever less often.
 bool looks_at(std::size_t phase) { return phase <= 8 || (phase & (phase - 1)) == 0; }
 
 void expect_brute_force_gaps(const acute::Shape& shape) {

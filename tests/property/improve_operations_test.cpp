@@ -233,7 +233,7 @@ bool link_condition(const Cells& cells, Index a, Index b) {
   });
 }
 
-// Regardless of shapes, in the tets and in the mesh's faces.
+// Whatever the shapes, contractions must keep the link condition in the tets and in the mesh's faces.
 TEST_F(ImproveOperations, ContractionsOnFeaturesKeepTheLinkCondition) {
   const AnyShape rule;
   std::size_t proposed = 0, forbidden = 0;
@@ -305,7 +305,8 @@ TetMesh body(const std::vector<std::array<Index, 4>>& tets, std::vector<Point> p
   return mesh;
 }
 
-// Bodies in which vertex 0 may be moved onto 1, or only one part of the link condition forbids it.
+// Bodies in which vertex 0 may be moved onto vertex 1, or in which only one part of the link condition
+// forbids the move.
 TEST(ContractionsOnFeatures, EachPartOfTheLinkConditionForbidsSome) {
   // Vertex 0 is far away, so that no edge becomes too long.
   const std::vector<Point> points{{9, 8, 7},       {1, 0, 0},      {0, 1, 0.1},    {0, 0.2, 1},
@@ -362,7 +363,7 @@ TEST_F(ImproveOperations, EachKeepsTheCertificate) {
     }
 }
 
-// It also passes after many operations of all kinds, each applied to the result of earlier ones.
+// The mesh also passes after many operations of all kinds, each applied to the result of earlier ones.
 TEST_F(ImproveOperations, ManyKeepTheCertificate) {
   const std::vector<Operation> operations = all_operations();
   for (const auto& [name, meshed] : meshes()) {

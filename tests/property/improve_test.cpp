@@ -88,10 +88,10 @@ ImproveOptions without_thin_tets(unsigned level) {
 
 class Improve : public ::testing::TestWithParam<unsigned> {};
 
-// A fifth of one poor tet cannot be counted, so this many poor ones are judged together, over several seeds
-// if one has fewer. (Of the pyramid, over 64 seeds, 4.5% of 537 remain at level 1 with balls placed up front,
-// and 6.6% of 519 with balls placed in the pass. Of the 1 to 15 of a single seed, up to a third remain in the
-// first case, and all in the second.)
+// At most a fifth of the poor tets may remain, which means nothing for one tet. So at least this many are
+// judged together, over several seeds if one seed has fewer. (Over 64 seeds, 4.5% of the pyramid's 537
+// remain at level 1 with balls placed up front, and 6.6% of 519 with balls placed in the pass. A single seed
+// has 1 to 15; up to a third of them remain in the first case, and all in the second.)
 constexpr std::size_t enough_poor = 25;
 
 TEST_P(Improve, KeepsEveryGuaranteeAndLeavesFewPoorTets) {
@@ -130,7 +130,7 @@ TEST(ImproveBox, LeavesNothingBelowTheBound) {
   EXPECT_EQ(count_below(meshed.result.mesh, 20), 0U);
 }
 
-// Faces and edges on smooth patches and curves change there, and both stay near each other.
+// Faces and edges on smooth patches and curves change, and must stay near the patches and curves.
 TEST(ImproveSmooth, LeavesNothingBelowTheBound) {
   using namespace testing;
   for (const PolygonSoup& soup : {icosphere(1, 8), cylinder(0.5, 1, 40, 4), torus(1, 0.4, 60, 30)}) {
@@ -177,7 +177,7 @@ TEST(ImprovePinched, EveryGuaranteeStaysWhereBodiesTouch) {
   }
 }
 
-// Contraction would destroy it: neighbours of its triangles are joined, too.
+// Contraction would destroy the tiny inclusion: neighbours of its triangles are joined, too.
 TEST(ImproveInclusion, ATinyOneStays) {
   using namespace testing;
   for (const double bound : {35.0, 40.0})

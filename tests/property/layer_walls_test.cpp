@@ -18,7 +18,7 @@ using namespace testing;
 
 class LayerWalls : public ::testing::Test {
  protected:
-  /// Makes a mesh without layers, and with them.
+  /// Makes a mesh, and adds layers to it.
   void make(const std::vector<PolygonSoup>& soups, const std::string& text, bool tets = false,
             int order = 1) {
     PipelineOptions options;
@@ -119,7 +119,7 @@ TEST_F(LayerWalls, AMissingPrismIsFound) {
     remove_prism(mesh, static_cast<std::size_t>(prism - mesh.layers.prism_layer.begin()));
     expect_found(mesh, "has different cells in one layer and in the first one");
   }
-  // Without all three above a triangle, it is not covered as the report says.
+  // If all three layers above a triangle are missing, less is covered than the report says.
   TetMesh mesh = mesh_;
   const auto wall_of = [&](std::size_t prism) {
     std::array<Index, 3> below{};
@@ -159,7 +159,7 @@ TEST_F(LayerWalls, CellsWithoutAWallAreFound) {
   mesh.layers.prism_region[0] = 5;
   expect_found(mesh, "lies on no triangle on which layers were asked for");
   mesh = mesh_;
-  mesh.layers.tet_layer[0] = 1;  // one of the core
+  mesh.layers.tet_layer[0] = 1;  // this tet belongs to the core
   expect_found(mesh, "lies on no triangle on which layers were asked for");
   mesh = mesh_;
   mesh.layers.prisms.push_back(mesh.layers.prisms[0]);

@@ -44,7 +44,7 @@ double volume(const Point& a, const Point& b, const Point& c, const Point& d) {
   return dot(cross(b - a, c - a), d - a) / 6;
 }
 
-/// The volume of all cells; prisms and pyramids as the mean over both diagonals of each quadrangle.
+/// Returns the volume of all cells; for prisms and pyramids the mean over both diagonals of each quadrangle.
 double volume_of(const TetMesh& mesh) {
   double sum = 0;
   const auto& p = mesh.points;
@@ -61,7 +61,7 @@ double volume_of(const TetMesh& mesh) {
   return sum;
 }
 
-/// The smallest corner Jacobian of all cells.
+/// Returns the smallest corner Jacobian of all cells.
 double least_jacobian_of(const TetMesh& mesh) {
   double least = INFINITY;
   const auto& p = mesh.points;
@@ -126,7 +126,7 @@ TEST(Layers, CoverACubeWithPrismsAsHighAsAsked) {
   EXPECT_LE(run.layers->largest_step, 2 + 1e-6);
   EXPECT_GT(least_jacobian_of(mesh), 0);
   EXPECT_NEAR(volume_of(mesh), 1, 1e-9);
-  // First layers end 0.02 above their faces, the third 0.095 unless it is lowered.
+  // First layers end 0.02 above their faces, third ones 0.095, unless layers are lowered.
   std::size_t full = 0, all = 0;
   for (std::size_t i = 0; i < mesh.layers.prisms.size(); ++i) {
     if (mesh.layers.prism_layer[i] != 1) continue;
@@ -248,8 +248,8 @@ TEST(Layers, AreAsHighAboveCurvedWallsAsAsked) {
   }
 }
 
-/// Where faces meet at less than 16 degrees, tets may have smaller angles than elsewhere; the engine makes
-/// none that are better but too poor for their place.
+/// Where faces meet at less than 16 degrees, tets may have smaller angles than elsewhere. Tets in other
+/// places must keep the usual bound.
 TEST(Layers, KeepTheBoundsOfTheCoreBesideSharpEdges) {
   for (const double degrees : {4.0, 7.0, 10.0, 13.0})
     for (const double of_size : {0.1, 0.25}) {
@@ -307,7 +307,7 @@ TEST(Layers, OnOneSideOfAnInterface) {
     EXPECT_NEAR(volume_of(run.result.mesh), 2, 1e-9);
     ASSERT_FALSE(run.result.mesh.layers.prisms.empty());
     for (const Index of : run.result.mesh.layers.prism_region) EXPECT_EQ(of, region);
-    // Others' layers end where they meet it.
+    // Layers on all other walls end where they meet the layers at the interface.
     options.layers.walls = {only, "all:first=0.02,count=2"};
     const PipelineResult both = made(soups, options);
     EXPECT_NEAR(volume_of(both.result.mesh), 2, 1e-9);
@@ -364,7 +364,7 @@ TEST(Layers, OfSecondOrderFollowCurvedWalls) {
 }
 
 TEST(Layers, OfSecondOrderKeepTheVolumesOfCurvedParts) {
-  // So thick that the core loses vertices, and other points get their numbers.
+  // Layers are so thick that the core loses vertices, whose numbers go to other points.
   const std::vector<PolygonSoup> soups{sphere(6, 1, {0, 0, 0})};
   PipelineOptions options = with_layers({"all:first=0.15,count=2"});
   options.order = 2;

@@ -43,7 +43,8 @@ std::vector<PolygonSoup> fin(double width) {
 struct Family {
   std::string name;
   std::vector<PolygonSoup> (*member)(double);
-  double (*volume)(double);  // volume of the region that is tested: the last one, except for layers
+  double (*volume)(double);  // volume of the region under test: the last region, except in the family of
+                             // layers
   std::size_t region;
 };
 
@@ -76,7 +77,7 @@ TEST(NarrowPlaces, TakeNoMoreVerticesAsTheyGetNarrower) {
 TEST(NarrowPlaces, AreRefinedWhereThatIsCheap) {
   for (const double width : {5e-2, 2e-3}) {
     SCOPED_TRACE(width);
-    // The pad is as thin, but covers only a small part of the block.
+    // The pad is as thin as the layer, but covers only a small part of the block.
     const std::vector<PolygonSoup> pad{box({0, 0, 0}, {2, 2, 1}),
                                        box({1, 1, 1}, {1 + 4 * width, 1 + 4 * width, 1 + width})};
     const SoupPipelineResult small = run(pad, 1), large = run(layers(width), 1);

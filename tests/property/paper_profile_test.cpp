@@ -1,5 +1,5 @@
-// The profile with every hypothesis of the paper's proofs: it ends, its certificate holds, and during the run
-// the mesh has the properties that the proofs claim.
+// The options of --profile paper, which meet every hypothesis of the paper's proofs: runs end, their
+// certificates hold, and during the run the mesh has the properties that the proofs claim.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -109,7 +109,7 @@ bool holds(const Triangulation& mesh, const Point& p) {
          p.z < box.max.z;
 }
 
-// One ratio holds whenever no skinny cell is left, also outside the regions and in collars.
+// One bound on the ratio holds whenever no skinny cell is left, also outside the regions and in collars.
 TEST(PaperProfile, IsWellSpacedEverywhere) {
   for (const Shape& shape : {acute::wedge(20), acute::fan(8), acute::pyramid(4, 30)}) {
     SCOPED_TRACE(shape.name);
@@ -172,7 +172,7 @@ TEST(PaperProfile, HasNoPairsBlocksAndSizes) {
   EXPECT_LT(made.result.mesh.points.size(), 40U);
 }
 
-// The pipeline uses it by itself, and judges by its bounds.
+// The pipeline applies the profile's options by itself, and judges by the profile's bounds.
 TEST(PaperProfile, IsThePipelines) {
   PipelineOptions options;
   options.mesh.profile = Profile::paper;

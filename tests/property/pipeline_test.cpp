@@ -146,8 +146,8 @@ TEST(Pipeline, RefusesWhatNoCollarFitsInto) {
   const testing::acute::Shape shape = testing::acute::pairs_in_a_box(4, 1e-12);
   options.start = Start::refinement;
   EXPECT_THROW(run(shape.soups[0], options), PlcError);
-  // Constrained tetrahedra need no collars. Those around the facets are far from the bounds, which the result
-  // says.
+  // Constrained tetrahedra need no collars. Tets around the facets miss the bounds by far, and the result
+  // says so.
   options.start = Start::automatic;
   const SoupPipelineResult made = run(shape.soups[0], options);
   EXPECT_FALSE(made.guarantees_hold());

@@ -128,8 +128,8 @@ TEST(Predict, VerySmallSizesOnManySegments) {
   const double fine = predicted(plc, with_size(1e-6)), finer = predicted(plc, with_size(1e-7));
   EXPECT_NEAR(std::log10(finer / fine), 3, 0.1);
   const double edge = Sizing::edge_per_size * 1e-6;
-  EXPECT_NEAR(fine * std::pow(edge, 3) / (std::numbers::pi * 6 / 0.61), 1, 0.1);  // vertices are as dense as
-                                                                                  // inside
+  EXPECT_NEAR(fine * std::pow(edge, 3) / (std::numbers::pi * 6 / 0.61), 1, 0.1);  // the density of inner
+                                                                                  // vertices decides
 }
 
 TEST(Predict, Refuses) {
@@ -182,7 +182,7 @@ TEST(SolidAngles, OfAnL) {
   double curves = 0, vertices = 0;
   for (const double share : angles.of_curve) curves += share;
   for (const double share : angles.of_vertex) vertices += share;
-  // Of 18 edges one is concave, of 12 corners two are.
+  // One of 18 edges and two of 12 corners are concave.
   EXPECT_NEAR(curves, 17 * 0.25 + 0.75, 1e-12);
   EXPECT_NEAR(vertices, 10 * 0.125 + 2 * 0.375, 1e-12);
 }

@@ -37,8 +37,8 @@ TEST(ProjectBoundary, PutsASpheresVerticesOnTheSphere) {
   Meshed meshed = mesh_of(icosphere(1, 12), with_size(0.3));
   ASSERT_EQ(faults(meshed), "");
   TetMesh& mesh = meshed.result.mesh;
-  improve(mesh, meshed.plc, {.bounds = without_thin()});  // so that no sliver has its four corners on the
-                                                          // sphere, which would be its circumsphere
+  improve(mesh, meshed.plc, {.bounds = without_thin()});  // removes slivers, whose four corners could all be
+                                                          // moved onto the sphere
   const TetMesh before = mesh;
   const ProjectReport report =
       project_boundary(mesh, meshed.plc, on_unit_sphere, {.bounds = without_thin(0.1)});

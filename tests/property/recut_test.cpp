@@ -137,7 +137,8 @@ TEST(Recut, HasThePairsFacesInside) {
   }
 }
 
-// The cuts of one pair meet the faces of others, but no vertex there is on a cut for every choice.
+// The cuts of one pair meet the faces of others, but each vertex there is off the cut for at least one
+// choice.
 TEST(Recut, LeavesEachVertexOfThePairsFreeOnce) {
   const Cell cell;
   std::map<Place, unsigned> fixed;

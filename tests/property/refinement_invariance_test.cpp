@@ -54,7 +54,7 @@ TEST(RefinementInvariance, OtherSeedOtherMesh) {
   }
 }
 
-// Expects a right mesh with scaled volumes of the shape under a map that scales lengths, at the scaled size.
+// Expects a right mesh, with scaled volumes, of a shape that was mapped and scaled; the size is scaled, too.
 // Rounding moves the surface by an ulp of its coordinates and changes the volume accordingly.
 void expect_as_good(const Shape& shape, const PolygonSoup& mapped, double scale) {
   const Meshed meshed = mesh_of(mapped, with_size(shape.size * scale), shape.feature_angle);

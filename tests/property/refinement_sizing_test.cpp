@@ -165,7 +165,7 @@ TEST(RefinementSizing, FieldBoundsCellsAtTheirCentres) {
   EXPECT_LT(mesh_of(testing::box(), fine, 0).result.mesh.tets.size(), mesh.tets.size());
 }
 
-// Holds in every stage that asks for sizes.
+// Every stage that asks for sizes refuses wrong ones.
 TEST(RefinementSizing, FieldsMustBePositive) {
   const PolygonSoup soups[] = {testing::box()};
   const Plc plc = build_plc(soups);

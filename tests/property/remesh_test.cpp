@@ -170,7 +170,7 @@ INSTANTIATE_TEST_SUITE_P(Shapes, RemeshedShape, ::testing::ValuesIn(shapes()), [
   return name;
 });
 
-// Its labels are those of the input from which the first mesh was made.
+// The labels of the new mesh are those of the input from which the first mesh was made.
 TEST(Remesh, IsAMeshOfTheFirstInput) {
   for (const PolygonSoup& soup : {two_boxes(), plate_with_hole(1, 32), box_with_dangling_facet()}) {
     const SoupPipelineResult first = run_pipeline(std::vector{soup}, of_size(0.4));
@@ -190,7 +190,7 @@ TEST(Remesh, FollowsAField) {
   const RemeshResult made = remesh(mesh, of_field(field));
   ASSERT_EQ(faults(made), "");
   expect_lengths(made.result.mesh, field);
-  // From there to a field that is fine at the other end.
+  // Then adapts this mesh to a field that is fine at the other end.
   const SizeField other = [](const Point& p) { return 0.04 + 0.3 * distance(p, {1, 1, 1}); };
   const RemeshResult again = remesh(made.result.mesh, of_field(other));
   ASSERT_EQ(faults(again), "");

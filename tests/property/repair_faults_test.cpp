@@ -133,8 +133,8 @@ TEST(RepairFaults, HolesInASphereAreFilled) {
           found[i] = true;
         }
       EXPECT_GT(hole.tag, 1);
-      // At most the area of the facets that were there; at least that of the disk that the curve around the
-      // hole could bound.
+      // The filling's area is about that of the disk whose circle is as long as the hole's border. All
+      // fillings together have at most the area of the facets that were removed.
       EXPECT_GT(hole.length, 0);
       const double radius = hole.length / (2 * std::numbers::pi);
       EXPECT_LT(hole.area, 1.01 * std::numbers::pi * radius * radius);

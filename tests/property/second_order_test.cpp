@@ -239,8 +239,8 @@ std::multiset<std::array<Index, 4>> sorted_tets(const TetMesh& mesh) {
   return tets;
 }
 
-// If the exact geometry is too far away, replacing tets cannot help, so rounds end in which no tet was
-// replaced.
+// If the exact geometry is too far away, replacing tets cannot help; tets must be marked as thin even after
+// rounds that replaced none.
 TEST(SecondOrder, TetsAreMarkedThinEvenWhereNoneCouldBeReplaced) {
   unsigned none_replaced = 0;
   for (const double factor : {0.95, 0.9, 0.8, 0.6}) {

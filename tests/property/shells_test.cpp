@@ -27,7 +27,7 @@ PipelineResult shells_of(const PolygonSoup& soup, double size, unsigned order = 
   return mesh_shells(complex_of(soup), options);
 }
 
-/// Returns the smallest and the largest angle, ignoring triangles at some point.
+/// Returns the smallest and the largest angle, ignoring triangles at the point `without`.
 std::pair<double, double> angles_of(const TetMesh& mesh, const Point& without = {INFINITY, 0, 0}) {
   double least = 180, most = 0;
   for (const auto& f : mesh.faces) {
@@ -50,7 +50,8 @@ double area_of(const TetMesh& mesh) {
   return area;
 }
 
-/// Returns how many sides occur how often; a side that occurs twice in the same direction counts as 0.
+/// Returns the number of sides for each number of occurrences; a side that occurs twice in the same direction
+/// counts under 0.
 std::map<int, std::size_t> sides_of(const TetMesh& mesh) {
   std::map<std::pair<Index, Index>, std::pair<int, int>> sides;
   for (const auto& f : mesh.faces)

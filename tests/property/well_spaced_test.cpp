@@ -70,7 +70,8 @@ TEST(WellSpaced, AfterEachQualityPhase) {
   expect_well_spaced_all_along({testing::l_shape()}, 0.2, 0);
   expect_well_spaced_all_along({testing::icosphere(1, 12)}, 0.3, 30);
 }
-// Many cells and triangles are destroyed at once: those that remain between blocks come before anything else.
+// Many cells and triangles are destroyed at once: the skinny cells that remain between blocks come before
+// anything else.
 TEST(WellSpaced, BetweenRoundsOfBlocks) {
   EXPECT_GT(expect_well_spaced_all_along({testing::l_shape()}, 0.06, 0), 5000U);
   EXPECT_GT(expect_well_spaced_all_along({testing::icosphere(1, 12)}, 0.075, 30), 3000U);

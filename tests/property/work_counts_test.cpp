@@ -163,8 +163,9 @@ TEST(WorkCounts, OfPolylinesAreBoundedAsTheirSpreadGrows) {
   }
 }
 
-// If cells are left in narrow gaps, as before coarsening, a vertex has more of them, but their number does
-// not grow with the number of segments. Between two zigzags it could grow with its square.
+// If narrow gaps are not refined, as before coarsening, a vertex has more cells, but their number must not
+// grow with the number of segments. Between two zigzags it could grow with the square of the number of
+// segments.
 TEST(WorkCounts, OfPolylinesAreBoundedWhereNarrowCellsAreLeft) {
   for (const unsigned n : {100U, 400U, 1600U})
     for (const NarrowCells narrow : {NarrowCells::left, NarrowCells::bounded_if_cheap}) {
@@ -179,7 +180,7 @@ TEST(WorkCounts, OfPolylinesAreBoundedWhereNarrowCellsAreLeft) {
 
 namespace acute = testing::acute;
 
-// The same for inputs with collars; and a gap query looks at few features where few are near.
+// The work for inputs with collars is bounded, too, and a gap query looks at few features where few are near.
 TEST(WorkCounts, OfAcuteFamiliesAreBounded) {
   std::vector<Shape> shapes{acute::star_prism(9, 0.4),
                             acute::spiked_octahedron(1),
@@ -217,7 +218,8 @@ TEST(WorkCounts, AtHubsGrowWithWhatMeetsThere) {
   }
 }
 
-// The same with every hypothesis of the proofs, as the number and the spread grow. No size is given.
+// With every hypothesis of the proofs the work is bounded, too, as the number and the spread grow. No size is
+// given.
 TEST(WorkCounts, InThePapersProfileAreBounded) {
   MeshOptions options = testing::with_size(0);
   options.profile = Profile::paper;

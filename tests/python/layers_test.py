@@ -9,7 +9,7 @@ import unittest
 import collarmesh
 import numpy
 
-# A prism whose third edge that rises lies above its base, a pyramid on one of its quadrangles, and a tet on that.
+# A prism, a pyramid on one of its quadrangles, and a tet on a side of the pyramid.
 POINTS = [(0, 0, 0), (1, 0, 0), (0.5, 1, 0), (0, 0, 1), (1, 0, 1), (0.5, 1, 1), (0.5, -0.8, 0.5), (0.5, -0.8, 1.5)]
 PRISM, PYRAMID, TET = (0, 1, 2, 3, 4, 5), (0, 1, 4, 3, 6), (3, 6, 4, 7)
 SIDES = {"prism": ((0, 2, 1), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)),

@@ -223,7 +223,8 @@ class AgainstTheInput(unittest.TestCase):
         flange = MODELS / "flange.step"
         first = collarmesh.mesh(flange, size=9 if SANITIZED else 6)
         self.assertGreater(self.on_the_rim(first.adapt(7 if SANITIZED else 3)).max(), 1e-3)
-        # Edges of the mesh at 4 after 8 are farther from the shape than second order at 5 permits.
+        # The mesh of size 4, made from that of size 8, has edges farther from the shape than second order of
+        # size 5 permits.
         for sizes in ((12, 8),) if SANITIZED else ((3, 8, 4), (8, 4)):
             mesh = first
             for size in sizes:

@@ -65,7 +65,7 @@ class CallablesOfArrays(unittest.TestCase):
         self.assertLess(below, 0.7 * above)
 
     def test_it_is_sampled_as_finely_as_it_asks_for(self):
-        """A small ball of far smaller sizes within the coarsest cells, and none elsewhere."""
+        """Sizes are far smaller only in a small ball, which lies within one of the coarsest cells."""
         middle = numpy.array([0.52, 0.53, 0.54])
 
         def near(places):

@@ -50,7 +50,7 @@ void add_facet(PolygonSoup& soup, const std::vector<Point>& corners, Tag tag) {
   soup.add_facet(indices, tag);
 }
 
-// Makes the cone over a polygon, with tags from 1. The base points outwards below if the apex is above.
+// Makes the cone over a polygon, with tags from 1. The polygon is counterclockwise as seen from the apex.
 PolygonSoup cone_over(std::vector<Point> base, const Point& apex) {
   PolygonSoup soup;
   for (std::size_t i = 0; i < base.size(); ++i)

@@ -110,7 +110,7 @@ Shape drop_bar(double angle);
 /// A cone of height 1 over a drop: its only side is one smooth patch, folded along a curve that is no crease
 /// and ends at the acute apex.
 Shape drop_cone(double angle, double apex_angle);
-/// The side of such a cone alone, inside a box.
+/// Only the side of such a cone, inside a box.
 Shape drop_cone_in_a_room(double angle, double apex_angle);
 /// A box with a sheet that rises from its bottom at this angle, becomes steeper by 60 degrees and ends
 /// inside.

@@ -14,18 +14,18 @@ struct MeshedComplex {
 /// The unit box cut into n^3 cubes of six tets each (Kuhn, Some combinatorial lemmas in topology, 1960).
 MeshedComplex meshed_box(Index n);
 
-/// two_boxes(), each cut in that way.
+/// two_boxes(), each box cut in this way.
 MeshedComplex meshed_two_boxes(Index n);
 
 /// box_with_dangling_facet(0.5): a free facet inside. Precondition: n is a multiple of 4.
 MeshedComplex meshed_box_with_facet(Index n);
 
-/// The unit ball: an icosphere of the frequency, joined to its centre, against one that is `finer`
-/// times as fine.
+/// The unit ball: the mesh joins an icosphere of this frequency to its centre; the complex is an icosphere
+/// with `finer` times the frequency.
 MeshedComplex meshed_ball(unsigned frequency, unsigned finer);
 
-/// A cylinder of radius and height 1, joined to its centre, against one with `finer` times as many
-/// segments: smooth closed curves, planar patches with a smooth border.
+/// A cylinder of radius and height 1: the mesh joins it to its centre; the complex has `finer` times as many
+/// segments. It has smooth closed curves, and planar patches with a smooth border.
 MeshedComplex meshed_cylinder(unsigned segments, unsigned finer);
 
 /// Returns the mesh as it is when read from a file: without features.

@@ -12,7 +12,8 @@
 /// Maps of periodic faces for meshes that no mesher made, by brute force.
 namespace collarmesh::testing {
 
-/// The unit cube divided into 27 boxes, which its faces cut, along edges and at corners, too.
+/// The unit cube, divided into 27 boxes at these places along each axis. In the periodic pattern the cube's
+/// faces, edges and corners cut boxes.
 inline PolygonSoup cell_of_boxes(const std::array<double, 4>& cuts) {
   std::vector<PolygonSoup> boxes;
   for (unsigned i = 0; i < 3; ++i)

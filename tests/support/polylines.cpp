@@ -99,7 +99,7 @@ Shape helices(unsigned n) {
 
 Shape torus_knot(unsigned n) {
   PolygonSoup soup = room();
-  // This many strands cross a cut of the tube, which is 2 pi 0.12 long; the torus is 2 pi 0.28 long.
+  // So many strands per length cross a cut of the tube, 2 pi 0.12 long; the torus is 2 pi 0.28 long.
   const double per_length = std::sqrt(n / (2 * pi * 0.12 * 2 * pi * 0.28));
   const auto around = std::max(2U, static_cast<unsigned>(2 * pi * 0.12 * per_length));
   const unsigned along = around + 1;  // coprime numbers make one strand

@@ -20,7 +20,7 @@ namespace {
 
 using std::numbers::pi;
 
-// Visits fans: with their signs they cover polygons that are not convex, too.
+// Visits the triangles of fans; with their signs, these also cover polygons that are not convex.
 template <class Visit>
 void for_each_triangle(const PolygonSoup& soup, const Visit& visit) {
   for (Index q = 0; q < soup.polygon_count(); ++q) {

@@ -109,7 +109,7 @@ struct Sampled {
 Sampled sampled_volume(const PolygonSoup& soup, Random& random, unsigned n);
 
 /// Returns the volumes that boxes enclose, in pieces that are connected through facets: by label, sorted. If
-/// boxes overlap, the first one has the place; boxes with the same label count as one.
+/// boxes overlap, the common part belongs to the first one; boxes with the same label count as one.
 std::map<Tag, std::vector<double>> piece_volumes(std::span<const Box> boxes, std::span<const Tag> labels);
 
 /// Polygons around a convex body, oriented outwards.

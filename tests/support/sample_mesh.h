@@ -50,7 +50,8 @@ class SampleMesh {
     return bits | (g[2] == 0 ? 16U : 0U) | (g[2] == n_ ? 32U : 0U) | (g[2] == 2 * n_ ? 64U : 0U);
   }
 
-  /// A feature is given by the planes that it lies on and, if it is upright, by its half.
+  /// Returns the number of the feature on these planes. Upright features are divided into a lower and an
+  /// upper half.
   Index feature(unsigned plane_bits, bool upper) {
     const bool upright = (plane_bits & 0x70U) == 0;
     const unsigned key = plane_bits | (upright && upper ? 128U : 0U);

@@ -2,7 +2,7 @@
 
 namespace collarmesh::testing {
 
-// Clang tells it by a feature, GCC by a macro.
+// Clang has a feature test for AddressSanitizer, GCC a macro.
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer)
 #define COLLARMESH_SANITIZED
@@ -12,7 +12,7 @@ namespace collarmesh::testing {
 #define COLLARMESH_SANITIZED
 #endif
 
-/// Whether AddressSanitizer watches, with which work takes tens of times as long.
+/// Whether AddressSanitizer is on, with which work takes tens of times as long.
 #if defined(COLLARMESH_SANITIZED)
 constexpr bool sanitized = true;
 #else

@@ -230,7 +230,7 @@ class Mender {
     return inner;
   }
 
-  /// Returns whether a point is closer to a chord than a third of its length.
+  /// Returns whether a point is closer to a chord than a third of the chord's length.
   bool comes_close(const Parameters& p, const std::vector<Parameters>& outline) const {
     return std::any_of(outline_.chords.begin(), outline_.chords.end(), [&](const Ends& chord) {
       const Parameters &a = outline[chord[0]], &b = outline[chord[1]];

@@ -245,8 +245,8 @@ class Unfolder : SidedTriangles {
     return fan;
   }
 
-  /// Returns whether the point is within the distance of a triangle's plane, with its foot inside the
-  /// triangle, or of a corner.
+  /// Returns whether the point is within the distance of a triangle's corner, or of its plane at a place
+  /// inside the triangle.
   bool keeps_near(Index p, const std::vector<Triangle>& fan, double distance_limit) const {
     return std::any_of(fan.begin(), fan.end(), [&](const Triangle& t) {
       const Vector n = normal(t);

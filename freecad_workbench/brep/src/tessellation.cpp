@@ -79,8 +79,8 @@ class Tessellator {
     measure();
     for (const Topology::Solid& solid : topology_.solids) result_.soups.push_back(soup_of(solid));
     if (!topology_.internal_faces.empty()) result_.soups.push_back(internal_soup());
-    if (!topology_.free_parts.empty())  // even if none is divided: the number of soups must not depend on the
-                                        // fineness
+    if (!topology_.free_parts.empty())  // even if all are left out: the number of soups must not depend on
+                                        // the fineness
       result_.soups.push_back(cut_free_parts(topology_, file_, options, result_));
     return std::move(result_);
   }
@@ -443,7 +443,7 @@ class Tessellator {
         if (found == middle_of.end()) continue;
         triangles[t] = {found->second, corners[1], corners[2]};
         triangles.push_back({corners[0], found->second, corners[2]});
-        i = std::size_t(-1);  // the other sides are another part
+        i = std::size_t(-1);  // looks at all sides of the changed triangle
       }
   }
 

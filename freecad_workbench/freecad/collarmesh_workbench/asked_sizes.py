@@ -42,8 +42,8 @@ def surface_of(part):
 
 
 def subdivided(triangles, faces, longest):
-    """Halves triangles at their longest edge while it is too long and there are not very many. Returns their
-    corners, shape (n, 3, 3), and the numbers of their faces."""
+    """Halves triangles at their longest edge while the edge is too long and there are not too many triangles.
+    Returns their corners, shape (n, 3, 3), and the numbers of their faces."""
     done = []
     while len(triangles):
         edges = numpy.linalg.norm(numpy.roll(triangles, -1, axis=1) - triangles, axis=2)

@@ -218,8 +218,8 @@ class TakeOver(Command):
 
 
 class RefineByResult(Command):
-    """Opens the panel of a mesh at the fields that refine it by the result of its analysis. Either of the two may be
-    selected, or neither if there is only one such mesh."""
+    """Opens the panel of a mesh at the fields that refine it by the result of its analysis. The mesh or the
+    result may be selected; neither need be if there is only one such mesh."""
 
     icon = os.path.join(os.path.dirname(ICON), "refine_by_result.svg")
     menu_text = mark("collarmesh", "Refine by result")

@@ -55,7 +55,7 @@ def _field_in_mesh_numbers(field, here):
 
 
 def _layers_in_mesh_numbers(text, here):
-    """Converts the faces of layers, "1,5:first=0.1"; keeps names."""
+    """Converts the numbers of faces in the text of layers, "1,5:first=0.1"; names stay as they are."""
     faces, colon, settings = text.partition(":")
     tags = [here.tags("Face", int(face)) if face.isdigit() else [face] for face in faces.split(",")]
     return ",".join(dict.fromkeys(str(tag) for each in tags for tag in each)) + colon + settings
@@ -96,7 +96,7 @@ class Contacts:
         return sorted(solid + 1 for solid in self._of_kind[kind].solids[number - 1])
 
     def name(self, kind, tag):
-        """Returns one name for all of them: "Face7 = Face9"."""
+        """Returns one name for all faces or edges with this number in the mesh: "Face7 = Face9"."""
         return " = ".join(self.names(kind, tag))
 
     def glued_faces(self):
@@ -122,7 +122,7 @@ class _ContactsOfKind:
         self.shape, self.kind = shape, kind
         self.elements = getattr(shape, kind + "s")
         self.tolerance = SAME_PLACE * shape.BoundBox.DiagonalLength
-        self._pairs, self._left = {}, {}  # pairs with a common part; elements that have a part of their own
+        self._pairs, self._left = {}, {}  # known answers of `_meet` and `_is_left`
 
     @functools.cached_property
     def solids(self):

@@ -107,7 +107,8 @@ class LayersPanel(EditPanel):
             text = translate("collarmesh", "The first layer is {height} mm high.").format(
                 height=f"{thickness / relative:.4g}")
         elif first > 0:
-            text = translate("collarmesh", "All layers are {height} mm high.").format(height=f"{first * relative:.4g}")
+            text = translate("collarmesh", "All layers together are {height} mm high.").format(
+                height=f"{first * relative:.4g}")
         self.note.setText(text)
 
     def _length_typed(self, field, name):

@@ -6,7 +6,7 @@ from . import places
 from .translations import translate
 
 MOST = 200  # rows shown of one kind
-MOST_PIXELS = 10000  # height of a row
+MOST_PIXELS = 10000  # largest height of a row
 
 
 class PlacesList(QtGui.QTreeWidget):

@@ -70,8 +70,8 @@ class Settings:
     size_field: dict = None  # sizes by place: sources as in mesher/doc/sizes.md
 
     def for_adapting(self):
-        """Returns the settings that count when a mesh is adapted to other sizes. None if there are some that only hold when
-        the shape is meshed anew."""
+        """Returns the settings that count when a mesh is adapted to other sizes. None if some settings only
+        hold when the shape is meshed anew."""
         without = dataclasses.replace(self, **{name: getattr(Settings(), name) for name in (*SIZES, "seed")})
         kept = Settings(**{name: getattr(self, name) for name in OF_ADAPTING})
         return kept if kept == dataclasses.replace(without, dimension=0) else None

@@ -48,7 +48,8 @@ class Errors:
         return (squares / (squares + self.energy_norm**2)) ** 0.5 if squares else 0.0
 
     def absolute(self, relative):
-        """Returns the error that is this part of the exact solution's norm, as far as that is known."""
+        """Returns the absolute error for an error relative to the exact solution's norm, which is
+        estimated."""
         return relative * (float((self.of_tets**2).sum()) + self.energy_norm**2) ** 0.5
 
 

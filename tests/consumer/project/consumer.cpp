@@ -8,7 +8,7 @@
 
 namespace {
 
-// Checks that the library, which reads no CAD shapes, says which one does.
+// Checks that the library, which reads no CAD shapes, says which library does.
 bool cad_is_told() {
   try {
     collarmesh::io::read_soup("part.STEP");

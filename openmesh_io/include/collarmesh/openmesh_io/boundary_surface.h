@@ -30,7 +30,8 @@ struct SurfaceSelection {
 /// are copied if more than two triangles meet in an edge, or several fans in a vertex.
 struct SelectedSurface {
   std::vector<Index> points;                       ///< index in TetMesh::points, by vertex
-  std::vector<std::array<Index, 3>> triangles;     ///< vertices; each triangle touches earlier ones
+  std::vector<std::array<Index, 3>> triangles;     ///< three vertices each; all but the first of a component
+                                                   ///< share an edge with an earlier triangle
   std::vector<Index> faces;                        ///< index in TetMesh::faces, by triangle
   std::vector<std::array<Index, 2>> face_regions;  ///< regions behind and in front, by triangle
   struct Edge {
