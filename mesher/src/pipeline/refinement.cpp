@@ -60,8 +60,8 @@ class VertexCounter {
   }
 
  private:
-  // Parts without thin features mostly have less than `few` vertices, plus one for each tet that is left after
-  // coarsening.
+  // Parts without thin features mostly have less than `few` vertices, plus one for each tet that is left
+  // after coarsening.
   static constexpr std::size_t few = 1500;
   static constexpr double largest = 1e15;
 
@@ -102,7 +102,7 @@ class VertexCounter {
   Fineness fineness_;
   bool exceeded_ = false;
   std::optional<prediction::Shape> shape_;
-  double most_ = 0;           // the number that the sizes ask for, or less if it is not known yet
+  double most_ = 0;  // the number that the sizes ask for, or less if it is not known yet
   bool is_known_ = false;
   std::optional<bool> thin_;  // the answer of may_be_thin
 };
