@@ -485,7 +485,7 @@ std::vector<Option> run_options() {
        .place = in_mesh<&MeshOptions::threads>,
        .high = 1024,
        .help = "Maximum number of threads (0: all cores); the result does not depend on it",
-       .details = "refinement uses them away from the surface, later stages everywhere",
+       .details = "refinement uses them away from curves and corners, later stages everywhere",
        .commands = judging},
       {.name = "scale FACTOR",
        .place = at<&RunOptions::scale>,
