@@ -177,6 +177,19 @@ TEST(ConstrainedStart, KeepsEveryGuaranteeOfPlainShapes) {
   }
 }
 
+// Not all tets at a pinched vertex are found from it.
+TEST(ConstrainedStart, DividesEdgesAtPinchedVertices) {
+  for (const auto& soups : {cubes_touching_in_an_edge(10).soups, cubes_touching_in_a_corner().soups,
+                            boxes_touching_in_an_edge(), pyramids_tip_to_tip(4, 5).soups})
+    for (const double size : {2.0, 0.3}) {
+      const SoupPipelineResult made = begun_constrained(soups, size);
+      ASSERT_FALSE(made.result.mesh.tets.empty());
+      for (const Finding& finding : made.check.findings)
+        EXPECT_TRUE(finding.guarantee == "thin_angles" || finding.guarantee == "collar_dihedral")
+            << finding.message;
+    }
+}
+
 TEST(ConstrainedStart, LeavesCurvesOutsideOut) {
   PolygonSoup wire;
   wire.points = {{1, 0, 0}, {2, 0, 0}};

@@ -237,9 +237,9 @@ bool EdgeDivision::try_to_divide(const std::vector<Division>& divisions) {
     Change change;
     operations_.divide_edge(a, b, share, 0, change);
     if (change.is_none() || !edited_.stays_oriented(change)) return false;
+    const Index region = complex()[change.replacement.old.front()].region;
     sizes_.push_back(
-        std::min(0.5 * (sizes_[a] + sizes_[b]),
-                 size_at(change.feature, complex()[complex().tet_at_edge(a, b)].region, change.place)));
+        std::min(0.5 * (sizes_[a] + sizes_[b]), size_at(change.feature, region, change.place)));
     apply(trial, std::move(change));
     return true;
   };
