@@ -12,6 +12,7 @@
 #include "remesh/cell_bounds.h"
 #include "remesh/editable_mesh.h"
 #include "remesh/operations.h"
+#include "remesh/ordered_speculation.h"
 
 namespace collarmesh::remeshing::adapting {
 
@@ -43,6 +44,15 @@ class Relaxation {
   /// The means of improvement in addition to removing edges.
   enum class Means { edges, moves, vertices };
   static constexpr unsigned kinds_of_means = 3;
+  struct Proposal {
+    Change change;            ///< may be none
+    std::vector<Index> read;  ///< vertices: the change depends on the tets there; empty: on more than that
+  };
+  struct Proposer {
+    Operations operations;
+    std::vector<Index> star, neighbours;  ///< of the last vertex
+    std::vector<Near> near;               ///< neighbours onto which it may be collapsed, by length
+  };
 
   const TetComplex& complex() const { return edited_.complex; }
   const TetMesh& mesh() const { return edited_.complex.mesh(); }
@@ -50,14 +60,15 @@ class Relaxation {
   double relative_length(Index a, Index b) const;
   void contract_again(double below);
   bool contract_shorter_than(double below);
-  bool contract_at(Index vertex, double below);
-  void find_neighbours(Index vertex, double below);
-  bool may_share_feature(Index vertex, Index onto) const;
+  template <class Item, class Propose, class Use>
+  bool for_each(const std::vector<Item>& items, const Propose& propose, const Use& use);
+  void propose_contraction(Proposer& proposer, Index vertex, double below, Proposal& found) const;
+  double find_neighbours(Proposer& proposer, Index vertex, double below) const;
   void improve_tets(double enough, Means later);
   bool improve_below(double enough, Means means);
-  Change improvement_of(Index tet, double enough, Means means);
-  void apply(Change change);
-  bool has_changed_since(Index tet, std::uint32_t when) const;
+  void propose_improvement(Operations& operations, Index tet, double enough, Means means,
+                           Proposal& found) const;
+  bool apply(Proposal& found);
   bool was_tried(Index tet, Means means) const;
   bool stopped();
 
@@ -65,16 +76,13 @@ class Relaxation {
   std::vector<double> sizes_;  // by vertex
   TetBounds bounds_;
   coarsening::CoarseningRule rule_;
-  Operations operations_;
   const Execution& execution_;
-  std::vector<Index> star_, neighbours_;
-  std::vector<Near> near_;  // neighbours of the last vertex, by length
-  double longest_ = 0;      // longest edge there, relative to the target
   std::size_t contractions_ = 0, others_ = 0, steps_ = 0;
-  // Times at which tets at a vertex last changed, and at which an attempt last failed. An attempt is repeated
-  // only after a change.
-  std::uint32_t now_ = 1;
-  std::vector<std::uint32_t> changed_, kept_;                          // by vertex
+  ChangeTimes changes_;   // of all tets at a vertex
+  ChangeTimes renewals_;  // of tets at a vertex that were made or moved
+  OrderedSpeculation<Proposer> speculation_;
+  // Times at which an attempt last failed. It is repeated only after a renewal.
+  std::vector<std::uint32_t> kept_;                                    // by vertex
   std::array<std::vector<std::uint32_t>, kinds_of_means> not_better_;  // by tet
 };
 

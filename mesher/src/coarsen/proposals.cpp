@@ -22,7 +22,7 @@ void Proposer::contractions(Index vertex, bool repairs, VertexProposal& found) {
   targets_.clear();
   for (const Neighbour& n : neighbours_) {
     if (!is_short(n.squared_relative_length)) break;
-    if (may_share_feature(vertex, n.vertex) && lengths_fit(n.vertex)) targets_.push_back(n.vertex);
+    if (edited_.may_share_feature(vertex, n.vertex) && lengths_fit(n.vertex)) targets_.push_back(n.vertex);
   }
   if (targets_.empty()) return;
   rule_.set_mode(Mode::final);
@@ -56,17 +56,9 @@ Change Proposer::improvement_of(Index tet, Mode mode) {
     // Whether a move helps depends only on the tets at the vertex; each of them would propose it again.
     if (mode == Mode::final && stays(corners[i])) continue;
     operations_.move_vertex(corners[i], change);
-    if (mode == Mode::final && change.is_none()) stayed_[corners[i]] = changes_.now;
+    if (mode == Mode::final && change.is_none()) stayed_[corners[i]] = changes_.now();
   }
   return change;
-}
-
-// Returns whether an edge to `onto` could lie in the vertex's curve or patch.
-bool Proposer::may_share_feature(Index vertex, Index onto) const {
-  const auto& [dimension, feature] = complex().mesh().features[vertex];
-  const auto& other = complex().mesh().features[onto];
-  return dimension == 3 || other.dimension < dimension ||
-         (other.dimension == dimension && other.feature == feature);
 }
 
 bool Proposer::is_new(Index vertex) {

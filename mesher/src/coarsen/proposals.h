@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "coarsen/coarsening_rule.h"
+#include "remesh/change_times.h"
 #include "remesh/operations.h"
 
 namespace collarmesh::remeshing::coarsening {
@@ -20,12 +21,6 @@ struct VertexProposal {
   std::vector<Index> read;
 };
 
-/// The times at which vertices, or tets at them, were changed.
-struct Changes {
-  std::uint32_t now = 0;
-  std::vector<std::uint32_t> at_vertex;
-};
-
 /// Finds possible changes without making them. Each thread has its own.
 class Proposer {
  public:
@@ -33,7 +28,7 @@ class Proposer {
 
   /// Keeps references to all but the number; `bounds` and `sizes` belong to the rule.
   Proposer(const EditableMesh& edited, const TetBounds& bounds, double radius_edge,
-           std::span<const double> sizes, const Changes& changes)
+           std::span<const double> sizes, const ChangeTimes& changes)
       : edited_(edited),
         changes_(changes),
         rule_(bounds, radius_edge, sizes),
@@ -58,16 +53,13 @@ class Proposer {
   const TetComplex& complex() const { return edited_.complex; }
   const std::vector<Point>& points() const { return complex().mesh().points; }
   void find_neighbours(Index vertex);
-  bool may_share_feature(Index vertex, Index onto) const;
   bool lengths_fit(Index onto) const;
   bool are_joined_here(Index a, Index b) const;
   bool is_new(Index vertex);
-  bool stays(Index vertex) const {
-    return stayed_[vertex] != 0 && stayed_[vertex] >= changes_.at_vertex[vertex];
-  }
+  bool stays(Index vertex) const { return stayed_[vertex] != 0 && stayed_[vertex] >= changes_.at(vertex); }
 
   const EditableMesh& edited_;
-  const Changes& changes_;
+  const ChangeTimes& changes_;
   CoarseningRule rule_;
   Operations operations_;
   std::vector<Index> star_;            // tets at the current vertex

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "improve/remedies.h"
+#include "remesh/change_times.h"
 
 namespace collarmesh::remeshing::improvement {
 
@@ -20,7 +21,11 @@ class Detours {
  public:
   /// Keeps all by reference. Starts no detour after `most_trials` operations, but completes the current tet.
   Detours(EditableMesh& edited, Remedies& remedies, Operations& operations, std::size_t most_trials)
-      : edited_(edited), remedies_(remedies), operations_(operations), most_trials_(most_trials) {}
+      : edited_(edited),
+        remedies_(remedies),
+        operations_(operations),
+        most_trials_(most_trials),
+        detours_(edited.complex.mesh().points.size()) {}
 
   /// Takes detours for these tets and, where the number of vertices may change, for poor tets that detours
   /// leave. Takes the worst tet first; tries operations at the tet itself, then beside it; tries again after
@@ -71,11 +76,10 @@ class Detours {
   Remedies& remedies_;
   Operations& operations_;
   std::size_t most_trials_, trials_ = 0;
-  std::size_t blunt_ = 0;  // number of proposals for blunt tets
-  std::uint32_t taken_ = 0;
-  bool ended_ = false;                         // no trials remain, or the caller stopped it
-  std::vector<std::uint32_t> last_detour_at_;  // by vertex: the last detour that changed a tet there
-  std::array<Asked, 3> asked_;                 // by Effort
+  std::size_t blunt_ = 0;       // number of proposals for blunt tets
+  ChangeTimes detours_;         // the time is the number of detours taken
+  bool ended_ = false;          // no trials remain, or the caller stopped it
+  std::array<Asked, 3> asked_;  // by Effort
 
   std::vector<Index> changed_;  // tets that the last detour changed; some are removed
 

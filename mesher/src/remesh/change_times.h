@@ -1,0 +1,37 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "collarmesh/geometry.h"
+
+namespace collarmesh::remeshing {
+
+/// The times at which vertices, or tets at them, last changed: 0 if they never did. What was read at some
+/// vertices is up to date as long as none of them has changed since.
+class ChangeTimes {
+ public:
+  explicit ChangeTimes(std::size_t vertices) : at_(vertices, 0) {}
+
+  std::uint32_t now() const { return now_; }
+  /// Begins a new time and returns it.
+  std::uint32_t advance() { return ++now_; }
+  /// Makes room for new vertices.
+  void resize(std::size_t vertices) { at_.resize(vertices, 0); }
+  /// Records that a vertex changes now.
+  void note(Index vertex) { at_[vertex] = now_; }
+  std::uint32_t at(Index vertex) const { return at_[vertex]; }
+  /// Returns whether any of these vertices has changed at this time or later.
+  template <class Vertices>
+  bool any_since(std::uint32_t when, const Vertices& vertices) const {
+    return std::ranges::any_of(vertices, [&](Index v) { return at_[v] >= when; });
+  }
+
+ private:
+  std::uint32_t now_ = 0;
+  std::vector<std::uint32_t> at_;  // by vertex
+};
+
+}  // namespace collarmesh::remeshing
