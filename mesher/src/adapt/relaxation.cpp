@@ -28,13 +28,13 @@ constexpr std::size_t steps_between_reports = 1024;
 
 }  // namespace
 
-Relaxation::Relaxation(EditableMesh& edited, const MeshOptions& options, const std::vector<double>& sizes,
+Relaxation::Relaxation(EditableMesh& edited, const MeshOptions& options, std::vector<double> sizes,
                        const Execution& execution)
     : edited_(edited),
-      sizes_(sizes),
+      metric_(std::move(sizes)),
       bounds_{ThinShape(edited.plc, mesh(), options.bounds.thin_angle, options.bounds.reserve, edited.forced),
               CellBounds(edited.plc, mesh(), options.bounds)},
-      rule_(bounds_, options.bounds.radius_edge, sizes_),
+      rule_(bounds_, options.bounds.radius_edge, metric_),
       execution_(execution),
       changes_(mesh().points.size()),
       renewals_(mesh().points.size()),
@@ -77,24 +77,20 @@ void Relaxation::improve_tets(double enough, Means later) {
     if (!improve_below(enough, pass == 0 ? Means::edges : later)) break;
 }
 
-double Relaxation::relative_length(Index a, Index b) const {
-  return distance(mesh().points[a], mesh().points[b]) / (0.5 * (sizes_[a] + sizes_[b]));
-}
-
 bool Relaxation::contract_shorter_than(double below) {
   std::vector<double> shortest(mesh().points.size(), INFINITY);
   for (Index t = 0; t < complex().size(); ++t) {
     if (!complex()[t].alive) continue;
     const auto& v = complex()[t].corners;
     for (const auto& [i, j] : cell_shapes::corner_pairs) {
-      const double length = relative_length(v[i], v[j]);
-      for (const Index end : {v[i], v[j]}) shortest[end] = std::min(shortest[end], length);
+      const double here = length(v[i], v[j]);
+      for (const Index end : {v[i], v[j]}) shortest[end] = std::min(shortest[end], here);
     }
   }
   std::vector<Near> candidates;
   for (Index v = 0; v < shortest.size(); ++v)
     if (shortest[v] < below && mesh().features[v].dimension > 0) candidates.push_back({shortest[v], v});
-  std::ranges::stable_sort(candidates, {}, &Near::relative_length);
+  std::ranges::stable_sort(candidates, {}, &Near::length);
   const std::size_t before = contractions_;
   const bool ended = for_each(
       candidates,
@@ -141,7 +137,7 @@ void Relaxation::propose_contraction(Proposer& proposer, Index vertex, double be
     found.read.push_back(onto.vertex);
     const bool fits = std::ranges::all_of(neighbours, [&](Index v) {
       return v == onto.vertex ||
-             relative_length(onto.vertex, v) <= std::max(longest, coarsening::CoarseningRule::longest_new);
+             length(onto.vertex, v) <= std::max(longest, coarsening::CoarseningRule::longest_new);
     });
     if (!fits) continue;
     operations.contract_onto(onto.vertex, least_quality, 0, found.change);
@@ -151,7 +147,7 @@ void Relaxation::propose_contraction(Proposer& proposer, Index vertex, double be
 }
 
 /// Finds the vertices joined to a vertex by an edge, and those near enough to collapse onto. Returns the
-/// length of the longest such edge, relative to its target.
+/// length of the longest such edge.
 double Relaxation::find_neighbours(Proposer& proposer, Index vertex, double below) const {
   auto& [operations, star, neighbours, near] = proposer;
   neighbours.clear();
@@ -162,11 +158,11 @@ double Relaxation::find_neighbours(Proposer& proposer, Index vertex, double belo
   near.clear();
   double longest = 0;
   for (const Index v : neighbours) {
-    const double length = relative_length(vertex, v);
-    longest = std::max(longest, length);
-    if (length < below && edited_.may_share_feature(vertex, v)) near.push_back({length, v});
+    const double here = length(vertex, v);
+    longest = std::max(longest, here);
+    if (here < below && edited_.may_share_feature(vertex, v)) near.push_back({here, v});
   }
-  std::ranges::stable_sort(near, {}, &Near::relative_length);
+  std::ranges::stable_sort(near, {}, &Near::length);
   return longest;
 }
 

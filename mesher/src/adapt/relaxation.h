@@ -11,6 +11,7 @@
 #include "collarmesh/progress.h"
 #include "remesh/cell_bounds.h"
 #include "remesh/editable_mesh.h"
+#include "remesh/metric.h"
 #include "remesh/operations.h"
 #include "remesh/ordered_speculation.h"
 
@@ -23,7 +24,7 @@ namespace collarmesh::remeshing::adapting {
 class Relaxation {
  public:
   /// Keeps the mesh and the execution by reference; `sizes` are targets at the vertices.
-  Relaxation(EditableMesh& edited, const MeshOptions& options, const std::vector<double>& sizes,
+  Relaxation(EditableMesh& edited, const MeshOptions& options, std::vector<double> sizes,
              const Execution& execution);
 
   /// Collapses short edges and improves tets, for lengths that grow up to the target.
@@ -38,7 +39,7 @@ class Relaxation {
 
  private:
   struct Near {
-    double relative_length;
+    double length;  ///< in the metric
     Index vertex;
   };
   /// The means of improvement in addition to removing edges.
@@ -57,7 +58,7 @@ class Relaxation {
   const TetComplex& complex() const { return edited_.complex; }
   const TetMesh& mesh() const { return edited_.complex.mesh(); }
   double quality(Index tet) const { return rule_.quality(complex().corners(tet), complex()[tet].corners); }
-  double relative_length(Index a, Index b) const;
+  double length(Index a, Index b) const { return metric_.length(a, b, complex().edge(a, b)); }
   void contract_again(double below);
   bool contract_shorter_than(double below);
   template <class Item, class Propose, class Use>
@@ -73,7 +74,7 @@ class Relaxation {
   bool stopped();
 
   EditableMesh& edited_;
-  std::vector<double> sizes_;  // by vertex
+  Metric metric_;
   TetBounds bounds_;
   coarsening::CoarseningRule rule_;
   const Execution& execution_;

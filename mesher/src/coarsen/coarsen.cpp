@@ -82,11 +82,11 @@ class Coarsening {
   Coarsening(EditableMesh& edited, const MeshOptions& made_with, const Execution& execution)
       : edited_(edited),
         radius_edge_(made_with.bounds.radius_edge),
-        sizes_(target_sizes(mesh(), edited.plc, sizes_asked_for(made_with))),
+        metric_(target_sizes(mesh(), edited.plc, sizes_asked_for(made_with))),
         bounds_(edited.tet_bounds(made_with.bounds)),
-        rule_(bounds_, made_with.bounds.radius_edge, sizes_),
+        rule_(bounds_, made_with.bounds.radius_edge, metric_),
         changes_(mesh().points.size()),
-        speculation_([this] { return Proposer(edited_, bounds_, radius_edge_, sizes_, changes_); }),
+        speculation_([this] { return Proposer(edited_, bounds_, radius_edge_, metric_, changes_); }),
         execution_(execution) {}
 
   // Returns the options without `edges_per_hole`: coarsening keeps holes round without it.
@@ -124,10 +124,6 @@ class Coarsening {
   const TetMesh& mesh() const { return edited_.complex.mesh(); }
   double quality(Index tet) const { return rule_.quality(complex().corners(tet), complex()[tet].corners); }
 
-  double squared_relative_length(Index a, Index b) const {
-    return rule_.squared_relative_length(squared_distance(mesh().points[a], mesh().points[b]), a, b);
-  }
-
   struct Candidate {
     int rank;  // rank of the length of its shortest edge
     Index vertex;
@@ -135,7 +131,7 @@ class Coarsening {
   };
 
   struct ShortEdge {
-    double squared_relative_length;
+    double squared_length;  // in the metric
     Index end;
   };
 
@@ -161,8 +157,8 @@ class Coarsening {
     const std::size_t points = mesh().points.size();
     std::vector<ShortEdge> found;
     if (edges.size() < points / points_per_edge) {
-      std::ranges::sort(
-          edges, {}, [](const ShortEdge& edge) { return std::pair(edge.end, edge.squared_relative_length); });
+      std::ranges::sort(edges, {},
+                        [](const ShortEdge& edge) { return std::pair(edge.end, edge.squared_length); });
       for (const ShortEdge& edge : edges)
         if (found.empty() || found.back().end != edge.end) found.push_back(edge);
       return found;
@@ -174,26 +170,21 @@ class Coarsening {
     return found;
   }
 
-  // Finds the short edges of a tet at which a vertex is tried. Most edges are found long enough without a
-  // division.
+  // Finds the short edges of a tet at which a vertex is tried.
   void find_short_edges(Index tet, std::vector<ShortEdge>& ends) const {
-    constexpr double surely = 1 + 1e-9;
+    constexpr double surely_long = (1 + 1e-9) * contracted_below;
     const auto& v = complex()[tet].corners;
     const auto p = complex().corners(tet);
-    const std::array<double, 4> size{sizes_[v[0]], sizes_[v[1]], sizes_[v[2]], sizes_[v[3]]};
     for (const auto& [i, j] : cell_shapes::corner_pairs) {
-      const double twice_target = size[i] + size[j];
-      if (squared_distance(p[i], p[j]) >
-          0.25 * surely * square(contracted_below) * twice_target * twice_target)
-        continue;
-      const double length = squared_relative_length(v[i], v[j]);
+      if (metric_.exceeds(surely_long, v[i], v[j], p[j] - p[i])) continue;
+      const double length = metric_.squared_length(v[i], v[j], p[j] - p[i]);
       if (!is_short(length)) continue;
       for (const Index end : {v[i], v[j]})
         if (is_asked(end, length)) ends.push_back({length, end});
     }
   }
 
-  // Returns whether a vertex with an edge of this squared relative length is tried.
+  // Returns whether a vertex with an edge of this squared length is tried.
   bool is_asked(Index vertex, double length) const {
     const unsigned dimension = mesh().features[vertex].dimension;
     return dimension != 0 && (dimension < 3 || length < square(asked_inside_below));
@@ -506,7 +497,7 @@ class Coarsening {
 
   EditableMesh& edited_;
   double radius_edge_;
-  std::vector<double> sizes_;
+  Metric metric_;
   TetBounds bounds_;
   CoarseningRule rule_;
   ChangeTimes changes_;

@@ -21,7 +21,7 @@ void Proposer::contractions(Index vertex, bool repairs, VertexProposal& found) {
   find_neighbours(vertex);
   targets_.clear();
   for (const Neighbour& n : neighbours_) {
-    if (!is_short(n.squared_relative_length)) break;
+    if (!is_short(n.squared_length)) break;
     if (edited_.may_share_feature(vertex, n.vertex) && lengths_fit(n.vertex)) targets_.push_back(n.vertex);
   }
   if (targets_.empty()) return;
@@ -76,12 +76,12 @@ void Proposer::find_neighbours(Index vertex) {
   for (const Index t : star_)
     for (const Index w : complex()[t].corners) {
       if (!is_new(w)) continue;
-      const double squared = squared_distance(points()[vertex], points()[w]);
-      squared_shortest_ = std::min(squared_shortest_, squared);
-      neighbours_.push_back({rule_.squared_relative_length(squared, vertex, w), squared, w});
+      const Vector edge = complex().edge(vertex, w);
+      squared_shortest_ = std::min(squared_shortest_, squared_norm(edge));
+      neighbours_.push_back({metric_.squared_length(vertex, w, edge), edge, w});
     }
   std::ranges::sort(neighbours_, {},
-                    [](const Neighbour& n) { return std::pair(n.squared_relative_length, n.vertex); });
+                    [](const Neighbour& n) { return std::pair(n.squared_length, n.vertex); });
 }
 
 // Returns whether the edges that a collapse makes have allowed lengths: none is longer than allowed, unless
@@ -90,8 +90,8 @@ void Proposer::find_neighbours(Index vertex) {
 bool Proposer::lengths_fit(Index onto) const {
   return std::all_of(neighbours_.rbegin(), neighbours_.rend(), [&](const Neighbour& n) {
     if (n.vertex == onto) return true;
-    const double after = squared_distance(points()[onto], points()[n.vertex]);
-    return (after >= squared_shortest_ && rule_.allows_edge(onto, n.vertex, after, n.squared_length)) ||
+    const Vector after = complex().edge(onto, n.vertex);
+    return (squared_norm(after) >= squared_shortest_ && rule_.allows_edge(onto, n.vertex, after, n.edge)) ||
            are_joined_here(onto, n.vertex);
   });
 }

@@ -63,6 +63,7 @@ class TetComplex {
   TetMesh& mesh() { return mesh_; }
   const TetMesh& mesh() const { return mesh_; }
   std::array<Point, 4> corners(Index tet) const;
+  Vector edge(Index a, Index b) const { return mesh_.points[b] - mesh_.points[a]; }
   bool on_curve(Index a, Index b) const { return curve_edges_.contains(edge_key(a, b)); }
   /// Returns whether ab is an edge of a mesh face. Always true at a pinched vertex a.
   bool on_faces(Index a, Index b) const;
