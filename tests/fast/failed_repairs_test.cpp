@@ -16,23 +16,18 @@ std::vector<Index> looked_at(const FailedRepairs& failed, Index vertex, const Ch
   return {found.begin(), found.end()};
 }
 
-void change(Index vertex, ChangeTimes& changes) {
-  changes.advance();
-  changes.note(vertex);
-}
-
 TEST(FailedRepairs, AreForgottenOnceAnythingChangesWhereTheyLooked) {
   ChangeTimes changes(5);
-  for (const Index v : {2U, 4U, 1U}) change(v, changes);
+  for (const Index v : {2U, 4U, 1U}) changes.note_next(v);
   FailedRepairs failed;
   EXPECT_TRUE(looked_at(failed, 1, changes).empty());
   failed.note(1, {4, 1, 2, 4}, changes.now());
   EXPECT_EQ(looked_at(failed, 1, changes), (std::vector<Index>{1, 2, 4}));
   EXPECT_TRUE(looked_at(failed, 2, changes).empty());  // a vertex that was looked at, but not tried
 
-  change(3, changes);  // elsewhere
+  changes.note_next(3);  // elsewhere
   EXPECT_FALSE(looked_at(failed, 1, changes).empty());
-  change(2, changes);
+  changes.note_next(2);
   EXPECT_TRUE(looked_at(failed, 1, changes).empty());
 }
 
@@ -40,10 +35,10 @@ TEST(FailedRepairs, CountFromTheLastTrial) {
   ChangeTimes changes(4);
   FailedRepairs failed;
   failed.note(0, {0, 1}, changes.now());
-  change(1, changes);
+  changes.note_next(1);
   failed.note(0, {0, 2}, changes.now());
   EXPECT_EQ(looked_at(failed, 0, changes), (std::vector<Index>{0, 2}));
-  change(2, changes);
+  changes.note_next(2);
   EXPECT_TRUE(looked_at(failed, 0, changes).empty());
 }
 

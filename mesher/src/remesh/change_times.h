@@ -22,6 +22,8 @@ class ChangeTimes {
   void resize(std::size_t vertices) { at_.resize(vertices, 0); }
   /// Records that a vertex changes now.
   void note(Index vertex) { at_[vertex] = now_; }
+  /// Begins a new time, at which a vertex changes.
+  void note_next(Index vertex) { advance(), note(vertex); }
   std::uint32_t at(Index vertex) const { return at_[vertex]; }
   /// Returns whether any of these vertices has changed at this time or later.
   template <class Vertices>
