@@ -2,11 +2,10 @@
 #include "remesh/ordered_speculation.h"
 
 #include <gtest/gtest.h>
+#include <tbb/task_arena.h>
 
 #include <cstdint>
 #include <vector>
-
-#include "common/thread_limit.h"
 
 namespace collarmesh::ordered_speculation_test {
 namespace {
@@ -25,12 +24,12 @@ struct Sum {
 };
 
 /// Each item replaces the value at one place by a mix with the value at another place. Stops after `most`
-/// changes.
-std::vector<std::uint64_t> values_of(unsigned threads, std::size_t most = items) {
+/// changes. There may be more threads than cores.
+std::vector<std::uint64_t> values_of(int threads, std::size_t most = items) {
   std::vector<std::uint64_t> values(places, 1);
   std::vector<Index> all(items);
   for (Index i = 0; i < items; ++i) all[i] = i;
-  ThreadLimit(threads).run([&] {
+  tbb::task_arena(threads).execute([&] {
     ChangeTimes times(places);
     OrderedSpeculation<Adding> speculation([] { return Adding(); });
     std::size_t used = 0;
@@ -45,8 +44,7 @@ std::vector<std::uint64_t> values_of(unsigned threads, std::size_t most = items)
         [&](Index, const Sum& sum) {
           if (used == most) return false;
           ++used;
-          times.advance();
-          times.note(sum.read[0]);
+          times.note_next(sum.read[0]);
           values[sum.read[0]] = sum.value;
           return true;
         });
@@ -72,16 +70,19 @@ TEST(OrderedSpeculation, StopsWhenAChangeSaysSo) {
 }
 
 TEST(ChangeTimes, KnowWhatHasChangedSince) {
+  const std::vector<Index> both{0, 1};
   ChangeTimes times(2);
   EXPECT_EQ(times.at(1), 0U);
-  const std::uint32_t first = times.advance();
-  times.note(1);
-  EXPECT_TRUE(times.any_since(first, std::vector<Index>{0, 1}));
+  times.note_next(1);
+  const std::uint32_t first = times.now();
+  EXPECT_TRUE(times.any_since(first, both));
+  EXPECT_TRUE(times.any_after(first - 1, both));
+  EXPECT_FALSE(times.any_after(first, both));
   EXPECT_FALSE(times.any_since(first, std::vector<Index>{0}));
-  EXPECT_FALSE(times.any_since(times.advance(), std::vector<Index>{0, 1}));
+  EXPECT_FALSE(times.any_since(times.advance(), both));
   times.resize(3);
   times.note(2);
-  EXPECT_TRUE(times.any_since(first + 1, std::vector<Index>{2}));
+  EXPECT_TRUE(times.any_after(first, std::vector<Index>{2}));
 }
 
 }  // namespace

@@ -35,13 +35,7 @@ Relaxation::Relaxation(EditableMesh& edited, const MeshOptions& options, std::ve
       bounds_{ThinShape(edited.plc, mesh(), options.bounds.thin_angle, options.bounds.reserve, edited.forced),
               CellBounds(edited.plc, mesh(), options.bounds)},
       rule_(bounds_, options.bounds.radius_edge, metric_),
-      execution_(execution),
-      changes_(mesh().points.size()),
-      renewals_(mesh().points.size()),
-      speculation_([this] {
-        return Proposer{Operations(edited_, rule_), {}, {}, {}};
-      }),
-      kept_(mesh().points.size(), 0) {
+      execution_(execution) {
   rule_.set_mode(coarsening::CoarseningRule::Mode::force);
   edited_.prepare();
 }
@@ -92,16 +86,16 @@ bool Relaxation::contract_shorter_than(double below) {
     if (shortest[v] < below && mesh().features[v].dimension > 0) candidates.push_back({shortest[v], v});
   std::ranges::stable_sort(candidates, {}, &Near::length);
   const std::size_t before = contractions_;
-  const bool ended = for_each(
+  const bool ended = change_each(
       candidates,
-      [&](Proposer& proposer, const Near& candidate, Proposal& found) {
-        propose_contraction(proposer, candidate.vertex, below, found);
+      [&](Operations& operations, const Near& candidate, Proposal& found) {
+        propose_contraction(operations, candidate.vertex, below, found);
       },
       [&](const Near& candidate, Proposal& found) {
         if (apply(found))
           ++contractions_;
         else
-          kept_[candidate.vertex] = renewals_.advance();
+          kept_[candidate.vertex] = changes_.advance();
       });
   return ended && static_cast<double>(contractions_ - before) >
                       least_share_changed * static_cast<double>(shortest.size());
@@ -109,7 +103,7 @@ bool Relaxation::contract_shorter_than(double below) {
 
 /// Handles items in their order, with all threads. Returns false if it was stopped.
 template <class Item, class Propose, class Use>
-bool Relaxation::for_each(const std::vector<Item>& items, const Propose& propose, const Use& use) {
+bool Relaxation::change_each(const std::vector<Item>& items, const Propose& propose, const Use& use) {
   return speculation_.for_each<Proposal>(
       items, changes_, propose,
       [&](const Item&, const Proposal& found, std::uint32_t begun) {
@@ -123,22 +117,21 @@ bool Relaxation::for_each(const std::vector<Item>& items, const Propose& propose
       });
 }
 
-void Relaxation::propose_contraction(Proposer& proposer, Index vertex, double below, Proposal& found) const {
+void Relaxation::propose_contraction(Operations& operations, Index vertex, double below,
+                                     Proposal& found) const {
   found.change = {};
   found.read = {vertex};
-  if (!complex().in_use(vertex) || kept_[vertex] > renewals_.at(vertex)) return;
-  auto& [operations, star, neighbours, near] = proposer;
+  if (!complex().in_use(vertex) || kept_[vertex] > changes_.at(vertex)) return;
+  std::vector<Index> star;
   complex().star(vertex, star);
   if (star.size() > most_tets || !operations.begin_contractions(vertex, star)) return;
-  const double longest = find_neighbours(proposer, vertex, below);
+  const Neighbours neighbours = neighbours_of(vertex, star, below);
   const double least_quality = std::max(least, std::min(share_left * operations.worst_at_vertex(), good));
-  if (near.size() > most_tries) near.resize(most_tries);
-  for (const Near& onto : near) {
+  const double longest = std::max(neighbours.longest, coarsening::CoarseningRule::longest_new);
+  for (const Near& onto : neighbours.near) {
     found.read.push_back(onto.vertex);
-    const bool fits = std::ranges::all_of(neighbours, [&](Index v) {
-      return v == onto.vertex ||
-             length(onto.vertex, v) <= std::max(longest, coarsening::CoarseningRule::longest_new);
-    });
+    const bool fits = std::ranges::all_of(
+        neighbours.all, [&](Index v) { return v == onto.vertex || length(onto.vertex, v) <= longest; });
     if (!fits) continue;
     operations.contract_onto(onto.vertex, least_quality, 0, found.change);
     if (!found.change.is_none() && edited_.stays_oriented(found.change)) return;
@@ -146,24 +139,22 @@ void Relaxation::propose_contraction(Proposer& proposer, Index vertex, double be
   }
 }
 
-/// Finds the vertices joined to a vertex by an edge, and those near enough to collapse onto. Returns the
-/// length of the longest such edge.
-double Relaxation::find_neighbours(Proposer& proposer, Index vertex, double below) const {
-  auto& [operations, star, neighbours, near] = proposer;
-  neighbours.clear();
+/// Returns the vertices joined to a vertex by an edge, and the first of those near enough to collapse onto.
+Relaxation::Neighbours Relaxation::neighbours_of(Index vertex, const std::vector<Index>& star,
+                                                 double below) const {
+  Neighbours found;
   for (const Index t : star)
     for (const Index v : complex()[t].corners)
-      if (v != vertex) neighbours.push_back(v);
-  sort_uniquely(neighbours);
-  near.clear();
-  double longest = 0;
-  for (const Index v : neighbours) {
+      if (v != vertex) found.all.push_back(v);
+  sort_uniquely(found.all);
+  for (const Index v : found.all) {
     const double here = length(vertex, v);
-    longest = std::max(longest, here);
-    if (here < below && edited_.may_share_feature(vertex, v)) near.push_back({here, v});
+    found.longest = std::max(found.longest, here);
+    if (here < below && edited_.may_share_feature(vertex, v)) found.near.push_back({here, v});
   }
-  std::ranges::stable_sort(near, {}, &Near::length);
-  return longest;
+  std::ranges::stable_sort(found.near, {}, &Near::length);
+  if (found.near.size() > most_tries) found.near.resize(most_tries);
+  return found;
 }
 
 bool Relaxation::improve_below(double enough, Means means) {
@@ -177,24 +168,21 @@ bool Relaxation::improve_below(double enough, Means means) {
       if (const double q = quality(t); q < enough) poor.push_back({q, t});
   std::ranges::stable_sort(poor, {}, &Poor::quality);
   const std::size_t before = others_;
-  const auto is_there = [&](const Poor& item) {
-    return complex()[item.tet].alive && quality(item.tet) == item.quality;
-  };
-  const bool ended = for_each(
+  const bool ended = change_each(
       poor,
-      [&](Proposer& proposer, const Poor& item, Proposal& found) {
-        found = {};
-        if (!complex()[item.tet].alive) return;
-        found.read.assign(complex()[item.tet].corners.begin(), complex()[item.tet].corners.end());
-        if (is_there(item)) propose_improvement(proposer.operations, item.tet, enough, means, found);
+      [&](Operations& operations, const Poor& item, Proposal& found) {
+        found.change = {};
+        found.read.clear();
+        if (complex()[item.tet].alive && quality(item.tet) == item.quality)
+          propose_improvement(operations, item.tet, enough, means, found);
       },
       [&](const Poor& item, Proposal& found) {
         if (apply(found)) {
           ++others_;
-        } else if (is_there(item)) {
+        } else if (!found.read.empty()) {
           auto& tried = not_better_[static_cast<unsigned>(means)];
           tried.resize(std::max<std::size_t>(tried.size(), complex().size()), 0);
-          tried[item.tet] = renewals_.advance();
+          tried[item.tet] = changes_.advance();
         }
       });
   return ended &&
@@ -204,6 +192,7 @@ bool Relaxation::improve_below(double enough, Means means) {
 void Relaxation::propose_improvement(Operations& operations, Index tet, double enough, Means means,
                                      Proposal& found) const {
   const auto corners = complex()[tet].corners;
+  found.read.assign(corners.begin(), corners.end());
   Change& change = found.change;
   for (const auto& [i, j] : longest_first(complex().corners(tet), distance)) {
     operations.remove_edge(tet, i, j, change);
@@ -213,7 +202,8 @@ void Relaxation::propose_improvement(Operations& operations, Index tet, double e
     if (means != Means::edges && change.is_none()) operations.move_vertex(v, change);
   for (const Index v : corners)
     if (means != Means::edges && change.is_none()) operations.move_to_face(v, change);
-  for (const Index t : change.read)  // before a collapse forgets it
+  // A collapse replaces `change.read`.
+  for (const Index t : change.read)
     found.read.insert(found.read.end(), complex()[t].corners.begin(), complex()[t].corners.end());
   for (const Index v : corners)
     for (const Index w : corners)
@@ -224,11 +214,12 @@ void Relaxation::propose_improvement(Operations& operations, Index tet, double e
 /// Makes the proposed change. Returns false if there is none.
 bool Relaxation::apply(Proposal& found) {
   if (found.change.is_none()) return false;
-  changes_.advance(), renewals_.advance();
-  for (const Index t : found.change.replacement.old)
-    for (const Index v : complex()[t].corners) changes_.note(v);
-  for (const Index t : edited_.apply(std::move(found.change)))
-    for (const Index v : complex()[t].corners) changes_.note(v), renewals_.note(v);
+  changes_.advance();
+  const auto note = [this](Index tet) {
+    for (const Index v : complex()[tet].corners) changes_.note(v);
+  };
+  std::ranges::for_each(found.change.replacement.old, note);
+  std::ranges::for_each(edited_.apply(std::move(found.change)), note);
   return true;
 }
 
@@ -236,7 +227,7 @@ bool Relaxation::apply(Proposal& found) {
 bool Relaxation::was_tried(Index tet, Means means) const {
   for (auto kind = static_cast<unsigned>(means); kind < kinds_of_means; ++kind) {
     const auto& tried = not_better_[kind];
-    if (tet < tried.size() && tried[tet] > 0 && !renewals_.any_since(tried[tet], complex()[tet].corners))
+    if (tet < tried.size() && tried[tet] > 0 && !changes_.any_since(tried[tet], complex()[tet].corners))
       return true;
   }
   return false;

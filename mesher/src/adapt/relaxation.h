@@ -46,13 +46,15 @@ class Relaxation {
   enum class Means { edges, moves, vertices };
   static constexpr unsigned kinds_of_means = 3;
   struct Proposal {
-    Change change;            ///< may be none
-    std::vector<Index> read;  ///< vertices: the change depends on the tets there; empty: on more than that
+    Change change;  ///< may be none
+    /// Vertices: the change depends on the tets there. Empty: the tet was gone, and none was sought. Its index
+    /// may be in use again, so it is always proposed again.
+    std::vector<Index> read;
   };
-  struct Proposer {
-    Operations operations;
-    std::vector<Index> star, neighbours;  ///< of the last vertex
-    std::vector<Near> near;               ///< neighbours onto which it may be collapsed, by length
+  struct Neighbours {
+    std::vector<Index> all;
+    std::vector<Near> near;  ///< those onto which the vertex may be collapsed, by length
+    double longest = 0;      ///< edge
   };
 
   const TetComplex& complex() const { return edited_.complex; }
@@ -62,9 +64,9 @@ class Relaxation {
   void contract_again(double below);
   bool contract_shorter_than(double below);
   template <class Item, class Propose, class Use>
-  bool for_each(const std::vector<Item>& items, const Propose& propose, const Use& use);
-  void propose_contraction(Proposer& proposer, Index vertex, double below, Proposal& found) const;
-  double find_neighbours(Proposer& proposer, Index vertex, double below) const;
+  bool change_each(const std::vector<Item>& items, const Propose& propose, const Use& use);
+  void propose_contraction(Operations& operations, Index vertex, double below, Proposal& found) const;
+  Neighbours neighbours_of(Index vertex, const std::vector<Index>& star, double below) const;
   void improve_tets(double enough, Means later);
   bool improve_below(double enough, Means means);
   void propose_improvement(Operations& operations, Index tet, double enough, Means means,
@@ -79,11 +81,10 @@ class Relaxation {
   coarsening::CoarseningRule rule_;
   const Execution& execution_;
   std::size_t contractions_ = 0, others_ = 0, steps_ = 0;
-  ChangeTimes changes_;   // of all tets at a vertex
-  ChangeTimes renewals_;  // of tets at a vertex that were made or moved
-  OrderedSpeculation<Proposer> speculation_;
-  // Times at which an attempt last failed. It is repeated only after a renewal.
-  std::vector<std::uint32_t> kept_;                                    // by vertex
+  ChangeTimes changes_{mesh().points.size()};
+  OrderedSpeculation<Operations> speculation_{[this] { return Operations(edited_, rule_); }};
+  // Times at which an attempt last failed. It is repeated only after a change.
+  std::vector<std::uint32_t> kept_ = std::vector<std::uint32_t>(mesh().points.size());  // by vertex
   std::array<std::vector<std::uint32_t>, kinds_of_means> not_better_;  // by tet
 };
 

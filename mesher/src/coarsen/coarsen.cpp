@@ -196,6 +196,7 @@ class Coarsening {
     last_pass_ = changes_.advance();
     if (repair) last_repairs_ = last_pass_;
     const std::size_t before = tets_;
+    steps_ = 0;
     return speculation_.for_each<VertexProposal>(
                candidates, changes_,
                [&](Proposer& proposer, const Candidate& candidate, VertexProposal& found) {
@@ -361,6 +362,7 @@ class Coarsening {
     const std::vector<Poor> poor = in_order(std::move(all));
     last_sweep_ = changes_.advance();
     bool any = false;
+    steps_ = 0;
     speculation_.for_each<Change>(
         poor, changes_,
         [&](Proposer& proposer, const Poor& item, Change& change) {
@@ -379,7 +381,8 @@ class Coarsening {
           forget_touched();
           apply(std::move(change));
           settle();
-          return any = true;
+          any = true;
+          return true;
         });
     return any && !report_.cancelled;
   }

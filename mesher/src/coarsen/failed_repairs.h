@@ -27,8 +27,8 @@ class FailedRepairs {
     const auto found = failures_.find(vertex);
     if (found == failures_.end()) return {};
     const Failure& failure = found->second;
-    return changes.any_since(failure.when + 1, failure.looked_at) ? std::span<const Index>()
-                                                                  : std::span<const Index>(failure.looked_at);
+    if (changes.any_after(failure.when, failure.looked_at)) return {};
+    return failure.looked_at;
   }
 
  private:

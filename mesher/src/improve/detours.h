@@ -21,11 +21,7 @@ class Detours {
  public:
   /// Keeps all by reference. Starts no detour after `most_trials` operations, but completes the current tet.
   Detours(EditableMesh& edited, Remedies& remedies, Operations& operations, std::size_t most_trials)
-      : edited_(edited),
-        remedies_(remedies),
-        operations_(operations),
-        most_trials_(most_trials),
-        detours_(edited.complex.mesh().points.size()) {}
+      : edited_(edited), remedies_(remedies), operations_(operations), most_trials_(most_trials) {}
 
   /// Takes detours for these tets and, where the number of vertices may change, for poor tets that detours
   /// leave. Takes the worst tet first; tries operations at the tet itself, then beside it; tries again after
@@ -56,6 +52,7 @@ class Detours {
   /// By tet: the number of detours taken before it was last tried, plus 1; 0: not tried.
   using Asked = std::vector<std::uint32_t>;
 
+  std::uint32_t taken() const { return changes_.now(); }
   bool exhausted() const;
   Change propose(Index tet);
   bool is_new_to(Index tet, const Asked& asked) const;
@@ -76,8 +73,8 @@ class Detours {
   Remedies& remedies_;
   Operations& operations_;
   std::size_t most_trials_, trials_ = 0;
-  std::size_t blunt_ = 0;       // number of proposals for blunt tets
-  ChangeTimes detours_;         // the time is the number of detours taken
+  std::size_t blunt_ = 0;  // number of proposals for blunt tets
+  ChangeTimes changes_{complex().mesh().points.size()};  // the time is the number of detours taken
   bool ended_ = false;          // no trials remain, or the caller stopped it
   std::array<Asked, 3> asked_;  // by Effort
 

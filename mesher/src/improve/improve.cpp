@@ -46,7 +46,6 @@ class Improvement {
         rule_(options.bounds.radius_edge, options.bounds.thin_angle > 0 ? &bounds_.thin : nullptr,
               options.bounds.thin_angle > 0 ? &bounds_.cells : nullptr),
         remedies_(edited, rule_, options, thoroughly),
-        changes_(complex().mesh().points.size()),
         speculation_([this] { return Operations(edited_, rule_); }),
         execution_(execution),
         detours_(thoroughly && options.move_vertices),
@@ -144,11 +143,9 @@ class Improvement {
         return;
       }
       proposals_.resize(batch_.size());
-      speculation_.propose_all(
-          std::span<const Item>(batch_), std::span(proposals_),
-          [&](Operations& operations, const Item& item, Change& change) {
-            change = is_known_to_fail(item.tet) ? Change{} : remedies_.propose(operations, item.tet);
-          });
+      speculation_.propose_all(batch_, proposals_, [&](Operations& own, const Item& item, Change& change) {
+        change = is_known_to_fail(item.tet) ? Change{} : remedies_.propose(own, item.tet);
+      });
       changes_.advance();
       changed_in_.resize(complex().size(), 0);
       for (std::size_t i = 0; i < batch_.size(); ++i)
@@ -248,7 +245,7 @@ class Improvement {
   TetBounds bounds_;
   SliverRule rule_;
   Remedies remedies_;
-  ChangeTimes changes_;  // the time is the number of the batch
+  ChangeTimes changes_{complex().mesh().points.size()};  // the time is the number of the batch
   OrderedSpeculation<Operations> speculation_;
   const Execution& execution_;
   bool detours_;

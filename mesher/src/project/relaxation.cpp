@@ -91,10 +91,10 @@ void Relaxation::commit() {
   log_.clear();
 }
 
-bool Relaxation::any_around_since(const remeshing::ChangeTimes& times, std::uint32_t when,
+bool Relaxation::any_around_after(const remeshing::ChangeTimes& times, std::uint32_t time,
                                   Index vertex) const {
   const auto tets = tets_at_[vertex];
-  return std::ranges::any_of(tets, [&](Index t) { return times.any_since(when, mesh_.tets[t]); });
+  return std::ranges::any_of(tets, [&](Index t) { return times.any_after(time, mesh_.tets[t]); });
 }
 
 void Relaxation::roll_back() {
@@ -107,7 +107,7 @@ void Relaxation::roll_back() {
 
 // Returns whether a search found no better place for the vertex and nothing around it has changed since.
 bool Relaxation::in_vain(Index vertex) const {
-  return stuck_[vertex] > 0 && !any_around_since(moves_, stuck_[vertex] + 1, vertex);
+  return stuck_[vertex] > 0 && !any_around_after(moves_, stuck_[vertex], vertex);
 }
 
 // Returns 1 if the tet keeps its bound and its shape; a smaller positive value if it has positive volume.

@@ -64,7 +64,7 @@ class Relaxation {
   /// Returns the number of commits, and whether commits after that number changed a tet at the vertex.
   std::uint32_t commits() const { return commits_.now(); }
   bool changed_around(Index vertex, std::uint32_t since) const {
-    return any_around_since(commits_, since + 1, vertex);
+    return any_around_after(commits_, since, vertex);
   }
 
  private:
@@ -95,7 +95,7 @@ class Relaxation {
   double lack_around(std::span<const Index> tets, Index vertex, const Point& place, double below) const;
   bool improve(Index vertex);
   bool in_vain(Index vertex) const;
-  bool any_around_since(const remeshing::ChangeTimes& times, std::uint32_t when, Index vertex) const;
+  bool any_around_after(const remeshing::ChangeTimes& times, std::uint32_t time, Index vertex) const;
   std::optional<Point> on_feature(Index vertex, const Point& wish) const;
   bool fits_features(Index vertex, const Point& place);
   void find_features_around();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -21,14 +22,25 @@ class ChangeTimes {
   /// Makes room for new vertices.
   void resize(std::size_t vertices) { at_.resize(vertices, 0); }
   /// Records that a vertex changes now.
-  void note(Index vertex) { at_[vertex] = now_; }
+  void note(Index vertex) {
+    assert(vertex < at_.size());
+    at_[vertex] = now_;
+  }
   /// Begins a new time, at which a vertex changes.
   void note_next(Index vertex) { advance(), note(vertex); }
-  std::uint32_t at(Index vertex) const { return at_[vertex]; }
+  std::uint32_t at(Index vertex) const {
+    assert(vertex < at_.size());
+    return at_[vertex];
+  }
   /// Returns whether any of these vertices has changed at this time or later.
   template <class Vertices>
   bool any_since(std::uint32_t when, const Vertices& vertices) const {
-    return std::ranges::any_of(vertices, [&](Index v) { return at_[v] >= when; });
+    return std::ranges::any_of(vertices, [&](Index v) { return at(v) >= when; });
+  }
+  /// Returns whether any of these vertices has changed later than at this time.
+  template <class Vertices>
+  bool any_after(std::uint32_t time, const Vertices& vertices) const {
+    return any_since(time + 1, vertices);
   }
 
  private:

@@ -9,7 +9,7 @@
 
 namespace collarmesh::remeshing {
 
-/// Measures edges and tets in units of the lengths that edges should have. This metric is the same in all
+/// A measure of edges and tets, in units of the lengths that edges should have. It is the same in all
 /// directions: a vertex has a target length, an edge the mean of those at its ends, a tet the mean of those
 /// at its corners. Edges are given as vectors, so that lengths could depend on their directions.
 class Metric {

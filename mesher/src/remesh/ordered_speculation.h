@@ -14,9 +14,9 @@
 
 namespace collarmesh::remeshing {
 
-/// Makes changes in a fixed order with all threads: several threads propose changes for the next few items at
-/// once, one thread makes them, one after the other. `Proposer` finds changes and only reads; each thread has
-/// its own.
+/// A loop that makes changes in a fixed order with all threads: several threads propose changes for the next
+/// few items at once, one thread makes them, one after the other. `Proposer` finds changes and only reads;
+/// each thread has its own.
 template <class Proposer>
 class OrderedSpeculation {
  public:
@@ -28,8 +28,7 @@ class OrderedSpeculation {
   Proposer& own() { return own_; }
 
   /// Calls `propose(proposer, item, proposal)` for all items, by all threads.
-  template <class Item, class Proposal, class Propose>
-  void propose_all(std::span<const Item> items, std::span<Proposal> proposals, const Propose& propose) {
+  void propose_all(const auto& items, auto& proposals, const auto& propose) {
     parallel_for(items.size(), [&](std::size_t i) { propose(proposers_.local(), items[i], proposals[i]); });
   }
 
@@ -37,15 +36,15 @@ class OrderedSpeculation {
   /// one item after the other, with the result of a single thread. Other threads propose ahead; a proposal
   /// counts only if `is_up_to_date(item, proposal, begun)` finds that nothing it depends on has changed since
   /// the time `begun`. Ends as soon as `use` returns false; returns whether it never did.
-  template <class Proposal, class Item, class Propose, class IsUpToDate, class Use>
-  bool for_each(const std::vector<Item>& items, ChangeTimes& times, const Propose& propose,
-                const IsUpToDate& is_up_to_date, const Use& use) {
+  template <class Proposal>
+  bool for_each(const auto& items, ChangeTimes& times, const auto& propose, const auto& is_up_to_date,
+                const auto& use) {
     const std::size_t at_once = proposals_at_once(items.size());
     std::vector<Proposal> proposals(at_once);
     for (std::size_t first = 0; first < items.size(); first += at_once) {
       const auto next = std::span(items).subspan(first, std::min(at_once, items.size() - first));
       const std::uint32_t begun = times.advance();
-      if (at_once > 1) propose_all(next, std::span(proposals), propose);
+      if (at_once > 1) propose_all(next, proposals, propose);
       for (std::size_t i = 0; i < next.size(); ++i) {
         if (at_once == 1 || !is_up_to_date(next[i], proposals[i], begun))
           propose(own_, next[i], proposals[i]);

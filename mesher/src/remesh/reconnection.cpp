@@ -46,9 +46,8 @@ void Operations::refill(const std::vector<Index>& cavity, Change& change) {
     const auto& corners = complex_[t].corners;
     for (const auto& [i, j] : cell_shapes::corner_pairs) {
       edges.push_back(sorted(corners[i], corners[j]));
-      if (const Vector edge = complex_.edge(corners[i], corners[j]);
-          squared_norm(edge) > squared_norm(longest))
-        longest = edge;
+      const Vector edge = complex_.edge(corners[i], corners[j]);
+      if (squared_norm(edge) > squared_norm(longest)) longest = edge;
     }
   }
   std::ranges::sort(edges);
