@@ -95,7 +95,7 @@ bool Relaxation::contract_shorter_than(double below) {
         if (apply(found))
           ++contractions_;
         else
-          kept_[candidate.vertex] = changes_.advance();
+          kept_[candidate.vertex] = renewals_.advance();
       });
   return ended && static_cast<double>(contractions_ - before) >
                       least_share_changed * static_cast<double>(shortest.size());
@@ -121,7 +121,7 @@ void Relaxation::propose_contraction(Operations& operations, Index vertex, doubl
                                      Proposal& found) const {
   found.change = {};
   found.read = {vertex};
-  if (!complex().in_use(vertex) || kept_[vertex] > changes_.at(vertex)) return;
+  if (!complex().in_use(vertex) || kept_[vertex] > renewals_.at(vertex)) return;
   std::vector<Index> star;
   complex().star(vertex, star);
   if (star.size() > most_tets || !operations.begin_contractions(vertex, star)) return;
@@ -182,7 +182,7 @@ bool Relaxation::improve_below(double enough, Means means) {
         } else if (!found.read.empty()) {
           auto& tried = not_better_[static_cast<unsigned>(means)];
           tried.resize(std::max<std::size_t>(tried.size(), complex().size()), 0);
-          tried[item.tet] = changes_.advance();
+          tried[item.tet] = renewals_.advance();
         }
       });
   return ended &&
@@ -214,12 +214,11 @@ void Relaxation::propose_improvement(Operations& operations, Index tet, double e
 /// Makes the proposed change. Returns false if there is none.
 bool Relaxation::apply(Proposal& found) {
   if (found.change.is_none()) return false;
-  changes_.advance();
-  const auto note = [this](Index tet) {
-    for (const Index v : complex()[tet].corners) changes_.note(v);
-  };
-  std::ranges::for_each(found.change.replacement.old, note);
-  std::ranges::for_each(edited_.apply(std::move(found.change)), note);
+  changes_.advance(), renewals_.advance();
+  for (const Index t : found.change.replacement.old)
+    for (const Index v : complex()[t].corners) changes_.note(v);
+  for (const Index t : edited_.apply(std::move(found.change)))
+    for (const Index v : complex()[t].corners) changes_.note(v), renewals_.note(v);
   return true;
 }
 
@@ -227,7 +226,7 @@ bool Relaxation::apply(Proposal& found) {
 bool Relaxation::was_tried(Index tet, Means means) const {
   for (auto kind = static_cast<unsigned>(means); kind < kinds_of_means; ++kind) {
     const auto& tried = not_better_[kind];
-    if (tet < tried.size() && tried[tet] > 0 && !changes_.any_since(tried[tet], complex()[tet].corners))
+    if (tet < tried.size() && tried[tet] > 0 && !renewals_.any_since(tried[tet], complex()[tet].corners))
       return true;
   }
   return false;

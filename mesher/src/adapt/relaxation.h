@@ -47,8 +47,8 @@ class Relaxation {
   static constexpr unsigned kinds_of_means = 3;
   struct Proposal {
     Change change;  ///< may be none
-    /// Vertices: the change depends on the tets there. Empty: the tet was gone, and none was sought. Its index
-    /// may be in use again, so it is always proposed again.
+    /// Vertices: the change depends on the tets there. Empty: the tet had changed or was gone. Its index may
+    /// be in use again, so a change is proposed again.
     std::vector<Index> read;
   };
   struct Neighbours {
@@ -81,11 +81,12 @@ class Relaxation {
   coarsening::CoarseningRule rule_;
   const Execution& execution_;
   std::size_t contractions_ = 0, others_ = 0, steps_ = 0;
-  ChangeTimes changes_{mesh().points.size()};
+  ChangeTimes changes_{mesh().points.size()};   // of all tets at a vertex
+  ChangeTimes renewals_{mesh().points.size()};  // of tets at a vertex that were made or moved
   OrderedSpeculation<Operations> speculation_{[this] { return Operations(edited_, rule_); }};
-  // Times at which an attempt last failed. It is repeated only after a change.
+  // Times at which an attempt last failed. It is repeated only after a renewal.
   std::vector<std::uint32_t> kept_ = std::vector<std::uint32_t>(mesh().points.size());  // by vertex
-  std::array<std::vector<std::uint32_t>, kinds_of_means> not_better_;  // by tet
+  std::array<std::vector<std::uint32_t>, kinds_of_means> not_better_;                   // by tet
 };
 
 }  // namespace collarmesh::remeshing::adapting
