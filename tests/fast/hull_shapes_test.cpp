@@ -86,8 +86,8 @@ TEST(HullShapes, QualitiesOfCoarseningAreThoseOfTheAngles) {
   const TetMesh mesh;
   const remeshing::TetBounds bounds{remeshing::ThinShape(plc, mesh, 8, 0, nullptr),
                                     remeshing::CellBounds(plc, mesh, {})};
-  const std::vector<double> sizes;
-  remeshing::coarsening::CoarseningRule rule(bounds, 2, sizes);
+  const remeshing::Metric metric({});
+  remeshing::coarsening::CoarseningRule rule(bounds, 2, metric);
   constexpr std::array<Index, 4> corners{0, 1, 2, 3};
   constexpr double radians = std::numbers::pi / 180;
   std::array<unsigned, 3> seen{};  // without volume, with an angle too large, other

@@ -59,9 +59,9 @@ TEST(ShapeRules, WhatSurelyExceedsAQualityExceedsIt) {
   const remeshing::TetBounds bounds{remeshing::ThinShape(plc, mesh, 8, 0, nullptr), cells},
       with_reserve{remeshing::ThinShape(plc, mesh, 8, 0.05, nullptr), cells};
   const remeshing::SliverRule with_thin(2, &bounds.thin), without(2);
-  const std::vector<double> sizes;
-  const remeshing::coarsening::CoarseningRule coarse(bounds, 2, sizes),
-      coarse_with_reserve(with_reserve, 2, sizes);
+  const remeshing::Metric metric({});
+  const remeshing::coarsening::CoarseningRule coarse(bounds, 2, metric),
+      coarse_with_reserve(with_reserve, 2, metric);
   constexpr std::array<Index, 4> corners{0, 1, 2, 3};
   std::array<unsigned, 4> sure{};
   for (unsigned i = 0; i < 200000; ++i) {

@@ -58,8 +58,10 @@ double mean_shape(const TetMesh& mesh) {
 
 std::size_t smoothed(Pushed& pushed, unsigned threads = 1) {
   std::size_t moves = 0;
-  ThreadLimit(threads).run(
-      [&] { moves = remeshing::adapting::smooth(pushed.mesh, pushed.plc, Bounds{}, pushed.sizes, {}); });
+  ThreadLimit(threads).run([&] {
+    moves =
+        remeshing::adapting::smooth(pushed.mesh, pushed.plc, Bounds{}, remeshing::Metric(pushed.sizes), {});
+  });
   return moves;
 }
 
@@ -113,7 +115,9 @@ TEST(Smoothing, IsTheSameForAnyNumberOfThreads) {
 TEST(Smoothing, EndsWhenItIsCancelled) {
   Pushed pushed = pushed_box();
   const std::atomic<bool> cancel = true;
-  EXPECT_EQ(remeshing::adapting::smooth(pushed.mesh, pushed.plc, Bounds{}, pushed.sizes, {{}, &cancel}), 0U);
+  EXPECT_EQ(remeshing::adapting::smooth(pushed.mesh, pushed.plc, Bounds{}, remeshing::Metric(pushed.sizes),
+                                        {{}, &cancel}),
+            0U);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "common/cell_shapes.h"
 #include "common/thread_limit.h"
 #include "remesh/editable_mesh.h"
+#include "remesh/metric.h"
 
 namespace collarmesh::remeshing::adapting {
 
@@ -134,16 +135,16 @@ class Bringing {
   }
 
   /// Estimates the number of tets for these sizes, given by vertex.
-  double tets_of(const std::vector<double>& size) const {
+  double tets_of(std::vector<double> sizes) const {
+    const Metric metric(std::move(sizes));
+    const auto& p = mesh_.points;
     double sum = 0;
     for (const auto& tet : mesh_.tets) {
-      const double mean = 0.25 * (size[tet[0]] + size[tet[1]] + size[tet[2]] + size[tet[3]]);
       double pieces = 1;  // number of pieces of the tet's extent
       for (const auto& [i, j] : cell_shapes::corner_pairs)
-        pieces = std::max(pieces, distance(mesh_.points[tet[i]], mesh_.points[tet[j]]) / mean);
-      const auto& p = mesh_.points;
+        pieces = std::max(pieces, metric.length(tet, p[tet[j]] - p[tet[i]]));
       const double volume = six_volume(p[tet[0]], p[tet[1]], p[tet[2]], p[tet[3]]) / 6;
-      sum += std::max(pieces, tets_per_cube * volume / (mean * mean * mean));
+      sum += std::max(pieces, tets_per_cube * metric.volume(tet, volume));
     }
     return sum;
   }

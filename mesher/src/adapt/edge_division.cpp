@@ -50,7 +50,7 @@ EdgeDivision::EdgeDivision(EditableMesh& edited, const MeshOptions& options, std
     : edited_(edited),
       options_(options),
       sizing_(edited.plc, options, Frame()),
-      sizes_(std::move(sizes)),
+      metric_(std::move(sizes)),
       rule_({ThinShape(edited.plc, mesh(), options.bounds.thin_angle, options.bounds.reserve, edited.forced),
              CellBounds(edited.plc, mesh(), options.bounds)}),
       operations_(edited, rule_) {
@@ -63,10 +63,10 @@ void EdgeDivision::add_missing_sizes() {
   for (Index t = 0; t < complex().size(); ++t)
     if (complex()[t].alive)
       for (const Index v : complex()[t].corners) region[v] = complex()[t].region;
-  sizes_.resize(region.size(), INFINITY);
+  metric_.resize(region.size(), INFINITY);
   for (Index v = 0; v < region.size(); ++v)
-    if (region[v] != none && !std::isfinite(sizes_[v]))
-      sizes_[v] = size_at(mesh().features[v], region[v], mesh().points[v]);
+    if (region[v] != none && !std::isfinite(metric_.target(v)))
+      metric_.set(v, size_at(mesh().features[v], region[v], mesh().points[v]));
 }
 
 std::size_t EdgeDivision::divide_all(double longest, std::size_t most_vertices, const Execution& execution) {
@@ -93,14 +93,10 @@ std::size_t EdgeDivision::divide_each(const std::vector<LongEdge>& edges, std::s
   return count;
 }
 
-double EdgeDivision::ratio(Index a, Index b) const {
-  return distance(mesh().points[a], mesh().points[b]) / (0.5 * (sizes_[a] + sizes_[b]));
-}
-
-// Returns the ratio of the edge to the size field, which may ask for less between the vertices than at them.
-double EdgeDivision::ratio_by_field(const LongEdge& edge) const {
+// Returns the length by the size field, which may ask for less between the vertices than at them.
+double EdgeDivision::length_by_field(const LongEdge& edge) const {
   const Point &a = mesh().points[edge.a], &b = mesh().points[edge.b];
-  return std::max(edge.ratio, distance(a, b) / sizing_.default_size(0.5 * (a + b)));
+  return std::max(edge.length, distance(a, b) / sizing_.default_size(0.5 * (a + b)));
 }
 
 // Finds long edges with one thread: the field may belong to a caller who expects one call at a time.
@@ -112,17 +108,16 @@ std::vector<EdgeDivision::LongEdge> EdgeDivision::long_edges(double longest) con
         if (!tet.alive) return;
         for (const auto& [k, l] : cell_shapes::corner_pairs) {
           const auto [a, b] = sorted(tet.corners[k], tet.corners[l]);
-          if (const double relative = ratio(a, b); all || relative > longest)
-            found.push_back({relative, a, b});
+          if (const double here = length(a, b); all || here > longest) found.push_back({here, a, b});
         }
       });
   sort_uniquely(edges, [](const LongEdge& edge) { return std::pair(edge.a, edge.b); });
   if (all) {
     for (LongEdge& edge : edges)
-      if (edge.ratio <= longest) edge.ratio = ratio_by_field(edge);
-    std::erase_if(edges, [longest](const LongEdge& edge) { return edge.ratio <= longest; });
+      if (edge.length <= longest) edge.length = length_by_field(edge);
+    std::erase_if(edges, [longest](const LongEdge& edge) { return edge.length <= longest; });
   }
-  std::ranges::stable_sort(edges, std::greater<>(), &LongEdge::ratio);
+  std::ranges::stable_sort(edges, std::greater<>(), &LongEdge::length);
   return edges;
 }
 
@@ -165,9 +160,9 @@ std::vector<EdgeDivision::LongEdge> EdgeDivision::distant_edges() const {
   std::vector<LongEdge> edges =
       found_in_ranges<LongEdge>(candidates.size(), [&](std::size_t i, std::vector<LongEdge>& found) {
         const EdgeOfPatch& e = candidates[i];
-        if (!is_near(e)) found.push_back({ratio(e.a, e.b), e.a, e.b});
+        if (!is_near(e)) found.push_back({length(e.a, e.b), e.a, e.b});
       });
-  std::ranges::stable_sort(edges, std::greater<>(), &LongEdge::ratio);
+  std::ranges::stable_sort(edges, std::greater<>(), &LongEdge::length);
   return edges;
 }
 
@@ -183,11 +178,14 @@ bool EdgeDivision::divide(Index a, Index b) {
   operations_.divide_edge(a, b, facing_ ? share_facing(a, b, ring) : 0.5,
                           std::max(0.0, least_quality_share * worst), change);
   if (change.is_none() || !edited_.stays_oriented(change)) return false;
-  const double size =
-      std::min(0.5 * (sizes_[a] + sizes_[b]), size_at(change.feature, complex()[at].region, change.place));
+  add_vertex(a, b, complex()[at].region, change);
   edited_.apply(std::move(change));
-  sizes_.push_back(size);
   return true;
+}
+
+// Adds the target of the vertex that the change will insert into the edge ab.
+void EdgeDivision::add_vertex(Index a, Index b, Index region, const Change& change) {
+  metric_.add(std::min(metric_.target(a, b), size_at(change.feature, region, change.place)));
 }
 
 std::size_t EdgeDivision::divide_crossing(const Execution& execution) {
@@ -237,9 +235,7 @@ bool EdgeDivision::try_to_divide(const std::vector<Division>& divisions) {
     Change change;
     operations_.divide_edge(a, b, share, 0, change);
     if (change.is_none() || !edited_.stays_oriented(change)) return false;
-    const Index region = complex()[change.replacement.old.front()].region;
-    sizes_.push_back(
-        std::min(0.5 * (sizes_[a] + sizes_[b]), size_at(change.feature, region, change.place)));
+    add_vertex(a, b, complex()[change.replacement.old.front()].region, change);
     apply(trial, std::move(change));
     return true;
   };
@@ -251,7 +247,7 @@ bool EdgeDivision::try_to_divide(const std::vector<Division>& divisions) {
     }
   }
   trial.undo();
-  sizes_.resize(mesh().points.size());
+  metric_.resize(mesh().points.size());
   return false;
 }
 

@@ -7,6 +7,7 @@
 #include "collarmesh/progress.h"
 #include "refine/sizing.h"
 #include "remesh/cell_bounds.h"
+#include "remesh/metric.h"
 #include "remesh/operations.h"
 
 namespace collarmesh::remeshing::adapting {
@@ -34,7 +35,7 @@ class EdgeDivision {
 
  private:
   struct LongEdge {
-    double ratio;  // length relative to the target
+    double length;  // in the metric
     Index a, b;
   };
 
@@ -50,9 +51,10 @@ class EdgeDivision {
   void add_edges_of_face(const std::array<Index, 3>& face, Index patch,
                          std::vector<EdgeOfPatch>& found) const;
   bool is_near(const EdgeOfPatch& edge) const;
-  double ratio(Index a, Index b) const;
-  double ratio_by_field(const LongEdge& edge) const;
+  double length(Index a, Index b) const { return metric_.length(a, b, complex().edge(a, b)); }
+  double length_by_field(const LongEdge& edge) const;
   void add_missing_sizes();
+  void add_vertex(Index a, Index b, Index region, const Change& change);
   bool divide(Index a, Index b);
   double quality(Index tet) const { return rule_.quality(complex().corners(tet), complex()[tet].corners); }
   /// An edge, and the share of its length at which to divide it.
@@ -72,7 +74,7 @@ class EdgeDivision {
   EditableMesh& edited_;
   const MeshOptions& options_;
   Sizing sizing_;
-  std::vector<double> sizes_;  // by vertex
+  Metric metric_;
   bool facing_ = false;
   ThinRule rule_;
   Operations operations_;

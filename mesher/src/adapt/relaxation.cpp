@@ -28,17 +28,14 @@ constexpr std::size_t steps_between_reports = 1024;
 
 }  // namespace
 
-Relaxation::Relaxation(EditableMesh& edited, const MeshOptions& options, const std::vector<double>& sizes,
+Relaxation::Relaxation(EditableMesh& edited, const MeshOptions& options, std::vector<double> sizes,
                        const Execution& execution)
     : edited_(edited),
-      sizes_(sizes),
+      metric_(std::move(sizes)),
       bounds_{ThinShape(edited.plc, mesh(), options.bounds.thin_angle, options.bounds.reserve, edited.forced),
               CellBounds(edited.plc, mesh(), options.bounds)},
-      rule_(bounds_, options.bounds.radius_edge, sizes_),
-      operations_(edited, rule_),
-      execution_(execution),
-      changed_(mesh().points.size(), 0),
-      kept_(mesh().points.size(), 0) {
+      rule_(bounds_, options.bounds.radius_edge, metric_),
+      execution_(execution) {
   rule_.set_mode(coarsening::CoarseningRule::Mode::force);
   edited_.prepare();
 }
@@ -74,82 +71,90 @@ void Relaxation::improve_tets(double enough, Means later) {
     if (!improve_below(enough, pass == 0 ? Means::edges : later)) break;
 }
 
-double Relaxation::relative_length(Index a, Index b) const {
-  return distance(mesh().points[a], mesh().points[b]) / (0.5 * (sizes_[a] + sizes_[b]));
-}
-
 bool Relaxation::contract_shorter_than(double below) {
   std::vector<double> shortest(mesh().points.size(), INFINITY);
   for (Index t = 0; t < complex().size(); ++t) {
     if (!complex()[t].alive) continue;
     const auto& v = complex()[t].corners;
     for (const auto& [i, j] : cell_shapes::corner_pairs) {
-      const double length = relative_length(v[i], v[j]);
-      for (const Index end : {v[i], v[j]}) shortest[end] = std::min(shortest[end], length);
+      const double here = length(v[i], v[j]);
+      for (const Index end : {v[i], v[j]}) shortest[end] = std::min(shortest[end], here);
     }
   }
   std::vector<Near> candidates;
   for (Index v = 0; v < shortest.size(); ++v)
     if (shortest[v] < below && mesh().features[v].dimension > 0) candidates.push_back({shortest[v], v});
-  std::ranges::stable_sort(candidates, {}, &Near::relative_length);
+  std::ranges::stable_sort(candidates, {}, &Near::length);
   const std::size_t before = contractions_;
-  for (const Near& candidate : candidates) {
-    if (stopped()) return false;
-    const Index v = candidate.vertex;
-    if (!complex().in_use(v) || kept_[v] > changed_[v]) continue;
-    if (contract_at(v, below))
-      ++contractions_;
-    else
-      kept_[v] = ++now_;
-  }
-  return static_cast<double>(contractions_ - before) >
-         least_share_changed * static_cast<double>(shortest.size());
+  const bool ended = change_each(
+      candidates,
+      [&](Operations& operations, const Near& candidate, Proposal& found) {
+        propose_contraction(operations, candidate.vertex, below, found);
+      },
+      [&](const Near& candidate, Proposal& found) {
+        if (apply(found))
+          ++contractions_;
+        else
+          kept_[candidate.vertex] = renewals_.advance();
+      });
+  return ended && static_cast<double>(contractions_ - before) >
+                      least_share_changed * static_cast<double>(shortest.size());
 }
 
-bool Relaxation::contract_at(Index vertex, double below) {
-  complex().star(vertex, star_);
-  if (star_.size() > most_tets || !operations_.begin_contractions(vertex, star_)) return false;
-  find_neighbours(vertex, below);
-  const double least_quality = std::max(least, std::min(share_left * operations_.worst_at_vertex(), good));
-  unsigned tries = 0;
-  for (const Near& onto : near_) {
-    if (++tries > most_tries) return false;
-    const bool fits = std::ranges::all_of(neighbours_, [&](Index v) {
-      return v == onto.vertex ||
-             relative_length(onto.vertex, v) <= std::max(longest_, coarsening::CoarseningRule::longest_new);
-    });
+/// Handles items in their order, with all threads. Returns false if it was stopped.
+template <class Item, class Propose, class Use>
+bool Relaxation::change_each(const std::vector<Item>& items, const Propose& propose, const Use& use) {
+  return speculation_.for_each<Proposal>(
+      items, changes_, propose,
+      [&](const Item&, const Proposal& found, std::uint32_t begun) {
+        return !found.read.empty() && !changes_.any_since(begun, found.read) &&
+               edited_.curve_can_spare(found.change);
+      },
+      [&](const Item& item, Proposal& found) {
+        if (stopped()) return false;
+        use(item, found);
+        return true;
+      });
+}
+
+void Relaxation::propose_contraction(Operations& operations, Index vertex, double below,
+                                     Proposal& found) const {
+  found.change = {};
+  found.read = {vertex};
+  if (!complex().in_use(vertex) || kept_[vertex] > renewals_.at(vertex)) return;
+  std::vector<Index> star;
+  complex().star(vertex, star);
+  if (star.size() > most_tets || !operations.begin_contractions(vertex, star)) return;
+  const Neighbours neighbours = neighbours_of(vertex, star, below);
+  const double least_quality = std::max(least, std::min(share_left * operations.worst_at_vertex(), good));
+  const double longest = std::max(neighbours.longest, coarsening::CoarseningRule::longest_new);
+  for (const Near& onto : neighbours.near) {
+    found.read.push_back(onto.vertex);
+    const bool fits = std::ranges::all_of(
+        neighbours.all, [&](Index v) { return v == onto.vertex || length(onto.vertex, v) <= longest; });
     if (!fits) continue;
-    Change change;
-    operations_.contract_onto(onto.vertex, least_quality, 0, change);
-    if (change.is_none() || !edited_.stays_oriented(change) || !edited_.curve_can_spare(change)) continue;
-    apply(std::move(change));
-    return true;
+    operations.contract_onto(onto.vertex, least_quality, 0, found.change);
+    if (!found.change.is_none() && edited_.stays_oriented(found.change)) return;
+    found.change = {};
   }
-  return false;
 }
 
-/// Finds the vertices joined to a vertex by an edge, the longest such edge, and the vertices that are near
-/// enough to collapse onto.
-void Relaxation::find_neighbours(Index vertex, double below) {
-  neighbours_.clear();
-  for (const Index t : star_)
+/// Returns the vertices joined to a vertex by an edge, and the first of those near enough to collapse onto.
+Relaxation::Neighbours Relaxation::neighbours_of(Index vertex, const std::vector<Index>& star,
+                                                 double below) const {
+  Neighbours found;
+  for (const Index t : star)
     for (const Index v : complex()[t].corners)
-      if (v != vertex) neighbours_.push_back(v);
-  sort_uniquely(neighbours_);
-  near_.clear();
-  longest_ = 0;
-  for (const Index v : neighbours_) {
-    const double length = relative_length(vertex, v);
-    longest_ = std::max(longest_, length);
-    if (length < below && may_share_feature(vertex, v)) near_.push_back({length, v});
+      if (v != vertex) found.all.push_back(v);
+  sort_uniquely(found.all);
+  for (const Index v : found.all) {
+    const double here = length(vertex, v);
+    found.longest = std::max(found.longest, here);
+    if (here < below && edited_.may_share_feature(vertex, v)) found.near.push_back({here, v});
   }
-  std::ranges::stable_sort(near_, {}, &Near::relative_length);
-}
-
-bool Relaxation::may_share_feature(Index vertex, Index onto) const {
-  const auto &f = mesh().features[vertex], &g = mesh().features[onto];
-  return f.dimension == 3 || g.dimension < f.dimension ||
-         (g.dimension == f.dimension && g.feature == f.feature);
+  std::ranges::stable_sort(found.near, {}, &Near::length);
+  if (found.near.size() > most_tries) found.near.resize(most_tries);
+  return found;
 }
 
 bool Relaxation::improve_below(double enough, Means means) {
@@ -163,59 +168,66 @@ bool Relaxation::improve_below(double enough, Means means) {
       if (const double q = quality(t); q < enough) poor.push_back({q, t});
   std::ranges::stable_sort(poor, {}, &Poor::quality);
   const std::size_t before = others_;
-  for (const Poor& item : poor) {
-    if (stopped()) return false;
-    if (!complex()[item.tet].alive || quality(item.tet) != item.quality) continue;
-    Change change = improvement_of(item.tet, enough, means);
-    if (change.is_none() || !edited_.stays_oriented(change)) {
-      auto& tried = not_better_[static_cast<unsigned>(means)];
-      if (tried.size() < complex().size()) tried.resize(complex().size(), 0);
-      tried[item.tet] = ++now_;
-      continue;
-    }
-    if (change.kind == Change::Kind::contraction && !edited_.curve_can_spare(change)) continue;
-    apply(std::move(change));
-    ++others_;
-  }
-  return static_cast<double>(others_ - before) > least_share_changed * static_cast<double>(complex().size());
+  const bool ended = change_each(
+      poor,
+      [&](Operations& operations, const Poor& item, Proposal& found) {
+        found.change = {};
+        found.read.clear();
+        if (complex()[item.tet].alive && quality(item.tet) == item.quality)
+          propose_improvement(operations, item.tet, enough, means, found);
+      },
+      [&](const Poor& item, Proposal& found) {
+        if (apply(found)) {
+          ++others_;
+        } else if (!found.read.empty()) {
+          auto& tried = not_better_[static_cast<unsigned>(means)];
+          tried.resize(std::max<std::size_t>(tried.size(), complex().size()), 0);
+          tried[item.tet] = renewals_.advance();
+        }
+      });
+  return ended &&
+         static_cast<double>(others_ - before) > least_share_changed * static_cast<double>(complex().size());
 }
 
-Change Relaxation::improvement_of(Index tet, double enough, Means means) {
+void Relaxation::propose_improvement(Operations& operations, Index tet, double enough, Means means,
+                                     Proposal& found) const {
   const auto corners = complex()[tet].corners;
-  Change change;
-  const auto found = [&] { return !change.is_none(); };
+  found.read.assign(corners.begin(), corners.end());
+  Change& change = found.change;
   for (const auto& [i, j] : longest_first(complex().corners(tet), distance)) {
-    operations_.remove_edge(tet, i, j, change);
-    if (found() && change.quality >= enough) return change;
+    operations.remove_edge(tet, i, j, change);
+    if (!change.is_none() && change.quality >= enough) break;
   }
-  if (means == Means::edges) return change;
   for (const Index v : corners)
-    if (!found()) operations_.move_vertex(v, change);
+    if (means != Means::edges && change.is_none()) operations.move_vertex(v, change);
   for (const Index v : corners)
-    if (!found()) operations_.move_to_face(v, change);
-  if (means == Means::moves) return change;
+    if (means != Means::edges && change.is_none()) operations.move_to_face(v, change);
+  // A collapse replaces `change.read`.
+  for (const Index t : change.read)
+    found.read.insert(found.read.end(), complex()[t].corners.begin(), complex()[t].corners.end());
   for (const Index v : corners)
     for (const Index w : corners)
-      if (v != w && !found()) operations_.contract_edge(v, w, change);
-  return change;
+      if (means == Means::vertices && v != w && change.is_none()) operations.contract_edge(v, w, change);
+  if (!change.is_none() && !edited_.stays_oriented(change)) change = {};
 }
 
-void Relaxation::apply(Change change) {
-  ++now_;
-  for (const Index t : edited_.apply(std::move(change)))
-    for (const Index v : complex()[t].corners) changed_[v] = now_;
-}
-
-bool Relaxation::has_changed_since(Index tet, std::uint32_t when) const {
-  const auto& v = complex()[tet].corners;
-  return std::ranges::any_of(v, [&](Index w) { return changed_[w] >= when; });
+/// Makes the proposed change. Returns false if there is none.
+bool Relaxation::apply(Proposal& found) {
+  if (found.change.is_none()) return false;
+  changes_.advance(), renewals_.advance();
+  for (const Index t : found.change.replacement.old)
+    for (const Index v : complex()[t].corners) changes_.note(v);
+  for (const Index t : edited_.apply(std::move(found.change)))
+    for (const Index v : complex()[t].corners) changes_.note(v), renewals_.note(v);
+  return true;
 }
 
 /// Returns whether improving a tet with these or more means has failed since its corners last changed.
 bool Relaxation::was_tried(Index tet, Means means) const {
   for (auto kind = static_cast<unsigned>(means); kind < kinds_of_means; ++kind) {
     const auto& tried = not_better_[kind];
-    if (tet < tried.size() && tried[tet] > 0 && !has_changed_since(tet, tried[tet])) return true;
+    if (tet < tried.size() && tried[tet] > 0 && !renewals_.any_since(tried[tet], complex()[tet].corners))
+      return true;
   }
   return false;
 }

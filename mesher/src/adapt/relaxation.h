@@ -11,7 +11,9 @@
 #include "collarmesh/progress.h"
 #include "remesh/cell_bounds.h"
 #include "remesh/editable_mesh.h"
+#include "remesh/metric.h"
 #include "remesh/operations.h"
+#include "remesh/ordered_speculation.h"
 
 namespace collarmesh::remeshing::adapting {
 
@@ -22,7 +24,7 @@ namespace collarmesh::remeshing::adapting {
 class Relaxation {
  public:
   /// Keeps the mesh and the execution by reference; `sizes` are targets at the vertices.
-  Relaxation(EditableMesh& edited, const MeshOptions& options, const std::vector<double>& sizes,
+  Relaxation(EditableMesh& edited, const MeshOptions& options, std::vector<double> sizes,
              const Execution& execution);
 
   /// Collapses short edges and improves tets, for lengths that grow up to the target.
@@ -37,45 +39,54 @@ class Relaxation {
 
  private:
   struct Near {
-    double relative_length;
+    double length;  ///< in the metric
     Index vertex;
   };
   /// The means of improvement in addition to removing edges.
   enum class Means { edges, moves, vertices };
   static constexpr unsigned kinds_of_means = 3;
+  struct Proposal {
+    Change change;  ///< may be none
+    /// Vertices: the change depends on the tets there. Empty: the tet had changed or was gone. Its index may
+    /// be in use again, so a change is proposed again.
+    std::vector<Index> read;
+  };
+  struct Neighbours {
+    std::vector<Index> all;
+    std::vector<Near> near;  ///< those onto which the vertex may be collapsed, by length
+    double longest = 0;      ///< edge
+  };
 
   const TetComplex& complex() const { return edited_.complex; }
   const TetMesh& mesh() const { return edited_.complex.mesh(); }
   double quality(Index tet) const { return rule_.quality(complex().corners(tet), complex()[tet].corners); }
-  double relative_length(Index a, Index b) const;
+  double length(Index a, Index b) const { return metric_.length(a, b, complex().edge(a, b)); }
   void contract_again(double below);
   bool contract_shorter_than(double below);
-  bool contract_at(Index vertex, double below);
-  void find_neighbours(Index vertex, double below);
-  bool may_share_feature(Index vertex, Index onto) const;
+  template <class Item, class Propose, class Use>
+  bool change_each(const std::vector<Item>& items, const Propose& propose, const Use& use);
+  void propose_contraction(Operations& operations, Index vertex, double below, Proposal& found) const;
+  Neighbours neighbours_of(Index vertex, const std::vector<Index>& star, double below) const;
   void improve_tets(double enough, Means later);
   bool improve_below(double enough, Means means);
-  Change improvement_of(Index tet, double enough, Means means);
-  void apply(Change change);
-  bool has_changed_since(Index tet, std::uint32_t when) const;
+  void propose_improvement(Operations& operations, Index tet, double enough, Means means,
+                           Proposal& found) const;
+  bool apply(Proposal& found);
   bool was_tried(Index tet, Means means) const;
   bool stopped();
 
   EditableMesh& edited_;
-  std::vector<double> sizes_;  // by vertex
+  Metric metric_;
   TetBounds bounds_;
   coarsening::CoarseningRule rule_;
-  Operations operations_;
   const Execution& execution_;
-  std::vector<Index> star_, neighbours_;
-  std::vector<Near> near_;  // neighbours of the last vertex, by length
-  double longest_ = 0;      // longest edge there, relative to the target
   std::size_t contractions_ = 0, others_ = 0, steps_ = 0;
-  // Times at which tets at a vertex last changed, and at which an attempt last failed. An attempt is repeated
-  // only after a change.
-  std::uint32_t now_ = 1;
-  std::vector<std::uint32_t> changed_, kept_;                          // by vertex
-  std::array<std::vector<std::uint32_t>, kinds_of_means> not_better_;  // by tet
+  ChangeTimes changes_{mesh().points.size()};   // of all tets at a vertex
+  ChangeTimes renewals_{mesh().points.size()};  // of tets at a vertex that were made or moved
+  OrderedSpeculation<Operations> speculation_{[this] { return Operations(edited_, rule_); }};
+  // Times at which an attempt last failed. It is repeated only after a renewal.
+  std::vector<std::uint32_t> kept_ = std::vector<std::uint32_t>(mesh().points.size());  // by vertex
+  std::array<std::vector<std::uint32_t>, kinds_of_means> not_better_;                   // by tet
 };
 
 }  // namespace collarmesh::remeshing::adapting

@@ -199,7 +199,7 @@ class Remeshing {
       coarsen_and_improve();
       if (static_cast<double>(divided) < least_share * static_cast<double>(mesh().points.size())) break;
     }
-    smooth(mesh(), made_.plc, kept_, target_sizes(), control_.execution());
+    smooth(mesh(), made_.plc, kept_, Metric(target_sizes()), control_.execution());
     control_.stop_if_asked(control_.execution().cancelled());
     mark_thin_tets(mesh(), options_.mesh.bounds.radius_edge);
   }

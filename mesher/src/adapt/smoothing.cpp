@@ -37,13 +37,13 @@ double mean_ratio(const Corners& p) {
 
 class Smoothing {
  public:
-  Smoothing(TetMesh& mesh, const Plc& plc, const Bounds& bounds, std::span<const double> sizes)
+  Smoothing(TetMesh& mesh, const Plc& plc, const Bounds& bounds, const Metric& metric)
       : mesh_(mesh),
-        sizes_(sizes),
+        metric_(metric),
         bounds_{ThinShape(plc, mesh, bounds.thin_angle, bounds.reserve,
                           forced_edges_of(plc, mesh, bounds.lower_where_forced)),
                 CellBounds(plc, mesh, bounds)},
-        rule_(bounds_, bounds.radius_edge, sizes_),
+        rule_(bounds_, bounds.radius_edge, metric_),
         star_(mesh.tets, mesh.points.size()) {
     find_independent_sets();
   }
@@ -97,16 +97,14 @@ class Smoothing {
     return false;
   }
 
-  /// Returns the mean of the centres of the tets at a vertex, by their volumes in units of the sizes there,
+  /// Returns the mean of the centres of the tets at a vertex, by their volumes in the metric,
   /// and the sum of their mean ratios.
   Point centre_of_star(Index vertex, double& sum) const {
     Vector weighted{};
     double weights = 0;
     for (const Index t : star_[vertex]) {
       const Corners p = corners(t);
-      double size = 0;
-      for (const Index v : mesh_.tets[t]) size += sizes_[v];
-      const double weight = six_volume(p[0], p[1], p[2], p[3]) / (size * size * size);
+      const double weight = metric_.volume(mesh_.tets[t], six_volume(p[0], p[1], p[2], p[3]));
       for (const Point& corner : p) weighted = weighted + 0.25 * weight * (corner - p[0]);
       weighted = weighted + weight * (p[0] - mesh_.points[vertex]);
       weights += weight;
@@ -125,8 +123,7 @@ class Smoothing {
       const Point before = p[own];
       p[own] = place;
       for (unsigned i = 0; i < 4; ++i)
-        if (i != own && !rule_.allows_edge(vertex, mesh_.tets[t][i], squared_distance(place, p[i]),
-                                           squared_distance(before, p[i])))
+        if (i != own && !rule_.allows_edge(vertex, mesh_.tets[t][i], p[i] - place, p[i] - before))
           return false;
       const double ratio = mean_ratio(p);
       if (!(ratio > 0)) return false;
@@ -142,7 +139,7 @@ class Smoothing {
   }
 
   TetMesh& mesh_;
-  std::span<const double> sizes_;
+  const Metric& metric_;
   TetBounds bounds_;
   coarsening::CoarseningRule rule_;
   CellsAtVertices star_;
@@ -151,9 +148,9 @@ class Smoothing {
 
 }  // namespace
 
-std::size_t smooth(TetMesh& mesh, const Plc& plc, const Bounds& bounds, std::span<const double> sizes,
+std::size_t smooth(TetMesh& mesh, const Plc& plc, const Bounds& bounds, const Metric& metric,
                    const Execution& execution) {
-  return Smoothing(mesh, plc, bounds, sizes).run(execution);
+  return Smoothing(mesh, plc, bounds, metric).run(execution);
 }
 
 }  // namespace collarmesh::remeshing::adapting

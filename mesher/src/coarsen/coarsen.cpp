@@ -1,8 +1,5 @@
 #include "collarmesh/coarsen.h"
 
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <chrono>
 #include <climits>
@@ -20,6 +17,7 @@
 #include "common/sort_uniquely.h"
 #include "common/tet_sides.h"
 #include "common/thread_limit.h"
+#include "remesh/ordered_speculation.h"
 
 namespace collarmesh {
 
@@ -46,9 +44,6 @@ constexpr std::size_t steps_between_reports = 4096;
 // If more than one change in this many tets was logged, looking at all tets costs less than finding the tets
 // at the changed vertices.
 constexpr std::size_t tets_per_logged_change = 24;
-// The number of items for which changes are proposed at once is limited in two ways: absolutely, and to one
-// in `items_per_proposal` items, so that proposals rarely meet; but each thread has several.
-constexpr std::size_t most_proposals = 256, items_per_proposal = 256, proposals_per_thread = 4;
 // Items of one rank are cut into rows: one for each `items_per_row` items of all ranks, at most `most_rows`.
 constexpr std::size_t most_rows = 256, items_per_row = 16;
 constexpr double ranks_of_lengths = 64;  // ranks for each unit of squared relative length
@@ -57,12 +52,6 @@ constexpr double square(double x) { return x * x; }
 
 // Returns the rank of a quality: two ranks for each factor of two.
 int rank_of_quality(double quality) { return quality > 0 ? std::ilogb(quality * quality) : INT_MIN; }
-
-std::size_t proposals_at_once(std::size_t items) {
-  const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
-  if (threads == 1) return 1;
-  return std::min(most_proposals, std::max(items / items_per_proposal, proposals_per_thread * threads));
-}
 
 // Sorts items by rank. Items of one rank, given in the order of memory, are cut into consecutive rows; then
 // come the first of each row, the second of each row, and so on. So the proposals of one batch are far apart,
@@ -86,20 +75,18 @@ std::vector<Item> in_order(std::vector<Item> items) {
   return ordered;
 }
 
-/// Collapses edges and improves tets, by rank, the most promising first. Several threads propose changes for
-/// the next items at once; the changes are made one after the other, and proposed again if anything that they
-/// depend on has changed meanwhile. So the result is the one that a single thread makes.
+/// Collapses edges and improves tets, by rank, the most promising first. The result is the one that a single
+/// thread makes.
 class Coarsening {
  public:
   Coarsening(EditableMesh& edited, const MeshOptions& made_with, const Execution& execution)
       : edited_(edited),
         radius_edge_(made_with.bounds.radius_edge),
-        sizes_(target_sizes(mesh(), edited.plc, sizes_asked_for(made_with))),
+        metric_(target_sizes(mesh(), edited.plc, sizes_asked_for(made_with))),
         bounds_(edited.tet_bounds(made_with.bounds)),
-        rule_(bounds_, made_with.bounds.radius_edge, sizes_),
-        changes_{0, std::vector<std::uint32_t>(mesh().points.size(), 0)},
-        proposer_(edited_, bounds_, radius_edge_, sizes_, changes_),
-        proposers_([this] { return Proposer(edited_, bounds_, radius_edge_, sizes_, changes_); }),
+        rule_(bounds_, made_with.bounds.radius_edge, metric_),
+        changes_(mesh().points.size()),
+        speculation_([this] { return Proposer(edited_, bounds_, radius_edge_, metric_, changes_); }),
         execution_(execution) {}
 
   // Returns the options without `edges_per_hole`: coarsening keeps holes round without it.
@@ -131,32 +118,6 @@ class Coarsening {
   const TetMesh& mesh() const { return edited_.complex.mesh(); }
   double quality(Index tet) const { return rule_.quality(complex().corners(tet), complex()[tet].corners); }
 
-  double squared_relative_length(Index a, Index b) const {
-    return rule_.squared_relative_length(squared_distance(mesh().points[a], mesh().points[b]), a, b);
-  }
-
-  // Makes a proposal for each item, and applies it. Returns false when stopped.
-  template <class Proposal, class Item, class Make, class UpToDate, class Use>
-  bool for_each(const std::vector<Item>& items, const Make& make, const UpToDate& up_to_date,
-                const Use& use) {
-    const std::size_t at_once = proposals_at_once(items.size());
-    const bool alone = at_once == 1;
-    std::vector<Proposal> proposals(at_once);
-    for (std::size_t first = 0; first < items.size(); first += at_once) {
-      const std::size_t count = std::min(at_once, items.size() - first);
-      const std::uint32_t begun = ++changes_.now;
-      if (!alone)
-        parallel_for(count, [&](std::size_t i) { make(proposers_.local(), items[first + i], proposals[i]); });
-      for (std::size_t i = 0; i < count; ++i) {
-        if (stopped(first + i + 1)) return false;
-        if (alone || !up_to_date(items[first + i], proposals[i], begun))
-          make(proposer_, items[first + i], proposals[i]);
-        use(items[first + i], proposals[i]);
-      }
-    }
-    return true;
-  }
-
   struct Candidate {
     int rank;  // rank of the length of its shortest edge
     Index vertex;
@@ -164,7 +125,7 @@ class Coarsening {
   };
 
   struct ShortEdge {
-    double squared_relative_length;
+    double squared_length;  // in the metric
     Index end;
   };
 
@@ -178,7 +139,7 @@ class Coarsening {
     std::vector<Candidate> candidates;
     for (const auto& [shortest, v] : shortest_of_each(ends)) {
       const bool repairs = repair && shortest < square(repaired_below);
-      if (changes_.at_vertex[v] >= (repairs ? last_repairs_ : last_pass_))
+      if (changes_.at(v) >= (repairs ? last_repairs_ : last_pass_))
         candidates.push_back({static_cast<int>(ranks_of_lengths * shortest), v, repairs});
     }
     return in_order(std::move(candidates));
@@ -190,8 +151,8 @@ class Coarsening {
     const std::size_t points = mesh().points.size();
     std::vector<ShortEdge> found;
     if (edges.size() < points / points_per_edge) {
-      std::ranges::sort(
-          edges, {}, [](const ShortEdge& edge) { return std::pair(edge.end, edge.squared_relative_length); });
+      std::ranges::sort(edges, {},
+                        [](const ShortEdge& edge) { return std::pair(edge.end, edge.squared_length); });
       for (const ShortEdge& edge : edges)
         if (found.empty() || found.back().end != edge.end) found.push_back(edge);
       return found;
@@ -203,26 +164,21 @@ class Coarsening {
     return found;
   }
 
-  // Finds the short edges of a tet at which a vertex is tried. Most edges are found long enough without a
-  // division.
+  // Finds the short edges of a tet at which a vertex is tried.
   void find_short_edges(Index tet, std::vector<ShortEdge>& ends) const {
-    constexpr double surely = 1 + 1e-9;
+    constexpr double surely_long = (1 + 1e-9) * contracted_below;
     const auto& v = complex()[tet].corners;
     const auto p = complex().corners(tet);
-    const std::array<double, 4> size{sizes_[v[0]], sizes_[v[1]], sizes_[v[2]], sizes_[v[3]]};
     for (const auto& [i, j] : cell_shapes::corner_pairs) {
-      const double twice_target = size[i] + size[j];
-      if (squared_distance(p[i], p[j]) >
-          0.25 * surely * square(contracted_below) * twice_target * twice_target)
-        continue;
-      const double length = squared_relative_length(v[i], v[j]);
+      if (metric_.exceeds(surely_long, v[i], v[j], p[j] - p[i])) continue;
+      const double length = metric_.squared_length(v[i], v[j], p[j] - p[i]);
       if (!is_short(length)) continue;
       for (const Index end : {v[i], v[j]})
         if (is_asked(end, length)) ends.push_back({length, end});
     }
   }
 
-  // Returns whether a vertex with an edge of this squared relative length is tried.
+  // Returns whether a vertex with an edge of this squared length is tried.
   bool is_asked(Index vertex, double length) const {
     const unsigned dimension = mesh().features[vertex].dimension;
     return dimension != 0 && (dimension < 3 || length < square(asked_inside_below));
@@ -231,24 +187,26 @@ class Coarsening {
   // Tries every vertex once. Returns whether another pass is worthwhile.
   bool contract_all(bool repair) {
     const std::vector<Candidate> candidates = find_candidates(repair);
-    last_pass_ = ++changes_.now;
+    last_pass_ = changes_.advance();
     if (repair) last_repairs_ = last_pass_;
     const std::size_t before = tets_;
-    return for_each<VertexProposal>(
-               candidates,
+    steps_ = 0;
+    return speculation_.for_each<VertexProposal>(
+               candidates, changes_,
                [&](Proposer& proposer, const Candidate& candidate, VertexProposal& found) {
                  propose(proposer, candidate, found);
                },
                [&](const Candidate& candidate, const VertexProposal& found, std::uint32_t begun) {
-                 return changes_.at_vertex[candidate.vertex] < begun &&
-                        std::ranges::all_of(found.read,
-                                            [&](Index onto) { return changes_.at_vertex[onto] < begun; }) &&
-                        may_still_be_made(found.change) &&
-                        std::ranges::all_of(found.to_repair,
-                                            [&](const Change& change) { return may_still_be_made(change); });
+                 return changes_.at(candidate.vertex) < begun && !changes_.any_since(begun, found.read) &&
+                        edited_.curve_can_spare(found.change) &&
+                        std::ranges::all_of(found.to_repair, [&](const Change& change) {
+                          return edited_.curve_can_spare(change);
+                        });
                },
                [&](const Candidate& candidate, VertexProposal& found) {
+                 if (stopped()) return false;
                  contract(candidate.vertex, found);
+                 return true;
                }) &&
            worthwhile(before);
   }
@@ -271,16 +229,12 @@ class Coarsening {
     return static_cast<double>(tets_) < (1 - least_share) * static_cast<double>(before);
   }
 
-  bool stopped(std::size_t step) {
+  bool stopped() {
     if (execution_.cancelled()) report_.cancelled = true;
-    if (step % steps_between_reports == 0 && execution_.progress &&
+    if (++steps_ % steps_between_reports == 0 && execution_.progress &&
         !execution_.progress({"coarsen", 0, 0, tets_}))
       report_.cancelled = true;
     return report_.cancelled;
-  }
-
-  bool may_still_be_made(const Change& contraction) const {
-    return contraction.is_none() || edited_.curve_can_spare(contraction);
   }
 
   void contract(Index vertex, VertexProposal& found) {
@@ -300,7 +254,7 @@ class Coarsening {
     // pinched vertex are found.
     if (mesh().features[vertex].dimension > 1 &&
         std::ranges::none_of(looked_at_, [&](Index v) { return complex().pinched(v); }))
-      failed_.note(vertex, looked_at_, changes_.now);
+      failed_.note(vertex, looked_at_, changes_.now());
   }
 
   bool contract_and_repair(Change change, double floor) {
@@ -321,7 +275,7 @@ class Coarsening {
       }
       if (step + count > most_repairs + 1) break;
       examined_.insert(examined_.end(), complex()[worst].corners.begin(), complex()[worst].corners.end());
-      change = proposer_.improvement_of(worst, Mode::trial);
+      change = speculation_.own().improvement_of(worst, Mode::trial);
     }
     look_at_touched();
     trial.undo();
@@ -400,10 +354,11 @@ class Coarsening {
     const auto by_place = [](const Poor& a, const Poor& b) { return a.tet < b.tet; };
     if (!std::ranges::is_sorted(all, by_place)) std::ranges::sort(all, by_place);
     const std::vector<Poor> poor = in_order(std::move(all));
-    last_sweep_ = ++changes_.now;
+    last_sweep_ = changes_.advance();
     bool any = false;
-    for_each<Change>(
-        poor,
+    steps_ = 0;
+    speculation_.for_each<Change>(
+        poor, changes_,
         [&](Proposer& proposer, const Poor& item, Change& change) {
           const Index t = item.tet;
           change = {};
@@ -415,11 +370,13 @@ class Coarsening {
           return untouched(item.tet) && std::ranges::all_of(change.read, untouched);
         },
         [&](const Poor&, Change& change) {
-          if (change.is_none()) return;
+          if (stopped()) return false;
+          if (change.is_none()) return true;
           forget_touched();
           apply(std::move(change));
           settle();
           any = true;
+          return true;
         });
     return any && !report_.cancelled;
   }
@@ -433,8 +390,7 @@ class Coarsening {
   }
 
   bool changed_since(Index tet, std::uint32_t when) const {
-    const auto& v = complex()[tet].corners;
-    return std::ranges::any_of(v, [&](Index w) { return changes_.at_vertex[w] >= when; });
+    return changes_.any_since(when, complex()[tet].corners);
   }
 
   // Collects the items that `look(tet, found)` adds to `found`. Calls it once, in any order, for each tet
@@ -466,7 +422,7 @@ class Coarsening {
   Index first_changed(Index tet, std::uint32_t since) const {
     Index first = none;
     for (const Index v : complex()[tet].corners)
-      if (changes_.at_vertex[v] >= since) first = std::min(first, v);
+      if (changes_.at(v) >= since) first = std::min(first, v);
     return first;
   }
 
@@ -510,10 +466,10 @@ class Coarsening {
 
   // Keeps the changes of a trial.
   void settle() {
-    ++changes_.now;
+    changes_.advance();
     if (log_.size() > complex().size() / tets_per_logged_change) {
       log_.clear();
-      log_begins_ = changes_.now;
+      log_begins_ = changes_.now();
     }
     for (const Index v : touched_vertices_) note_change(v);
     known_qualities_.resize(complex().size(), NAN);
@@ -525,9 +481,9 @@ class Coarsening {
   }
 
   void note_change(Index vertex) {
-    if (changes_.at_vertex[vertex] == changes_.now) return;
-    changes_.at_vertex[vertex] = changes_.now;
-    log_.push_back({changes_.now, vertex});
+    if (changes_.at(vertex) == changes_.now()) return;
+    changes_.note(vertex);
+    log_.push_back({changes_.now(), vertex});
   }
 
   // Drops the balls, because coarsening has changed the cells of collars.
@@ -538,14 +494,13 @@ class Coarsening {
 
   EditableMesh& edited_;
   double radius_edge_;
-  std::vector<double> sizes_;
+  Metric metric_;
   TetBounds bounds_;
   CoarseningRule rule_;
-  Changes changes_;
-  Proposer proposer_;  // for the thread that applies changes
-  tbb::enumerable_thread_specific<Proposer> proposers_;
+  ChangeTimes changes_;
+  OrderedSpeculation<Proposer> speculation_;
   const Execution& execution_;
-  std::size_t tets_ = 0;
+  std::size_t tets_ = 0, steps_ = 0;
   std::uint32_t last_pass_ = 0, last_repairs_ = 0;  // when the last pass of any kind, and the last one with
                                                     // repairs, began
   std::uint32_t last_sweep_ = 0;                    // when the last sweep of improvement began

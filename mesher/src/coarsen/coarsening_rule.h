@@ -1,8 +1,8 @@
 #pragma once
 
 #include <algorithm>
-#include <span>
 
+#include "remesh/metric.h"
 #include "remesh/shape_rule.h"
 
 namespace collarmesh::remeshing::coarsening {
@@ -23,9 +23,9 @@ class CoarseningRule final : public AngleRule {
   /// longer.
   static constexpr double longest_new = 1.5;
 
-  /// Keeps references to the bounds and to `sizes` (by vertex).
-  CoarseningRule(const TetBounds& bounds, double radius_edge, std::span<const double> sizes)
-      : thin_(bounds.thin), cells_(bounds.cells), bound_(radius_edge), sizes_(sizes) {}
+  /// Keeps references to the bounds and to the metric.
+  CoarseningRule(const TetBounds& bounds, double radius_edge, const Metric& metric)
+      : thin_(bounds.thin), cells_(bounds.cells), bound_(radius_edge), metric_(metric) {}
 
   double quality_of(const ExtremeCosines& cosines, const Corners& p,
                     const std::array<Index, 4>& corners) const override {
@@ -44,9 +44,8 @@ class CoarseningRule final : public AngleRule {
   bool allows(const Corners& p, const std::array<Index, 4>& corners, double quality) const override {
     return mode_ != Mode::final || keeps_guarantee(p, corners, quality);
   }
-  bool allows_edge(Index a, Index b, double squared_length, double squared_before) const override {
-    return squared_length <= squared_before ||
-           squared_length <= longest_new * longest_new * squared_target(a, b);
+  bool allows_edge(Index a, Index b, const Vector& edge, const Vector& before) const override {
+    return squared_norm(edge) <= squared_norm(before) || !metric_.exceeds(longest_new, a, b, edge);
   }
   // A move must gain this much, because each move makes coarsening try the collapses around it again.
   double least_gain() const override { return 0.02; }
@@ -58,23 +57,14 @@ class CoarseningRule final : public AngleRule {
   }
 
   void set_mode(Mode mode) { mode_ = mode; }
-  /// Returns the squared length of an edge relative to the target there.
-  double squared_relative_length(double squared_length, Index a, Index b) const {
-    return squared_length / squared_target(a, b);
-  }
 
  private:
   static constexpr double beyond = 1e-6;
 
-  double squared_target(Index a, Index b) const {
-    const double target = 0.5 * (sizes_[a] + sizes_[b]);
-    return target * target;
-  }
-
   const ThinShape& thin_;
   const CellBounds& cells_;
   RadiusEdgeBound bound_;
-  std::span<const double> sizes_;
+  const Metric& metric_;
   Mode mode_ = Mode::final;
 };
 

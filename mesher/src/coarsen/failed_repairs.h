@@ -1,14 +1,13 @@
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
-#include "coarsen/proposals.h"
 #include "common/sort_uniquely.h"
+#include "remesh/change_times.h"
 
 namespace collarmesh::remeshing::coarsening {
 
@@ -24,13 +23,12 @@ class FailedRepairs {
 
   /// Returns the vertices whose tets the trials examined if nothing has changed there since; otherwise
   /// nothing.
-  std::span<const Index> still_fails(Index vertex, const Changes& changes) const {
+  std::span<const Index> still_fails(Index vertex, const ChangeTimes& changes) const {
     const auto found = failures_.find(vertex);
     if (found == failures_.end()) return {};
     const Failure& failure = found->second;
-    const bool unchanged =
-        std::ranges::all_of(failure.looked_at, [&](Index v) { return changes.at_vertex[v] <= failure.when; });
-    return unchanged ? std::span<const Index>(failure.looked_at) : std::span<const Index>();
+    if (changes.any_after(failure.when, failure.looked_at)) return {};
+    return failure.looked_at;
   }
 
  private:

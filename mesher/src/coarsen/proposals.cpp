@@ -21,8 +21,8 @@ void Proposer::contractions(Index vertex, bool repairs, VertexProposal& found) {
   find_neighbours(vertex);
   targets_.clear();
   for (const Neighbour& n : neighbours_) {
-    if (!is_short(n.squared_relative_length)) break;
-    if (may_share_feature(vertex, n.vertex) && lengths_fit(n.vertex)) targets_.push_back(n.vertex);
+    if (!is_short(n.squared_length)) break;
+    if (edited_.may_share_feature(vertex, n.vertex) && lengths_fit(n.vertex)) targets_.push_back(n.vertex);
   }
   if (targets_.empty()) return;
   rule_.set_mode(Mode::final);
@@ -56,17 +56,9 @@ Change Proposer::improvement_of(Index tet, Mode mode) {
     // Whether a move helps depends only on the tets at the vertex; each of them would propose it again.
     if (mode == Mode::final && stays(corners[i])) continue;
     operations_.move_vertex(corners[i], change);
-    if (mode == Mode::final && change.is_none()) stayed_[corners[i]] = changes_.now;
+    if (mode == Mode::final && change.is_none()) stayed_[corners[i]] = changes_.now();
   }
   return change;
-}
-
-// Returns whether an edge to `onto` could lie in the vertex's curve or patch.
-bool Proposer::may_share_feature(Index vertex, Index onto) const {
-  const auto& [dimension, feature] = complex().mesh().features[vertex];
-  const auto& other = complex().mesh().features[onto];
-  return dimension == 3 || other.dimension < dimension ||
-         (other.dimension == dimension && other.feature == feature);
 }
 
 bool Proposer::is_new(Index vertex) {
@@ -84,12 +76,12 @@ void Proposer::find_neighbours(Index vertex) {
   for (const Index t : star_)
     for (const Index w : complex()[t].corners) {
       if (!is_new(w)) continue;
-      const double squared = squared_distance(points()[vertex], points()[w]);
-      squared_shortest_ = std::min(squared_shortest_, squared);
-      neighbours_.push_back({rule_.squared_relative_length(squared, vertex, w), squared, w});
+      const Vector edge = complex().edge(vertex, w);
+      squared_shortest_ = std::min(squared_shortest_, squared_norm(edge));
+      neighbours_.push_back({metric_.squared_length(vertex, w, edge), edge, w});
     }
   std::ranges::sort(neighbours_, {},
-                    [](const Neighbour& n) { return std::pair(n.squared_relative_length, n.vertex); });
+                    [](const Neighbour& n) { return std::pair(n.squared_length, n.vertex); });
 }
 
 // Returns whether the edges that a collapse makes have allowed lengths: none is longer than allowed, unless
@@ -98,8 +90,8 @@ void Proposer::find_neighbours(Index vertex) {
 bool Proposer::lengths_fit(Index onto) const {
   return std::all_of(neighbours_.rbegin(), neighbours_.rend(), [&](const Neighbour& n) {
     if (n.vertex == onto) return true;
-    const double after = squared_distance(points()[onto], points()[n.vertex]);
-    return (after >= squared_shortest_ && rule_.allows_edge(onto, n.vertex, after, n.squared_length)) ||
+    const Vector after = complex().edge(onto, n.vertex);
+    return (squared_norm(after) >= squared_shortest_ && rule_.allows_edge(onto, n.vertex, after, n.edge)) ||
            are_joined_here(onto, n.vertex);
   });
 }

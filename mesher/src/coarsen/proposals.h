@@ -1,10 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "coarsen/coarsening_rule.h"
+#include "remesh/change_times.h"
+#include "remesh/metric.h"
 #include "remesh/operations.h"
 
 namespace collarmesh::remeshing::coarsening {
@@ -20,23 +21,18 @@ struct VertexProposal {
   std::vector<Index> read;
 };
 
-/// The times at which vertices, or tets at them, were changed.
-struct Changes {
-  std::uint32_t now = 0;
-  std::vector<std::uint32_t> at_vertex;
-};
-
 /// Finds possible changes without making them. Each thread has its own.
 class Proposer {
  public:
   using Mode = CoarseningRule::Mode;
 
-  /// Keeps references to all but the number; `bounds` and `sizes` belong to the rule.
-  Proposer(const EditableMesh& edited, const TetBounds& bounds, double radius_edge,
-           std::span<const double> sizes, const Changes& changes)
+  /// Keeps references to all but the number.
+  Proposer(const EditableMesh& edited, const TetBounds& bounds, double radius_edge, const Metric& metric,
+           const ChangeTimes& changes)
       : edited_(edited),
         changes_(changes),
-        rule_(bounds, radius_edge, sizes),
+        metric_(metric),
+        rule_(bounds, radius_edge, metric),
         operations_(edited, rule_),
         stamps_(edited.complex.mesh().points.size(), 0),
         stayed_(stamps_) {}
@@ -51,27 +47,25 @@ class Proposer {
 
  private:
   struct Neighbour {
-    double squared_relative_length, squared_length;
+    double squared_length;  // in the metric
+    Vector edge;
     Index vertex;
   };
 
   const TetComplex& complex() const { return edited_.complex; }
-  const std::vector<Point>& points() const { return complex().mesh().points; }
   void find_neighbours(Index vertex);
-  bool may_share_feature(Index vertex, Index onto) const;
   bool lengths_fit(Index onto) const;
   bool are_joined_here(Index a, Index b) const;
   bool is_new(Index vertex);
-  bool stays(Index vertex) const {
-    return stayed_[vertex] != 0 && stayed_[vertex] >= changes_.at_vertex[vertex];
-  }
+  bool stays(Index vertex) const { return stayed_[vertex] != 0 && stayed_[vertex] >= changes_.at(vertex); }
 
   const EditableMesh& edited_;
-  const Changes& changes_;
+  const ChangeTimes& changes_;
+  const Metric& metric_;
   CoarseningRule rule_;
   Operations operations_;
   std::vector<Index> star_;            // tets at the current vertex
-  std::vector<Neighbour> neighbours_;  // neighbours of that vertex, the nearest by size first
+  std::vector<Neighbour> neighbours_;  // neighbours of that vertex, the nearest in the metric first
   std::vector<Index> targets_;         // neighbours onto which lengths allow a collapse
   double squared_shortest_ = 0;        // squared length of its shortest edge
   std::vector<std::uint32_t> stamps_;  // by vertex
@@ -85,8 +79,8 @@ constexpr double improved_below = 1.3;
 
 /// Edges below this times the target length are collapsed.
 constexpr double contracted_below = 0.8;
-constexpr bool is_short(double squared_relative_length) {
-  return squared_relative_length < contracted_below * contracted_below;
+constexpr bool is_short(double squared_length) {
+  return squared_length < contracted_below * contracted_below;
 }
 
 }  // namespace collarmesh::remeshing::coarsening

@@ -37,7 +37,8 @@ bool is_better(const std::vector<double>& now, const std::vector<double>& before
 }  // namespace
 
 bool Detours::exhausted() const {
-  return blunt_ >= most_blunt || trials_ >= std::min(most_trials_, first_trials + trials_per_detour * taken_);
+  return blunt_ >= most_blunt ||
+         trials_ >= std::min(most_trials_, first_trials + trials_per_detour * taken());
 }
 
 Change Detours::propose(Index tet) {
@@ -52,7 +53,7 @@ std::size_t Detours::take_all(std::vector<Index> tets, const std::function<bool(
     for (const Effort effort : {Effort::at_tet, Effort::beside, Effort::last_resort})
       if (!any && !ended_) any = take_round(tets, effort, stopped);
   }
-  return taken_;
+  return taken();
 }
 
 // Tries every tet once, worst first. Returns whether any detour was taken.
@@ -61,36 +62,34 @@ bool Detours::take_round(std::vector<Index>& tets, Effort effort, const std::fun
   std::erase_if(tets, is_good);
   sort_uniquely(tets, [this](Index t) { return std::pair(remedies_.poor_quality(t), t); });
   Asked& asked = asked_[static_cast<unsigned>(effort)];
-  const std::uint32_t before = taken_;
+  const std::uint32_t before = taken();
   const std::size_t count = tets.size();
   for (std::size_t i = 0; i < count; ++i) {
     const Index tet = tets[i];
     if (is_good(tet) || !is_new_to(tet, asked)) continue;
     asked.resize(std::max<std::size_t>(asked.size(), complex().size()), 0);
-    asked[tet] = taken_ + 1;
+    asked[tet] = changes_.now() + 1;
     if (!remedies_.may_change_vertices(tet)) continue;
     ended_ = exhausted() || stopped();
     if (ended_) break;
     if (help(tet, effort)) note_changes(tets);
   }
-  return taken_ > before;
+  return taken() > before;
 }
 
 // Returns whether anything changed at a corner since the tet was tried.
 bool Detours::is_new_to(Index tet, const Asked& asked) const {
   if (tet >= asked.size() || asked[tet] == 0) return true;
-  return std::ranges::any_of(complex()[tet].corners, [&](Index v) {
-    return v < last_detour_at_.size() && last_detour_at_[v] >= asked[tet];
-  });
+  return changes_.any_since(asked[tet], complex()[tet].corners);
 }
 
 void Detours::note_changes(std::vector<Index>& tets) {
-  ++taken_;
-  last_detour_at_.resize(complex().mesh().points.size(), 0);
+  changes_.advance();
+  changes_.resize(complex().mesh().points.size());
   for (const Index t : changed_) {
     if (!complex()[t].alive) continue;
     tets.push_back(t);
-    for (const Index v : complex()[t].corners) last_detour_at_[v] = taken_;
+    for (const Index v : complex()[t].corners) changes_.note(v);
   }
 }
 

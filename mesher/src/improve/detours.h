@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "improve/remedies.h"
+#include "remesh/change_times.h"
 
 namespace collarmesh::remeshing::improvement {
 
@@ -51,6 +52,7 @@ class Detours {
   /// By tet: the number of detours taken before it was last tried, plus 1; 0: not tried.
   using Asked = std::vector<std::uint32_t>;
 
+  std::uint32_t taken() const { return changes_.now(); }
   bool exhausted() const;
   Change propose(Index tet);
   bool is_new_to(Index tet, const Asked& asked) const;
@@ -71,11 +73,10 @@ class Detours {
   Remedies& remedies_;
   Operations& operations_;
   std::size_t most_trials_, trials_ = 0;
-  std::size_t blunt_ = 0;  // number of proposals for blunt tets
-  std::uint32_t taken_ = 0;
-  bool ended_ = false;                         // no trials remain, or the caller stopped it
-  std::vector<std::uint32_t> last_detour_at_;  // by vertex: the last detour that changed a tet there
-  std::array<Asked, 3> asked_;                 // by Effort
+  std::size_t blunt_ = 0;                                // number of proposals for blunt tets
+  ChangeTimes changes_{complex().mesh().points.size()};  // the time is the number of detours taken
+  bool ended_ = false;                                   // no trials remain, or the caller stopped it
+  std::array<Asked, 3> asked_;                           // by Effort
 
   std::vector<Index> changed_;  // tets that the last detour changed; some are removed
 

@@ -1,7 +1,5 @@
 #include "collarmesh/improve.h"
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -16,6 +14,7 @@
 #include "improve/improve_edited.h"
 #include "improve/remedies.h"
 #include "remesh/operations.h"
+#include "remesh/ordered_speculation.h"
 
 namespace collarmesh {
 
@@ -47,7 +46,7 @@ class Improvement {
         rule_(options.bounds.radius_edge, options.bounds.thin_angle > 0 ? &bounds_.thin : nullptr,
               options.bounds.thin_angle > 0 ? &bounds_.cells : nullptr),
         remedies_(edited, rule_, options, thoroughly),
-        operations_([this] { return Operations(edited_, rule_); }),
+        speculation_([this] { return Operations(edited_, rule_); }),
         execution_(execution),
         detours_(thoroughly && options.move_vertices),
         passes_(options.passes) {}
@@ -59,7 +58,7 @@ class Improvement {
     report_.candidates = poor_.size();
     for (unsigned pass = 0; pass < passes_ && !poor_.empty() && !report_.cancelled; ++pass) {
       const std::size_t before = changes();
-      const std::uint32_t begun = batch_number_;
+      const std::uint32_t begun = changes_.now();
       work_off();
       if (changes() == before) break;
       find_poor_tets_again(begun);
@@ -140,12 +139,11 @@ class Improvement {
         report_.cancelled = true;
         return;
       }
-      proposals_.assign(batch_.size(), {});
-      parallel_for(batch_.size(), [&](std::size_t i) {
-        if (!is_known_to_fail(batch_[i].tet))
-          proposals_[i] = remedies_.propose(operations_.local(), batch_[i].tet);
+      proposals_.resize(batch_.size());
+      speculation_.propose_all(batch_, proposals_, [&](Operations& own, const Item& item, Change& change) {
+        change = is_known_to_fail(item.tet) ? Change{} : remedies_.propose(own, item.tet);
       });
-      ++batch_number_;
+      changes_.advance();
       changed_in_.resize(complex().size(), 0);
       for (std::size_t i = 0; i < batch_.size(); ++i)
         if (proposals_[i].is_none()) nothing_helps(batch_[i].tet);
@@ -167,16 +165,14 @@ class Improvement {
   void nothing_helps(Index tet) {
     remedies_.nothing_helps(tet);
     failed_in_.resize(complex().size(), 0);
-    failed_in_[tet] = batch_number_;
+    failed_in_[tet] = changes_.now();
   }
 
   // Returns whether nothing has helped this tet and nothing has changed since that a proposal may depend on:
   // the tets at its corners and at the neighbours of these.
   bool is_known_to_fail(Index tet) const {
     if (tet >= failed_in_.size() || failed_in_[tet] == 0) return false;
-    const auto is_old = [&](Index v) {
-      return !complex().pinched(v) && (v >= changed_at_.size() || changed_at_[v] < failed_in_[tet]);
-    };
+    const auto is_old = [&](Index v) { return !complex().pinched(v) && changes_.at(v) < failed_in_[tet]; };
     std::vector<Index> around;
     return std::ranges::all_of(complex()[tet].corners, [&](Index corner) {
       if (!is_old(corner)) return false;
@@ -187,8 +183,8 @@ class Improvement {
   }
 
   void note_change_at(Index tet) {
-    changed_at_.resize(complex().mesh().points.size(), 0);
-    for (const Index v : complex()[tet].corners) changed_at_[v] = batch_number_;
+    changes_.resize(complex().mesh().points.size());
+    for (const Index v : complex()[tet].corners) changes_.note(v);
   }
 
   // Takes detours. Returns false if none was tried, so that `poor_` is still up to date. Precondition:
@@ -202,7 +198,7 @@ class Improvement {
     edited_.prepare();
     rule_.set_least_gain(least_gain_in_detours);
     remedies_.forget();
-    Detours detours(edited_, remedies_, operations_.local(), trials + complex().size() / tets_per_trial);
+    Detours detours(edited_, remedies_, speculation_.own(), trials + complex().size() / tets_per_trial);
     report_.detours = detours.take_all(std::move(poor), [this] { return report_.cancelled = stopped(); });
     return true;
   }
@@ -211,7 +207,7 @@ class Improvement {
   // change depends on nothing else: places of corners, mesh faces, samples and curve edges only change with
   // the tets there. This relies on complete stars; no change is proposed elsewhere.
   bool is_untouched(const Change& change) const {
-    const auto untouched = [&](Index t) { return complex()[t].alive && changed_in_[t] != batch_number_; };
+    const auto untouched = [&](Index t) { return complex()[t].alive && changed_in_[t] != changes_.now(); };
     return std::ranges::all_of(change.replacement.old, untouched) &&
            std::ranges::all_of(change.read, untouched);
   }
@@ -223,9 +219,7 @@ class Improvement {
       case Change::Kind::boundary_flip: ++report_.boundary_flips; break;
       case Change::Kind::move: ++report_.moved_vertices; break;
       case Change::Kind::contraction:
-        if (!edited_.curve_can_spare(change))
-          return;  // another change has used the curve's last spare
-                   // edge
+        if (!edited_.curve_can_spare(change)) return;
         ++report_.contracted_edges;
         break;
       case Change::Kind::insertion:
@@ -236,7 +230,7 @@ class Improvement {
     for (const Index t : change.replacement.old) note_change_at(t);
     for (const Index t : edited_.apply(std::move(change))) {
       if (t >= changed_in_.size()) changed_in_.resize(complex().size(), 0);
-      changed_in_[t] = batch_number_;
+      changed_in_[t] = changes_.now();
       if (t < failed_in_.size()) failed_in_[t] = 0;
       note_change_at(t);
       remedies_.changed(t);
@@ -248,7 +242,8 @@ class Improvement {
   TetBounds bounds_;
   SliverRule rule_;
   Remedies remedies_;
-  tbb::enumerable_thread_specific<Operations> operations_;
+  ChangeTimes changes_{complex().mesh().points.size()};  // the time is the number of the batch
+  OrderedSpeculation<Operations> speculation_;
   const Execution& execution_;
   bool detours_;
   unsigned passes_;
@@ -256,10 +251,8 @@ class Improvement {
   std::priority_queue<Item> queue_;
   std::vector<Item> batch_;
   std::vector<Change> proposals_;
-  std::uint32_t batch_number_ = 0;
   std::vector<std::uint32_t> changed_in_;  // by tet: the batch that changed it last
   std::vector<std::uint32_t> failed_in_;   // by tet: the batch in which nothing helped it; 0: none
-  std::vector<std::uint32_t> changed_at_;  // by vertex: the last batch that changed a tet at it
   ImproveReport report_;
 };
 

@@ -78,7 +78,7 @@ class BoundaryProjection {
     bool limited;   // stays off the exact geometry because its feature is flat
     bool hopeless;  // farther away than the tets there can follow
     bool done = false;
-    std::size_t tried = 0;  // number of commits after which no place was found
+    std::uint32_t tried = 0;  // number of commits after which no place was found
   };
 
   projection::Bounds bounds(const Plc& plc) const {

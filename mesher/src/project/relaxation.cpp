@@ -45,8 +45,8 @@ Relaxation::Relaxation(TetMesh& mesh, const ExactGeometry& exact, const Bounds& 
       origins_(mesh.points),
       free_(mesh.points.size()),
       wanted_(mesh.tets.size()),
-      changed_(mesh.points.size(), 0),
-      moved_(mesh.points.size(), 0),
+      commits_(mesh.points.size()),
+      moves_(mesh.points.size()),
       stuck_(mesh.points.size(), 0) {
   for (std::size_t v = 0; v < free_.size(); ++v) free_[v] = mesh.features[v].dimension == 3;
 }
@@ -82,37 +82,32 @@ bool Relaxation::good(Index tet) const {
 void Relaxation::put(Index vertex, const Point& place) {
   log_.emplace_back(vertex, mesh_.points[vertex]);
   mesh_.points[vertex] = place;
-  moved_[vertex] = ++moves_;
+  moves_.note_next(vertex);
 }
 
 void Relaxation::commit() {
-  ++commits_;
-  for (const auto& [vertex, place] : log_) changed_[vertex] = commits_;
+  commits_.advance();
+  for (const auto& [vertex, place] : log_) commits_.note(vertex);
   log_.clear();
 }
 
-bool Relaxation::changed_around(Index vertex, std::size_t since) const {
-  for (const Index t : tets_at_[vertex])
-    for (const Index v : mesh_.tets[t])
-      if (changed_[v] > since) return true;
-  return false;
+bool Relaxation::any_around_after(const remeshing::ChangeTimes& times, std::uint32_t time,
+                                  Index vertex) const {
+  const auto tets = tets_at_[vertex];
+  return std::ranges::any_of(tets, [&](Index t) { return times.any_after(time, mesh_.tets[t]); });
 }
 
 void Relaxation::roll_back() {
   for (; !log_.empty(); log_.pop_back()) {
     const auto& [vertex, place] = log_.back();
     mesh_.points[vertex] = place;
-    moved_[vertex] = ++moves_;
+    moves_.note_next(vertex);
   }
 }
 
 // Returns whether a search found no better place for the vertex and nothing around it has changed since.
 bool Relaxation::in_vain(Index vertex) const {
-  if (stuck_[vertex] == 0) return false;
-  for (const Index t : tets_at_[vertex])
-    for (const Index v : mesh_.tets[t])
-      if (moved_[v] > stuck_[vertex]) return false;
-  return true;
+  return stuck_[vertex] > 0 && !any_around_after(moves_, stuck_[vertex], vertex);
 }
 
 // Returns 1 if the tet keeps its bound and its shape; a smaller positive value if it has positive volume.
@@ -262,7 +257,7 @@ std::vector<Index> Relaxation::relax(std::vector<Index> tets) {
     for (const Index v : vertices) {
       if (in_vain(v)) continue;
       if (!improve(v)) {
-        stuck_[v] = moves_;
+        stuck_[v] = moves_.now();
         continue;
       }
       moved = true;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <utility>
@@ -10,6 +11,7 @@
 #include "collarmesh/tet_mesh.h"
 #include "common/cells_at_vertices.h"
 #include "remesh/cell_bounds.h"
+#include "remesh/change_times.h"
 #include "remesh/thin_shape.h"
 
 namespace collarmesh::projection {
@@ -60,8 +62,10 @@ class Relaxation {
   void commit();
   void roll_back();
   /// Returns the number of commits, and whether commits after that number changed a tet at the vertex.
-  std::size_t commits() const { return commits_; }
-  bool changed_around(Index vertex, std::size_t since) const;
+  std::uint32_t commits() const { return commits_.now(); }
+  bool changed_around(Index vertex, std::uint32_t since) const {
+    return any_around_after(commits_, since, vertex);
+  }
 
  private:
   using Corners = std::array<Point, 4>;
@@ -91,6 +95,7 @@ class Relaxation {
   double lack_around(std::span<const Index> tets, Index vertex, const Point& place, double below) const;
   bool improve(Index vertex);
   bool in_vain(Index vertex) const;
+  bool any_around_after(const remeshing::ChangeTimes& times, std::uint32_t time, Index vertex) const;
   std::optional<Point> on_feature(Index vertex, const Point& wish) const;
   bool fits_features(Index vertex, const Point& place);
   void find_features_around();
@@ -103,12 +108,9 @@ class Relaxation {
   std::vector<Point> origins_;
   std::vector<bool> free_;
   mutable std::vector<Wanted> wanted_;  // by tet
-  std::vector<std::size_t> changed_;    // by vertex: the last commit that moved it; 0: none
-  std::size_t commits_ = 0;
-  // By vertex: its last move, and the last attempt without a better place, as numbers of all moves until
-  // then.
-  std::vector<std::size_t> moved_, stuck_;
-  std::size_t moves_ = 0;
+  remeshing::ChangeTimes commits_;      // by number of commits
+  remeshing::ChangeTimes moves_;        // by number of moves
+  std::vector<std::uint32_t> stuck_;    // by vertex: the last attempt without a better place, likewise
   std::vector<std::pair<double, Index>> worst_first_;
   std::vector<Index> around_;
   std::vector<std::pair<Index, Point>> log_;  // vertices and their previous places, in order

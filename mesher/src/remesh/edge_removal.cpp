@@ -28,7 +28,7 @@ double Operations::new_quality(const std::array<Index, 4>& v, double above) cons
 double Operations::triangulate(Index a, Index b, const Polygon& polygon, bool closed, double above) {
   const std::size_t n = polygon.size();
   const auto& points = mesh_.points;
-  const double removed = squared_distance(points[a], points[b]);
+  const Vector removed = points[b] - points[a];
   best_.assign(n * n, INFINITY);
   apex_.assign(n * n, 0);
   for (std::size_t width = 2; width < n; ++width)
@@ -37,8 +37,8 @@ double Operations::triangulate(Index a, Index b, const Polygon& polygon, bool cl
       double& best = best_[i * n + j];
       best = -1;
       const bool is_new = width + 1 < n || !closed;
-      if (is_new && !rule_.allows_edge(polygon[i], polygon[j],
-                                       squared_distance(points[polygon[i]], points[polygon[j]]), removed))
+      if (is_new &&
+          !rule_.allows_edge(polygon[i], polygon[j], complex_.edge(polygon[i], polygon[j]), removed))
         continue;
       for (std::size_t k = i + 1; k < j; ++k) {
         double q = std::min(best_[i * n + k], best_[k * n + j]);

@@ -96,10 +96,18 @@ class EditableMesh {
            std::ranges::all_of(tet.corners, [&](Index v) { return v < left_.size() && left_[v]; });
   }
 
-  /// Returns whether this collapse is still allowed: other collapses on the same curve may have used up its
-  /// spare edges.
+  /// Returns false if the change is a collapse that is no longer allowed, because others on the same curve
+  /// have used up its spare edges.
   bool curve_can_spare(const Change& change) const {
-    return complex.mesh().features[change.vertex].dimension != 1 || curves.may_skip(change.vertex);
+    return change.kind != Change::Kind::contraction ||
+           complex.mesh().features[change.vertex].dimension != 1 || curves.may_skip(change.vertex);
+  }
+  /// Returns whether an edge to `onto` could lie in the vertex's curve or patch.
+  bool may_share_feature(Index vertex, Index onto) const {
+    const auto& [dimension, feature] = complex.mesh().features[vertex];
+    const auto& other = complex.mesh().features[onto];
+    return dimension == 3 || other.dimension < dimension ||
+           (other.dimension == dimension && other.feature == feature);
   }
   /// Returns whether all tets that a change makes are positively oriented, decided exactly. Qualities are
   /// computed with rounding errors, so they mean nothing if vertices are as close as 1e-12 of their

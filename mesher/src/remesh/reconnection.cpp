@@ -38,14 +38,16 @@ void Operations::reconnect(Index tet, Change& change) {
 // `change`.
 void Operations::refill(const std::vector<Index>& cavity, Change& change) {
   if (!find_cone_of_cavity(cavity)) return;
-  double worst = INFINITY, longest = 0;
+  double worst = INFINITY;
+  Vector longest{0, 0, 0};
   std::vector<std::array<Index, 2>> edges;
   for (const Index t : cavity) {
     worst = std::min(worst, quality(t));
     const auto& corners = complex_[t].corners;
     for (const auto& [i, j] : cell_shapes::corner_pairs) {
       edges.push_back(sorted(corners[i], corners[j]));
-      longest = std::max(longest, squared_distance(mesh_.points[corners[i]], mesh_.points[corners[j]]));
+      const Vector edge = complex_.edge(corners[i], corners[j]);
+      if (squared_norm(edge) > squared_norm(longest)) longest = edge;
     }
   }
   std::ranges::sort(edges);
@@ -55,8 +57,7 @@ void Operations::refill(const std::vector<Index>& cavity, Change& change) {
     const bool allowed = std::ranges::all_of(cell_shapes::corner_pairs, [&](const EdgePlaces& edge) {
       const auto ends = sorted(v[edge[0]], v[edge[1]]);
       const auto& [a, b] = ends;
-      return std::ranges::binary_search(edges, ends) ||
-             rule_.allows_edge(a, b, squared_distance(mesh_.points[a], mesh_.points[b]), longest);
+      return std::ranges::binary_search(edges, ends) || rule_.allows_edge(a, b, complex_.edge(a, b), longest);
     });
     return allowed ? quality : -1;
   };

@@ -26,9 +26,8 @@ class ShapeRule {
   virtual const AngleRule* by_angles() const { return nullptr; }
   /// Returns whether an operation may make this tet. Precondition: its quality is positive.
   virtual bool allows(const Corners& p, const std::array<Index, 4>& corners, double quality) const = 0;
-  /// Returns whether an operation may make an edge between these vertices in place of an edge of another
-  /// length.
-  virtual bool allows_edge(Index, Index, double /*squared_length*/, double /*squared_before*/) const {
+  /// Returns whether an operation may make an edge between these vertices in place of another edge there.
+  virtual bool allows_edge(Index, Index, const Vector& /*edge*/, const Vector& /*before*/) const {
     return true;
   }
   /// Returns the share by which a move of a vertex must raise the quality to be worth it.

@@ -66,6 +66,7 @@ class TetComplex {
     const auto& v = tets_[tet].corners;
     return {mesh_.points[v[0]], mesh_.points[v[1]], mesh_.points[v[2]], mesh_.points[v[3]]};
   }
+  Vector edge(Index a, Index b) const { return mesh_.points[b] - mesh_.points[a]; }
   bool on_curve(Index a, Index b) const { return curve_edges_.contains(edge_key(a, b)); }
   /// Returns whether ab is an edge of a mesh face. Always true at a pinched vertex a.
   bool on_faces(Index a, Index b) const;

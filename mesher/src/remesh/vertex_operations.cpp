@@ -187,8 +187,7 @@ bool Operations::edges_allowed(Index vertex, const Point& from, const Point& to)
   const auto& points = mesh_.points;
   for (const auto& face : cone_.hull)
     for (const Index v : face)
-      if (!rule_.allows_edge(vertex, v, squared_distance(to, points[v]), squared_distance(from, points[v])))
-        return false;
+      if (!rule_.allows_edge(vertex, v, points[v] - to, points[v] - from)) return false;
   return true;
 }
 

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/parallel_for.h"
+#include "remesh/change_times.h"
+
+namespace collarmesh::remeshing {
+
+/// A loop that makes changes in a fixed order with all threads: several threads propose changes for the next
+/// few items at once, one thread makes them, one after the other. `Proposer` finds changes and only reads;
+/// each thread has its own.
+template <class Proposer>
+class OrderedSpeculation {
+ public:
+  /// Calls `make()` for each proposer.
+  template <class Make>
+  explicit OrderedSpeculation(const Make& make) : own_(make()), proposers_(make) {}
+
+  /// Returns the proposer of the thread that makes the changes.
+  Proposer& own() { return own_; }
+
+  /// Calls `propose(proposer, item, proposal)` for all items, by all threads.
+  void propose_all(const auto& items, auto& proposals, const auto& propose) {
+    parallel_for(items.size(), [&](std::size_t i) { propose(proposers_.local(), items[i], proposals[i]); });
+  }
+
+  /// Calls `propose(proposer, item, proposal)` and then `use(item, proposal)`, which may change the mesh, for
+  /// one item after the other, with the result of a single thread. Other threads propose ahead; a proposal
+  /// counts only if `is_up_to_date(item, proposal, begun)` finds that nothing it depends on has changed since
+  /// the time `begun`. Ends as soon as `use` returns false; returns whether it never did.
+  template <class Proposal>
+  bool for_each(const auto& items, ChangeTimes& times, const auto& propose, const auto& is_up_to_date,
+                const auto& use) {
+    const std::size_t at_once = proposals_at_once(items.size());
+    std::vector<Proposal> proposals(at_once);
+    for (std::size_t first = 0; first < items.size(); first += at_once) {
+      const auto next = std::span(items).subspan(first, std::min(at_once, items.size() - first));
+      const std::uint32_t begun = times.advance();
+      if (at_once > 1) propose_all(next, proposals, propose);
+      for (std::size_t i = 0; i < next.size(); ++i) {
+        if (at_once == 1 || !is_up_to_date(next[i], proposals[i], begun))
+          propose(own_, next[i], proposals[i]);
+        if (!use(next[i], proposals[i])) return false;
+      }
+    }
+    return true;
+  }
+
+ private:
+  // The number of items for which changes are proposed at once is limited in two ways: absolutely, and to one
+  // in `items_per_proposal` items, so that proposals rarely meet; but each thread has several.
+  static std::size_t proposals_at_once(std::size_t items) {
+    constexpr std::size_t most = 256, items_per_proposal = 256, proposals_per_thread = 4;
+    const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+    if (threads == 1) return 1;
+    return std::min(most, std::max(items / items_per_proposal, proposals_per_thread * threads));
+  }
+
+  Proposer own_;
+  tbb::enumerable_thread_specific<Proposer> proposers_;
+};
+
+}  // namespace collarmesh::remeshing
