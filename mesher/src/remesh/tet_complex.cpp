@@ -1,10 +1,14 @@
 #include "remesh/tet_complex.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <string>
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/task_arena.h>
 
+#include "collarmesh/error.h"
 #include "common/found_in_ranges.h"
 #include "common/groups.h"
 #include "common/index_set.h"
@@ -26,6 +30,16 @@ bool equal(const std::array<Index, 3>& a, const std::array<Index, 3>& b) {
 bool has_face(const std::array<Index, 4>& tet, const std::array<Index, 3>& face) {
   return std::ranges::count_if(tet, [&](Index v) { return v == face[0] || v == face[1] || v == face[2]; }) ==
          3;
+}
+
+// Tets of a mesh that was rounded or read may be oriented so that they lead in a circle beside the edge.
+PlcError no_ring(const Point& p) {
+  const std::string message = fmt::format(
+      "The tetrahedra at an edge at ({:.9g}, {:.9g}, {:.9g}) form no ring: features there are too near to "
+      "each "
+      "other for double precision; raise the repair tolerance.",
+      p.x, p.y, p.z);
+  return PlcError(message, {{PlcFault::Kind::intersection, message, {}, p}});
 }
 
 // Mark deleted faces and edges until `store`.
@@ -158,11 +172,16 @@ void TetComplex::ring(Index tet, Index a, Index b, Ring& ring) const {
   };
   // At a boundary, go back to the first tet of the ring.
   Index start = tet;
-  for (Index t = across(tet, others(tet)[1]); t != none && t != tet; t = across(t, others(t)[1])) start = t;
+  std::size_t steps = 0;
+  for (Index t = across(tet, others(tet)[1]); t != none && t != tet; t = across(t, others(t)[1])) {
+    start = t;
+    if (++steps > tets_.size()) throw no_ring(mesh_.points[a]);
+  }
   if (across(start, others(start)[1]) != none) start = tet;
   ring.closed = across(start, others(start)[1]) != none;
   for (Index t = start; t != none;) {
     const auto [c, d] = others(t);
+    if (ring.tets.size() > tets_.size()) throw no_ring(mesh_.points[a]);
     ring.tets.push_back(t);
     ring.link.push_back(c);
     const Index next = across(t, c);
