@@ -1,11 +1,12 @@
-"""Compile for a project that fetches the sources, or take what another build made of them by the same command.
+"""A compiler launcher for a project that fetches the sources: takes an object that another build has made by the same
+command, or else runs the command.
 
     reuse.py COMMANDS BUILD FETCHED [LAUNCHER...] COMPILER ARGUMENT...
 
-A compiler launcher. BUILD is the folder of the other build, COMMANDS a table of its commands (`ninja -t compdb`), and
-FETCHED the folder for the same sources in the project. An object is taken when the two commands are equal but for the
-names of these folders, and so are the contents of the source and of all headers that were generated in them; else it is
-compiled.
+BUILD is the build folder of the other build, COMMANDS a file with its commands (`ninja -t compdb`), and FETCHED the
+build folder of the sources in the project. An object is taken if the commands differ only in the names of these folders
+and of the output and dependency files, and if the source and all headers generated in FETCHED have the same contents
+as those of the other build.
 """
 
 import json

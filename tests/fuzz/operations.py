@@ -6,9 +6,9 @@
 --runs is the number of runs of each kind; step, iges and brep are kinds, too. --sanitized is for programs with a
 sanitizer: no memory budget, as the sanitizer's memory would count, and ten times the time.
 
-A run is wrong when a signal ends it, with exit code 1, when it exceeds its limits by more than a tenth, or a second, when
-the volumes of the regions are not those known, or when it writes a mesh that `check` does not pass. Wrong ones are
-kept in FOLDER, with how to repeat them. COLLARMESH_PROGRAM is the program, COLLARMESH_REAL a folder of CAD files to
+A run is wrong if a signal ends it, if its exit code is 1 or not one of those expected, if it takes longer than its time
+limit by more than a tenth (at least a second) and another second, if the volumes of the regions are not those known, or
+if it writes a mesh that `check` does not pass. Wrong ones are kept in FOLDER, with how to repeat them. COLLARMESH_PROGRAM is the program, COLLARMESH_REAL a folder of CAD files to
 mutate, beside those made here. The seed is that of the day unless it is given.
 """
 

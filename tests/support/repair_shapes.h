@@ -119,8 +119,8 @@ Convex convex_of(const PolygonSoup& soup);
 Convex clipped(const Convex& body, const Point& origin, const Vector& normal);
 Convex intersection(Convex a, const Convex& b);
 double volume(const Convex& body);
-/// The first function computes the volume by inclusion and exclusion; the second one the volume that each
-/// body has and no earlier one.
+/// `places` returns, for each body, the volume of its part that lies in no earlier body, by inclusion and
+/// exclusion; `union_volume` returns their sum.
 double union_volume(std::span<const Convex> bodies);
 std::vector<double> places(std::span<const Convex> bodies);
 

@@ -308,7 +308,8 @@ class Tessellator {
     return outline;
   }
 
-  /// Returns whether two parameters are near each other in the plane. Points of a seam have two places there.
+  /// Returns whether two parameters of one place lie on the same side of every seam: in each periodic or
+  /// closed direction they differ by at most 1% of its length. Other directions are not compared.
   static bool near_in_plane(const BRepAdaptor_Surface& surface, const std::array<double, 2>& a,
                             const std::array<double, 2>& b) {
     constexpr double share = 0.01;  // share of a period

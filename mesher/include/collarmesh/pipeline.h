@@ -32,9 +32,9 @@ namespace collarmesh {
 enum class Start {
   automatic,   ///< refinement; if it takes far too many vertices, the constrained tetrahedra
   refinement,  ///< refinement: features are inserted one by one, with all guarantees
-  /// Constrained tetrahedra: their faces and edges are the facets and segments of the complex. Later stages
-  /// bring them to the size. Their number is about that of the facets, even if features are very near each
-  /// other, but some tetrahedra keep angles beyond their bounds.
+  /// Constrained tetrahedra: their faces and edges include the facets and segments of the complex. Later
+  /// stages bring them to the size. Their number is about twice that of the facets, even if features are very
+  /// near each other, but some tetrahedra keep angles beyond their bounds.
   constrained
 };
 

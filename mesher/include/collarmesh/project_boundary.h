@@ -39,12 +39,11 @@ struct ProjectReport {
 /// Moves the vertices on curves and patches onto the exact geometry. No move inverts a tet, breaks the
 /// radius-edge bound or, in a collar, the bound on dihedral angles. If a move would do so, the tet's other
 /// corners first move inside their region or along their exact features, so that faces and edges stay within
-/// half of the distance from the exact geometry. A vertex that cannot reach its place in this way stays where
-/// it is; the report lists it as an exception. On curves and patches that are straight or planar in the
-/// complex but not in the exact geometry, vertices go only as near as the complex permits. Preconditions:
-/// `mesh` comes from
-/// `generate` for `plc`, first order; `exact` maps each point that it returns to itself. Cost: linear in the
-/// tets, with a large factor for those that would become invalid.
+/// half of the tolerance (`ProjectOptions::bounds`) of the exact geometry. A vertex that cannot reach its
+/// place in this way stays where it is; the report lists it as an exception. On curves and patches that are
+/// straight or planar in the complex but not in the exact geometry, vertices go only as near as the complex
+/// permits. Preconditions: `mesh` comes from `generate` for `plc`, first order; `exact` maps each point that
+/// it returns to itself. Cost: linear in the tets, with a large factor for those that would become invalid.
 ProjectReport project_boundary(TetMesh& mesh, const Plc& plc, const ExactGeometry& exact,
                                const ProjectOptions& options = {}, const Execution& execution = {});
 

@@ -12,11 +12,11 @@ namespace collarmesh {
 /// The reason why a ball was placed.
 enum class BallReason : std::uint8_t {
   unknown,
-  subsegment,          ///< protects a piece of a curve that must not be split
-  up_front,            ///< a collar ball, placed before the first vertex, as are all others of this run
-  vertex_inserted,     ///< a collar ball: its crease vertex was inserted
-  vertex_isolated,     ///< a collar ball: the cell of its crease vertex meets no other feature
-  curve_isolated,      ///< a collar ball: the cells along its crease curve meet no other feature
+  subsegment,       ///< protects a piece of a curve that must not be split
+  up_front,         ///< a collar ball, placed before the first vertex, as are all others of this run
+  vertex_inserted,  ///< a collar ball: its crease vertex was inserted
+  vertex_isolated,  ///< a collar ball: every feature that meets the cell of its crease vertex contains it
+  curve_isolated,   ///< a collar ball: every feature that meets the cells along its crease curve contains it
   curve_would_divide,  ///< a collar ball: a subsegment of its crease curve would have been split otherwise
   curve_left           ///< a collar ball: its crease curve had no balls yet when all other work was done
 };

@@ -109,7 +109,7 @@ class CollarSystem {
     Index parent = none;
 
     OfCreases() = default;
-    explicit OfCreases(const Box&) {}  // the box of creases without balls
+    explicit OfCreases(const Box&) {}  // `Hierarchy::add` converts from a box
   };
   /// Builds the tree over creases, which may have no balls yet.
   void plant(const Plc& plc, std::span<const Point> points);

@@ -511,7 +511,8 @@ class Rod {
 
   bool find_rings() {
     const double steps = static_cast<double>(steps_), piece = full_turn / static_cast<double>(in_ring_);
-    // The frame at the end is turned so that a ring begins at the vertex there, or at the first ring.
+    // The frame turns along the rod, so that at its end a corner of the ring lies in the direction of the
+    // vertex there or, in a loop, the corners meet those of the first ring.
     double turn = 0;
     if (is_loop() || !plc_.patches[ends_[1].patch].vertices.empty()) {
       const Section& last = sections_.back();

@@ -203,7 +203,8 @@ void settle(MeshJob& job, Hope hope) {
   PipelineResult& made = job.made;
   std::size_t least = count_misshapen(job, made.result.mesh);
   if (hope == Hope::good && tets_per_poor * least > made.result.mesh.tets.size()) throw Hopeless();
-  if (least == 0 && hope == Hope::any) {  // there are still means of improvement to try
+  // No tet is misshapen: coarsens and improves once more, thoroughly, and keeps the result if none is then.
+  if (least == 0 && hope == Hope::any) {
     TetMesh mesh = made.result.mesh;
     coarsen_and_improve(job, mesh, {}, true);
     if (count_misshapen(job, mesh) == 0) made.result.mesh = std::move(mesh);

@@ -25,7 +25,7 @@ class OpenCreases {
  public:
   struct Chain {
     std::vector<ChainLink> links;           ///< all links so far
-    std::size_t unresolved = 0;             ///< number of unresolved points that its chain started with
+    std::size_t unresolved = 0;             ///< number of its points that the crease still waits for
     bool split = false;                     ///< a subsegment was split before all of these points were
                                             ///< resolved
     std::array<Index, 2> ends{none, none};  ///< unresolved points where the crease leaves the balls at its

@@ -20,7 +20,7 @@ struct ArrangementReport {
 
 /// Which merges of near corners are kept.
 enum class KeptMerges {
-  all,                 ///< all merges, unless rounds of cutting do not end with them
+  all,  ///< all; merging pauses or resumes after each round of cutting that leaves no fewer intersections
   where_nothing_meets  ///< only merges after which no facets intersect at their place
 };
 

@@ -493,15 +493,16 @@ std::vector<Plc::Warning> lost_lines(std::span<const PolygonSoup> soups, const P
 void judge_volume(const KeptVolume& kept, Plc& plc) {
   constexpr double most = 0.5, told = 0.05;
   if (kept.lost > most * kept.input)
-    throw LostVolume(fmt::format(
-        "Its repair would lose {:.0f}% of the volume that the surface encloses, about {:.3g}, such as at {}.",
-        100 * kept.lost / kept.input, kept.input, text(kept.where)));
+    throw LostVolume(
+        fmt::format("Its repair would lose {:.0f}% of the volume that the surface encloses (about {:.3g} in "
+                    "all), for example at {}.",
+                    100 * kept.lost / kept.input, kept.input, text(kept.where)));
   if (kept.lost > told * kept.input)
     plc.warnings.push_back(
-        {fmt::format(
-             "The repair lost about {:.0f}% of the volume that the surface enclosed, about {:.3g}, such "
-             "as at {}; close the surface there, or try another --repair-tolerance.",
-             100 * kept.lost / kept.input, kept.input, text(kept.where)),
+        {fmt::format("The repair lost about {:.0f}% of the volume that the surface enclosed (about {:.3g} in "
+                     "all), for "
+                     "example at {}; close the surface there, or try another --repair-tolerance.",
+                     100 * kept.lost / kept.input, kept.input, text(kept.where)),
          kept.where});
 }
 
