@@ -37,9 +37,11 @@ constexpr double repaired_below = 0.65;
 // refinement half of these vertices have a shortest edge of 0.75 to 0.8, which can hardly ever be collapsed.
 constexpr double asked_inside_below = 0.75;
 constexpr unsigned most_sweeps = 8;
-// A pass that removes a smaller share of the tets ends its round; such a round is the last one if improvement
-// before it found nothing more.
+// A pass that removes a smaller share of the tets ends its round. After such a round, if improvement before
+// it found nothing more and at least one in `contractions_per_repair` contractions needed repairs, all
+// vertices are tried again.
 constexpr double least_share = 0.005;
+constexpr std::size_t contractions_per_repair = 10;
 constexpr std::size_t steps_between_reports = 4096;
 // If more than one change in this many tets was logged, looking at all tets costs less than finding the tets
 // at the changed vertices.
@@ -101,12 +103,19 @@ class Coarsening {
     edited_.prepare();
     for (unsigned pass = 0; pass < plain_passes && !report_.cancelled; ++pass)
       if (!contract_all(false)) break;
+    // Whether a round begins with all vertices, not only with those at which something has changed: repairs
+    // reach beyond the tets at a vertex, so changes farther away may have made more collapses possible.
+    bool ask_all = false;
     for (unsigned round = 0; round < rounds && !report_.cancelled; ++round) {
       const bool settled = improve_all();
       const std::size_t before = tets_;
+      if (ask_all) last_pass_ = last_repairs_ = 0;
       for (unsigned pass = 0; pass < repair_passes; ++pass)
         if (!contract_all(true)) break;
-      if (settled && !worthwhile(before)) break;
+      const bool is_done = settled && !worthwhile(before);
+      if (is_done && (ask_all || report_.repaired * contractions_per_repair < report_.contracted_edges))
+        break;
+      ask_all = is_done;
     }
     finish();
     report_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
