@@ -25,9 +25,9 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from judging import JUDGE, MOST_TETS, TIME_LIMIT, Failed, run, verdict
+from judging import JUDGE, LONG, MOST_TETS, TIME_LIMIT, Failed, run, verdict
 
-SIZE = 0.4
+SIZE = 0.3 if LONG else 0.4
 DISTANCE = 2e-3  # about a thousandth of the diagonals
 RANDOM_SEEDS = (1,)
 

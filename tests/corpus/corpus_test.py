@@ -3,7 +3,7 @@
     corpus_test.py PROGRAM [-k WORD] [--keep FOLDER] [--workers N]
 
 COLLARMESH_CORPUS names the folder; its MANIFEST.tsv says what to expect of each file. Files are
-meshed at 1/20 of their bounding box's diagonal; COLLARMESH_JUDGE may name a checker (judging.py).
+meshed at 1/20 of their bounding box's diagonal (1/25 with COLLARMESH_LONG); COLLARMESH_JUDGE may name a checker (judging.py).
 Exit code 77 (skipped) without a corpus.
 """
 
@@ -20,10 +20,10 @@ import sys
 import tempfile
 import time
 
-from judging import JUDGE, MOST_TETS, TIME_LIMIT, Failed, run, verdict
+from judging import JUDGE, LONG, MOST_TETS, TIME_LIMIT, Failed, run, verdict
 
 CORPUS = os.environ.get("COLLARMESH_CORPUS", "")
-RELATIVE_SIZE = 1 / 20
+RELATIVE_SIZE = 1 / 25 if LONG else 1 / 20
 COARSE_SIZE = 1 / 8
 REPAIR_LIMIT = 20  # seconds
 # A known fault of the mesher, which the certificate finds: after repair, a smooth patch nearly touches
