@@ -76,7 +76,7 @@ class RegionFinder {
   }
 
  private:
-  // The part of a chamber's inner shell that a soup has.
+  // The part of a chamber's inner shell that comes from one soup.
   struct Share {
     double area = 0;
     Index first_triangle = none;
