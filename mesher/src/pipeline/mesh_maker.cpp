@@ -51,8 +51,8 @@ void raise_order(MeshJob& job) {
   if (job.made.second_order.cancelled) job.control.stop();
 }
 
-/// Returns sets of the two smooth patches of walls, layers and shells. Chords on both sides of these cancel
-/// only if they are equally long.
+/// Unites the two smooth patches of each wall, layer or shell. Volumes that chords cut off on both sides
+/// cancel only if the chords are equally long.
 DisjointSets sides_of_walls(const Plc& plc) {
   std::vector<std::vector<Index>> smooth(plc.regions.size());
   for (Index p = 0; p < plc.patches.size(); ++p)
@@ -132,8 +132,8 @@ bool MeshMaker::take_rods() {
   return false;
 }
 
-/// Returns whether a refinement probably makes many times the elements that are needed. Cylinders that nearly
-/// touch look the same but need few elements, so `refines_with_few_vertices` decides.
+/// Returns whether a refinement probably makes many times the elements that are needed. The same is returned
+/// for cylinders that nearly touch, which need few elements, so `refines_with_few_vertices` decides.
 bool MeshMaker::may_be_better_constrained() const {
   if (job_.start != Start::automatic || !may_start_constrained(job_.given) ||
       !may_take_constrained(*job_.plc))
@@ -266,7 +266,7 @@ void MeshMaker::take_new_complex() {
 void MeshMaker::move_to(const Plc& plc) {
   if (std::exchange(job_.plc, &plc) == &plc) return;
   if (source_ != nullptr && job_.options.exact)
-    source_->adapt(plc, job_.options);  // it refers to the complex
+    source_->adapt(plc, job_.options);  // exact geometry refers to the complex
 }
 
 void MeshMaker::come_nearer(const Plc& plc, double share) { nearer_ = tolerance(plc, 1).scaled(share); }

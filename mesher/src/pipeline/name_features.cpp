@@ -36,8 +36,8 @@ Point point_of(const Json& value, const std::string& place) {
   return {at[0].get<double>(), at[1].get<double>(), at[2].get<double>()};
 }
 
-/// Finds the feature nearest to a point by the features' triangles; segments of curves are triangles without
-/// area.
+/// A search for the feature nearest to a point, by the features' triangles; segments of curves are triangles
+/// without area.
 class Nearest {
  public:
   void add(const Plc& plc, Index a, Index b, Index c, Index feature) {
@@ -110,7 +110,7 @@ class Namer {
       for (const Index member : members) tag = std::min(tag, features_[member].tag);
       chosen_.push_back({name, tag, std::move(members)});
     }
-    for (const Chosen& each : chosen_) {  // the text has the numbers before this change
+    for (const Chosen& each : chosen_) {  // last, because the text uses the old numbers
       for (const Index member : each.members) features_[member].tag = each.tag;
       plc_.names.set(dimension_, each.tag, each.name);
     }
@@ -133,8 +133,8 @@ class Namer {
       fail(place, fmt::format("no {} has the number {}{}", what_, tag, in_place_of(tag)));
   }
 
-  /// Returns a hint for messages: the number that replaces this tag where parts touch; empty if the input did
-  /// not have the tag.
+  /// Returns a hint for messages: the number that replaces this tag where parts touch; empty if no number
+  /// replaces it.
   std::string in_place_of(Tag tag) const {
     if (dimension_ != 2) return {};
     for (const auto& [gone, stays] : plc_.cleanup.replaced_tags)

@@ -25,8 +25,8 @@ namespace collarmesh::pipeline {
 
 namespace {
 
-/// Sets the size with which features are compared, and the tags of those with a size. No feature is collapsed
-/// where sizes depend on the place.
+/// Sets the size with which features are compared, and the tags of patches and curves that have sizes. No
+/// feature is collapsed where sizes depend on the place.
 void find_feature_size(const MeshOptions& mesh, RepairOptions& repair) {
   if (mesh.size_field) return;
   double size = mesh.size;
@@ -42,7 +42,7 @@ void find_feature_size(const MeshOptions& mesh, RepairOptions& repair) {
   repair.target_size = size;
 }
 
-/// Throws PlcError unless a coarser repair changed something and loses no part.
+/// Throws PlcError unless a coarser repair changed something and lost no part.
 void require_kept(const SoupPipelineResult& finer, const SoupPipelineResult& coarser) {
   const bool same =
       finer.plc.triangles.size() == coarser.plc.triangles.size() && finer.plc.points == coarser.plc.points;
@@ -138,7 +138,7 @@ void Tries::mesh_any_repaired(SoupPipelineResult& all) {
   if (has_mesh && made.guarantees_hold()) return;
   if (!built_last) {
     try {
-      build(current, all);  // makes the source know this complex again
+      build(current, all);  // so that the source built this complex last
     } catch (const PlcError&) {
       if (!has_mesh) throw;
       return;
@@ -185,7 +185,7 @@ std::string Tries::repair_sharp_creases(RepairOptions& repair, SoupPipelineResul
         coarser.tolerance, job_.given.repair.tolerance, creases.front().angle,
         checks::At{creases.front().where});
   }
-  build(repair, all);  // makes the source know this complex again
+  build(repair, all);  // so that the source built this complex last
   return {};
 }
 
@@ -207,7 +207,7 @@ std::pair<Tries::End, std::string> Tries::attempt_simplest(RepairOptions& repair
   maker_.set_fineness(Fineness::any);
   if (better) return {End::holds, {}};
   if (tried.first != End::too_fine) return tried;
-  build(repair, all);  // makes the source know this complex again
+  build(repair, all);  // so that the source built this complex last
   if (gave_up) maker_.give_up_constrained(all.plc);
   return attempt(all.plc, error);
 }
@@ -390,7 +390,7 @@ double Tries::share_for_volumes() const {
 }
 
 /// Returns the largest relative deviation of a region's volume. Lowers the shares of the patches around each
-/// region whose volume is off by more than the limit of warnings to those that may bring it within the limit.
+/// region whose volume calls for a warning, so that it may come within the limit.
 double Tries::largest_loss(const Plc& plc, std::vector<double>* shares) const {
   constexpr double aim = 0.7, least = 0.25;
   const ShapeMeasures &input = job_.made.check.of_input, &mesh = job_.made.check.of_mesh;
@@ -407,7 +407,8 @@ double Tries::largest_loss(const Plc& plc, std::vector<double>* shares) const {
   return largest;
 }
 
-/// Returns whether the kept mesh is good and was refined with the distances of first order, without trouble.
+/// Returns whether the kept mesh is small, keeps every guarantee, and was refined with the default distances
+/// of first order, without hitting the bound on vertices.
 bool Tries::may_keep_volumes() const {
   constexpr std::size_t most_tets = 100'000;
   const PipelineOptions& given = job_.given;
