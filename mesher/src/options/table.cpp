@@ -22,7 +22,7 @@ constexpr Kind kind_of(bool has_words) {
   return std::is_same_v<T, std::vector<std::string>> ? Kind::texts : Kind::sizes;
 }
 
-/// Accesses a member of a member of RunOptions. If it is a choice, it has `words`.
+/// Access to a member of RunOptions, or of a struct in it. A choice has words.
 template <bool has_words, auto... members>
 struct At {
   static auto& of(auto& options) { return (options.*....*members); }
@@ -64,14 +64,14 @@ constexpr Option::Place in_mesh = at<&RunOptions::mesh, member>;
 template <auto member>
 constexpr Option::Place in_bounds = at<&RunOptions::mesh, &MeshOptions::bounds, member>;
 
-/// Accesses the bound on the radius-edge ratio. Without this option tets may be thin anywhere.
+/// The bound on the radius-edge ratio. Without this option tets may be thin anywhere.
 constexpr Option::Place asked_ratio{Kind::number, in_bounds<&Bounds::radius_edge>.get,
                                     [](const Option&, RunOptions& options, const OptionValue& value) {
                                       options.mesh.bounds.radius_edge = std::get<double>(value);
                                       options.mesh.bounds.thin_in_narrow_places_only = true;
                                     }};
 
-/// Accesses the dimension of the elements. Surfaces need not bound anything.
+/// The dimension of the elements. Below 3, the facets need not bound a solid.
 constexpr Option::Place asked_dimension{Kind::count, at<&RunOptions::dimension>.get,
                                         [](const Option&, RunOptions& options, const OptionValue& value) {
                                           options.dimension =
@@ -163,7 +163,7 @@ std::vector<Option> quality_options() {
       {.name = "start",
        .words = {"auto", "refinement", "constrained"},
        .place = choice_at<&RunOptions::start>,
-       .help = "What the mesh begins with; constrained: tetrahedra with the facets as they are",
+       .help = "Mesh that the run begins with; constrained: tetrahedra with the facets as they are",
        .details =
            "`auto`: refinement, and `constrained` where that takes far more vertices than the sizes ask "
            "for; see [Parts that explode](architecture/constrained.md)",
@@ -196,7 +196,7 @@ std::vector<Option> quality_options() {
        .unit = Unit::degrees,
        .low = 100,
        .high = 175,
-       .help = "Bound on dihedral angles in the collars around creases, the tetrahedra that touch one",
+       .help = "Bound on dihedral angles in collars, the tetrahedra that touch a crease",
        .details = "130 and more were reached on all shapes tried, 110 on most if the mesh is coarsened",
        .commands = refining | Option::check},
       {.name = "collar-creation",
@@ -243,8 +243,8 @@ std::vector<Option> quality_options() {
        .low = 0.1,
        .high = 30,
        .zero = true,
-       .help = "Smallest dihedral angle of thin tetrahedra, at sharper creases half their angle; 0: none "
-               "may be thin",
+       .help = "Smallest dihedral angle of thin tetrahedra, at sharper creases half of the crease's angle; "
+               "0: none may be thin",
        .details = "values below 5 save tetrahedra in sharp wedges only",
        .commands = judging},
       {.name = "improve LEVEL",
@@ -379,8 +379,8 @@ std::vector<Option> complex_options() {
        .low = 0.01,
        .high = 1000,
        .help =
-           "Distance of that box from the shape inside, relative to the largest side of the shape's bounding "
-           "box",
+           "Distance of the box of --domain box from the shape inside, relative to the largest side of the "
+           "shape's bounding box",
        .commands = refining | Option::check | Option::info},
       {.name = "feature-angle DEGREES",
        .place = at<&RunOptions::complex, &PlcOptions::feature_angle>,
