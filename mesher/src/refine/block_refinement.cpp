@@ -197,7 +197,7 @@ bool BlockRefinement::may_belong_to_block(Index vertex) const {
 }
 
 // Deals the entries to blocks: an entry of a cell, or of a triangle between cells, goes to a block if all
-// vertices of the cells belong to the block. Puts the other entries back.
+// vertices of the cells belong to the block. Puts the others back if they are still due.
 std::vector<std::vector<WorkQueue::Entry>> BlockRefinement::deal(const std::vector<WorkQueue::Entry>& taken) {
   constexpr std::uint16_t gone = Triangulation::no_owner - 1;
   std::vector<std::uint16_t> owner(taken.size());

@@ -11,9 +11,8 @@ namespace {
 constexpr double tet_offset = 0.05;
 // A cell whose volume is below this share of its longest edge cubed is flat.
 constexpr double least_volume = 1e-11;
-// Largest number of cells at a new vertex for which narrow cells may exceed the ratio. Between lines a vertex
-// may have as many cells as the product of the numbers of their vertices; in a mesh with bounded ratios it
-// has at most 60.
+// Largest number of cells at a new vertex for which narrow cells may exceed the ratio. A vertex between two
+// lines with m and n vertices may have m n cells; in a mesh with bounded ratios it has at most 60.
 constexpr std::size_t most_narrow_cells = 80;
 
 struct Shape {

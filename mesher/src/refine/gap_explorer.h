@@ -47,7 +47,7 @@ class GapExplorer final : public GapSize {
   std::size_t queries() const { return queries_; }
   /// Returns the number of vertices whose cells were explored, over all queries.
   std::size_t explored() const { return explored_; }
-  /// Returns the number of elements below the nodes of these cells whose distance was computed.
+  /// Returns the number of elements whose distance was computed, over all queries.
   std::size_t interviews() const { return interviews_; }
 
  private:

@@ -21,10 +21,10 @@ class UnresolvedPoints {
     Point point;
     Feature feature;
     Index object = none;   // index in objects_; none when resolved or withdrawn
-    Index vertex = none;   ///< the mesh vertex that it became
-    Index across = none;   ///< the mesh vertex that it faces across a gap
+    Index vertex = none;   ///< the mesh vertex that the point became
+    Index across = none;   ///< the mesh vertex that the point faces across a gap
     bool dormant = false;  ///< inserted only when a candidate warps to it
-    double apart = 0;      ///< a vertex of the same patch nearer than this can take its place
+    double apart = 0;      ///< a vertex of the same patch nearer than this takes the point's place
   };
 
   /// Keeps all by reference. `theta`: how far to warp (paper, Procedure 2).
@@ -53,7 +53,7 @@ class UnresolvedPoints {
   /// Returns whether a queue entry with this stamp is current. If not, the mesh has become finer there since:
   /// queues the point again, because other points may have larger balls now.
   bool due(Index point, std::uint32_t stamp);
-  /// Queues a point again after another insertion in its place, if it is still needed.
+  /// Queues a point again, if it is still needed, because another point was inserted instead.
   void queue_again(Index point) {
     if (points_[point].object != none) queue(point);
   }
