@@ -201,7 +201,8 @@ Index CollarPlacement::add_ball(Index curve, const PlaceOnCurve& centre, double 
   return static_cast<Index>(system_.balls_.size() - 1);
 }
 
-// On a curve between two vertices, the first and the last centre lie on the spheres of the vertices' balls.
+// Places the balls of a curve. If the curve is not closed, the first and the last centre lie on the spheres
+// of the balls at its ends.
 void CollarPlacement::add_on_curve(Index curve, std::span<const PlaceOnCurve> vertices) {
   const bool closed = plc_.curves[curve].closed;
   const double length = paths_.length(curve);
