@@ -28,7 +28,8 @@ constexpr double around = 0.3;
 // Edges longer than this factor times the target are divided.
 constexpr double longest = coarsening::CoarseningRule::longest_new;
 
-// Ratio of an edge to a short edge beside it; edges may grow from there by this much per unit of distance.
+// An edge beside a short edge may be `of_shortest` times as long; from there edges may grow by `growth` per
+// unit of distance.
 constexpr double of_shortest = 1.5, growth = 1;
 
 // Graded sizes are used only if they multiply the number of tets by at most `most_times`, plus `some`.

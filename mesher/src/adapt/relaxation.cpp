@@ -139,7 +139,8 @@ void Relaxation::propose_contraction(Operations& operations, Index vertex, doubl
   }
 }
 
-/// Returns the vertices joined to a vertex by an edge, and the first of those near enough to collapse onto.
+/// Returns the vertices joined to a vertex by an edge, and the `most_tries` nearest of those that it may be
+/// collapsed onto.
 Relaxation::Neighbours Relaxation::neighbours_of(Index vertex, const std::vector<Index>& star,
                                                  double below) const {
   Neighbours found;
