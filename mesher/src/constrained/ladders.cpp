@@ -183,7 +183,7 @@ class Ladders {
     }
   }
 
-  /// Finds the long sides of strips. Those of strips beside each other get equally many pieces.
+  /// Finds the long sides of strips. The long sides of strips beside each other get equally many pieces.
   void find_rails() {
     std::unordered_map<std::uint64_t, Index> number;
     std::vector<std::uint64_t> keys;
