@@ -58,9 +58,10 @@ struct Subject {
 };
 
 /// The tets that may exceed the radius-edge bound if their angles are bounded: dihedral angles from below,
-/// and dihedral and face angles by 150 degrees. Only marked tets may, or any tet if a file has no marks. If
-/// features meet at less than twice the lower bound, half the angle between them is enough. If the input
-/// forces an edge of the tet to be short, half the angle that this edge leaves is enough.
+/// and dihedral and face angles by 150 degrees. Only marked tets and collars of a coarsened mesh may, or any
+/// tet if a file has no marks. If features meet at less than twice the lower bound, half the angle between
+/// them is enough. If the input forces an edge of the tet to be short, half the angle that this edge leaves
+/// is enough.
 class ThinCells {
  public:
   static constexpr double largest_angle = 150;  ///< degrees
@@ -150,8 +151,8 @@ void check_tets(const Subject& subject, CheckReport& report, Findings& findings)
 /// inside a region.
 void check_interior_nodes(const Subject& subject, CheckReport& report, Findings& findings);
 
-/// Checks tets against each other and against the listed faces. Visits each edge once, so it also finds their
-/// median length.
+/// Checks tets against each other and against the listed faces. Visits each edge once, so it also finds the
+/// median length of the edges.
 void check_conformity(const Subject& subject, CheckReport& report, Findings& findings);
 
 void check_watertight(const Subject& subject, Findings& findings);
