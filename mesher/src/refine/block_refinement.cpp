@@ -329,8 +329,8 @@ BlockRefinement::Fate BlockRefinement::destroy(const WorkQueue::Item& item, Bloc
   }
 }
 
-// Inserts a candidate. Returns false if the block has no room for it. If no part of the complex is found from
-// the zone's vertices, the new cells get the region of the old ones.
+// Inserts a candidate. Returns false if the block has no room for it. If no vertex of the zone has nodes
+// (SurfaceNodes), the new cells get the region of the old ones.
 bool BlockRefinement::insert(const Candidate& candidate, Block block, Worker& worker) {
   ConflictZone& zone = worker.zone;
   const bool quiet = std::ranges::none_of(zone.vertices, [&](Index v) { return nodes_.any_at(v); });

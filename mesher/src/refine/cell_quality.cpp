@@ -45,12 +45,12 @@ void CellQuality::judge(Index cell, WorkQueue& queue, bool leaves_narrow_cells) 
       region == 0 ? std::max(domain_.options.exterior_radius_edge, domain_.options.bounds.radius_edge)
                   : domain_.options.bounds.radius_edge;
   const bool skinny = r2 > bound * bound * shape.shortest_squared_edge;
-  // Cocircular input makes cells whose volume is only rounding noise although their radius-edge ratio is
-  // small. Cells with all vertices on one patch are handled when the queue is empty.
   const auto fills_gap = [&] {
     return (region == 0 && facing_sheets_.is_within(cell, bound)) ||
            (leaves_narrow_cells && is_narrow(cell, region));
   };
+  // Cocircular input makes cells whose volume is only rounding noise although their radius-edge ratio is
+  // small. Flat cells with all vertices on one patch are handled when the queue is empty.
   if ((skinny || (shape.flat && region != 0 && !mesh_.on_one_patch(v))) && !fills_gap()) {
     if (domain_.in_box(centre)) queue.push(WorkQueue::skinny_cells, r2, {cell, mesh_.generation(cell)});
     return;

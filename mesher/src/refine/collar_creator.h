@@ -75,9 +75,9 @@ class CollarCreator {
   /// Precondition: the queue is empty, so the ends of creases have their balls.
   bool create_remaining();
 
-  /// Returns the gap size in the current mesh.
+  /// Returns the explorer of gap sizes in the current mesh.
   GapExplorer& gap_size();
-  /// Returns the explorer of gaps; null unless it was used.
+  /// Returns the explorer of gap sizes; null if it was never used.
   const GapExplorer* gap_explorer() const { return gap_.get(); }
   /// For tests: sets a function to call for every ball.
   void observe(std::function<void(const CollarBall&)> observer) { observer_ = std::move(observer); }

@@ -67,7 +67,7 @@ class CurveChains {
   /// Returns the subsegment in whose protective ball a candidate with this zone lies deepest (paper,
   /// Procedure 2); none if it encroaches none.
   Index encroached(const ConflictZone& zone, const Candidate& candidate) const;
-  /// Returns whether any ball is found from this mesh vertex.
+  /// Returns whether the centre of any ball lies in the Voronoi cell of this mesh vertex.
   bool any_at(Index mesh_vertex) const { return balls_.first_at(mesh_vertex) != none; }
   /// Returns the unresolved end of a subsegment that is inserted instead of a candidate that encroaches the
   /// subsegment: of the medial ends, the one nearer to the candidate. None if there is no such end.

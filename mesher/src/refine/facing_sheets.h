@@ -40,7 +40,7 @@ class FacingSheets {
   /// ends.
   std::optional<double> parameter_across(const Subsegment& s, const Vector& along, Index vertex) const;
 
-  /// Records that these vertices face each other; the second one may be about to be inserted.
+  /// Records that these vertices face each other; the second one exists or is inserted next.
   void note_pair(Index a, Index b);
   /// Returns whether a cell is within the radius-edge bound if edges between vertices of a pair do not count.
   /// Several threads may call it at once, while no pairs are recorded.

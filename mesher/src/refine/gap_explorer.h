@@ -64,8 +64,8 @@ class GapExplorer final : public GapSize {
 
   void find_borders();
   double explore(const Feature& at, const Point& x, double bound);
-  /// Calls witness(a, b, c) with the points of each element below the nodes whose features do not contain
-  /// `at`, if the element is nearer to x than the bound, which may be lowered.
+  /// Calls witness(a, b, c) with the points of each element below the nodes that is nearer to x than the
+  /// bound and whose features do not contain `at`. `witness` may lower the bound.
   template <class Found>
   void interview(std::span<const Index> nodes, const Feature& at, const Point& x, const double& squared_bound,
                  const Found& witness);

@@ -7,7 +7,7 @@
 
 namespace collarmesh {
 
-/// The tets that replace the cells inside the collars, in mesh vertices.
+/// The tets that replace the cells inside the collars, with mesh vertices as corners.
 struct Stitched {
   struct Tet {
     std::array<Index, 4> corners;

@@ -57,16 +57,16 @@ class UnresolvedPoints {
   void queue_again(Index point) {
     if (points_[point].object != none) queue(point);
   }
-  /// Returns whether any point is found from this mesh vertex.
+  /// Returns whether any unresolved point lies in the Voronoi cell of this mesh vertex.
   bool any_at(Index mesh_vertex) const { return objects_.first_at(mesh_vertex) != none; }
-  /// Records that a point becomes this vertex, which may be about to be inserted.
+  /// Records that a point becomes this vertex, which exists or is inserted next.
   void resolve(Index point, Index vertex);
 
   /// Returns the point that a candidate with this zone warps to (paper, Procedure 2): of the points within
   /// theta r of the ball's centre, the one of lowest containment dimension. None if there is no such point.
   Index warp_target(const ConflictZone& zone, const Candidate& candidate) const;
-  /// Returns the only unresolved vertex of the complex that is found from this mesh vertex; none if there are
-  /// several or none.
+  /// Returns the only unresolved vertex of the complex in the Voronoi cell of this mesh vertex; none if there
+  /// are several or none.
   Index only_vertex_at(Index mesh_vertex) const;
 
   void cells_made(const ConflictZone& zone, Index vertex);
