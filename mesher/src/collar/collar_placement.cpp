@@ -142,7 +142,7 @@ CollarPlacement::Profile CollarPlacement::make_profile(Index curve, double from,
     if (s >= to) break;
     require_room(flat.back(), paths_.point(curve, s));
     s = std::min(to, s + sample_step * flat.back());
-    // There are two samples per radius, and balls are 1.2 radii apart.
+    // There are two samples per radius, and balls are 1.2 radii apart: fewer than three samples per ball.
     if (stopped(profile.parameters.size() / 3)) return {};
   }
   limit_slope(profile.parameters, radius_slope, closed, profile.radii);
