@@ -205,7 +205,7 @@ class Improvement {
 
   // Returns whether the tets that the change replaces or has read are as they were when the batch began. The
   // change depends on nothing else: places of corners, mesh faces, samples and curve edges only change with
-  // the tets there. This relies on complete stars; no change is proposed elsewhere.
+  // the tets there. This relies on complete stars; no change is proposed where stars are incomplete.
   bool is_untouched(const Change& change) const {
     const auto untouched = [&](Index t) { return complex()[t].alive && changed_in_[t] != changes_.now(); };
     return std::ranges::all_of(change.replacement.old, untouched) &&
