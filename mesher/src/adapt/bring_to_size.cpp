@@ -39,7 +39,7 @@ class Bringing {
  public:
   Bringing(TetMesh& mesh, const Plc& plc, MeshOptions options, const Execution& execution)
       : mesh_(mesh), plc_(plc), options_(std::move(options)), execution_(execution) {
-    options_.edges_per_hole = 0;  // a hole may have no edges but the existing ones
+    options_.edges_per_hole = 0;  // asks for no further edges around holes
   }
 
   bool run() {
@@ -60,7 +60,7 @@ class Bringing {
            (options_.max_vertices == 0 || mesh_.points.size() < options_.max_vertices);
   }
 
-  /// Inserts vertices that face each other at tets that miss their bounds, and improves what remains, in
+  /// Divides edges of tets that miss their bounds at places that face each other, and improves tets, in
   /// rounds.
   void face_each_other() {
     for (unsigned round = 0; round < rounds && may_go_on() && divide_crossing() > 0; ++round)

@@ -121,8 +121,8 @@ std::vector<EdgeDivision::LongEdge> EdgeDivision::long_edges(double longest) con
   return edges;
 }
 
-// Adds the edges of a face on a smooth patch, each with the patch; and the longest one, with none, if the
-// centre of the face is too far from the patch.
+// Adds the edges of a face on a smooth patch, each with the patch; and the longest one again, without a
+// patch, if the centre of the face is too far from the patch.
 void EdgeDivision::add_edges_of_face(const std::array<Index, 3>& face, Index patch,
                                      std::vector<EdgeOfPatch>& found) const {
   const auto& p = mesh().points;

@@ -12,7 +12,7 @@ namespace collarmesh::remeshing::adapting {
 
 namespace {
 
-// Collapses and divisions must leave at least this share of the quality of the worst tet around.
+// Collapses must leave at least this share of the quality of the worst tet around.
 constexpr double share_left = 0.3;
 // Edges are collapsed below these shares of the target, one share after the other.
 constexpr std::array lengths{0.05, 0.2, 0.5, 0.7};

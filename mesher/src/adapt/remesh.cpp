@@ -101,7 +101,7 @@ class Remeshing {
     made_.remeshing.tets_before = mesh().tets.size();
     measure_before();
     choose_size();
-    options_.mesh.edges_per_hole = 0;  // a hole may have no edges but the existing ones
+    options_.mesh.edges_per_hole = 0;  // asks for no further edges around holes
     if (!options_.mesh.bounds.tolerance)
       options_.mesh.bounds.tolerance =
           tolerance_of(made_.plc, options_.mesh.bounds, largest_size_, static_cast<int>(options_.order));
