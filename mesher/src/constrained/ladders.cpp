@@ -136,7 +136,8 @@ class Ladders {
     return *std::ranges::find_if(p, [&](Index v) { return v != a && v != b; });
   }
 
-  /// Finds the quadrilateral of an edge whose replacement by the other diagonal moves the surface by little.
+  /// Finds the quadrilateral of an edge. Returns false unless replacing the edge by the other diagonal is
+  /// possible and moves the surface by little.
   bool find_flat_quad(std::uint64_t key, Quad& quad) const {
     const auto found = edges_.find(key);
     if (found == edges_.end()) return false;

@@ -156,7 +156,8 @@ class Rod {
       mesh_.face_tag.push_back(rod_.plc_.patches[patch].tag);
     }
 
-    /// Adds the tets between the faces from one ring to the next and the vertex on the axis between these.
+    /// Adds the tets between the faces from one ring to the next and the vertex on the axis between the
+    /// rings.
     void add_between(std::size_t j) {
       for (std::size_t k = 0; k < ring_size(); ++k) {
         const Index a = at(j, k), b = at(j, k + 1), c = at(j + 1, k), d = at(j + 1, k + 1);
@@ -361,7 +362,8 @@ class Rod {
     return set_directions();
   }
 
-  /// Begins anywhere: at the middle of the shortest chord through the middle of a chord along a normal.
+  /// Begins at the middle of a chord along any normal. This chord and the shortest one through its middle
+  /// span the section.
   bool begin_loop(Section& first) const {
     constexpr unsigned directions = 48;
     const auto [a, b, c] = hierarchy_->corners(0);
@@ -554,7 +556,7 @@ class Rod {
       const Point &a = plc_.points[loop[i]], &b = plc_.points[loop[(i + 1) % loop.size()]];
       const double of_a = dot(a - end.centre, beside), of_b = dot(b - end.centre, beside);
       constexpr double near = 1e-7;
-      // The vertex at the end itself, if there is one.
+      // If a point of the curve lies in the direction, that point itself is the result.
       if (std::fabs(of_a) < near * reach_ && dot(a - end.centre, way) > 0) return {a, 0, 0};
       if (of_a * of_b >= 0) continue;
       const Point at = a + of_a / (of_a - of_b) * (b - a);
