@@ -95,8 +95,8 @@ class ThinCells {
   std::optional<NarrowPlaces> narrow_;  // none if thin tets may be anywhere
 };
 
-/// Returns for each point the feature of lowest dimension on which the mesh has it. Precondition:
-/// subject.match is filled in.
+/// Returns for each point the feature of lowest dimension that contains it, by the mesh's faces and edges.
+/// Precondition: subject.match is filled in.
 std::vector<TetMesh::VertexFeature> features_of(const Subject& subject);
 
 /// Items in groups by a key below `groups`; leaves out items whose key is none.
@@ -178,8 +178,8 @@ void check_shape_kept(const Subject& subject, CheckReport& report, Findings& fin
 void check_thickness_kept(const Subject& subject, CheckReport& report, Findings& findings);
 
 /// Compute the allowed distances. For straight curves and planar patches: a few times their own deviation
-/// from straight or planar, because vertices are extrapolated, but at most the complex's planar tolerance.
-/// For other features: the distance tolerance. Rounding is added to all.
+/// from straight or planar, because the mesh's vertices may be extrapolated from the complex's, but at most
+/// the complex's planar tolerance. For other features: the distance tolerance. Rounding is added to all.
 std::vector<double> curve_allowances(const Subject& subject);
 std::vector<double> patch_allowances(const Subject& subject);
 
