@@ -152,7 +152,8 @@ void check_core(const TetMesh& mesh, const Subject& subject, CheckReport& report
   check_core_angles(labelled, walls_below(mesh), subject.plc, bounds, report);
 }
 
-/// Judges a mesh of tets. `with_layers`: the mesh whose layers were cut into tets to make it, or null.
+/// Judges a mesh of tets. `with_layers`: null, or the mesh with layers that were cut into tets to make this
+/// one.
 void check_tet_mesh(const TetMesh& mesh, const TetMesh* with_layers, const Plc& plc,
                     const CheckOptions& options, const Execution& execution, CheckReport& report,
                     Findings& findings) {

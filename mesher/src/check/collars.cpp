@@ -152,7 +152,7 @@ class CollarCheck {
         At{centre(a)}, radius(a), At{centre(b)}, radius(b));
   }
 
-  // Finds consecutive balls: their centres are joined by an edge on their crease.
+  // Checks the circles of consecutive balls, whose centres are joined by an edge on their crease.
   void check_circles() {
     for (const auto& [p, q] : subject_.mesh.edges) {
       const Index a = ball_at_[p], b = ball_at_[q];

@@ -38,7 +38,7 @@ class ConformityCheck {
   }
 
  private:
-  // Collects the tets at a triangle; a side of the same tet that is given twice counts once.
+  // Collects the tets at a triangle. If a tet is listed twice, its side counts once, and the tet is reported.
   void collect_sides(std::span<const TriangleUse> sides) {
     sides_.clear();
     for (const TriangleUse& use : sides) {

@@ -44,7 +44,7 @@ double rounding_of(const TetMesh::Motion& motion, double r) {
   return (evaluations * evaluation + others) * unit_roundoff * r;
 }
 
-/// Checks one pair of groups.
+/// The check of one pair of groups.
 class PeriodicCheck {
  public:
   PeriodicCheck(const TetMesh& mesh, std::size_t number, Findings& findings)
@@ -268,7 +268,7 @@ bool commute(const TetMesh::Motion& f, const TetMesh::Motion& g, const Point& p)
 }
 
 /// Checks edges of a cell, where a node has images by two pairs and each image has an image by the other
-/// pair. If the motions commute there, both must be the same node.
+/// pair. If the motions commute there, both second images must be the same node.
 void check_corners(const TetMesh& mesh, const std::vector<std::optional<Map>>& maps, Findings& findings) {
   for (std::size_t i = 0; i < maps.size(); ++i)
     for (std::size_t j = i + 1; j < maps.size(); ++j) {

@@ -56,7 +56,7 @@ struct ListedSide {
   }
 };
 
-// Finds the patches with a region on both sides.
+// The patches with a region on both sides.
 class InnerPatches {
  public:
   explicit InnerPatches(const Subject& subject)
@@ -130,7 +130,7 @@ struct CurveSegments {
   std::vector<double> lengths;  // by curve
 };
 
-// Decides whether tags that are only numbers fit: whether most faces and edges of a sample lie on the patches
+// A test whether tags that are only numbers fit: whether most faces and edges of a sample lie on the patches
 // and curves of their tags. Such numbers change with the order of the facets.
 class Numbers {
  public:
@@ -402,7 +402,8 @@ class Placement {
     friend bool operator<(const PlaceOnCurve& a, const PlaceOnCurve& b) { return a.arc < b.arc; }
   };
 
-  // Makes edges of the edges of tets between consecutive points on a curve.
+  // Makes edges on curves: the border edges of a bent curve if they are known, otherwise the edges of tets
+  // between consecutive points on the curve.
   void make_edges() {
     report_.notes.emplace_back(mesh_.edges.empty()
                                    ? "The mesh lists no edges: those on curves were found by position."

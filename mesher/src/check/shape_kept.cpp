@@ -16,8 +16,8 @@ double volume_below_face(const TetMesh& mesh, const Point& apex, Index face) {
                            : volume_below(apex, curved_face(mesh, face));
 }
 
-/// Returns a point of the shell in the complex. With an apex far away, small volumes would be lost in
-/// cancellation.
+/// Returns a point of the shell in the complex, as an apex for volumes: with an apex far away, small volumes
+/// would be lost in cancellation.
 Point point_of(const Plc& plc, const Shell& shell) {
   return plc.points[plc.triangles[plc.patches[shell.patches[0]].first_triangle].points[0]];
 }

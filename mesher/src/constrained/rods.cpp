@@ -18,7 +18,7 @@ namespace constrained {
 namespace {
 
 constexpr double full_turn = 2 * std::numbers::pi;
-// Rods are thinner than this share of the size, and at least this many radii long.
+// The largest radius of a rod, as a share of the size, and its least length, in radii.
 constexpr double thinner_than_size = 0.5, least_length = 8;
 // Ratio of the largest to the smallest distance of the patch from the axis in one section.
 constexpr double roundest = 1.25;
@@ -30,14 +30,13 @@ constexpr double share_around = 0.75, share_along = 0.1;
 constexpr std::size_t fewest_in_ring = 8, most_in_ring = 24;
 // The smallest angle of tets, a little above the bound on thin tets, degrees.
 constexpr double least_angle = 8.2;
-// Share of the tolerance that the patch may be away from chords around the rod where it is looked at.
+// Shares of the tolerance that the measured distance of the patch from chords around the rod may reach.
 constexpr double share_measured = 0.95, share_measured_of_bent = 0.6;
 constexpr std::size_t rays_of_section = 16, most_sections = 200'000, fewest_rings_of_loop = 8;
 constexpr double step_in_radii = 1, rays_per_radius = 8;
 
-/// Returns the largest distance of rings with this many vertices, in radii. The angle at an edge from the
-/// axis to a ring, between the planes through the axis and through the next vertex of the ring, is the
-/// smallest one.
+/// Returns the largest distance of rings with this many vertices, in radii. The smallest angle is that at an
+/// edge from the axis to a ring, between the planes through the axis and through the next vertex of the ring.
 double largest_spacing(std::size_t in_ring) {
   const double chord = 2 * std::sin(std::numbers::pi / static_cast<double>(in_ring)),
                slope = std::tan(least_angle * std::numbers::pi / 180) / chord, rest = slope * slope - 0.25;
@@ -107,7 +106,7 @@ class Rod {
   }
 
  private:
-  /// Numbers the vertices of a rod in a mesh, and adds its elements.
+  /// The filling of a rod: numbers its vertices in a mesh, and adds its elements.
   class Filling {
    public:
     Filling(const Rod& rod, TetMesh& mesh)
@@ -157,7 +156,8 @@ class Rod {
       mesh_.face_tag.push_back(rod_.plc_.patches[patch].tag);
     }
 
-    /// Adds the tets between the faces from one ring to the next and the vertex on the axis between these.
+    /// Adds the tets between the faces from one ring to the next and the vertex on the axis between the
+    /// rings.
     void add_between(std::size_t j) {
       for (std::size_t k = 0; k < ring_size(); ++k) {
         const Index a = at(j, k), b = at(j, k + 1), c = at(j + 1, k), d = at(j + 1, k + 1);
@@ -362,7 +362,8 @@ class Rod {
     return set_directions();
   }
 
-  /// Begins anywhere: at the middle of the shortest chord through the middle of a chord along a normal.
+  /// Begins at the middle of a chord along any normal. This chord and the shortest one through its middle
+  /// span the section.
   bool begin_loop(Section& first) const {
     constexpr unsigned directions = 48;
     const auto [a, b, c] = hierarchy_->corners(0);
@@ -546,7 +547,8 @@ class Rod {
     return have_vertices();
   }
 
-  /// Returns the point of the curve around an end in a direction; `triangle` is none if there is none.
+  /// Returns the point of the curve around an end in a direction; its `triangle` is none if there is no such
+  /// point.
   Hit on_curve(const RodEnd& end, const Section& section, const Vector& way) const {
     const std::vector<Index> loop = points_of(plc_.curves[end.curve]);
     const Vector beside = cross(section.along, way);
@@ -554,7 +556,7 @@ class Rod {
       const Point &a = plc_.points[loop[i]], &b = plc_.points[loop[(i + 1) % loop.size()]];
       const double of_a = dot(a - end.centre, beside), of_b = dot(b - end.centre, beside);
       constexpr double near = 1e-7;
-      // The vertex at the end itself, if there is one.
+      // If a point of the curve lies in the direction, that point itself is the result.
       if (std::fabs(of_a) < near * reach_ && dot(a - end.centre, way) > 0) return {a, 0, 0};
       if (of_a * of_b >= 0) continue;
       const Point at = a + of_a / (of_a - of_b) * (b - a);
@@ -576,7 +578,7 @@ class Rod {
   std::vector<Section> sections_;
   Vector aim_;  // direction of the vertex at the second end
   std::size_t in_ring_ = 0, steps_ = 0;
-  std::size_t shift_ = 0;  // the place in the last ring that the first one of the ring after it faces
+  std::size_t shift_ = 0;  // in a loop: vertex k of the ring after the last is k - shift_ of the first
   std::vector<std::vector<Point>> rings_;
   std::vector<Point> axis_;
 };

@@ -16,7 +16,7 @@ namespace {
 
 bool outside(const Plc::Patch& patch) { return patch.regions[0] == 0 && patch.regions[1] == 0; }
 
-// The features to keep, and their new numbers by old ones; `none` for removed features.
+// The features to keep, and their new numbers by old numbers; `none` for removed features.
 struct KeptNumbers {
   std::vector<Index> kept, number;
 

@@ -396,7 +396,7 @@ WorkCounts Refinement::work_counts() const {
   return counts;
 }
 
-// Returns the number of vertices that only cells in collars have: no cell outside and no stitched tet.
+// Returns how many vertices of cells in collars belong to no cell outside and no stitched tet.
 std::size_t Refinement::ripped_out() const {
   enum : std::uint8_t { elsewhere, ripped, kept };
   std::vector<std::uint8_t> where(mesh_.vertex_count(), elsewhere);
