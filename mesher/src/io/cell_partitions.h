@@ -8,7 +8,8 @@
 /// the tets around it or, if there are none, to the lowest of all. Cost: linear.
 namespace collarmesh::io {
 
-/// Partition numbers that are read must be below this: formats have 32 bits for them, and some count from 1.
+/// Partition numbers read from files must be below this: formats have 32 bits for them, and some count from
+/// 1.
 constexpr Index most_partitions = 0x7fffffff;
 
 std::vector<Index> partitions_of_faces(const TetMesh& mesh);
