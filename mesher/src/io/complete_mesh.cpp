@@ -26,7 +26,7 @@ void turn_cell(TetMesh& mesh, CellKind kind, std::size_t i) {
 }
 
 /// Reverses all cells of a kind if most are negative, because programs differ in the order of corners. Cells
-/// whose orientation differs from most others are really inverted, so they stay unchanged.
+/// that are negative then are really inverted, and stay so.
 void orient(TetMesh& mesh, CellKind kind) {
   const std::size_t count = count_of(mesh, kind);
   std::size_t negative = 0, positive = 0;
