@@ -74,7 +74,7 @@ class Snapper {
     return std::move(report_);
   }
 
-  // Undoes the changes since `before` at places with triangles that these parts still have to examine.
+  // Undoes the changes since `before` at places with triangles that the parts `by` still have to examine.
   SnapReport keep_settled(const Draft& before, std::size_t done_before, SnapState::By by) {
     const Draft after = state_.triangles().compacted();
     const std::vector<bool> unseen = state_.unseen(by);
