@@ -23,8 +23,8 @@ struct HashOfTriangle {
 template <class Value>
 using ByTriangle = std::unordered_map<std::array<Index, 3>, Value, HashOfTriangle>;
 
-// Largest number of groups that are moved; 2 to this power is the largest number of copies of the complex.
-// Groups of further pairs stay where they are.
+// Largest number of groups that are moved. So there are at most 2^6 copies of the complex. Groups of further
+// pairs stay where they are.
 constexpr std::size_t most_moved = 6;
 
 std::vector<Index> keys_of(const std::unordered_map<Index, Index>& map) {
