@@ -69,7 +69,7 @@ std::string each_line_of(const std::string& file, const std::string& text) {
   return named;
 }
 
-/// Builds complexes from the input files. Prints the changes made for each.
+/// A builder of complexes from the input files. Prints the changes made for each.
 class InputSource : public ComplexSource {
  public:
   /// Keeps references to all arguments.

@@ -65,7 +65,7 @@ void check_against_further(const TetMesh& mesh, ComplexInput& input, const RunOp
                            const Execution& execution, CheckReport& report, RepairReport& repair) {
   std::vector<RepairOptions> all = further_repairs(options.repair, repair);
   all.insert(all.begin(), options.repair);
-  constexpr double size = 1, diagonal = 20;  // the ratio of the default size
+  constexpr double size = 1, diagonal = 20;  // in the ratio of the default size to the diagonal
   for (const RepairOptions& coarser : coarser_repairs(options.repair, size, diagonal)) all.push_back(coarser);
   for (RepairOptions& each : all)
     if (!each.wrap_at_once) each.target_size = options.mesh.size;  // collapses features, as `mesh` does

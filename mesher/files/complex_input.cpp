@@ -114,7 +114,7 @@ ComplexInput::ComplexInput(const std::vector<std::string>& paths, InputReading r
     : reading_(std::move(reading)), cad_(reading_.guard) {
   const CadReading cad{[&](double diagonal) { return share_of_triangles * reading_.distance(diagonal); },
                        reading_.overlap, reading_.threads};
-  Tag largest_named = 0;  // numbers in names refer to one file
+  Tag largest_named = 0;  // largest tag of named files so far; their tags must differ
   for (const std::string& path : paths) {
     reading_.stop();
     const std::string file = existing_file(path);
@@ -172,8 +172,8 @@ Plc ComplexInput::build_anew(const PlcOptions& options, const RepairOptions& rep
   return plc;
 }
 
-/// Gives features the numbers of the first complex with these options and target size, to which names and
-/// sizes refer.
+/// Gives features the numbers that they had in the first complex with these options and target size, because
+/// names and sizes refer to those numbers.
 void ComplexInput::keep_numbers(const PlcOptions& options, const RepairOptions& repair, Plc& plc) {
   if (!plc.numbered_patches && !plc.numbered_curves) return;
   if (first_ && all_of(first_->options) == all_of(options) && first_->target_size == repair.target_size)

@@ -47,7 +47,7 @@ StageReached stage_now;
 extern "C" void on_interrupt(int number) {
   interrupted.store(true, std::memory_order_relaxed);
   if (signals.fetch_add(1, std::memory_order_relaxed) < 2) return;
-  std::signal(number, SIG_DFL);  // the next signal kills the program
+  std::signal(number, SIG_DFL);  // the signal raised next kills the program
   std::raise(number);
 }
 
@@ -175,7 +175,7 @@ void stop_if_interrupted() {
 
 namespace {
 
-/// Watches a command in a thread. If the command does not end in time, ends the program.
+/// A thread that watches a command. If the command does not end in time, ends the program.
 class Watcher {
  public:
   /// Starts the thread. Throws std::system_error if the system can create none.

@@ -34,7 +34,7 @@ constexpr std::string_view kept_prefix = "kept-";
 
 std::mutex staged_mutex;  // guards the following variables
 
-/// Locks `staged_mutex`. The thread may hold it already, if memory runs out while it does.
+/// A lock on `staged_mutex`. The thread may hold the mutex already if memory runs out meanwhile.
 class StagedLock {
  public:
   StagedLock() {

@@ -87,7 +87,7 @@ Clock::rep from_now(double seconds) {
       .count();
 }
 
-/// Blocks SIGCHLD during its lifetime, so that the supervisor can wait for the end of a child.
+/// A block of SIGCHLD during its lifetime, so that the supervisor can wait for the end of a child.
 class ChildSignal {
  public:
   ChildSignal() {

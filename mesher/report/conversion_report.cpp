@@ -85,7 +85,7 @@ std::size_t count_names(const TagNames& names, unsigned which) {
   return count;
 }
 
-/// Counts cells of a dimension for which `holds(kind, cell)`.
+/// Counts cells of a dimension for which `holds(kind, cell)` is true.
 template <class Holds>
 std::size_t count_cells(const TetMesh& mesh, std::size_t dimension, const Holds& holds) {
   std::size_t count = 0;

@@ -35,7 +35,7 @@ namespace collarmesh::distributed {
 
 namespace {
 
-/// Initializes MPI and PETSc for its lifetime.
+/// An owner of MPI and PETSc, which are initialized during its lifetime.
 class Session {
  public:
   Session() {
@@ -84,8 +84,8 @@ class Session {
                   failure.what()));
 }
 
-/// Does work that is not collective and may end the program. If it ends on one rank, it ends on all, and the
-/// first such rank reports the reason.
+/// Does work that is not collective and may end the program. If the program ends on one rank, it ends on all,
+/// and the first such rank reports the reason.
 void together(const std::function<void()>& work) {
   std::exception_ptr thrown;
   std::optional<process::Stopped> stopped;

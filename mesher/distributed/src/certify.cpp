@@ -166,7 +166,7 @@ class Certification {
     findings_.add(guarantee, where, {}, message, std::forward<Arguments>(arguments)...);
   }
 
-  /// Returns whether this rank judges a point: a vertex or, after these, the node of an edge.
+  /// Returns whether this rank judges a point. The vertices come first, then the nodes of edges.
   bool owns(std::size_t point) const {
     return point < mesh_->vertices ? vertices_.owned(point) : edges_.owned(point - mesh_->vertices);
   }

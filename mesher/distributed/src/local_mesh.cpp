@@ -24,7 +24,7 @@ template <class Visit>
 std::size_t for_each_place(DM dm, PetscScalar* values, const Visit& visit) {
   PetscSection section = nullptr;
   call(DMGetCoordinateSection(dm, &section));
-  PetscInt first = 0, end = 0;  // the points that the section knows
+  PetscInt first = 0, end = 0;  // the range of points in the section
   call(PetscSectionGetChart(section, &first, &end));
   std::size_t seen = 0, edges = 0;
   for (const PetscInt depth : {0, 1}) {

@@ -421,8 +421,8 @@ class Placement {
     return around;
   }
 
-  /// Moves forward again those of the vertices that moved back whose tets permit it by now. Returns false if
-  /// there are none.
+  /// Moves vertices that moved back forward again, if their tets permit that by now. Returns false if there
+  /// are none.
   bool try_again(unsigned sweep) {
     std::vector<PetscInt> wishes(mesh_->points.size(), 0);
     for (std::size_t v = 0; v < wishes.size(); ++v) wishes[v] = has_way_[v] && back_[v] > 0 ? 1 : 0;

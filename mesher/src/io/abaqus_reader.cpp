@@ -114,7 +114,7 @@ struct ElementType {
     return is_hexahedron() ? abaqus_pyramid_order.size() : shape_of(kind).nodes(order);
   }
 };
-/// The longest prefix counts: c3d10m is a c3d10, c3d20 is not a c3d2.
+/// The longest matching prefix determines the type: c3d10m is a c3d10, c3d20 is not a c3d2.
 constexpr ElementType element_types[] = {
     {"c3d4", CellKind::tet, 1},          {"c3d10", CellKind::tet, 2},
     {"dc3d4", CellKind::tet, 1},         {"dc3d10", CellKind::tet, 2},
@@ -163,7 +163,7 @@ struct Set {
 struct CellPlace {
   CellKind kind = CellKind::tet;
   Index index = 0;
-  std::optional<unsigned> half = {};  ///< of a pyramid of second order that the file has as two tets
+  std::optional<unsigned> half = {};  ///< which half of a pyramid that is two tets in the file
 };
 
 class AbaqusReader {
@@ -447,8 +447,8 @@ class AbaqusReader {
     });
   }
 
-  /// Sets the tags of cells. If a cell is in several sets, one with a name of ours counts, or else the first
-  /// one of an *ELSET (but not the set of everything), or else that of its *ELEMENT.
+  /// Sets the tags of cells. If a cell is in several sets, a set with a name of ours decides; else the first
+  /// *ELSET (but not the set of everything); else the set of its *ELEMENT.
   void tag_cells() {
     Tagged tagged;
     for (const CellKind kind : all_cell_kinds) {
@@ -519,8 +519,8 @@ class AbaqusReader {
     }
   }
 
-  /// Returns our cell's side for S1 and so on; nothing for a face without area, and for the second part of a
-  /// base.
+  /// Returns our cell's side for S1 and so on; nothing for a face without area, and for the second half's
+  /// part of a pyramid's base.
   static std::optional<std::size_t> side_of(const CellPlace& place, unsigned number) {
     if (place.half) return side_of_pyramid(*place.half, number);
     const auto numbers = abaqus_faces(place.kind);

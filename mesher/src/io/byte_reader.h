@@ -12,8 +12,8 @@
 
 namespace collarmesh::io {
 
-/// Reads plain values of either byte order from memory and knows its position. Every failure is a ReadError
-/// "PATH: byte N: ...".
+/// A reader of plain values, in either byte order, from memory. It knows its position. Every failure is a
+/// ReadError "PATH: byte N: ...".
 class ByteReader {
  public:
   /// `first_byte` is the position of `bytes` in the file. Precondition: `path` and `bytes` outlive the

@@ -41,7 +41,7 @@ struct Cell {
   Index partition = none;
 };
 
-/// A part of an entity, in one partition or between several, of which only the first is kept.
+/// A part of an entity, in one partition or between several; only the first partition is stored.
 struct PartitionEntity {
   std::size_t parent_dimension = 0;
   int parent = 0;
@@ -544,7 +544,7 @@ void add_features(const Contents& contents, TetMesh& mesh) {
     mesh.features.push_back({node.dimension, node.dimension == 3 ? none : feature_of(node.entity)});
 }
 
-/// Adds one value for each cell of a kind, 0 where the file gives none, within these bounds.
+/// Adds one value for each cell of a kind, limited to these bounds; 0 where the file gives none.
 template <class T>
 void add_data(Contents& contents, std::string_view name, CellKind kind, double least, double most,
               std::vector<T>& data) {
@@ -565,7 +565,7 @@ void add_once(Tag tag, std::vector<Tag>& tags) {
   if (at == tags.end() || *at != tag) tags.insert(at, tag);
 }
 
-/// Joins links of one motion. Only in our own files does each tag cover whole faces.
+/// Joins links with the same motion. Call it only for our own files, in which each tag covers whole faces.
 void add_periodic(const Contents& contents, TetMesh& mesh) {
   for (const SurfaceLink& link : contents.links) {
     const auto alike = [&](const TetMesh::PeriodicFaces& faces) {

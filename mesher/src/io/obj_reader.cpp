@@ -19,8 +19,8 @@ namespace collarmesh::io {
 
 namespace {
 
-/// An element of an .obj file. Faces may come before their vertices, so indices are checked at the end, with
-/// the line.
+/// An element of an .obj file. Faces may come before their vertices, so indices are checked at the end;
+/// `line` is for errors.
 struct ObjElement {
   std::size_t first_corner, line;
   bool is_face;

@@ -192,7 +192,7 @@ class Body {
     return 0;
   }
 
-  /// Returns our own column; past the last column if there is none.
+  /// Returns the column of our tags; past the last column if there is none.
   static std::size_t tag_column(const PlyElement& element) {
     const auto found =
         std::find_if(element.properties.begin(), element.properties.end(), [](const Property& p) {

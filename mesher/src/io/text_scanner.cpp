@@ -59,7 +59,7 @@ Index TextScanner::count(std::string_view what, std::size_t least_bytes) {
   const std::string_view text = word(what);
   std::uint64_t value = 0;
   if (!parse(text, value)) fail(fmt::format("{}, an integer of at least 0", what), text);
-  // One more, because the last line may lack its line end.
+  // One more byte, because the last line may lack its line end.
   if (value > (left() + 1) / least_bytes || value >= none)
     fail(fmt::format("{} is {}, but only {} bytes follow; the file is cut off or its header is wrong", what,
                      value, left()));

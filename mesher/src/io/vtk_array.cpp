@@ -29,7 +29,7 @@ constexpr std::array<XmlType, 10> xml_types{{{"Int8", NumberType::i8},
                                              {"Float32", NumberType::f32},
                                              {"Float64", NumberType::f64}}};
 
-/// Takes bytes from the front of the stored data.
+/// A reader that takes bytes from the front of the stored data.
 class Stored {
  public:
   Stored(std::string_view text, bool base64) : text_(text), base64_(base64) {}

@@ -55,7 +55,7 @@ float finite(double value) {
   return static_cast<float>(std::min(value, double{std::numeric_limits<float>::max()}));
 }
 
-/// Makes the arrays of a grid, several at once.
+/// A maker of a grid's arrays, several at once.
 class GridMaker {
  public:
   explicit GridMaker(const TetMesh& mesh) : mesh_(mesh) {

@@ -1,5 +1,5 @@
-// Reads VTK's legacy format for unstructured grids, versions 1 to 5.1, text and binary: tetrahedra, triangles
-// and lines with their labels; skips other data.
+// Reads VTK's legacy format for unstructured grids, versions 1 to 5.1, text and binary: tetrahedra, prisms,
+// pyramids, triangles, quadrangles and lines with their labels; skips other data.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -106,8 +106,8 @@ class Curving {
 
   /// Lists the sides that the core shares with layers as faces of no patch: nodes inside regions may move for
   /// curved tets, but nodes on such faces stay in the middle of their edges, as the cells of layers need.
-  /// `sides`: those of all tets of the core, sorted. Call it before other faces are listed, because these
-  /// decide on the edges that they share.
+  /// `sides`: those of all tets of the core, sorted. Call it before other faces are listed: where faces share
+  /// an edge, the last one listed decides.
   void keep_front_straight(const std::vector<std::array<Index, 3>>& sides, TetMesh& core) const {
     std::vector<std::array<Index, 3>> listed;
     for (const auto& face : mesh_.faces) listed.push_back(sorted(face));

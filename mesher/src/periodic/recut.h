@@ -56,7 +56,7 @@ class Recut {
     std::unordered_map<Index, Index> image_of;              // images of vertices on the group beside the
                                                             // moved part
     std::unordered_map<Index, Index> on_other;              // inverse of `image_of`
-    std::array<std::map<Index, Index>, 3> image, original;  // images of features, by dimension
+    std::array<std::map<Index, Index>, 3> image, original;  // of features, by dimension
   };
   struct Place {
     Index vertex;

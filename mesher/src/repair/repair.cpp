@@ -136,8 +136,8 @@ class Repairer {
   bool encloses_nothing() const { return encloses_nothing_; }
 
   /// Measures how much of the input's volume is kept, for surfaces that are closed or nearly so. Measures
-  /// nothing if parts of the input outside the result are all near it, because little volume can be lost
-  /// then.
+  /// nothing if all parts of the input outside the result are near the result, because little volume can be
+  /// lost then.
   KeptVolume kept_volume(const RepairReport& report) const {
     constexpr double far = 10;  // in tolerances
     const bool any_complex = std::ranges::any_of(draft_.soup_is_complex, [](bool b) { return b; });

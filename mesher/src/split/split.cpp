@@ -78,7 +78,7 @@ struct SidePair {
 void add_prisms(const TetMesh& mesh, const std::vector<SidePair>& pairs, Interfaces& interfaces) {
   for (const SidePair& pair : pairs) {
     const auto [a, b, c] = mesh.faces[pair.minus];
-    const auto [p, r, q] = mesh.faces[pair.plus];  // counterclockwise as seen from its own side
+    const auto [p, r, q] = mesh.faces[pair.plus];  // in the opposite orientation
     interfaces.prisms.push_back({a, b, c, p, q, r});
     interfaces.prism_tag.push_back(mesh.face_tag[pair.minus]);
     if (mesh.order() == 1) continue;
