@@ -133,7 +133,7 @@ void require_consistent(const RunOptions& o) {
   require(!o.layers.any() || !o.periodic.any(),
           "layers would move nodes of periodic faces away from their images; leave one of them out");
   require(!o.layers.any() || o.layers.tets || o.partitions == 0,
-          "partitions are of tetrahedra; add layers-tets, or leave partitions out");
+          "partitions consist of tetrahedra alone; add layers-tets, or leave partitions out");
   read_walls(o.layers);
   require(!o.split.any() || !o.periodic.any(),
           "split and keep-apart would give nodes on periodic faces copies without images; leave one of them "
