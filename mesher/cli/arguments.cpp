@@ -263,13 +263,13 @@ void check_partitions(const MeshArguments& a, bool from_mesh) {
   if (!a.cell_decomposition.empty() && !io::is_tet_mesh_format(a.output, a.output_format))
     reject("--cell-decomposition", "needs a mesh, but the output is a surface");
   if (!a.cell_decomposition.empty() && a.partitions == 0 && !from_mesh)
-    reject("--cell-decomposition", "is of partitions; say how many with --partitions");
+    reject("--cell-decomposition", "needs partitions; say how many with --partitions");
   if (a.ghost_cells == GhostCells::off) return;
   if (!output_is_among(io::formats_with_ghost_cells(), a))
     reject("--ghost-cells", "{} has no place for ghost cells; use {}", format_of_output(a),
            list(io::formats_with_ghost_cells()));
   if (a.partitions == 0 && !from_mesh)
-    reject("--ghost-cells", "is of partitions; say how many with --partitions");
+    reject("--ghost-cells", "needs partitions; say how many with --partitions");
 }
 
 }  // namespace
@@ -303,7 +303,7 @@ void check_batch(const MeshArguments& a) {
     if (report != "json" && report != "html")
       reject("--report", "'{}' is not json or html, as --batch asks for", report);
   if (const std::string both = parts_of_one_name(a); !both.empty())
-    reject("--batch", "would write one mesh of {}; rename one", both);
+    reject("--batch", "would write one mesh of {}; rename one of them", both);
   for (const std::string& input : a.inputs) check_mesh_arguments(part_of_batch(a, input));
 }
 
@@ -372,9 +372,9 @@ void check_repair_arguments(const RepairArguments& a) {
     reject("--output", "'{}' {}; use {}, or name one with --format", a.output, extension_list(a.output),
            list(files::surface_formats()));
   if (a.output == "-" && a.json)
-    reject("--json", "has no place on standard output beside the file; use --report");
+    reject("--json", "cannot print to standard output, where the file goes; use --report");
   if (!a.reports.empty() && report::is_html(a.reports.front()))
-    reject("--report", "is JSON here; pages (.html) are made of meshes");
+    reject("--report", "is JSON here; a page (.html) can be made of a mesh only");
   check_standard_input(a);
   check_outputs(a);
 }

@@ -78,7 +78,9 @@ class InputSource : public ComplexSource {
 
   RepairedPlc build(const RepairOptions& repair, const Execution&) override {
     if (repair.wrap_at_once)
-      stages_.print("wrapped: no mesh of the complex keeps every guarantee within the limit on vertices\n");
+      stages_.print(
+          "wrapping the input, because no mesh of the complex keeps every guarantee within the limit on "
+          "vertices\n");
     else if (repair.tolerance != arguments_.repair.tolerance)
       stages_.print(fmt::format(
           "trying --repair-tolerance {:.3g}: with the smaller tolerance, places far thinner than the sizes "

@@ -100,7 +100,7 @@ CheckReport check_against(const TetMesh& mesh, ComplexInput& input, const RunOpt
     check_against_further(mesh, input, options, execution, report, repair);
   if (repair.repaired)
     report.notes.emplace_back(
-        "the mesh was judged against the repaired complex, and that against the input:");
+        "the mesh was judged against the repaired complex, and the repaired complex against the input:");
   for (const std::string& line : describe(repair)) report.notes.push_back("the input was repaired: " + line);
   return report;
 }

@@ -84,7 +84,8 @@ std::string coarser_text() {
   if (stage == "start" || stage == "read")
     return "or read less at once: save the solids of a large assembly as separate files";
   if (stage == "complex")
-    return "or, as many intersecting facets take the time, try another --repair-tolerance or --repair wrap";
+    return "or, because many intersecting facets take the time, try another --repair-tolerance or --repair "
+           "wrap";
   return "or --size for a coarser mesh; `collarmesh mesh` also has --repair wrap, which ignores detail much "
          "finer than the size";
 }

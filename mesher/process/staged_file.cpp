@@ -161,7 +161,7 @@ void keep_mode_and_owner(const fs::path& before, const fs::path& staged) {
     // Only root may give files to another owner.
   }
   if (chmod(staged.c_str(), status.st_mode & 07777) != 0)
-    throw WriteError(fmt::format("{}: cannot keep its mode ({})", before.string(), reason()));
+    throw WriteError(fmt::format("{}: cannot keep its permissions ({})", before.string(), reason()));
 }
 
 /// Makes a second name for a file or, if links are not supported, a copy.

@@ -57,8 +57,7 @@ class Cutter {
  private:
   Samples samples_of(const TopoDS_Edge& edge) const {
     const BRepAdaptor_Curve curve(edge);
-    const int least =
-        curve.GetType() == GeomAbs_Line ? 2 : 3;  // number of points, so that a curve does not look straight
+    const int least = curve.GetType() == GeomAbs_Line ? 2 : 3;  // points, so that no curve counts as straight
     const GCPnts_TangentialDeflection cut(curve, options_.angle * std::numbers::pi / 180, options_.deflection,
                                           least);
     Samples samples;

@@ -333,11 +333,10 @@ class Sorter {
         outside_, "not part of any face and left out: outside of the closed solids, or on their faces",
         "to get nodes on lines and points, give them as segments and points of a .poly file beside this one");
     tell(partly_, "outside of the closed solids in part, and left out there", "end edges at the faces");
-    tell(
-        meeting_,
-        "not part of any face and left out: inside a solid, at a face or the middle of another edge, without "
-        "being cut there by OpenCASCADE's general fuse",
-        "end edges before faces, and cut them where others meet them");
+    tell(meeting_,
+         "not part of any face and left out, because OpenCASCADE's general fuse did not cut where a face or "
+         "the middle of another edge is met inside a solid",
+         "end edges before faces, and cut them where others meet them");
     if (!renumbered_.empty())
       topology_.notes.push_back(fmt::format(
           "{}: {} and gets its number there{}", file_, renumbered_.front(),

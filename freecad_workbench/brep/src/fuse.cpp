@@ -189,10 +189,10 @@ Fuse fuse_with_contacts(const std::vector<TopoDS_Shape>& shapes) {
   }
 }
 
-/// Fuses the shapes that may touch. If it makes no sound parts of some solids, moves these from `shapes` to
-/// `left_out` and fuses again: first the worst one, because it may spoil the others. Null if that fails.
+/// Fuses the shapes that may touch. If parts of some solids are unsound, moves the worst solid from `shapes`
+/// to `left_out` and fuses again, because it may have spoilt the others. Null if that fails.
 Fuse sound_fuse(std::vector<TopoDS_Shape>& shapes, std::vector<TopoDS_Shape>& left_out) {
-  constexpr int rounds = 3;  // after so many rounds all remaining solids are left out
+  constexpr int rounds = 3;  // from this round on all solids with unsound parts are left out
   for (int round = 1; shapes.size() > 1; ++round) {
     const Fuse fuse = fuse_with_contacts(shapes);
     if (!fuse) return nullptr;

@@ -97,7 +97,7 @@ void keep_open(const Sewn& sewn, const std::string& file, Topology& topology) {
   topology.solids.push_back(open);
 }
 
-/// Returns whether it is a closed shell with some faces missing, rather than a sheet.
+/// Returns whether a shell is a closed surface with some faces missing, rather than a sheet.
 bool nearly_closed(const TopoDS_Shape& shell) {
   return 2 * open_edges(shell).size() < subshapes(shell, TopAbs_EDGE).size();
 }

@@ -444,7 +444,7 @@ class Tessellator {
         if (found == middle_of.end()) continue;
         triangles[t] = {found->second, corners[1], corners[2]};
         triangles.push_back({corners[0], found->second, corners[2]});
-        i = std::size_t(-1);  // looks at all sides of the changed triangle
+        i = std::size_t(-1);  // begin again with all sides of the changed triangle
       }
   }
 

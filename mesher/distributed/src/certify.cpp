@@ -180,7 +180,8 @@ class Certification {
     if (order_ == 2) edges_.take_owners(std::span(owners).subspan(mesh_->vertices));
     for (std::size_t i = 0; i < points.size(); ++i)
       if (points[i] != owners[i])
-        find("shared_places", points[i], "A {} at {} has another place on the rank that owns it.",
+        find("shared_places", points[i],
+             "A {} at {} has another place on the rank that owns it than on this one.",
              i < mesh_->vertices ? "vertex" : "mid-side node", At{points[i]});
   }
 
@@ -192,8 +193,7 @@ class Certification {
       const Tag tag = mesh_->tet_tag[t];
       if (!expected_->volumes.contains(tag)) {
         find(guarantee::region_tag, centre,
-             "A tet at {} has the label {} for its region, which the complex does not have.", At{centre},
-             tag);
+             "A tet at {} is labelled with region {}, which the complex does not have.", At{centre}, tag);
         continue;
       }
       const TetQuality quality = measure_tet(*mesh_, t);

@@ -46,8 +46,9 @@ void check_corners(const std::vector<std::array<Index, n>>& entities, const TetM
     const Index corner = entities[i][k];
     const Point where = corner < mesh.points.size() ? mesh.points[corner] : Point{};
     findings.add(guarantee::valid_arrays, where, {i},
-                 "{} {} has point {} as corner {}{}; the mesh has {} points. Its writer is at fault.", kind,
-                 i, corner, k, repeated ? " again" : "", mesh.points.size());
+                 "{} {} has point {} as corner {}{}; the mesh has {} points. The program that wrote the mesh "
+                 "is at fault.",
+                 kind, i, corner, k, repeated ? " again" : "", mesh.points.size());
   }
 }
 
@@ -171,8 +172,8 @@ void check_collar_balls(const TetMesh& mesh, Findings& findings) {
     if (!on_crease || !is_finite(centre) || !std::isfinite(radius) || !(radius > 0))
       findings.add(
           guarantee::valid_arrays, {}, {b},
-          "Ball {} of a collar is centred at point {} with radius {:.6g}; it must be a point on a vertex "
-          "or curve, and the radius positive and finite, as its coordinates.",
+          "Ball {} of a collar is centred at point {} with radius {:.6g}; the point must lie on a vertex or "
+          "curve, the radius must be positive and finite, and the centre's coordinates finite.",
           b, point, radius);
   }
 }

@@ -170,8 +170,8 @@ void check_tet_mesh(const TetMesh& mesh, const TetMesh* with_layers, const Plc& 
 
 [[noreturn]] void refuse_mesh(const Finding& finding) {
   const std::string message = fmt::format(
-      "The mesh does not cover the shape that it should follow: {} Name the input that it was made of, or "
-      "adapt it without one.",
+      "The mesh does not cover the shape that it should follow: {} Name the input that the mesh was made "
+      "from, or adapt the mesh without an input.",
       finding.message);
   throw PlcError(message, {{PlcFault::Kind::intersection, message, finding.ids, finding.where}});
 }

@@ -63,8 +63,8 @@ class CollarCheck {
       if (way <= allowed) continue;
       findings_.add(
           guarantee::collar_centre, now, {balls_[b].point},
-          "The collar's ball at {} (radius {:.9g}) has its centre at point {}, which is {:.6g} away "
-          "from there, allowed is {:.6g}; the point was moved, or the ball is another point's.",
+          "The collar's ball at {} (radius {:.9g}) belongs to point {}, which is {:.6g} away from the ball's "
+          "centre, allowed is {:.6g}; the point was moved, or the ball belongs to another point.",
           At{centre(b)}, radius(b), balls_[b].point, way, allowed);
     }
   }
@@ -172,7 +172,7 @@ class CollarCheck {
         const double height = dot(to, axis);
         const double off = std::sqrt(std::max(0.0, squared_norm(to) - height * height));
         if (std::hypot(height, off - std::sqrt(squared)) < radius(k) * distance_slack)
-          report_circle(a, b, "meet in a circle that a third one reaches");
+          report_circle(a, b, "meet in a circle that a third ball reaches");
       }
     }
   }
@@ -196,7 +196,7 @@ class CollarCheck {
       const Point where = 0.5 * (subject_.point(mesh.tets[t][0]) + subject_.point(mesh.tets[t][1]));
       findings_.add(
           guarantee::collar_cells, where, {t},
-          "Tet {} at {} has {} centres of collars' balls among its corners, its kind {} asks for {}; a "
+          "Tet {} at {} has {} centres of collars' balls among its corners, but its kind ({}) asks for {}; a "
           "cell is missing or marked wrongly.",
           t, At{where}, centres, mesh.tet_collar[t], mesh.tet_collar[t]);
     }

@@ -87,8 +87,7 @@ class CurveCheck {
     }
     if (chain_.size() == edges_.size() + 1) return true;
     report_gap(subject_.point(chain_.back()),
-               fmt::format("has {} edges that its chain does not reach, which ends",
-                           edges_.size() + 1 - chain_.size()));
+               fmt::format("has {} edges beyond the end of its chain", edges_.size() + 1 - chain_.size()));
     return false;
   }
 

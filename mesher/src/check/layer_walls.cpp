@@ -90,7 +90,8 @@ class WallCheck {
           std::binary_search(allowed.begin(), allowed.end(), edge_key(node.edge[0], node.edge[1])))
         continue;
       findings_.add(guarantee::layer_walls, node.place, {node.edge[0], node.edge[1]},
-                    "The node of the wall's edge from point {} to {} at {} moved by {:.3g} with the layers.",
+                    "The mid-edge node of the wall's edge from point {} to {}, at {}, moved by {:.3g} when "
+                    "the layers were made.",
                     node.edge[0], node.edge[1], At{node.place}, off);
     }
   }

@@ -183,8 +183,8 @@ class PeriodicCheck {
       met.insert(found->second);
       if (!are_turned(f, images, found->second))
         findings_.add(guarantee::periodic_faces, at(mesh_.faces[f][0]), {f, found->second},
-                      "Face {} at {} and its image, face {}, of periodic pair {} look the same way, or their "
-                      "mid-edge nodes differ.",
+                      "Face {} at {} and its image, face {}, of periodic pair {} do not have opposite "
+                      "orientations, or their mid-edge nodes differ.",
                       f, At{at(mesh_.faces[f][0])}, found->second, number_);
     }
     for (const auto& [corners, f] : second_faces_)

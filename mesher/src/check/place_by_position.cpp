@@ -323,7 +323,7 @@ class Placement {
     }
     if (!tets_known_)
       report_.notes.emplace_back(
-          "The tags of the tets are none of the input's: their regions were found by position.");
+          "The input has none of the tags of the tets: their regions were found by position.");
   }
 
   double volume(Index t) const {
@@ -366,7 +366,7 @@ class Placement {
     report_.notes.emplace_back(
         mesh_.faces.empty()
             ? "The mesh lists no triangles: those on the boundary and the facets were found by position."
-            : "The tags of the triangles are none of the input's: those on the boundary and the facets "
+            : "The input has none of the tags of the triangles: those on the boundary and the facets "
               "were found by position.");
     mesh_.faces.clear();
     mesh_.face_regions.clear();
@@ -407,7 +407,7 @@ class Placement {
   void make_edges() {
     report_.notes.emplace_back(mesh_.edges.empty()
                                    ? "The mesh lists no edges: those on curves were found by position."
-                                   : "The tags of the edges are none of the input's: those on curves were "
+                                   : "The input has none of the tags of the edges: those on curves were "
                                      "found by position.");
     mesh_.edges.clear();
     mesh_.edge_mid_nodes.clear();

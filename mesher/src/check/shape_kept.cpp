@@ -50,7 +50,7 @@ void judge_volume(const Subject& subject, const std::string& what, double made, 
     findings.add(guarantee::volume_kept, where, {id},
                  "{}; allowed are {:.0f} %. Ask for a smaller size or distance.", found, 100 * largest);
   else
-    report.warnings.push_back(found + "; a smaller size or distance brings it nearer.");
+    report.warnings.push_back(found + "; a smaller size or distance reduces the difference.");
 }
 
 /// Names a closed surface by its first patches.

@@ -154,7 +154,7 @@ class ThicknessKept {
       findings.add(guarantee::thickness_kept, sums.where, {patch},
                    "{}; allowed are {:.0f} %. Ask for a smaller size or distance.", found, 100 * allowed);
     else
-      report.warnings.push_back(found + "; a smaller size or distance brings it nearer.");
+      report.warnings.push_back(found + "; a smaller size or distance reduces the difference.");
   }
 
   const Subject& subject_;

@@ -304,7 +304,8 @@ class AbaqusReader {
       const std::optional<CellNodes> pyramid = CellNodes::gathered(listed, abaqus_pyramid_order);
       if (pyramid) return *pyramid;
       lines_.fail(fmt::format(
-          "element {} is a hexahedron, which is not supported, unless its last four nodes are one", number));
+          "element {} is a hexahedron, which is not supported, unless its last four nodes are the same",
+          number));
     }
     CellNodes nodes;
     for (const Index node : listed) nodes.add(node);
@@ -399,10 +400,10 @@ class AbaqusReader {
     constexpr std::size_t most_repeats = 64;
     repeated_members_ += members;
     if (repeated_members_ > most_repeats * (places_.size() + 1))
-      lines_.fail(fmt::format(
-          "sets and surfaces have more than {} times as many members as there are elements; leave out what "
-          "repeats others",
-          most_repeats));
+      lines_.fail(
+          fmt::format("sets and surfaces have more than {} times as many members as there are elements; "
+                      "leave out repeated members",
+                      most_repeats));
   }
 
   void read_surface(const Keyword& keyword) {

@@ -36,10 +36,10 @@ const std::vector<std::int64_t>& numbers(const NamedPiece& named, const VtkPiece
   const auto found = arrays.find(name);
   if (found != arrays.end() && found->second.size() == count) return found->second;
   if (count == 0) return nothing;
-  throw ReadError(fmt::format(
-      "{}: expected an array '{}', by which the pieces are put together; save numbers of points and "
-      "cells with them, or use the pieces one by one",
-      named.path, name));
+  throw ReadError(
+      fmt::format("{}: expected an array '{}', by which the pieces are put together; save the pieces with "
+                  "numbers of points and cells, or use them one by one",
+                  named.path, name));
 }
 
 /// A point or a cell: its number in the whole mesh, its piece, and its index there.

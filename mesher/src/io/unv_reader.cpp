@@ -137,8 +137,8 @@ class UnvReader {
     const std::optional<CellNodes> nodes =
         CellNodes::gathered(std::span(listed).first(count), known->node_order());
     if (!nodes)
-      scan_.fail(fmt::format("element {} is a brick, which is not supported, unless its upper nodes are one",
-                             number));
+      scan_.fail(fmt::format(
+          "element {} is a brick, which is not supported, unless its upper nodes are the same", number));
     add_cell(known->kind, *nodes, mesh_);
     element_numbers_.add(number);
     elements_.push_back({known->kind, material, 0, false});

@@ -71,7 +71,7 @@ void MeshMaker::make(const Plc& plc, std::uint64_t seed) {
   if (take_rods()) return;
   if (may_be_better_constrained()) {
     if (!refines_with_few_vertices() &&
-        take_constrained(plc, "its curved walls or gaps are far thinner than the elements", Lengths::kept))
+        take_constrained(plc, "curved walls or gaps are far thinner than the elements", Lengths::kept))
       return;
     set_up(plc, seed);
   }

@@ -149,7 +149,7 @@ void refine(MeshJob& job, Fineness fineness) {
   if (job.hit_bound())
     result.message = describe_explosion(*job.plc, job.budget.most(), result.where) +
                      "; mend what nearly meets there, raise the repair tolerance (repair-tolerance), wrap "
-                     "it (repair wrap), or let it go on (max-vertices)";
+                     "it (repair wrap), or let the refinement go on (max-vertices)";
   if (result.status == MeshStatus::cancelled || result.status == MeshStatus::budget_hit) throw Ended();
   job.refined_with.bounds.lower_where_forced = result.has_narrow_cells;
 }

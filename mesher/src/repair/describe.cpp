@@ -74,7 +74,7 @@ std::vector<std::string> describe(const RepairReport& r) {
     lines.push_back(fmt::format("{} closed surface{} turned inside out{}", r.turned.count,
                                 plural(r.turned.count), first_place(r.turned)));
   if (r.stitched.count > 0)
-    lines.push_back(fmt::format("{} place{} where borders nearly met stitched, over at most {:.3g}{}",
+    lines.push_back(fmt::format("{} place{} stitched where borders nearly met, over at most {:.3g}{}",
                                 r.stitched.count, plural(r.stitched.count), r.stitched.size,
                                 first_place(r.stitched)));
   for (const FilledHole& hole : r.filled)
@@ -95,7 +95,7 @@ std::vector<std::string> describe(const RepairReport& r) {
                     r.second_sides, plural(r.second_sides)));
   if (r.merged.count > 0)
     lines.push_back(
-        fmt::format("{} triangle{} inside solids or enclosing nothing removed, an area of {:.4g}{}",
+        fmt::format("{} triangle{} removed that lay inside solids or enclosed nothing, an area of {:.4g}{}",
                     r.merged.count, plural(r.merged.count), r.merged.size, first_place(r.merged)));
   if (r.dropped.count > 0)
     lines.push_back(fmt::format("{} triangle{} of open sheets outside of all solids removed", r.dropped.count,
@@ -106,8 +106,8 @@ std::vector<std::string> describe(const RepairReport& r) {
                                 first_place(r.collapsed)));
   if (r.thin_chambers.count > 0)
     lines.push_back(fmt::format(
-        "{} chamber{} thinner than the tolerance of {:.3g} between facets that nearly coincide added to "
-        "the regions around {}, a volume of {:.3g}{}",
+        "{} chamber{} between nearly coincident facets, thinner than the tolerance of {:.3g}, added to the "
+        "regions around {}, a volume of {:.3g}{}",
         r.thin_chambers.count, plural(r.thin_chambers.count), r.tolerance,
         r.thin_chambers.count == 1 ? "it" : "them", r.thin_chambers.size, first_place(r.thin_chambers)));
   if (r.vanished.count > 0)

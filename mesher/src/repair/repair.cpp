@@ -545,10 +545,10 @@ void compare_regions(const Plc& before, RepairedPlc& repaired) {
 }
 
 PlcError given_up(const PlcError& error, const RepairOptions& options) {
-  return {
-      fmt::format("{} Its repair was given up after {} steps; try a smaller repair tolerance, or wrap it.",
-                  error.what(), options.max_work),
-      error.faults};
+  return {fmt::format("{} The repair was given up after {} steps; try a smaller repair tolerance, or wrap "
+                      "the input (repair wrap).",
+                      error.what(), options.max_work),
+          error.faults};
 }
 
 // Returns the size below which features are collapsed, absolute; 0: none are.

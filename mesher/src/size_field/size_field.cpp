@@ -212,8 +212,8 @@ SizeField size_field_from_json(const std::string& text, const Plc& plc,
     throw OptionError(
         "size field: a number is larger than any double; leave it out where no size is asked for");
   }
-  allow_only(json, "the top", {"size", "sources"});
-  const double everywhere = json.contains("size") ? positive(json, "the top", "size") : INFINITY;
+  allow_only(json, "the top level", {"size", "sources"});
+  const double everywhere = json.contains("size") ? positive(json, "the top level", "size") : INFINITY;
   std::vector<Source> sources;
   const Json list = json.value("sources", Json::array());
   if (!list.is_array()) fail("sources", "expected a list");
@@ -230,7 +230,7 @@ SizeField size_field_from_json(const std::string& text, const Plc& plc,
                        use ? use->add(called(i, list[i])) : 0});
   }
   if (sources.empty() && everywhere == INFINITY)
-    fail("the top", "it asks for no size; give 'size' or 'sources'");
+    fail("the top level", "it asks for no size; give 'size' or 'sources'");
   return [=](const Point& p) {
     double size = everywhere;
     for (const Source& source : sources) {

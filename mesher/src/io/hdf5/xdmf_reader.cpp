@@ -61,7 +61,7 @@ class Grid {
     grid_ = document_.child("Xdmf").child("Domain").child("Grid");
     if (!grid_) fail(path_, "expected Xdmf, Domain and Grid");
     if (grid_.attribute("GridType").as_string("Uniform") != std::string_view("Uniform"))
-      fail(path_, "expected a uniform grid; name a file of one");
+      fail(path_, "expected a uniform grid; name a file that has one");
     find_topology();
   }
 
