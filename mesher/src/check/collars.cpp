@@ -196,9 +196,8 @@ class CollarCheck {
       const Point where = 0.5 * (subject_.point(mesh.tets[t][0]) + subject_.point(mesh.tets[t][1]));
       findings_.add(
           guarantee::collar_cells, where, {t},
-          "Tet {} at {} has {} centres of collars' balls among its corners, but its kind ({}) asks for {}; a "
-          "cell is missing or marked wrongly.",
-          t, At{where}, centres, mesh.tet_collar[t], mesh.tet_collar[t]);
+          "Tet {} at {} has {} corners that are centres of collars' balls, but its mark demands {}; a cell is missing or marked wrongly.",
+          t, At{where}, centres, mesh.tet_collar[t]);
     }
   }
 

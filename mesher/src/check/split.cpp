@@ -174,7 +174,7 @@ class SplitCheck {
       if (const auto i = static_cast<Index>(k - 1), j = static_cast<Index>(k);
           all[i].node == all[j].node && touching.same(i, j) && !together.same(i, j))
         findings_.add(guarantee::split_sectors, at(all[i].node), {all[i].node, all[i].tet, all[j].tet},
-                      "Node {} at {} joins tets {} and {}, although patches between them are split.",
+                      "Node {} at {} joins tets {} and {}, although patches that separate them are split.",
                       all[i].node, At{at(all[i].node)}, all[i].tet, all[j].tet);
   }
 
