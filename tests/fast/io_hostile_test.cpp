@@ -75,7 +75,8 @@ TEST(IoAbaqus, RefusesBadFiles) {
                  "line 11: elements of type 'c3d20' are not supported");
   expect_refused("a.inp", replaced(inp, "C3D4", "C3D8"), "line 13: element 1 has the node 2, but");
   expect_refused("a.inp", replaced(inp, "7, 10", "1, 10"), "two elements have the number 1");
-  expect_refused("a.inp", replaced(inp, "1, 2, 1", "1, 2000000000, 1"), "line 19: the range from 1 to 2000000000");
+  expect_refused("a.inp", replaced(inp, "1, 2, 1", "1, 2000000000, 1"),
+                 "line 19: the range from 1 to 2000000000");
   expect_refused("a.inp", replaced(inp, "Upper, S3", "Lower, S3"),
                  "line 22: no earlier element set has the name");
   expect_refused("a.inp", replaced(inp, "*STEP", "*INCLUDE, INPUT=x"), "*INCLUDE is not supported");

@@ -69,10 +69,10 @@ void check_face_regions(const TetMesh& mesh, const Plc& plc, Findings& findings)
   for (Index f = 0; f < mesh.face_regions.size(); ++f)
     for (const Index region : mesh.face_regions[f])
       if (region >= plc.regions.size())
-        findings.add(
-            guarantee::valid_arrays, {}, {f},
-            "Face {} has region {} on a side, but the complex has only 0 to {}; check the mesh against the complex it was made from.",
-            f, region, static_cast<std::ptrdiff_t>(plc.regions.size()) - 1);
+        findings.add(guarantee::valid_arrays, {}, {f},
+                     "Face {} has region {} on a side, but the complex has only 0 to {}; check the mesh "
+                     "against the complex it was made from.",
+                     f, region, static_cast<std::ptrdiff_t>(plc.regions.size()) - 1);
 }
 
 void check_lengths(const TetMesh& mesh, Findings& findings) {

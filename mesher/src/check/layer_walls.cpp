@@ -125,9 +125,10 @@ class WallCheck {
       if (std::fabs(of.all - patch.area) <= rounding * of.all &&
           std::fabs(of.covered - patch.covered) <= rounding * of.all)
         continue;
-      findings_.add(guarantee::layer_walls, {}, {},
-                    "Layers cover an area of {:.9g} of {:.9g} on patch {}, but the report says {:.9g} of {:.9g}.",
-                    of.covered, of.all, patch.tag, patch.covered, patch.area);
+      findings_.add(
+          guarantee::layer_walls, {}, {},
+          "Layers cover an area of {:.9g} of {:.9g} on patch {}, but the report says {:.9g} of {:.9g}.",
+          of.covered, of.all, patch.tag, patch.covered, patch.area);
     }
   }
 

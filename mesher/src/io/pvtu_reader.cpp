@@ -149,7 +149,8 @@ std::vector<std::string> pieces_of_pvtu(const std::string& path) {
     const std::string source = piece.attribute("Source").value();
     if (source.empty()) throw ReadError(path + ": a Piece has no Source");
     std::string file = (fs::path(path).parent_path() / source).string();
-    if (!known.insert(file).second) throw ReadError(fmt::format("{}: two pieces have the same Source, {}", path, source));
+    if (!known.insert(file).second)
+      throw ReadError(fmt::format("{}: two pieces have the same Source, {}", path, source));
     files.push_back(std::move(file));
   }
   return files;

@@ -155,7 +155,8 @@ class LegacyReader {
   template <std::size_t count>
   void begin_data(std::size_t tuples, std::size_t expected, VtkPiece::Arrays& arrays,
                   const std::array<std::string_view, count>& wanted) {
-    if (tuples != expected) fail(fmt::format("expected data for {} points or cells, found data for {}", expected, tuples));
+    if (tuples != expected)
+      fail(fmt::format("expected data for {} points or cells, found data for {}", expected, tuples));
     tuples_ = tuples;
     arrays_ = &arrays;
     wanted_ = wanted;

@@ -44,8 +44,8 @@ std::vector<T> read_dataset(const std::string& path, const fs::path& file, const
   const hsize_t stored = H5Dget_storage_size(set);
   // A file may claim more values than it holds.
   if (count < 0 || static_cast<hsize_t>(count) > 2000 * (stored + 1))
-    fail(path,
-         fmt::format("{}:{} claims to have {} values in {} bytes; the file is damaged", file.string(), name, count, stored));
+    fail(path, fmt::format("{}:{} claims to have {} values in {} bytes; the file is damaged", file.string(),
+                           name, count, stored));
   std::vector<T> result(static_cast<std::size_t>(count));
   if (!result.empty() && H5Dread(set, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, result.data()) < 0)
     fail(path, fmt::format("{}:{} cannot be read", file.string(), name));
@@ -125,9 +125,9 @@ class Grid {
           order_ = order;
           return;
         }
-    fail(path_,
-         fmt::format("cells of the type '{}' are not supported, only tetrahedra, triangles and lines of first or second order, with one type in each grid",
-                     type));
+    fail(path_, fmt::format("cells of the type '{}' are not supported, only tetrahedra, triangles and lines "
+                            "of first or second order, with one type in each grid",
+                            type));
   }
 
   void take(const pugi::xml_node& attribute, const std::string& name, std::size_t before, std::size_t count,
