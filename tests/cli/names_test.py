@@ -116,7 +116,7 @@ class Numbers(ProgramTest):
         self.assertIn("merged: 2 triangles that parts have in common; there patch 12 is patch 4\n", run.stderr)
         self.out.unlink()
         self.expect(2, *parts, "-o", self.out, "--patch-size", "12=0.2",
-                    says=["patch 12 lies on patch 4 of another part, whose number both have; use 4"])
+                    says=["patch 12 lies on patch 4 of another part, and both now have the number 4"])
 
     @unittest.skipUnless(HAS_CAD, "no OpenCASCADE")
     def test_where_solids_of_a_file_touch_one_number_stays(self):
@@ -129,9 +129,9 @@ class Numbers(ProgramTest):
         run = self.run_program(part, "-o", out, "--size", "1")
         self.assertEqual(run.returncode, 0, run.stderr)
         self.assertIn("triangles that parts have in common; there patch 7 is patch 2, 17 is 6\n", run.stderr)
-        use = "patch {} of another part, whose number both have; use {}"
+        use = "patch {} of another part, and both now have the number {}"
         self.expect(2, part, "-o", self.out, "--patch-size", "7=0.2", says=["patch 7 lies on " + use.format(2, 2)])
-        self.expect(2, part, "-o", self.out, "--name", "contact=17", says=["it lies on " + use.format(6, 6)])
+        self.expect(2, part, "-o", self.out, "--name", "contact=17", says=["patch 17 lies on " + use.format(6, 6)])
 
     def test_a_mesh_with_numbers_passes_check(self):
         self.expect(0, self.box, "-o", self.out, "--size", "0.5", writes=True)

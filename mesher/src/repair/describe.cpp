@@ -62,8 +62,10 @@ std::string small_features_text(const RepairReport& r) {
 std::vector<std::string> describe(const RepairReport& r) {
   std::vector<std::string> lines;
   if (r.split_polygons > 0)
-    lines.push_back(fmt::format("{} polygon{} not planar or crossing {} cut into triangles", r.split_polygons,
-                                plural(r.split_polygons), r.split_polygons == 1 ? "itself" : "themselves"));
+    lines.push_back(fmt::format("{} polygon{} cut into triangles, because {}", r.split_polygons,
+                                plural(r.split_polygons),
+                                r.split_polygons == 1 ? "it was not planar or crossed itself"
+                                                      : "they were not planar or crossed themselves"));
   if (r.dropped_polygons > 0)
     lines.push_back(
         fmt::format("{} polygon{} without an area dropped", r.dropped_polygons, plural(r.dropped_polygons)));
@@ -118,12 +120,13 @@ std::vector<std::string> describe(const RepairReport& r) {
         r.vanished.count == 1 ? "it" : "them"));
   if (r.united.count > 0)
     lines.push_back(
-        fmt::format("{} region{} less than before, because regions nearer to each other than the tolerance "
+        fmt::format("{} region{} fewer than before, because regions nearer to each other than the tolerance "
                     "of {:.3g} were merged{}; a smaller --repair-tolerance keeps them apart",
                     r.united.count, plural(r.united.count), r.tolerance, first_place(r.united)));
   if (r.kept.count > 0)
-    lines.push_back(fmt::format("{} place{} left as before, as creases there would become sharper{}",
-                                r.kept.count, plural(r.kept.count), first_place(r.kept)));
+    lines.push_back(
+        fmt::format("{} place{} left as before, because repair would make creases sharper there{}",
+                    r.kept.count, plural(r.kept.count), first_place(r.kept)));
   if (!r.small_features.empty()) lines.push_back(small_features_text(r));
   if (!r.lost_tags.empty())
     lines.push_back(fmt::format("nothing is left of the facets with tag{} {}", plural(r.lost_tags.size()),
