@@ -80,7 +80,8 @@ void require_place(const fs::path& target) {
   if (fs::is_directory(target, ignored))
     throw WriteError(fmt::format("{}: is a folder; name a file in another place", target.string()));
   if (fs::exists(target, ignored) && !fs::is_regular_file(target, ignored))
-    throw WriteError(fmt::format("{}: is not a regular file; name one, or - with --format", target.string()));
+    throw WriteError(fmt::format(
+        "{}: is not a regular file; name one, or - for standard output, with --format", target.string()));
 }
 
 /// Removes the folders of runs that were killed: nobody holds their locks. Skips young folders, which may be
@@ -269,7 +270,7 @@ void StagedFile::commit(const std::vector<StagedFile*>& files) {
       take_back();
       throw WriteError(fmt::format(
           "{}: cannot be replaced ({}); choose another name{}", move.to.string(), why,
-          keep_folders ? fmt::format("; the previous files could not be restored either, they are in {}",
+          keep_folders ? fmt::format("; the previous files could not be restored either; they are in {}",
                                      move.from.parent_path().string())
                        : ""));
     }

@@ -26,8 +26,9 @@ std::string layers_text(const LayersReport& report) {
   if (report.patches.size() > listed)
     text += fmt::format("  ... and {} more faces (--report lists all)\n", report.patches.size() - listed);
   for (const LayersReport::Reduction& r : report.reductions)
-    text += fmt::format("  lower at {} nodes, down to {:.0f}% at ({:.6g}, {:.6g}, {:.6g}): {}\n", r.nodes,
-                        100 * r.smallest, r.where.x, r.where.y, r.where.z, r.why);
+    text += fmt::format(
+        "  layers lower than asked for at {} nodes, down to {:.0f}% at ({:.6g}, {:.6g}, {:.6g}): {}\n",
+        r.nodes, 100 * r.smallest, r.where.x, r.where.y, r.where.z, r.why);
   text += fmt::format("  {} prisms, {} pyramids and {} tets in layers cover {:.1f}% of the walls\n",
                       report.prisms, report.pyramids, report.tets, 100 * report.coverage());
   return text;

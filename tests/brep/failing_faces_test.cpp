@@ -103,7 +103,7 @@ TEST(CadFailingFaces, AreCutInAnotherWay) {
   const auto soups = model.tessellate({});
   ASSERT_EQ(model.notes().size(), 2U);
   EXPECT_NE(
-      model.notes()[0].find("around (10, 10, 5) cannot be cut into triangles with its neighbours; it was "
+      model.notes()[0].find("around (10, 10, 5) cannot be cut into triangles together with its neighbours; it was "
                             "triangulated alone after shape healing"),
       std::string::npos)
       << model.notes()[0];

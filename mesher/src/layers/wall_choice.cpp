@@ -134,8 +134,8 @@ void WallChoice::require_heights(const LayerOptions& options, const Plc& plc) co
     if (first < least)
       refuse(options.walls[w],
              fmt::format("makes the first of {} layers with a growth of {} at most {:.3g} high, which is too "
-                         "little for a shape of diameter {:.6g}; use a larger first height (at least {:.3g}) "
-                         "or thickness, a smaller growth or a smaller count",
+                         "little for a shape with a diagonal of {:.6g}; use a larger first height (at least "
+                         "{:.3g}) or thickness, a smaller growth or a smaller count",
                          wall.count, wall.growth, first, box.diagonal(), least));
   }
 }
