@@ -197,8 +197,7 @@ TEST(CadModel, TellsOfEdgesAndPointsOutsideOfSolids) {
                   {"part", "Edge13 at (24, 5, 5)",
                    "is left out, as part of no face and outside of the closed solids", ".poly"});
   ASSERT_EQ(with_both.notes().size(), 1U);
-  expect_mentions(with_both.notes()[0],
-                  {"Edge13 at (24, 5, 5) and 1 more are left out, as part of no face"});
+  expect_mentions(with_both.notes()[0], {"Edge13 at (24, 5, 5) and 1 more are left out, as part of no face"});
 }
 
 double length_of(const PolygonSoup& soup) {
@@ -223,19 +222,20 @@ TEST(CadModel, CutsEdgesInsideWhereTheyMeetOneAnother) {
     std::vector<Point> places;  // places where they meet
     const char* note = nullptr;
   };
-  const Meeting meetings[] = {{line(gp_Pnt(5, 2, 5), gp_Pnt(5, 8, 5)), 12, 4, {{5, 5, 5}}},
-                              {line(gp_Pnt(5, 5, 5), gp_Pnt(5, 5, 8)), 9, 3, {{5, 5, 5}}},
-                              {line(gp_Pnt(2, 5, 5), gp_Pnt(7, 5, 5)),
-                               6,
-                               2,
-                               {{2, 5, 5}, {7, 5, 5}},
-                               "Edge14 at (4.5, 5, 5) lies on Edge13 and gets the number of the latter there"},
-                              {line(gp_Pnt(2, 5, 5), gp_Pnt(8, 5, 5)),
-                               6,
-                               1,
-                               {{2, 5, 5}, {8, 5, 5}},
-                               "Edge14 at (5, 5, 5) lies on Edge13 and gets the number of the latter there"},
-                              {point(5, 5, 5), 6, 2, {{5, 5, 5}}}};
+  const Meeting meetings[] = {
+      {line(gp_Pnt(5, 2, 5), gp_Pnt(5, 8, 5)), 12, 4, {{5, 5, 5}}},
+      {line(gp_Pnt(5, 5, 5), gp_Pnt(5, 5, 8)), 9, 3, {{5, 5, 5}}},
+      {line(gp_Pnt(2, 5, 5), gp_Pnt(7, 5, 5)),
+       6,
+       2,
+       {{2, 5, 5}, {7, 5, 5}},
+       "Edge14 at (4.5, 5, 5) lies on Edge13 and gets the number of the latter there"},
+      {line(gp_Pnt(2, 5, 5), gp_Pnt(8, 5, 5)),
+       6,
+       1,
+       {{2, 5, 5}, {8, 5, 5}},
+       "Edge14 at (5, 5, 5) lies on Edge13 and gets the number of the latter there"},
+      {point(5, 5, 5), 6, 2, {{5, 5, 5}}}};
   for (const Meeting& meeting : meetings) {
     CadModel model(compound({box(), first, meeting.other}), "part");
     ASSERT_EQ(model.notes().size(), meeting.note == nullptr ? 0U : 1U);
@@ -304,8 +304,7 @@ TEST(CadModel, KeepsNumbersWhereEdgesMeetFaces) {
   EXPECT_EQ(numbers(after), numbers(before));
   for (const PolygonSoup::Segment& segment : after[2].segments) EXPECT_EQ(segment.tag, 25);
   EXPECT_NEAR(length_of(after[2]), 13, 1e-12);
-  expect_mentions(with.notes().at(0),
-                  {"Edge26 at (0.5, 0, -5) is left out, as part of no face"});
+  expect_mentions(with.notes().at(0), {"Edge26 at (0.5, 0, -5) is left out, as part of no face"});
 }
 
 // Also joins edges of a wire that are given separately.
@@ -370,7 +369,8 @@ TEST(CadModel, LeavesOutEdgesNearerToFacesThanTheTriangles) {
   EXPECT_TRUE(coarse.at(1).segments.empty());
   EXPECT_EQ(build_plc(coarse).curves.size(), 12U);
   ASSERT_EQ(model.notes().size(), 1U);
-  expect_mentions(model.notes()[0], {"Edge13 at (5, 5, 0.1) is left out, because it is so near to faces", "--distance"});
+  expect_mentions(model.notes()[0],
+                  {"Edge13 at (5, 5, 0.1) is left out, because it is so near to faces", "--distance"});
 }
 
 // The ends are on the exact face, so with coarse triangles the whole chord may be outside. Its middle is
@@ -382,7 +382,8 @@ TEST(CadModel, LeavesOutChordsOfCurvedFacesThatAreNearerThanTheTriangles) {
   CadModel model(compound({BRepPrimAPI_MakeCylinder(radius, 20).Shape(), chord}), "part");
   EXPECT_TRUE(model.tessellate({.deflection = 0.01}).at(1).segments.empty());
   ASSERT_EQ(model.notes().size(), 1U);
-  expect_mentions(model.notes()[0], {"Edge4", "it is so near to faces that their triangles may cross it", "--distance"});
+  expect_mentions(model.notes()[0],
+                  {"Edge4", "it is so near to faces that their triangles may cross it", "--distance"});
   EXPECT_NEAR(length_of(model.tessellate({.deflection = 1e-4}).at(1)), length, 1e-9);
   EXPECT_TRUE(model.notes().empty());
 }
