@@ -45,7 +45,8 @@ class CollarCheck {
     std::array<Index, 3> points;
   };
 
-  // Returns the place of the ball before projection: distances refer to the complex.
+  // Returns the ball's centre before vertices moved onto exact geometry: gaps and overlaps are measured
+  // against the complex, not the exact geometry.
   const Point& centre(Index ball) const { return balls_[ball].centre; }
   double radius(Index ball) const { return balls_[ball].radius; }
   const TetMesh::VertexFeature& feature_of(Index ball) const {

@@ -362,7 +362,7 @@ class Splitter {
   std::vector<bool> chosen_;                   // by face
   std::vector<bool> marked_;                   // nodes of chosen faces
   std::vector<Beside> beside_;                 // by face with a marked corner: the tets beside it
-  std::vector<Index> copies_;                  // by node
+  std::vector<Index> copies_;                  // by node: the number of its copies
   std::map<Tag, SplitReport::Patch> patches_;  // by tag before the split
   std::vector<SidePair> pairs_;
   SplitReport report_;
