@@ -253,7 +253,7 @@ void StagedFile::commit(const std::vector<StagedFile*>& files) {
     std::error_code error;
     if (!places.insert(fs::weakly_canonical(folder_of(move.to), error) / move.to.filename()).second)
       throw WriteError(
-          fmt::format("{}: two outputs would be this file; choose another name", move.to.string()));
+          fmt::format("{}: two outputs have this name; choose another for one of them", move.to.string()));
     require_place(move.to);
     if (!move.kept.empty()) keep_mode_and_owner(move.to, move.from);
     flush(move.from, move.to);

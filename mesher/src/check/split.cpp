@@ -108,8 +108,8 @@ class SplitCheck {
     for (const auto& [place, pair] : faces) {
       if (pair.size() != 2 || !are_opposite(pair[0], pair[1]))
         findings_.add(guarantee::split_pairs, at(place[0]), {pair[0]},
-                      "Face {} of a split patch at {} does not coincide with exactly one face of the other "
-                      "side, turned against it.",
+                      "Face {} of a split patch at {} does not coincide with exactly one face of opposite "
+                      "orientation on the other side.",
                       pair[0], At{at(place[0])});
     }
     for (std::size_t k = 1; k < sides_.size(); ++k) {

@@ -73,12 +73,12 @@ std::vector<std::string> describe(const RepairReport& r) {
     lines.push_back(fmt::format("{} repeated facet{} dropped{}", r.repeated.count, plural(r.repeated.count),
                                 first_place(r.repeated)));
   if (r.turned.count > 0)
-    lines.push_back(fmt::format("{} closed surface{} turned inside out{}", r.turned.count,
+    lines.push_back(fmt::format("{} inside-out closed surface{} turned around{}", r.turned.count,
                                 plural(r.turned.count), first_place(r.turned)));
   if (r.stitched.count > 0)
-    lines.push_back(fmt::format("{} place{} stitched where borders nearly met, over at most {:.3g}{}",
-                                r.stitched.count, plural(r.stitched.count), r.stitched.size,
-                                first_place(r.stitched)));
+    lines.push_back(
+        fmt::format("{} place{} stitched where borders nearly met, over a distance of at most {:.3g}{}",
+                    r.stitched.count, plural(r.stitched.count), r.stitched.size, first_place(r.stitched)));
   for (const FilledHole& hole : r.filled)
     lines.push_back(fmt::format("a hole of {} edges around {} filled with an area of {:.4g}, tag {}",
                                 hole.edges, place(hole.where), hole.area, hole.tag));
@@ -103,9 +103,10 @@ std::vector<std::string> describe(const RepairReport& r) {
     lines.push_back(fmt::format("{} triangle{} of open sheets outside of all solids removed", r.dropped.count,
                                 plural(r.dropped.count)));
   if (r.collapsed.count > 0)
-    lines.push_back(fmt::format("{} feature{} below the tolerance of {:.3g} collapsed, over at most {:.3g}{}",
-                                r.collapsed.count, plural(r.collapsed.count), r.tolerance, r.collapsed.size,
-                                first_place(r.collapsed)));
+    lines.push_back(fmt::format(
+        "{} feature{} below the tolerance of {:.3g} collapsed, over a distance of at most {:.3g}{}",
+        r.collapsed.count, plural(r.collapsed.count), r.tolerance, r.collapsed.size,
+        first_place(r.collapsed)));
   if (r.thin_chambers.count > 0)
     lines.push_back(fmt::format(
         "{} chamber{} between nearly coincident facets, thinner than the tolerance of {:.3g}, added to the "
