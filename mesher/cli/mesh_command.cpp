@@ -118,9 +118,10 @@ class InputSource : public ComplexSource {
     std::vector<std::string> told;
     if (size_field_use_)
       for (const std::string& source : size_field_use_->without_effect())
-        told.push_back(fmt::format(
-            "--size-field: {} has no effect: nowhere in the part is its size below {:.6g}, that of --size.",
-            source, size_field_use_->size()));
+        told.push_back(
+            fmt::format("--size-field: {} has no effect: nowhere in the part is its size below {:.6g}, which "
+                        "--size asks for.",
+                        source, size_field_use_->size()));
     return told;
   }
 

@@ -22,8 +22,7 @@ std::string note_on_scale(const TetMesh& mesh, const Plc& plc, double scale) {
   if (!(ratio > 0) || (ratio > 0.5 && ratio < 2)) return {};
   return fmt::format(
       "the mesh is {:.3g} times as large as the input; if it was written in another unit, give check the "
-      "same "
-      "--scale, which would be {:.3g}",
+      "--scale of that run, probably {:.3g}",
       ratio, scale * ratio);
 }
 

@@ -60,11 +60,11 @@ std::string advice(const PlcError& error, const RepairOptions& options, bool of_
   if (!of_solids && options.mode == RepairMode::automatic)
     return has_fault(error, {Kind::empty})
                ? std::string()
-               : fmt::format(" It could not be repaired: try a larger --repair-tolerance than {:.3g}.",
+               : fmt::format(" The input could not be repaired: try a larger --repair-tolerance than {:.3g}.",
                              options.tolerance);
   const std::string wider = fmt::format("a larger --repair-tolerance than {:.3g}", options.tolerance);
   switch (options.mode) {
-    case RepairMode::off: return " Without --repair none this would be repaired as far as possible.";
+    case RepairMode::off: return " Without --repair none the input would be repaired as far as possible.";
     case RepairMode::wrap:
       return fmt::format(
           " A closed surface around everything failed, too; {} or another --wrap-offset may help.", wider);
@@ -72,7 +72,8 @@ std::string advice(const PlcError& error, const RepairOptions& options, bool of_
   }
   const bool open = has_fault(error, {Kind::open_boundary, Kind::empty});
   return fmt::format(
-      " It could not be repaired: {}try {}, or --repair wrap, which puts a closed surface around everything.",
+      " The input could not be repaired: {}try {}, or --repair wrap, which puts a closed surface around "
+      "everything.",
       open ? "close the surface, mesh it with triangles (--dimension 2), " : "", wider);
 }
 

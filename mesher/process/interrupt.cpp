@@ -86,8 +86,8 @@ std::string coarser_text() {
   if (stage == "complex")
     return "or, because many intersecting facets take the time, try another --repair-tolerance or --repair "
            "wrap";
-  return "or --size for a coarser mesh; `collarmesh mesh` also has --repair wrap, which ignores detail much "
-         "finer than the size";
+  return "or --size for a coarser mesh; if the input is meshed, --repair wrap helps, too: it ignores detail "
+         "much finer than the size";
 }
 
 Stopped reason_to_stop() {

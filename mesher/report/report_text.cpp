@@ -250,7 +250,8 @@ std::string check_text(const CheckReport& r) {
     fmt::format_to(Out(text), "{} tets, {} points, {} faces, {} edges; {}\n", r.tets, r.points, r.faces,
                    r.edges, shape_text(r.min_dihedral, r.max_dihedral, r.max_radius_edge));
   if (r.thin_tets > 0)
-    fmt::format_to(Out(text), "thin: {} tets, radius-edge to {:.4g}\n", r.thin_tets, r.max_thin_radius_edge);
+    fmt::format_to(Out(text), "thin: {} tets, radius-edge up to {:.4g}\n", r.thin_tets,
+                   r.max_thin_radius_edge);
   text += forced_text(r);
   if (r.collar_tets > 0)
     fmt::format_to(Out(text), "in collars: {} tets, dihedral angles from {:.2f} to {:.2f} degrees\n",

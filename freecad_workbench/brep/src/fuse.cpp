@@ -99,8 +99,9 @@ bool is_plane(const TopoDS_Shape& face) {
   return BRepAdaptor_Surface(TopoDS::Face(face), false).GetType() == GeomAbs_Plane;
 }
 
-/// Returns pairs of faces of solids without a common vertex. Such faces may touch in a point, which general
-/// fuse does not find. (Two planes touch at edges, which it does find.)
+/// Returns pairs of faces of two solids that have no vertex in common. Such faces may touch in a point inside
+/// both, which general fuse does not find. Leaves out pairs of planar faces: they touch in a single point
+/// only at an edge or a vertex, which general fuse does find.
 std::vector<std::array<TopoDS_Shape, 2>> pairs_apart(const std::vector<Argument>& solids) {
   std::map<std::array<std::size_t, 2>, Bnd_Box> tight;  // by solid and face
   const auto box = [&](std::size_t s, std::size_t f) -> const Bnd_Box& {

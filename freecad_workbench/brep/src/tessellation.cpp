@@ -261,7 +261,7 @@ class Tessellator {
                  : fmt::format("it was triangulated {}{}", mended.how,
                                mended.fits ? "" : ", and its border has other points than its neighbours");
     result_.notes.push_back(
-        fmt::format("{}: {} around {} cannot be cut into triangles with its neighbours; {}", file_,
+        fmt::format("{}: {} around {} cannot be cut into triangles together with its neighbours; {}", file_,
                     topology_.name(face), text(place_of(face)), done));
   }
 

@@ -162,7 +162,7 @@ void require_equal_files(const DistributedArguments& arguments) {
     });
     if (const int other = first_that_differs(hash.value()); other >= 0)
       throw ReadError(
-          fmt::format("{}: is another file on {} than on rank 0; put the same file on all machines", path,
+          fmt::format("{}: differs on {} from the file on rank 0; put the same file on all machines", path,
                       host_of(other)));
   }
 }

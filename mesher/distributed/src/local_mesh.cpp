@@ -71,7 +71,7 @@ std::array<Index, count> mid_nodes(const LocalMesh& mesh, const std::array<Index
     const std::array<Index, 2> wanted = sorted(cell[i], cell[j]);
     const auto found =
         std::find_if(edges.begin(), edges.end(), [&](Index e) { return sorted(mesh.ends[e]) == wanted; });
-    if (found == edges.end()) throw std::logic_error("two corners of a cell have no edge");
+    if (found == edges.end()) throw std::logic_error("no edge joins two corners of a cell");
     nodes[k] = static_cast<Index>(mesh.vertices) + *found;
   }
   return nodes;

@@ -86,8 +86,9 @@ class Placement {
     share_places();
     for (std::size_t v = 0; v < mesh_->points.size(); ++v)
       if (has_way_[v]) mesh_->points[v] = place_of(v);
-    std::vector<Index> look_at;  // tets to check; straight ones, too, may have poorer angles than the coarse
-                                 // mesh
+    // Tets beyond the bounds on angles. Some have no moved corner: division alone may give poorer angles than
+    // those of the coarse tets.
+    std::vector<Index> look_at;
     std::int64_t spoilt = 0;
     for (Index t = 0; t < mesh_->tets.size(); ++t) {
       if (score(t, mesh_->corners(t)) < 1) look_at.push_back(t);

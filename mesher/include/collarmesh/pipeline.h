@@ -92,7 +92,7 @@ struct PipelineResult {
 
 struct SoupPipelineResult : PipelineResult {
   Plc plc;              ///< the complex that was meshed
-  RepairReport repair;  ///< the changes that made it a complex
+  RepairReport repair;  ///< the changes that made the input a valid complex
 };
 
 /// The source of the complexes to mesh. It builds one for each repair that is tried.

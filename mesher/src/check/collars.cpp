@@ -45,7 +45,8 @@ class CollarCheck {
     std::array<Index, 3> points;
   };
 
-  // Returns the place of the ball before projection: distances refer to the complex.
+  // Returns the ball's centre before vertices moved onto exact geometry: gaps and overlaps are measured
+  // against the complex, not the exact geometry.
   const Point& centre(Index ball) const { return balls_[ball].centre; }
   double radius(Index ball) const { return balls_[ball].radius; }
   const TetMesh::VertexFeature& feature_of(Index ball) const {
@@ -194,11 +195,10 @@ class CollarCheck {
                                          [&](Index p) { return ball_at_[p] != none; });
       if (centres == mesh.tet_collar[t]) continue;
       const Point where = 0.5 * (subject_.point(mesh.tets[t][0]) + subject_.point(mesh.tets[t][1]));
-      findings_.add(
-          guarantee::collar_cells, where, {t},
-          "Tet {} at {} has {} centres of collars' balls among its corners, but its kind ({}) asks for {}; a "
-          "cell is missing or marked wrongly.",
-          t, At{where}, centres, mesh.tet_collar[t], mesh.tet_collar[t]);
+      findings_.add(guarantee::collar_cells, where, {t},
+                    "Tet {} at {} has {} corners that are centres of collars' balls, but its mark demands "
+                    "{}; a cell is missing or marked wrongly.",
+                    t, At{where}, centres, mesh.tet_collar[t]);
     }
   }
 

@@ -101,8 +101,7 @@ class CurveCheck {
       const auto degree = degree_at(point);
       if (degree == expected) return;
       good = false;
-      report_gap(subject_.point(point),
-                 fmt::format("has {} edges where it should have {}", degree, expected));
+      report_gap(subject_.point(point), fmt::format("has {} edges, not {},", degree, expected));
     };
     if (!curve_.closed)
       for (unsigned i = 0; i < (is_loop() ? 1 : 2); ++i) expect(end_point(i), is_loop() ? 2 : 1);

@@ -128,11 +128,10 @@ class PeriodicCheck {
     std::map<Index, Index> node_of;
     for (const auto& [node, image] : pair_.nodes) {
       if (!first.contains(node) || !second.contains(image))
-        findings_.add(
-            guarantee::periodic_nodes, at(node), {node, image},
-            "Periodic pair {} maps node {} at {} onto node {} at {}: not from its first side onto its "
-            "second.",
-            number_, node, At{at(node)}, image, At{at(image)});
+        findings_.add(guarantee::periodic_nodes, at(node), {node, image},
+                      "Periodic pair {} maps node {} at {} onto node {} at {}, but they are not on its first "
+                      "side and its second side.",
+                      number_, node, At{at(node)}, image, At{at(image)});
       const auto [other, added] = node_of.emplace(image, node);
       if (!added && other->second != node)
         findings_.add(guarantee::periodic_nodes, at(image), {other->second, node, image},
@@ -281,11 +280,10 @@ void check_corners(const TetMesh& mesh, const std::vector<std::optional<Map>>& m
         const auto one = g.find(by_f->second), other = f.find(by_g->second);
         if (one == g.end() || other == f.end() || one->second == other->second) continue;
         if (!commute(mesh.periodic[i].motion, mesh.periodic[j].motion, mesh.points[node])) continue;
-        findings.add(
-            guarantee::periodic_corners, mesh.points[node], {node, one->second, other->second},
-            "Periodic pairs {} and {} take node {} at {} to node {} in this order, to node {} in the "
-            "other.",
-            i + 1, j + 1, node, At{mesh.points[node]}, one->second, other->second);
+        findings.add(guarantee::periodic_corners, mesh.points[node], {node, one->second, other->second},
+                     "Periodic pairs {} and {} take node {} at {} to node {} if applied in this order, but "
+                     "to node {} in the other order.",
+                     i + 1, j + 1, node, At{mesh.points[node]}, one->second, other->second);
       }
     }
 }

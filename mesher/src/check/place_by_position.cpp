@@ -365,9 +365,9 @@ class Placement {
   void make_faces() {
     report_.notes.emplace_back(
         mesh_.faces.empty()
-            ? "The mesh lists no triangles: those on the boundary and the facets were found by position."
-            : "The input has none of the tags of the triangles: those on the boundary and the facets "
-              "were found by position.");
+            ? "The mesh lists no triangles: triangles on the boundary and on facets were found by position."
+            : "The input has none of the tags of the triangles: triangles on the boundary and on facets were "
+              "found by position.");
     mesh_.faces.clear();
     mesh_.face_regions.clear();
     mesh_.face_mid_nodes.clear();
@@ -405,10 +405,10 @@ class Placement {
   // Makes edges on curves: the border edges of a bent curve if they are known, otherwise the edges of tets
   // between consecutive points on the curve.
   void make_edges() {
-    report_.notes.emplace_back(mesh_.edges.empty()
-                                   ? "The mesh lists no edges: those on curves were found by position."
-                                   : "The input has none of the tags of the edges: those on curves were "
-                                     "found by position.");
+    report_.notes.emplace_back(
+        mesh_.edges.empty()
+            ? "The mesh lists no edges: edges on curves were found by position."
+            : "The input has none of the tags of the edges: edges on curves were found by position.");
     mesh_.edges.clear();
     mesh_.edge_mid_nodes.clear();
     mesh_.edge_curve.clear();

@@ -77,8 +77,8 @@ class ThinCells {
   /// Returns whether a tet's angles are within their bounds; `face_angle` is the largest angle of its faces,
   /// degrees.
   bool are_bounded(const TetQuality& quality, double face_angle, Index tet) const;
-  /// Returns whether a tet's angles are this small only because of a forced edge. Precondition: they are
-  /// bounded.
+  /// Returns whether a tet has an angle below the bound that would hold without forced edges. Precondition:
+  /// its angles are bounded.
   bool is_forced(const TetQuality& quality, Index tet) const;
 
  private:

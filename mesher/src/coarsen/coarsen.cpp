@@ -536,9 +536,9 @@ class Coarsening {
 CoarsenReport coarsen(remeshing::EditableMesh& edited, const MeshOptions& made_with,
                       const Execution& execution) {
   if (!(made_with.bounds.thin_angle > 0 && made_with.bounds.thin_angle <= 30))
-    throw OptionError("the smallest angle of thin tetrahedra must be above 0 and at most 30 degrees");
+    throw OptionError("Bounds::thin_angle must be above 0 and at most 30 degrees");
   if (!(made_with.bounds.reserve >= 0 && made_with.bounds.reserve <= 0.5))
-    throw OptionError("the reserve of angles must be from 0 to 0.5");
+    throw OptionError("Bounds::reserve must be from 0 to 0.5");
   return remeshing::coarsening::Coarsening(edited, made_with, execution).run();
 }
 

@@ -201,7 +201,7 @@ class AbaqusReader {
     else if (keyword.name == "surface")
       read_surface(keyword);
     else if (keyword.name == "include")
-      lines_.fail("*INCLUDE is not supported; put the files into one");
+      lines_.fail("*INCLUDE is not supported; copy the included files into this one");
     else if (keyword.name == "instance")
       read_instance();
     else
@@ -332,7 +332,10 @@ class AbaqusReader {
     }
     const auto before = static_cast<Index>(mesh_.layers.pyramids.size());
     const auto numbers = join_pyramids(pairs, mesh_);
-    if (!numbers) lines_.fail(fmt::format("the elements of {} are not halves of pyramids", abaqus_halves));
+    if (!numbers)
+      lines_.fail(
+          fmt::format("the elements of the set {} are not pairs of halves of pyramids; export the mesh again",
+                      abaqus_halves));
     for (CellPlace& place : places_)
       if (place.kind == CellKind::tet) place.index = (*numbers)[place.index];
     for (Index k = 0; k < pairs.size(); ++k)
@@ -361,15 +364,16 @@ class AbaqusReader {
 
   void add_range(const Fields& fields, std::vector<std::int64_t>& members) {
     if (fields.size() < 2) lines_.fail("expected the first and last number of a range");
-    const std::int64_t first = integer(fields[0], "a first number"),
-                       last = integer(fields[1], "a last number"),
-                       step = fields.size() > 2 ? integer(fields[2], "a step") : 1;
+    const std::int64_t first = integer(fields[0], "the first number of a range"),
+                       last = integer(fields[1], "the last number of a range"),
+                       step = fields.size() > 2 ? integer(fields[2], "the step of a range") : 1;
     if (step < 1 || first < 0 || last < first)
-      lines_.fail(fmt::format("the range {} to {} by {} is empty", first, last, step));
+      lines_.fail(fmt::format("the range from {} to {} in steps of {} is empty", first, last, step));
     const std::int64_t steps = (last - first) / step;
     if (static_cast<std::size_t>(steps) > places_.size())
-      lines_.fail(fmt::format("the range {} to {} by {} is larger than the {} elements before it", first,
-                              last, step, places_.size()));
+      lines_.fail(fmt::format(
+          "the range from {} to {} in steps of {} has more members than there are elements before it, {}",
+          first, last, step, places_.size()));
     require_room(static_cast<std::size_t>(steps) + 1);
     for (std::int64_t k = 0; k <= steps; ++k) members.push_back(first + k * step);
   }
@@ -390,7 +394,7 @@ class AbaqusReader {
   const std::vector<std::int64_t>& members_of(const std::string& name, std::string_view written) const {
     const auto found = set_index_.find(name);
     if (found == set_index_.end())
-      lines_.fail(fmt::format("no element set before has the name {}", in_quotes(written)));
+      lines_.fail(fmt::format("no earlier element set has the name {}", in_quotes(written)));
     return sets_[found->second].members;
   }
 

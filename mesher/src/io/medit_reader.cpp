@@ -63,8 +63,8 @@ bool read_cells(TextScanner& scan, std::string_view keyword, TetMesh& mesh) {
 void refuse_cells(TextScanner& scan, std::string_view keyword) {
   if (scan.count("the number of cells", 2) > 0)
     scan.fail(
-        fmt::format("{} are not supported, only tetrahedra, prisms and pyramids, their triangles, "
-                    "quadrilaterals and edges",
+        fmt::format("{} are not supported, only tetrahedra, triangles and edges, and prisms, pyramids and "
+                    "quadrilaterals of first order",
                     keyword));
 }
 

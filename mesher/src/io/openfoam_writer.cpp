@@ -203,7 +203,8 @@ void write_face_zones(FileWriter& out, const TetMesh& mesh, const Sides& sides) 
 void write_openfoam(const std::string& path, const TetMesh& mesh) {
   const std::filesystem::path boundary_path(path), folder = boundary_path.parent_path();
   if (boundary_path.filename() != "boundary")
-    throw WriteError(path + ": a polyMesh is written as its file boundary; name constant/polyMesh/boundary");
+    throw WriteError(
+        path + ": a polyMesh is named by its file boundary; give a path such as constant/polyMesh/boundary");
   if (mesh.order() == 2)
     throw WriteError(path + ": a polyMesh has no elements of second order; write those of first order");
   const Sides sides(mesh);

@@ -66,7 +66,8 @@ PlyElement read_element(TextScanner& scan) {
   element.name = scan.word("the name of an element");
   element.line = scan.line();
   const std::int64_t count = scan.integer("the number of elements");
-  if (count < 0 || count >= none) scan.fail(fmt::format("the number of elements is {}", count));
+  if (count < 0 || count >= none)
+    scan.fail(fmt::format("the number of elements is {}, but must be from 0 to {}", count, none - 1));
   element.count = static_cast<std::uint64_t>(count);
   return element;
 }

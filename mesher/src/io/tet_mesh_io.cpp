@@ -107,7 +107,8 @@ void require_place_for_layers(const std::string& path, const TetMesh& mesh, cons
                                  format.extension, format.order_of_layers > 0 ? " of second order" : "",
                                  fmt::join(formats_with_layers(mesh.order()), " ")));
   if (!mesh.tet_partition.empty())
-    throw WriteError(path + ": a mesh with prisms or pyramids is not written in partitions; leave them out");
+    throw WriteError(
+        path + ": a mesh with prisms or pyramids cannot be written in partitions; leave the partitions out");
 }
 
 }  // namespace

@@ -32,10 +32,10 @@ class UnvReader {
   UnvReader(const std::string& path, std::string_view text) : path_(path), scan_(path, text, 0) {}
 
   TetMesh read() {
-    if (scan_.peek() != "-1") scan_.fail("-1, the begin of a dataset", scan_.peek());
+    if (scan_.peek() != "-1") scan_.fail("-1, the beginning of a dataset", scan_.peek());
     while (!scan_.at_end()) {
       if (const std::string_view mark = scan_.word("-1"); mark != "-1")
-        scan_.fail("-1, the begin of a dataset", mark);
+        scan_.fail("-1, the beginning of a dataset", mark);
       read_dataset(scan_.integer("the number of a dataset"));
       if (const std::string_view mark = scan_.word("-1"); mark != "-1")
         scan_.fail("-1, the end of a dataset", mark);

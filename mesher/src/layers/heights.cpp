@@ -51,12 +51,12 @@ std::string text_of(Cause cause) {
   switch (cause) {
     case Cause::ends: return "layers end there, at faces without layers or at facets inside";
     case Cause::direction:
-      return "the faces there meet so sharply that no steep direction leads away from all";
+      return "the faces there meet so sharply that no direction leads steeply away from all of them";
     case Cause::patch: return "nodes would leave a curved face without layers";
     case Cause::gap: return "the gap to the opposite face is narrow";
     case Cause::fold: return "cells would fold, at a sharp edge or a curved wall";
     case Cause::core: return "tetrahedra beside the layers would miss their bounds";
-    case Cause::step: return "neighbours are lower";
+    case Cause::step: return "the layers beside them are lower";
     default: return "";
   }
 }

@@ -204,7 +204,8 @@ void Stack::divide_prism(const WallSide& side, unsigned layer) {
   }
 }
 
-/// Lists the quadrangles and triangles of the layers on an edge where they meet a face without layers.
+/// Lists the sides of the layers that lie on a face without layers, along an edge of a wall: quadrangles, or
+/// triangles where only one end of the edge is raised or the layers are tets.
 void Stack::close(Index s, unsigned corner) {
   const WallSide& side = front_.sides[s];
   const WallSide::Edge& edge = side.edges[corner];

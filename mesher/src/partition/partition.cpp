@@ -31,7 +31,7 @@ ScotchPartition find_scotch() {
 #else
   throw OptionError(
       "partitions cannot be made, because the program was built without Scotch; install libscotch-dev and "
-      "build again");
+      "build it again");
 #endif
 }
 
@@ -39,7 +39,8 @@ DualGraph dual_graph(const TetMesh& mesh) {
   constexpr std::size_t limit = std::numeric_limits<GraphIndex>::max() / 4;
   if (mesh.tets.size() > limit)
     throw OptionError(
-        fmt::format("partitions of {} tets cannot be made; there may be {}", mesh.tets.size(), limit));
+        fmt::format("a mesh of {} tets cannot be divided into partitions; it may have at most {}",
+                    mesh.tets.size(), limit));
   std::vector<std::pair<Index, Index>> edges;
   edges.reserve(2 * mesh.tets.size());
   DualGraph graph;

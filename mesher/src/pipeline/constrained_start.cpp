@@ -214,7 +214,8 @@ void settle(MeshJob& job, Hope hope) {
   // Take no detours if more tets than this are poor; then another round follows only if the last one gained
   // much.
   const std::size_t in_reach = within_reach + made.result.mesh.tets.size() / tets_per_poor;
-  // Begin without detours: vertices that face each other fix more tets in less time.
+  // Begin without detours, which are slow: `relax` divides edges so that vertices face each other, and that
+  // mends more tets in less time.
   bool thoroughly = false;
   for (unsigned round = 0; round < most_rounds && least > 0; ++round) {
     TetMesh mesh = made.result.mesh;

@@ -71,7 +71,9 @@ void MeshMaker::make(const Plc& plc, std::uint64_t seed) {
   if (take_rods()) return;
   if (may_be_better_constrained()) {
     if (!refines_with_few_vertices() &&
-        take_constrained(plc, "curved walls or gaps are far thinner than the elements", Lengths::kept))
+        take_constrained(
+            plc, "curved walls or gaps that are far thinner than the elements may take too many vertices",
+            Lengths::kept))
       return;
     set_up(plc, seed);
   }
@@ -123,7 +125,8 @@ bool MeshMaker::take_rods() {
     certify(job_, tolerance(*job_.plc));
     if (job_.made.guarantees_hold()) {
       is_constrained_ = true;
-      job_.made.check.notes.push_back("made of rings around rods that are far thinner than the elements");
+      job_.made.check.notes.push_back(
+          "made of rings of vertices around rods, which are far thinner than the elements");
       return true;
     }
   }
@@ -175,7 +178,8 @@ bool MeshMaker::replace_refined() {
   KnownNeighbours neighbours = std::move(job_.neighbours);
   const MeshOptions refined_with = job_.refined_with;
   if (take_constrained(*job_.plc,
-                       fmt::format("the refinement makes {} tets", job_.made.result.mesh.tets.size())))
+                       fmt::format("the refinement makes {} tets, many times as many as the sizes ask for",
+                                   job_.made.result.mesh.tets.size())))
     return true;
   job_.neighbours = std::move(neighbours);
   job_.refined_with = refined_with;
@@ -242,7 +246,8 @@ std::optional<PipelineResult> MeshMaker::from_constrained(const Plc& plc, const 
       come_nearer(plc, share);
       make(plc, given.mesh.seed);
     }
-    made.check.notes.push_back(fmt::format("begun with constrained tetrahedra, because {}", why));
+    made.check.notes.push_back(
+        fmt::format("begun with constrained tetrahedra, because without them: {}", why));
     if (std::ranges::all_of(made.check.findings, is_about_shape)) found = std::move(made);
   } catch (const Hopeless&) {
     found.reset();

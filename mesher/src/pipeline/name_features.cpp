@@ -95,7 +95,7 @@ class Namer {
         find_(find) {}
 
   void name(const Json& names, const std::string& group) {
-    if (!names.is_object()) fail(group, "expected an object of names, {\"inlet\": 3}");
+    if (!names.is_object()) fail(group, "expected an object of names, such as {\"inlet\": 3}");
     std::set<Index> named;
     for (const auto& [name, value] : names.items()) {
       const std::string place = fmt::format("{}.{}", group, name);
@@ -105,7 +105,7 @@ class Namer {
       if (members.empty()) fail(place, "the list is empty");
       for (const Index member : members)
         if (!named.insert(member).second)
-          fail(place, fmt::format("the {} of number {} has a name already", what_, features_[member].tag));
+          fail(place, fmt::format("the {} with number {} already has a name", what_, features_[member].tag));
       Tag tag = features_[members.front()].tag;
       for (const Index member : members) tag = std::min(tag, features_[member].tag);
       chosen_.push_back({name, tag, std::move(members)});
@@ -139,8 +139,9 @@ class Namer {
     if (dimension_ != 2) return {};
     for (const auto& [gone, stays] : plc_.cleanup.replaced_tags)
       if (gone == tag)
-        return fmt::format(": it lies on patch {} of another part, whose number both have; use {}", stays,
-                           stays);
+        return fmt::format(
+            ": patch {} lies on patch {} of another part, and both now have the number {}; use it", gone,
+            stays, stays);
     return {};
   }
 

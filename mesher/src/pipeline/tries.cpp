@@ -130,8 +130,8 @@ void Tries::mesh_any_repaired(SoupPipelineResult& all) {
     all.repair = std::move(other.repair);
     has_mesh = true;
     made.check.notes.push_back(
-        all.repair.wrapped ? fmt::format("wrapped, because for the complex before {}", why)
-                           : fmt::format("repaired with a tolerance of {:.3g}, because with {:.3g} {}",
+        all.repair.wrapped ? fmt::format("wrapped, because without wrapping: {}", why)
+                           : fmt::format("repaired with a tolerance of {:.3g}, because with {:.3g}: {}",
                                          repair.tolerance, given.repair.tolerance, why));
     if (made.guarantees_hold() || end == End::exploded) break;
   }
@@ -181,7 +181,7 @@ std::string Tries::repair_sharp_creases(RepairOptions& repair, SoupPipelineResul
     all.plc = std::move(other.plc);
     all.repair = std::move(other.repair);
     return fmt::format(
-        "repaired with a tolerance of {:.3g}, because with {:.3g} features meet at {:.2g} degrees at {}",
+        "repaired with a tolerance of {:.3g}, because with {:.3g}, features meet at {:.2g} degrees at {}",
         coarser.tolerance, job_.given.repair.tolerance, creases.front().angle,
         checks::At{creases.front().where});
   }
@@ -199,7 +199,7 @@ std::pair<Tries::End, std::string> Tries::attempt_simplest(RepairOptions& repair
   auto tried = attempt(all.plc, error);
   bool gave_up = false, better = false;
   if (tried.first == End::too_fine) {
-    better = maker_.take_constrained(all.plc, "thin features make far more vertices than the sizes ask for",
+    better = maker_.take_constrained(all.plc, "thin features take far more vertices than the sizes ask for",
                                      MeshMaker::Lengths::kept);
     gave_up = maker_.has_given_up_constrained(all.plc);
     if (!better) better = overlay_thin_features(repair, all, most_asked_for_);
@@ -245,8 +245,8 @@ bool Tries::overlay_thin_features(RepairOptions& repair, SoupPipelineResult& all
     all.plc = std::move(other.plc);
     all.repair = std::move(other.repair);
     job_.made.check.notes.push_back(fmt::format(
-        "repaired with a tolerance of {:.3g}: with {:.3g}, features thinner than the feature size make more "
-        "than {} vertices, far more than the sizes ask for; feature-size 0 keeps them",
+        "repaired with a tolerance of {:.3g}, because with {:.3g}, features thinner than the feature size "
+        "take more than {} vertices, far more than the sizes ask for; feature-size 0 keeps these features",
         coarser.tolerance, before, most));
     return true;
   }
@@ -359,7 +359,7 @@ void Tries::try_narrow_places_otherwise(const Plc& plc) {
   if (find_better(true, [&] { maker_.make(plc, job_.given.mesh.seed); })) {
     seed_ = job_.given.mesh.seed;
     narrow_cells_ = otherwise;
-    made.check.notes.push_back(fmt::format("made with {} narrow places, because otherwise {}",
+    made.check.notes.push_back(fmt::format("made with {} narrow places, because otherwise: {}",
                                            were_left ? "a bounded ratio in" : "any ratio in", missed));
   }
   job_.budget.set_most(before);

@@ -89,7 +89,7 @@ std::string warning_of(const LayersReport& layers) {
       layers.reductions,
       [](const LayersReport::Reduction& a, const LayersReport::Reduction& b) { return a.nodes < b.nodes; });
   if (most != layers.reductions.end())
-    text += fmt::format(", at {} nodes because {}", most->nodes, most->why);
+    text += fmt::format(", mostly (at {} nodes) because {}", most->nodes, most->why);
   return text + "; use a smaller first height or thickness, a smaller count or a smaller size";
 }
 

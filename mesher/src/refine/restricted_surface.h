@@ -114,8 +114,8 @@ class RestrictedSurface {
   /// in its block, and `has_room` is true; otherwise a record would be added to those that all threads share.
   void cells_vanish(const ConflictZone& zone, Workspace& workspace);
   void cells_made(const ConflictZone& zone, Index vertex, Workspace& workspace);
-  /// Labels a new cell in place of cells_vanish and cells_made, if no vertex of the zone has nodes
-  /// (SurfaceNodes): its region is that of the cells that it replaces.
+  /// Labels a new cell with the region of the cells that it replaces. Call it instead of cells_vanish and
+  /// cells_made if no vertex of the zone has nodes (SurfaceNodes).
   void quiet_cell_made(Index cell, Index region) { labels_[cell] = {.region = region}; }
 
   /// Reports a new ball: checks whether it contains the places of this cell's triangles.

@@ -83,7 +83,8 @@ bool SurfaceCheck::another_round() {
   if (++rounds_ <= most_rounds) return true;
   outcome_.give_up(
       mesh_.point(mesh_.last_vertex()),
-      fmt::format("the surface did not settle in {} rounds of repairs; the last vertex is", most_rounds),
+      fmt::format("the surface still had to be repaired after {} rounds of repairs; the last vertex is",
+                  most_rounds),
       "raise distance, or try a smaller size or another seed");
   return false;
 }

@@ -375,8 +375,9 @@ void Operations::move_to_face(Index vertex, Change& change) {
   if (place) fill_move(vertex, *place, best, change);
 }
 
-// Returns the places of the patch of the vertex that are nearest to the other vertices of the current cone,
-// and those beside them along the longest edge of the cone.
+// Returns places on the patch of `vertex`. For each other vertex of the current cone: the place nearest to
+// it, if it lies on a feature, and the place nearest to its projection onto the line of the longest edge from
+// `vertex` to the cone.
 std::vector<Point> Operations::facing_places(Index vertex, const Freedom& where) {
   const Point& p = mesh_.points[vertex];
   std::vector<Index> others;

@@ -667,13 +667,12 @@ RepairedPlc remove_noise(Plc plc, std::span<const PolygonSoup> soups, const PlcO
     }
   }
   plc.warnings.push_back(
-      {fmt::format(
-           "Features below the repair tolerance of {:.3g} stay, the first one at {}: to remove them {}; they "
-           "cost elements and time, another --repair-tolerance may help.",
-           tolerance, text(*noise),
-           result.report.gave_up ? "takes too long"
-           : changes             ? "would make the facets no valid complex"
-                                 : "would make others that are worse"),
+      {fmt::format("Features below the repair tolerance of {:.3g} stay, the first one at {}: removing them "
+                   "{}. They cost elements and time; another --repair-tolerance may help.",
+                   tolerance, text(*noise),
+                   result.report.gave_up ? "takes too long"
+                   : changes             ? "would make the complex invalid"
+                                         : "would make worse ones"),
        *noise});
   return with_lost_regions({std::move(plc), {}, {}}, soups);
 }
@@ -685,7 +684,7 @@ RepairedPlc build_repaired_plc(std::span<const PolygonSoup> soups, const PlcOpti
                               execution);
   if (repair_options.mode == RepairMode::wrap && repair_options.wrap_at_once) {
     if (auto wrapped = build_wrapped_plc(soups, options, repair_options)) return *std::move(wrapped);
-    throw PlcError("The closed surface around everything is no complex; try another wrap offset.", {});
+    throw PlcError("The closed surface around everything is no valid complex; try another wrap offset.", {});
   }
   std::optional<PlcError> first;
   try {

@@ -202,8 +202,8 @@ SizeField size_field_from_json(const std::string& text, const Plc& plc,
   try {
     json = Json::parse(text, [](int depth, Json::parse_event_t, const Json&) {
       if (depth > deepest)
-        throw ReadError(
-            fmt::format("size field: it is nested deeper than {} levels; this is not a size field", deepest));
+        throw ReadError(fmt::format(
+            "size field: the JSON is nested deeper than {} levels, so it is no size field", deepest));
       return true;
     });
   } catch (const Json::parse_error& error) {
@@ -220,7 +220,7 @@ SizeField size_field_from_json(const std::string& text, const Plc& plc,
   for (std::size_t i = 0; i < list.size(); ++i) {
     const std::string place = fmt::format("sources[{}]", i);
     if (std::ranges::count_if(kinds, [&](const auto& kind) { return list[i].contains(kind); }) > 1)
-      fail(place, fmt::format("expected one of {}; make several sources of it", fmt::join(kinds, ", ")));
+      fail(place, fmt::format("expected only one of {}; make it several sources", fmt::join(kinds, ", ")));
     std::vector<std::string> keys(kinds.begin(), kinds.end());
     keys.insert(keys.end(), {"size", "growth", "within"});
     allow_only(list[i], place, keys);
