@@ -200,7 +200,7 @@ bool SmoothSurfaces::are_excused(std::span<const Index> old, std::span<const Fac
 double SmoothSurfaces::agreement(Index patch, const Triangle& t, Index triangle) const {
   const Vector n = normal(t), m = normal(triangles(patch).corners(triangle));
   const double lengths = norm(n) * norm(m);
-  return lengths > 0 ? std::fabs(dot(n, m)) / lengths : 0;
+  return lengths > 0 ? dot(n, m) / lengths : 0;
 }
 
 double SmoothSurfaces::worst_agreement(std::span<const Index> faces) const {
