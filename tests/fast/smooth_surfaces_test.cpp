@@ -14,8 +14,7 @@ using remeshing::SmoothSurfaces;
 
 // If such faces fitted, a change might fold a surface over itself and make tets that overlap.
 TEST(SmoothSurfaces, FacesOfTheOppositeOrientationDoNotFit) {
-  const testing::Meshed meshed =
-      testing::mesh_of(testing::icosphere(0.6, 8), testing::with_size(0.35), 30);
+  const testing::Meshed meshed = testing::mesh_of(testing::icosphere(0.6, 8), testing::with_size(0.35), 30);
   const TetMesh& mesh = meshed.result.mesh;
   const SmoothSurfaces surfaces(meshed.plc, mesh, SurfaceTolerance(0.1));
   ASSERT_FALSE(mesh.faces.empty());

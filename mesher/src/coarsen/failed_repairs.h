@@ -21,8 +21,8 @@ class FailedRepairs {
     failures_.insert_or_assign(vertex, Failure{now, std::move(looked_at)});
   }
 
-  /// Returns the vertices whose tets the trials examined if nothing has changed there since; otherwise
-  /// nothing.
+  /// If nothing has changed at the vertices whose tets the trials examined, returns these vertices;
+  /// otherwise none.
   std::span<const Index> still_fails(Index vertex, const ChangeTimes& changes) const {
     const auto found = failures_.find(vertex);
     if (found == failures_.end()) return {};

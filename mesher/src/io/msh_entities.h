@@ -47,7 +47,7 @@ struct MshParts {
     Index partition = 0;
   };
   MshEntities entities;                           ///< physicals is empty
-  std::array<std::vector<Part>, 4> of_dimension;  ///< beside entities.of_dimension
+  std::array<std::vector<Part>, 4> of_dimension;  ///< for each entity of entities.of_dimension
   std::vector<Index> numbers;                     ///< numbers of the partitions that have tets, ascending
   std::size_t partitions = 0;                     ///< number of partitions
 };

@@ -15,7 +15,8 @@ namespace collarmesh {
 std::size_t most_vertices_expected(const Plc& plc, const PipelineOptions& options);
 
 /// Returns an upper limit, at most a million, on the number of vertices that refinement needs on rods and
-/// other bodies that are far thinner than the size but thicker than their chords. Thinner walls take more.
+/// other bodies far thinner than the size. Walls thinner than the longest edge that keeps the tolerance may
+/// need more.
 std::size_t most_vertices_on_rods(const Plc& plc, const MeshOptions& options);
 
 /// Returns the smallest target edge length that is given as a number, absolute.

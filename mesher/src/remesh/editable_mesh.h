@@ -29,7 +29,8 @@ struct Change {
   Point place{};                        ///< new place of the moved or inserted vertex
   double way = 0;                       ///< arc length by which a vertex on a curve slides
   TetMesh::VertexFeature feature;       ///< feature of the inserted vertex
-  /// For a vertex inserted on a curve: the edge that it divides, and its arc length.
+  /// For a vertex inserted on a curve: the edge that it divides, and the arc length
+  /// at which the vertex lies on the curve.
   CurveSlides::Middle middle = {};
 
   bool is_none() const { return kind == Kind::none; }

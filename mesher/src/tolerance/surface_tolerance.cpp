@@ -27,8 +27,8 @@ constexpr double share_of_rod = 0.05, share_of_shell = 0.15, share_of_hole = 0.1
 // Share of a region's volume that chords may remove or add, by the estimate below. Where chords would change
 // the volume by less, the shares of thickness grow by up to `largest_factor`.
 constexpr double share_of_volume = 0.015, largest_factor = 2;
-// The share of the volume below a patch in a wedge that chords may remove, if they would otherwise remove
-// more than `much_of_wedge`.
+// If chords would remove at least the share `much_of_wedge` of the volume below a patch in a wedge, the
+// tolerance there is lowered so that they remove about `share_of_wedge`.
 constexpr double share_of_wedge = 0.035, much_of_wedge = 0.25;
 // The smallest tolerance in wedges, relative to the largest one: triangles of CAD faces are hardly ever
 // closer to their surface.
