@@ -16,6 +16,7 @@
 #include "pipeline/certification.h"
 #include "pipeline/periodic_faces.h"
 #include "pipeline/reshaping.h"
+#include "pipeline/rods_in_blocks.h"
 #include "pipeline/vertex_bound.h"
 #include "predict/vertex_counts.h"
 #include "tolerance/thin_shells.h"
@@ -68,7 +69,7 @@ DisjointSets sides_of_walls(const Plc& plc) {
 
 void MeshMaker::make(const Plc& plc, std::uint64_t seed) {
   set_up(plc, seed);
-  if (take_rods()) return;
+  if (take_rods() || take_sheathed_rods()) return;
   if (may_be_better_constrained()) {
     if (!refines_with_few_vertices() &&
         take_constrained(plc, "its curved walls or gaps are far thinner than the elements", Lengths::kept))
@@ -129,6 +130,36 @@ bool MeshMaker::take_rods() {
   }
   no_rods_ = job_.plc;
   job_.made = std::move(before);
+  return false;
+}
+
+/// Uses rings around thin rods inside other regions, and a refinement of the rest, if there are such rods and
+/// every guarantee holds.
+bool MeshMaker::take_sheathed_rods() {
+  if (no_sheaths_ == job_.plc || job_.start != Start::automatic || !may_have_rods(job_)) return false;
+  const std::vector<SheathedRod> rods = find_sheathed_rods(job_);
+  if (rods.empty()) return false;
+  PipelineResult before = std::exchange(job_.made, {});
+  try {
+    std::vector<Index> fixed;
+    if (refine_around_rods(job_, rods, fixed)) {
+      reshape(job_, fixed);
+      mend_flat_tets(job_);
+      project(job_);
+      raise_order(job_);
+      certify(job_, tolerance(*job_.plc));
+      if (job_.made.guarantees_hold()) {
+        job_.made.check.notes.push_back(
+            "made of rings in and around rods that are far thinner than the elements");
+        return true;
+      }
+    }
+  } catch (const Ended&) {
+    if (!job_.hit_bound()) throw;
+  }
+  no_sheaths_ = job_.plc;
+  job_.made = std::move(before);
+  set_up(*job_.plc, job_.options.mesh.seed);
   return false;
 }
 
@@ -260,6 +291,7 @@ void MeshMaker::take_new_complex() {
   tolerance_.reset();
   nearer_.reset();
   no_rods_ = nullptr;
+  no_sheaths_ = nullptr;
   hopeless_ = nullptr;
 }
 
