@@ -372,6 +372,7 @@ std::vector<SheathedRod> sheathed_rods(const Plc& plc, const SurfaceTolerance& t
   std::vector<SheathedRod> found;
   std::size_t vertices = 0;
   for (Index region = 1; region < patches.size(); ++region) {
+    if (execution.cancelled()) return {};
     if (patches[region].empty() || patches[region].size() > 3) continue;
     Rod rod(plc, tolerance, limits.size, execution, region, patches[region]);
     SheathedRod made;

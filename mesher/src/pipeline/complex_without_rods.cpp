@@ -33,11 +33,15 @@ class Removal {
         regions_(whole.regions.size(), false),
         patches_(whole.patches.size(), false),
         curves_(whole.curves.size(), false),
-        vertices_(whole.vertices.size(), false) {
+        vertices_(whole.vertices.size(), false),
+        filled_(whole.patches.size()) {
     for (const SheathedRod& rod : rods) {
       regions_[rod.region] = true;
       patches_[rod.patch] = true;
-      for (const SheathedRod::End& end : rod.ends) patches_[end.patch] = curves_[end.curve] = true;
+      for (const SheathedRod::End& end : rod.ends) {
+        patches_[end.patch] = curves_[end.curve] = true;
+        filled_[end.host].push_back(end.patch);
+      }
     }
     for (Index v = 0; v < vertices_.size(); ++v)
       vertices_[v] = std::ranges::any_of(whole.vertices[v].curves, [&](Index c) { return curves_[c]; });
@@ -77,10 +81,8 @@ class Removal {
       for (Index& r : patch.regions) r = regions[r];
       patch.first_triangle = static_cast<Index>(plc.triangles.size());
       add_triangles(made, p, false);
-      for (const SheathedRod& rod : rods_)
-        for (const SheathedRod::End& end : rod.ends)
-          if (end.host == p)
-            add_triangles(made, end.patch, dot(whole_.patches[end.patch].normal, patch.normal) < 0);
+      for (const Index end : filled_[p])
+        add_triangles(made, end, dot(whole_.patches[end].normal, patch.normal) < 0);
       patch.triangle_count = static_cast<Index>(plc.triangles.size()) - patch.first_triangle;
       for (Index t = patch.first_triangle; t < plc.triangles.size(); ++t)
         plc.triangles[t].patch = static_cast<Index>(plc.patches.size());
@@ -119,6 +121,7 @@ class Removal {
   const Plc& whole_;
   const std::vector<SheathedRod>& rods_;
   std::vector<bool> regions_, patches_, curves_, vertices_;  // whether they are dropped
+  std::vector<std::vector<Index>> filled_;                   // by host: the patches at ends of rods there
 };
 
 }  // namespace

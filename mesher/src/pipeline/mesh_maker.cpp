@@ -133,33 +133,42 @@ bool MeshMaker::take_rods() {
   return false;
 }
 
-/// Uses rings around thin rods inside other regions, and a refinement of the rest, if there are such rods and
-/// every guarantee holds.
+/// Uses rings in and around thin rods inside other regions, and a refinement of the rest, if there are such
+/// rods and every guarantee holds. Otherwise leaves the job as it was.
 bool MeshMaker::take_sheathed_rods() {
   if (no_sheaths_ == job_.plc || job_.start != Start::automatic || !may_have_rods(job_)) return false;
-  const std::vector<SheathedRod> rods = find_sheathed_rods(job_);
+  std::vector<SheathedRod> rods = find_sheathed_rods(job_);
   if (rods.empty()) return false;
   PipelineResult before = std::exchange(job_.made, {});
-  try {
-    std::vector<Index> fixed;
-    if (refine_around_rods(job_, rods, fixed)) {
-      reshape(job_, fixed);
-      mend_flat_tets(job_);
-      project(job_);
-      raise_order(job_);
-      certify(job_, tolerance(*job_.plc));
-      if (job_.made.guarantees_hold()) {
-        job_.made.check.notes.push_back(
-            "made of rings in and around rods that are far thinner than the elements");
-        return true;
-      }
-    }
-  } catch (const Ended&) {
-    if (!job_.hit_bound()) throw;
+  if (is_good_with_sheaths(rods)) {
+    is_constrained_ = false;
+    job_.made.check.notes.push_back(
+        fmt::format("made of rings in and around rods that are far thinner than the elements: {}", rods.size()));
+    return true;
   }
   no_sheaths_ = job_.plc;
   job_.made = std::move(before);
   set_up(*job_.plc, job_.options.mesh.seed);
+  return false;
+}
+
+/// Makes a mesh with sheaths around rods. Removes the rods that have no sheath in it. Returns whether every
+/// guarantee holds.
+bool MeshMaker::is_good_with_sheaths(std::vector<SheathedRod>& rods) {
+  try {
+    std::vector<Index> fixed;
+    if (!refine_around_rods(job_, rods, fixed, fineness_)) return false;
+    reshape(job_, fixed);
+    mend_flat_tets(job_);
+    project(job_);
+    raise_order(job_);
+    certify(job_, tolerance(*job_.plc));
+    return job_.made.guarantees_hold();
+  } catch (const Ended&) {
+    if (!job_.budget.ended_at_vertices(job_.made.result, job_.control.out_of_time())) throw;
+  } catch (const FarTooFine&) {  // the refinement of the whole complex decides
+  } catch (const PlcError&) {    // vertices on axes are too near to other features
+  }
   return false;
 }
 

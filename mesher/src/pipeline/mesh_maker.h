@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "constrained/sheathed_rods.h"
 #include "pipeline/constrained_start.h"
 #include "pipeline/mesh_job.h"
 #include "pipeline/refinement.h"
@@ -70,6 +71,7 @@ class MeshMaker {
   bool may_be_better_constrained() const;
   bool take_rods();
   bool take_sheathed_rods();
+  bool is_good_with_sheaths(std::vector<SheathedRod>& rods);
   bool refines_with_few_vertices();
   bool may_take_constrained(const Plc& plc) const;
   bool is_far_too_fine() const;
