@@ -7,9 +7,10 @@
 #include <gp_Ax2.hxx>
 
 #include <algorithm>
-#include <map>
 #include <numbers>
+#include <set>
 #include <string>
+#include <vector>
 
 #include "collarmesh/mesh_files.h"
 #include "shapes.h"
@@ -18,7 +19,7 @@
 namespace collarmesh::testing::rods_in_solids_test {
 namespace {
 
-constexpr double radius = 0.05;
+constexpr double radius = 0.05, large_radius = 1.5;
 
 TopoDS_Shape wire_in_block() {
   const gp_Pnt centre(2, 2, 0);
@@ -26,9 +27,9 @@ TopoDS_Shape wire_in_block() {
                    BRepPrimAPI_MakeBox(4, 4, 2).Shape()});
 }
 TopoDS_Shape ring_in_block() {
-  const gp_Pnt centre(2, 2, 2);
-  return compound({BRepPrimAPI_MakeTorus(gp_Ax2(centre, gp::DZ()), 1, radius).Shape(),
-                   BRepPrimAPI_MakeBox(4, 4, 4).Shape()});
+  const gp_Pnt centre(2.5, 2.5, 2.5);
+  return compound({BRepPrimAPI_MakeTorus(gp_Ax2(centre, gp::DZ()), large_radius, radius).Shape(),
+                   BRepPrimAPI_MakeBox(5, 5, 5).Shape()});
 }
 
 /// Meshes a shape in a STEP file, with elements of this order. Expects a rod of this volume.
@@ -48,9 +49,8 @@ void expect_good(const TopoDS_Shape& shape, unsigned order, double volume) {
   }));
   ASSERT_EQ(made.check.of_mesh.volumes.size(), 3U);
   EXPECT_NEAR(made.check.of_mesh.volumes[1], volume, (order == 1 ? 0.02 : 0.01) * volume);
-  const std::map<Tag, std::string>& names = made.result.mesh.names.of(3);
-  EXPECT_EQ(names.size(), 2U);
-  EXPECT_EQ(std::ranges::count(made.result.mesh.tet_tag, names.begin()->first) > 0, true);
+  const std::vector<Tag>& tags = made.result.mesh.tet_tag;
+  EXPECT_EQ(std::set<Tag>(tags.begin(), tags.end()), (std::set<Tag>{1, 2}));
 }
 
 TEST(RodsInSolids, MayBeWires) {
@@ -59,8 +59,8 @@ TEST(RodsInSolids, MayBeWires) {
 }
 
 TEST(RodsInSolids, MayBeRings) {
-  constexpr double volume = 2 * std::numbers::pi * std::numbers::pi * radius * radius;
-  for (const unsigned order : {1U, 2U}) expect_good(ring_in_block(), order, volume);
+  constexpr double volume = 2 * std::numbers::pi * std::numbers::pi * radius * radius * large_radius;
+  expect_good(ring_in_block(), 2, volume);
 }
 
 }  // namespace

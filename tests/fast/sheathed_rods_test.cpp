@@ -149,8 +149,7 @@ TEST_P(EmbeddedRods, HaveMeshesThatKeepEveryGuarantee) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, EmbeddedRods,
-                         ::testing::Values(Embedded{true, 1}, Embedded{true, 2}, Embedded{false, 1},
-                                           Embedded{false, 2}),
+                         ::testing::Values(Embedded{true, 2}, Embedded{false, 1}, Embedded{false, 2}),
                          [](const auto& shape) {
                            return std::string(shape.param.is_ring ? "Ring" : "Wire") +
                                   std::to_string(shape.param.order);
@@ -194,9 +193,10 @@ TEST(SheathedRods, AreTheSameWithMoreThreads) {
 }
 
 TEST(SheathedRods, AreCancelledInEveryStage) {
-  const Plc plc = wire_in_block();
+  const Plc plc = wire_in_block(0.1);
   for (const bool at_begin : {true, false})
-    for (const std::string stage : {"refine", "tetrahedralize", "coarsen", "improve", "check"}) {
+    for (const std::string stage :
+         {"refine", "tetrahedralize", "coarsen", "improve", "second order", "check"}) {
       bool asked = false;
       Execution execution;
       execution.progress = [&](const ProgressReport& report) {
@@ -204,7 +204,7 @@ TEST(SheathedRods, AreCancelledInEveryStage) {
         asked |= stops;
         return !stops;
       };
-      const PipelineResult made = run_pipeline(plc, one_thread(1), execution);
+      const PipelineResult made = run_pipeline(plc, one_thread(2), execution);
       if (!asked) continue;  // stages that take little time report their beginning only
       EXPECT_EQ(made.result.status, MeshStatus::cancelled) << stage;
       EXPECT_TRUE(made.result.mesh.tets.empty()) << stage;

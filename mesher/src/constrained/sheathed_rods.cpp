@@ -327,8 +327,7 @@ std::size_t find_rings(Rod& rod) {
       if (in_ring > most_odd && in_ring % 2 == 1) continue;
       const double most = sheath_spacing(in_ring);
       rod.find_spacing(most, share);
-      const double in_sheath =
-          static_cast<double>(rod.steps()) * most * rod.radius() / rod.length();
+      const double in_sheath = static_cast<double>(rod.steps()) * most * rod.radius() / rod.length();
       const auto rings = std::max<std::size_t>(1, static_cast<std::size_t>(in_sheath));
       rod.find_spacing(most, share, rings);
       const std::size_t parts = rod.is_loop() ? SheathFilling::parts_of_turn(in_ring) : 0;

@@ -9,8 +9,7 @@
 
 namespace collarmesh::pipeline {
 
-RodAxes::RodAxes(const std::vector<SheathedRod>& rods)
-    : rods_(rods) {
+RodAxes::RodAxes(const std::vector<SheathedRod>& rods) : rods_(rods) {
   std::vector<std::array<Index, 3>> pieces;
   for (Index rod = 0; rod < rods.size(); ++rod) {
     const std::vector<Point>& axis = rods[rod].axis;
@@ -32,8 +31,7 @@ RodAxes::RodAxes(const std::vector<SheathedRod>& rods)
 
 double RodAxes::distance(Index rod, const Point& p) const {
   return std::sqrt(pieces_->squared_distance_to(
-      p, INFINITY, nullptr,
-      [&](Index node) { return common_rod_[node] != none && common_rod_[node] != rod; },
+      p, INFINITY, nullptr, [&](Index node) { return common_rod_[node] != none && common_rod_[node] != rod; },
       [&](Index piece) { return rod_of_[piece] == rod; }));
 }
 
@@ -48,7 +46,8 @@ bool RodAxes::comes_near_itself(Index rod, double along, double across) const {
         [&](Index piece) {
           if (rod_of_[piece] != rod) return;
           const auto& [from, to, same] = pieces_->points(piece);
-          const double length = std::min(std::fabs(along_[from] - along_[at]), std::fabs(along_[to] - along_[at])),
+          const double length =
+                           std::min(std::fabs(along_[from] - along_[at]), std::fabs(along_[to] - along_[at])),
                        other_way = rods_[rod].ends.empty() ? along_[end - 1] - length : length;
           if (std::min(length, other_way) <= along) return;
           comes_near |= squared_distance_to_segment(points_[at], points_[from], points_[to]) < bound;
@@ -63,7 +62,8 @@ std::vector<Index> RodAxes::rods_near(const Point& p, double room, double more) 
   const double farthest = room * most_reach_ + more, bound = farthest * farthest;
   const auto is_found = [&](Index rod) { return std::ranges::count(near, rod) > 0; };
   pieces_->visit_near(
-      {&root, 1}, p, bound, [&](Index node) { return common_rod_[node] != none && is_found(common_rod_[node]); },
+      {&root, 1}, p, bound,
+      [&](Index node) { return common_rod_[node] != none && is_found(common_rod_[node]); },
       [&](Index piece) {
         const Index rod = rod_of_[piece];
         if (is_found(rod)) return;

@@ -30,9 +30,9 @@ class RodAxes {
  private:
   const std::vector<SheathedRod>& rods_;
   std::vector<Point> points_;
-  std::vector<double> along_;      // by point: the length of the axis up to it
+  std::vector<double> along_;       // by point: the length of the axis up to it
   std::vector<Index> first_point_;  // by rod, and the number of points
-  std::vector<Index> rod_of_;  // by piece of an axis
+  std::vector<Index> rod_of_;       // by piece of an axis
   std::optional<TriangleHierarchy> pieces_;
   std::vector<Index> common_rod_;  // by node: the rod of all pieces below it, or none
   double most_reach_ = 0;

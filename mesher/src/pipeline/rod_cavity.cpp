@@ -48,7 +48,8 @@ bool RodCavity::comes_within(double bound, const std::array<Point, 4>& p) const 
       edge = {ends[0], ends[1]};
     }
   const double there = around_.axes.distance(number_, middle);
-  if (there <= bound || there > bound + radius || longest < between_places * rod_.reach) return there <= bound;
+  if (there <= bound || there > bound + radius || longest < between_places * rod_.reach)
+    return there <= bound;
   return std::ranges::any_of(edge, [&](unsigned end) {
     std::array<Point, 4> half = p;
     half[end] = 0.5 * (p[edge[0]] + p[edge[1]]);

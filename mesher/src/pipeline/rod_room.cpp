@@ -18,8 +18,8 @@ namespace {
 // for a sheath reach some 1.4 to 1.8 times as far, and those around them are about as large as the sheath is
 // wide.
 constexpr double clearance = 3;
-// Places that are farther than this from each other along an axis, in terms of the sheath's reach, must be far
-// from each other in space, too. Bends of axes with sheaths are so slight that nearer places cannot meet.
+// Places that are farther than this from each other along an axis, in terms of the sheath's reach, must be
+// far from each other in space, too. Bends of axes with sheaths are so slight that nearer places cannot meet.
 constexpr double along_itself = 8;
 
 /// The features of a complex, for distances from those that are no part of a rod.
@@ -43,7 +43,8 @@ class OtherFeatures {
       }
     }
     for (const Plc::Vertex& vertex : plc.vertices) {
-      const auto owned = std::ranges::find_if(vertex.curves, [&](Index c) { return curve_owner_[c] != others_; });
+      const auto owned =
+          std::ranges::find_if(vertex.curves, [&](Index c) { return curve_owner_[c] != others_; });
       add({vertex.point, vertex.point, vertex.point},
           owned != vertex.curves.end() ? curve_owner_[*owned] : others_, none);
     }
@@ -58,7 +59,8 @@ class OtherFeatures {
     return pieces_->squared_distance_to(
                p, squared, nullptr, [&](Index node) { return common_owner_[node] == rod; },
                [&](Index piece) {
-                 return owner_[piece] != rod && (patch_[piece] == none || std::ranges::count(hosts, patch_[piece]) == 0);
+                 return owner_[piece] != rod &&
+                        (patch_[piece] == none || std::ranges::count(hosts, patch_[piece]) == 0);
                }) < squared;
   }
 
@@ -111,8 +113,9 @@ void remove_rods_without_room(const Plc& plc, std::vector<SheathedRod>& rods, co
       const std::vector<Index> near = axes.rods_near(p, clearance, clearance * rods[rod].reach);
       return std::ranges::any_of(near, [&](Index other) { return other < rod && stays[other]; });
     };
-    stays[rod] = !axes.comes_near_itself(rod, along_itself * rods[rod].reach, 2 * clearance * rods[rod].reach) &&
-                 is_clear(others, rods[rod], rod) && std::ranges::none_of(rods[rod].axis, meets_earlier);
+    stays[rod] =
+        !axes.comes_near_itself(rod, along_itself * rods[rod].reach, 2 * clearance * rods[rod].reach) &&
+        is_clear(others, rods[rod], rod) && std::ranges::none_of(rods[rod].axis, meets_earlier);
   }
   std::vector<SheathedRod> kept;
   for (Index rod = 0; rod < rods.size(); ++rod)

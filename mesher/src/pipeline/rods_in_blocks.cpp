@@ -235,8 +235,8 @@ bool insert_rods(const Plc& plc, const ComplexWithoutRods& without, std::vector<
   return true;
 }
 
-/// Refines the complex without rods, as the job's. Tets that make room for sheaths, and those beside them, are
-/// about as large as these, so that they reach no other features.
+/// Refines the complex without rods, as the job's. Tets that make room for sheaths, and those beside them,
+/// are about as large as these, so that they reach no other features.
 void refine_without(MeshJob& job, const ComplexWithoutRods& without, const std::vector<SheathedRod>& rods,
                     Fineness fineness) {
   // In terms of the sheath's reach: the size there, and the distance from the axis up to which it holds.
@@ -254,7 +254,8 @@ void refine_without(MeshJob& job, const ComplexWithoutRods& without, const std::
   job.refined_with.bounds.tolerance = without.tolerance_from(*refined_with.bounds.tolerance);
   job.refined_with.size_field = [&](const Point& p) {
     double size = INFINITY;
-    for (const Index rod : axes.rods_near(p, as_far_as, 0)) size = std::min(size, size_beside * rods[rod].reach);
+    for (const Index rod : axes.rods_near(p, as_far_as, 0))
+      size = std::min(size, size_beside * rods[rod].reach);
     return size;
   };
   try {
