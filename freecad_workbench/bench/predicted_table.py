@@ -1,9 +1,9 @@
-"""How long the panel's table of predictions takes: from opening the panel to the chosen size's row, and to all rows.
+"""Measures the time from opening the panel to the chosen size's row in the table of predictions, and to all rows.
 
     tests/freecad/run.py PROGRAM freecad_workbench/bench/predicted_table.py --gui -- FOLDER
 
-FOLDER has STEP parts; some are taken, spread by size. Seconds are those on the clock and those of processors, of FreeCAD and the
-mesher, which tell more on a machine with other work. An import in FreeCAD is not part of it."""
+FOLDER has STEP parts; some are taken, spread by size. Printed are seconds of the clock, and the processor time of FreeCAD and of
+the mesher, which depends less on other work of the machine. Importing the part into FreeCAD does not count."""
 
 import os
 import pathlib

@@ -155,13 +155,14 @@ CLI::App* add_remesh_command(CLI::App& app, RemeshArguments& a) {
       ->type_name("FILE");
   remesh
       ->add_option("--against", a.against,
-                   "The input that the mesh was made from, one or several files; the result follows it, on "
-                   "CAD shapes the exact faces")
+                   "The input that the mesh was made from, one or several files; the result follows it, and "
+                   "on CAD shapes their exact faces")
       ->type_name("FILE");
   remesh->add_option("-o,--output", a.output, "The mesh to write: " + list(io::written_tet_mesh_formats()))
       ->type_name("FILE");
   add_output_format(*remesh, a.output_format, "");
-  add_format(*remesh, "--input-format", a.input_format, "Of the mesh", io::read_tet_mesh_formats());
+  add_format(*remesh, "--input-format", a.input_format, "Format of the mesh, an extension",
+             io::read_tet_mesh_formats());
   add_options(*remesh, Option::remesh, a);
   return remesh;
 }
@@ -263,13 +264,13 @@ void check_partitions(const MeshArguments& a, bool from_mesh) {
   if (!a.cell_decomposition.empty() && !io::is_tet_mesh_format(a.output, a.output_format))
     reject("--cell-decomposition", "needs a mesh, but the output is a surface");
   if (!a.cell_decomposition.empty() && a.partitions == 0 && !from_mesh)
-    reject("--cell-decomposition", "is of partitions; say how many with --partitions");
+    reject("--cell-decomposition", "needs partitions; say how many with --partitions");
   if (a.ghost_cells == GhostCells::off) return;
   if (!output_is_among(io::formats_with_ghost_cells(), a))
     reject("--ghost-cells", "{} has no place for ghost cells; use {}", format_of_output(a),
            list(io::formats_with_ghost_cells()));
   if (a.partitions == 0 && !from_mesh)
-    reject("--ghost-cells", "is of partitions; say how many with --partitions");
+    reject("--ghost-cells", "needs partitions; say how many with --partitions");
 }
 
 }  // namespace
@@ -294,23 +295,23 @@ void check_mesh_arguments(const MeshArguments& a);
 void check_batch(const MeshArguments& a) {
   if (!a.output.empty()) reject("--batch", "contradicts --output; use one of them");
   if (!a.cell_decomposition.empty())
-    reject("--batch", "makes several meshes, but there is one --cell-decomposition; leave it out");
+    reject("--batch", "makes several meshes, so leave out --cell-decomposition, which is for one");
   if (!a.trace_folder.empty())
-    reject("--batch", "makes several meshes, but there is one --trace; leave it out");
+    reject("--batch", "makes several meshes, so leave out --trace, which is for one");
   if (a.output_format == ".polymesh")
-    reject("--format", "needs a folder for each mesh; mesh the parts one by one");
+    reject("--format", "polymesh needs a folder for each mesh; mesh the parts one by one");
   for (const std::string& report : a.reports)
     if (report != "json" && report != "html")
-      reject("--report", "'{}' is not json or html, as --batch asks for", report);
+      reject("--report", "'{}' must be json or html with --batch", report);
   if (const std::string both = parts_of_one_name(a); !both.empty())
-    reject("--batch", "would write one mesh of {}; rename one", both);
+    reject("--batch", "would give the meshes of {} the same name; rename one of them", both);
   for (const std::string& input : a.inputs) check_mesh_arguments(part_of_batch(a, input));
 }
 
 void check_output_of_lines(const MeshArguments& a) {
   if (!output_is_among(io::formats_of_surfaces(), a))
     reject("--output", "'{}' {} no place for lines alone; use {}", a.output,
-           io::is_tet_mesh_format(a.output, a.output_format) ? "has" : "is a format with",
+           io::is_tet_mesh_format(a.output, a.output_format) ? "has" : "is of a format that has",
            list(io::formats_of_surfaces()));
 }
 
@@ -318,7 +319,7 @@ void check_output_of_surfaces(const MeshArguments& a) {
   const bool is_surface = files::is_surface_format(a.output, a.output_format);
   if (!is_surface && !output_is_among(io::formats_of_surfaces(), a))
     reject("--output", "'{}' {} no place for triangles alone; use {} or {}", a.output,
-           io::is_tet_mesh_format(a.output, a.output_format) ? "has" : "is a format with",
+           io::is_tet_mesh_format(a.output, a.output_format) ? "has" : "is of a format that has",
            list(io::formats_of_surfaces()), list(files::surface_formats()));
   if (a.triangle_elements != TriangleElements::shell && format_of_output(a) != ".inp")
     reject("--triangle-elements", "'{}' cannot store types of elements; use .inp", a.output);
@@ -344,8 +345,9 @@ void check_mesh_arguments(const MeshArguments& a) {
   }
   if (a.output.empty()) throw CLI::RequiredError("--output, the mesh to write,");
   if (a.output == "-")
-    reject("--output",
-           "- is standard output, to which convert writes: collarmesh convert IN... -o - --format vtu");
+    reject(
+        "--output",
+        "- is standard output, which is for convert and repair: collarmesh convert IN... -o - --format vtu");
   if (a.dimension == 1) {
     check_output_of_lines(a);
   } else if (a.dimension == 2) {
@@ -372,9 +374,9 @@ void check_repair_arguments(const RepairArguments& a) {
     reject("--output", "'{}' {}; use {}, or name one with --format", a.output, extension_list(a.output),
            list(files::surface_formats()));
   if (a.output == "-" && a.json)
-    reject("--json", "has no place on standard output beside the file; use --report");
+    reject("--json", "cannot print to standard output, where the file goes; use --report");
   if (!a.reports.empty() && report::is_html(a.reports.front()))
-    reject("--report", "is JSON here; pages (.html) are made of meshes");
+    reject("--report", "is JSON here; only meshes have pages (.html)");
   check_standard_input(a);
   check_outputs(a);
 }

@@ -60,7 +60,7 @@ struct RemeshArguments : MeshArguments {
 using Arguments = std::variant<MeshArguments, CheckArguments, InfoArguments, ConvertArguments,
                                RepairArguments, RemeshArguments>;
 
-/// Adds the options of meshing, without the files, for another program that meshes. `check_run_options`
+/// Adds the options of meshing, without the files, for another program that meshes. `check_run_arguments`
 /// checks combinations of options; it throws CLI::ValidationError.
 void add_run_options(CLI::App& app, MeshArguments& arguments);
 void check_run_arguments(const MeshArguments& arguments);

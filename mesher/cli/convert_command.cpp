@@ -63,8 +63,8 @@ void divide(const MeshArguments& a, TetMesh& mesh) {
                              : !a.cell_decomposition.empty()  ? "--cell-decomposition"
                                                               : nullptr;
   if (option != nullptr && mesh.tet_partition.empty())
-    throw OptionError(
-        fmt::format("{}: {} is not partitioned; say how with --partitions", option, a.inputs.front()));
+    throw OptionError(fmt::format("{}: {} is not partitioned; say into how many parts with --partitions",
+                                  option, a.inputs.front()));
 }
 
 void convert_mesh(const MeshArguments& a, TetMesh& mesh) {

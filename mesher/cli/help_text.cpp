@@ -12,7 +12,7 @@ namespace collarmesh::cli {
 
 namespace {
 
-constexpr std::size_t columns = 78, first_column = 34;  // --help-all indents commands by two
+constexpr std::size_t columns = 78, first_column = 34;  // `columns`: 80, less 2 for the indent of --help-all
 
 /// Wraps text to lines of at most this many characters; longer words stay whole.
 std::string wrapped(std::string_view text, std::size_t width = columns - first_column) {

@@ -69,7 +69,7 @@ std::string each_line_of(const std::string& file, const std::string& text) {
   return named;
 }
 
-/// Builds complexes from the input files. Prints the changes made for each.
+/// A builder of complexes from the input files. Prints the changes made for each.
 class InputSource : public ComplexSource {
  public:
   /// Keeps references to all arguments.
@@ -78,7 +78,9 @@ class InputSource : public ComplexSource {
 
   RepairedPlc build(const RepairOptions& repair, const Execution&) override {
     if (repair.wrap_at_once)
-      stages_.print("wrapped: no mesh of the complex keeps every guarantee within the limit on vertices\n");
+      stages_.print(
+          "wrapping the input, because no mesh of the complex keeps every guarantee within the limit on "
+          "vertices\n");
     else if (repair.tolerance != arguments_.repair.tolerance)
       stages_.print(fmt::format(
           "trying --repair-tolerance {:.3g}: with the smaller tolerance, places far thinner than the sizes "
@@ -116,9 +118,10 @@ class InputSource : public ComplexSource {
     std::vector<std::string> told;
     if (size_field_use_)
       for (const std::string& source : size_field_use_->without_effect())
-        told.push_back(fmt::format(
-            "--size-field: {} has no effect: nowhere in the part is its size below {:.6g}, that of --size.",
-            source, size_field_use_->size()));
+        told.push_back(
+            fmt::format("--size-field: {} has no effect: nowhere in the part is its size below {:.6g}, which "
+                        "--size asks for.",
+                        source, size_field_use_->size()));
     return told;
   }
 

@@ -38,9 +38,9 @@ std::vector<std::string> option_warnings(const MeshArguments& a, const Plc& plc)
                     "--max-vertices or --time-limit.",
                     a.mesh.bounds.radius_edge));
   if (a.improve == 0 && a.min_dihedral > 0)
-    warnings.push_back(
-        fmt::format("--min-dihedral {}: no effect, because --improve 0 improves nothing; leave that out.",
-                    a.min_dihedral));
+    warnings.push_back(fmt::format(
+        "--min-dihedral {}: no effect, because --improve 0 improves nothing; leave --improve 0 out.",
+        a.min_dihedral));
   if (a.mesh.bounds.collar_angle < (a.coarsen ? reached_coarsened : reached_collar_angle) &&
       !find_creases(plc, a.mesh.bounds.crease_angle).empty())
     warnings.push_back(
@@ -53,8 +53,8 @@ std::vector<std::string> option_warnings(const MeshArguments& a, const Plc& plc)
                         a.mesh.bounds.collar_angle));
   if (a.coarsen && a.mesh.vertex_ratio > 0)
     warnings.push_back(
-        fmt::format("--vertex-ratio {}: a coarsened mesh may exceed this bound; use --coarsen off, after "
-                    "which only improvement may exceed it.",
+        fmt::format("--vertex-ratio {}: a coarsened mesh may exceed this bound; with --coarsen off "
+                    "only improvement may exceed it.",
                     a.mesh.vertex_ratio));
   if (a.mesh.bounds.distance > 0 && a.mesh.bounds.distance < small_distance * diagonal &&
       is_smooth_anywhere(plc))

@@ -75,7 +75,7 @@ ExitCode fail(const PlcError& error) {
 
 ExitCode fail_without_threads() {
   return fail(ExitCode::budget_hit,
-              "no thread can be made; nothing was written; raise the limit of threads or memory");
+              "no thread can be made; nothing was written; raise the limit on threads or memory");
 }
 
 // Returns whether TBB failed to create a thread, which shows only in the message.

@@ -11,7 +11,7 @@
 
 namespace collarmesh::cli {
 
-/// Shows the progress of a command on standard error: a bar on a terminal, or one JSON object per line.
+/// A display of a command's progress on standard error: a bar on a terminal, or one JSON object per line.
 /// Stages have fixed shares of the total fraction, which never decreases.
 class ProgressDisplay {
  public:

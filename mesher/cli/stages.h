@@ -8,7 +8,7 @@
 
 namespace collarmesh::cli {
 
-/// Begins stages, both in the display and in the timing.
+/// The stages of a command, both in the display and in the timing.
 class Stages {
  public:
   Stages(ProgressStyle style, report::StageTimes& times) : display_(style), times_(times) {}

@@ -35,7 +35,7 @@ std::string unexpected(const CLI::App& app) {
   const CLI::App& command = command_of(app);
   std::vector<std::string> extras = command.remaining();
   if (extras.empty()) extras = app.remaining();
-  if (extras.empty()) return "there is an argument too many; see --help";
+  if (extras.empty()) return "there is one argument too many; see --help";
   const std::string argument = extras.front().substr(0, extras.front().find('='));
   const std::string similar = similar_option(command, argument);
   return similar.empty() ? fmt::format("{}: there is no such option or argument; see --help", argument)

@@ -22,8 +22,7 @@ std::string note_on_scale(const TetMesh& mesh, const Plc& plc, double scale) {
   if (!(ratio > 0) || (ratio > 0.5 && ratio < 2)) return {};
   return fmt::format(
       "the mesh is {:.3g} times as large as the input; if it was written in another unit, give check the "
-      "same "
-      "--scale, which would be {:.3g}",
+      "--scale of that run, probably {:.3g}",
       ratio, scale * ratio);
 }
 
@@ -65,7 +64,7 @@ void check_against_further(const TetMesh& mesh, ComplexInput& input, const RunOp
                            const Execution& execution, CheckReport& report, RepairReport& repair) {
   std::vector<RepairOptions> all = further_repairs(options.repair, repair);
   all.insert(all.begin(), options.repair);
-  constexpr double size = 1, diagonal = 20;  // the ratio of the default size
+  constexpr double size = 1, diagonal = 20;  // in the ratio of the default size to the diagonal
   for (const RepairOptions& coarser : coarser_repairs(options.repair, size, diagonal)) all.push_back(coarser);
   for (RepairOptions& each : all)
     if (!each.wrap_at_once) each.target_size = options.mesh.size;  // collapses features, as `mesh` does
@@ -100,7 +99,7 @@ CheckReport check_against(const TetMesh& mesh, ComplexInput& input, const RunOpt
     check_against_further(mesh, input, options, execution, report, repair);
   if (repair.repaired)
     report.notes.emplace_back(
-        "the mesh was judged against the repaired complex, and that against the input:");
+        "the mesh was judged against the repaired complex, and the repaired complex against the input:");
   for (const std::string& line : describe(repair)) report.notes.push_back("the input was repaired: " + line);
   return report;
 }

@@ -60,11 +60,11 @@ std::string advice(const PlcError& error, const RepairOptions& options, bool of_
   if (!of_solids && options.mode == RepairMode::automatic)
     return has_fault(error, {Kind::empty})
                ? std::string()
-               : fmt::format(" It could not be repaired: try a larger --repair-tolerance than {:.3g}.",
+               : fmt::format(" The input could not be repaired: try a larger --repair-tolerance than {:.3g}.",
                              options.tolerance);
   const std::string wider = fmt::format("a larger --repair-tolerance than {:.3g}", options.tolerance);
   switch (options.mode) {
-    case RepairMode::off: return " Without --repair none this would be repaired as far as possible.";
+    case RepairMode::off: return " Without --repair none the input would be repaired as far as possible.";
     case RepairMode::wrap:
       return fmt::format(
           " A closed surface around everything failed, too; {} or another --wrap-offset may help.", wider);
@@ -72,7 +72,8 @@ std::string advice(const PlcError& error, const RepairOptions& options, bool of_
   }
   const bool open = has_fault(error, {Kind::open_boundary, Kind::empty});
   return fmt::format(
-      " It could not be repaired: {}try {}, or --repair wrap, which puts a closed surface around everything.",
+      " The input could not be repaired: {}try {}, or --repair wrap, which puts a closed surface around "
+      "everything.",
       open ? "close the surface, mesh it with triangles (--dimension 2), " : "", wider);
 }
 
@@ -114,7 +115,7 @@ ComplexInput::ComplexInput(const std::vector<std::string>& paths, InputReading r
     : reading_(std::move(reading)), cad_(reading_.guard) {
   const CadReading cad{[&](double diagonal) { return share_of_triangles * reading_.distance(diagonal); },
                        reading_.overlap, reading_.threads};
-  Tag largest_named = 0;  // numbers in names refer to one file
+  Tag largest_named = 0;  // largest tag of named files so far; their tags must differ
   for (const std::string& path : paths) {
     reading_.stop();
     const std::string file = existing_file(path);
@@ -172,8 +173,8 @@ Plc ComplexInput::build_anew(const PlcOptions& options, const RepairOptions& rep
   return plc;
 }
 
-/// Gives features the numbers of the first complex with these options and target size, to which names and
-/// sizes refer.
+/// Gives features the numbers that they had in the first complex with these options and target size, because
+/// names and sizes refer to those numbers.
 void ComplexInput::keep_numbers(const PlcOptions& options, const RepairOptions& repair, Plc& plc) {
   if (!plc.numbered_patches && !plc.numbered_curves) return;
   if (first_ && all_of(first_->options) == all_of(options) && first_->target_size == repair.target_size)

@@ -53,8 +53,8 @@ InputReading reading_for_mesh(const RunOptions& options, const std::string& form
 /// The files of one complex: surfaces, complexes and CAD shapes, which are triangulated here.
 class ComplexInput {
  public:
-  /// Reads the files; "-" is standard input. Throws ReadError, which proposes the most similar name for a
-  /// file that does not exist, and PlcError.
+  /// Reads the files; "-" is standard input. Throws PlcError, and ReadError, which proposes the most similar
+  /// name for a file that does not exist.
   explicit ComplexInput(const std::vector<std::string>& paths, InputReading reading = {});
 
   /// Adds a surface that does not come from a file.

@@ -18,8 +18,8 @@ namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-/// Corrects the size of a feature of the complex by the difference between its CAD measure and its
-/// tessellation. Returns NaN if the measure belongs to another feature.
+/// Corrects the size of a feature of the complex by the difference between the exact CAD measure and that of
+/// the tessellation. Returns NaN if the measure belongs to another feature.
 double corrected(double in_complex, const brep::CadMeasure& measure) {
   constexpr double share = 1e-4;  // relative change by repair that is accepted without a warning
   if (!(std::fabs(in_complex - measure.cut) <= share * measure.cut)) return unknown;

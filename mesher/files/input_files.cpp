@@ -84,9 +84,10 @@ TetMesh read_mesh_or_triangles(const std::string& path) {
   if (mesh) return std::move(*mesh);
   if (!io::is_mesh_surface_format(path) && is_surface_format(path)) {
     existing_file(path);
-    throw ReadError(fmt::format(
-        "{}: {} has no edges of curves and cannot be checked; write the mesh in another format, too: {}",
-        path, fs::path(path).extension().string(), fmt::join(io::read_tet_mesh_formats(), " ")));
+    throw ReadError(
+        fmt::format("{}: {} files have no edges on curves, so they cannot be checked; write the mesh in one "
+                    "of these formats, too: {}",
+                    path, fs::path(path).extension().string(), fmt::join(io::read_tet_mesh_formats(), " ")));
   }
   if (!io::is_mesh_surface_format(path)) return read_mesh(path);
   TetMesh mesh_of_triangles = io::read_mesh_cells(existing_file(path));

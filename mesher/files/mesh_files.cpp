@@ -10,7 +10,7 @@ namespace collarmesh {
 
 namespace {
 
-/// Builds complexes from files, one for each repair.
+/// A builder of complexes from files, one for each repair.
 class FilesSource : public ComplexSource {
  public:
   /// Keeps references to both arguments.

@@ -47,7 +47,7 @@ StageReached stage_now;
 extern "C" void on_interrupt(int number) {
   interrupted.store(true, std::memory_order_relaxed);
   if (signals.fetch_add(1, std::memory_order_relaxed) < 2) return;
-  std::signal(number, SIG_DFL);  // the next signal kills the program
+  std::signal(number, SIG_DFL);  // the signal raised next kills the program
   std::raise(number);
 }
 
@@ -84,9 +84,10 @@ std::string coarser_text() {
   if (stage == "start" || stage == "read")
     return "or read less at once: save the solids of a large assembly as separate files";
   if (stage == "complex")
-    return "or, as many intersecting facets take the time, try another --repair-tolerance or --repair wrap";
-  return "or --size for a coarser mesh; `collarmesh mesh` also has --repair wrap, which ignores detail much "
-         "finer than the size";
+    return "or, because many intersecting facets take the time, try another --repair-tolerance or --repair "
+           "wrap";
+  return "or --size for a coarser mesh; if the input is meshed, --repair wrap helps, too: it ignores detail "
+         "much finer than the size";
 }
 
 Stopped reason_to_stop() {
@@ -175,7 +176,7 @@ void stop_if_interrupted() {
 
 namespace {
 
-/// Watches a command in a thread. If the command does not end in time, ends the program.
+/// A thread that watches a command. If the command does not end in time, ends the program.
 class Watcher {
  public:
   /// Starts the thread. Throws std::system_error if the system can create none.

@@ -34,7 +34,7 @@ constexpr std::string_view kept_prefix = "kept-";
 
 std::mutex staged_mutex;  // guards the following variables
 
-/// Locks `staged_mutex`. The thread may hold it already, if memory runs out while it does.
+/// A lock on `staged_mutex`. The thread may hold the mutex already if memory runs out meanwhile.
 class StagedLock {
  public:
   StagedLock() {
@@ -80,7 +80,8 @@ void require_place(const fs::path& target) {
   if (fs::is_directory(target, ignored))
     throw WriteError(fmt::format("{}: is a folder; name a file in another place", target.string()));
   if (fs::exists(target, ignored) && !fs::is_regular_file(target, ignored))
-    throw WriteError(fmt::format("{}: is not a regular file; name one, or - with --format", target.string()));
+    throw WriteError(fmt::format(
+        "{}: is not a regular file; name one, or - for standard output, with --format", target.string()));
 }
 
 /// Removes the folders of runs that were killed: nobody holds their locks. Skips young folders, which may be
@@ -161,7 +162,7 @@ void keep_mode_and_owner(const fs::path& before, const fs::path& staged) {
     // Only root may give files to another owner.
   }
   if (chmod(staged.c_str(), status.st_mode & 07777) != 0)
-    throw WriteError(fmt::format("{}: cannot keep its mode ({})", before.string(), reason()));
+    throw WriteError(fmt::format("{}: cannot keep its permissions ({})", before.string(), reason()));
 }
 
 /// Makes a second name for a file or, if links are not supported, a copy.
@@ -252,7 +253,7 @@ void StagedFile::commit(const std::vector<StagedFile*>& files) {
     std::error_code error;
     if (!places.insert(fs::weakly_canonical(folder_of(move.to), error) / move.to.filename()).second)
       throw WriteError(
-          fmt::format("{}: two outputs would be this file; choose another name", move.to.string()));
+          fmt::format("{}: two outputs have this name; choose another for one of them", move.to.string()));
     require_place(move.to);
     if (!move.kept.empty()) keep_mode_and_owner(move.to, move.from);
     flush(move.from, move.to);
@@ -269,7 +270,7 @@ void StagedFile::commit(const std::vector<StagedFile*>& files) {
       take_back();
       throw WriteError(fmt::format(
           "{}: cannot be replaced ({}); choose another name{}", move.to.string(), why,
-          keep_folders ? fmt::format("; the previous files could not be restored either, they are in {}",
+          keep_folders ? fmt::format("; the previous files could not be restored either; they are in {}",
                                      move.from.parent_path().string())
                        : ""));
     }

@@ -87,7 +87,7 @@ Clock::rep from_now(double seconds) {
       .count();
 }
 
-/// Blocks SIGCHLD during its lifetime, so that the supervisor can wait for the end of a child.
+/// A block of SIGCHLD during its lifetime, so that the supervisor can wait for the end of a child.
 class ChildSignal {
  public:
   ChildSignal() {
@@ -151,8 +151,9 @@ ExitCode reason_for(int status, bool out_of_time) {
   const int number = WTERMSIG(status);
   if (asked_to_stop != 0) return told(ExitCode::cancelled, "cancelled; nothing was written");
   if (number == SIGKILL)
-    return told(ExitCode::budget_hit,
-                "it was killed, probably because the machine's memory is used up; nothing was written");
+    return told(
+        ExitCode::budget_hit,
+        "the program was killed, probably because the machine's memory is used up; nothing was written");
   if (number == SIGXCPU)
     return told(ExitCode::budget_hit, "the system's limit of CPU time is reached; nothing was written");
   if (shared->in_cad.load())

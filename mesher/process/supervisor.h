@@ -15,8 +15,8 @@ namespace collarmesh::process {
 /// there is only one thread. Cost: about a millisecond.
 ExitCode run_supervised(const std::function<ExitCode()>& command);
 
-/// Reports work of OpenCASCADE on a file, such as "cutting faces into triangles", during its lifetime. The
-/// inner one of two nested objects counts; all must be made by one thread.
+/// A report of work of OpenCASCADE on a file, such as "cutting faces into triangles", during its lifetime.
+/// The inner one of two nested objects counts; all must be made by one thread.
 class CadWork {
  public:
   /// Begins the work. It may take `seconds`, unless the process has its own limit; 0: any time.

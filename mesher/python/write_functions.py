@@ -20,7 +20,7 @@ MORE = {
                   "array of places of shape (n, 3) and returns lengths of shape (n,); or a callable of x, y, z that "
                   "returns a length, which takes longer",
     "names": 'the path of a JSON file, or its content, {"patches": {"inlet": 3, "walls": [1, {"at": [0, 0, 1]}]}}',
-    "partitions": "`Mesh.tet_partition` tells them",
+    "partitions": "`Mesh.tet_partition` lists them",
 }
 
 

@@ -85,7 +85,7 @@ std::size_t count_names(const TagNames& names, unsigned which) {
   return count;
 }
 
-/// Counts cells of a dimension for which `holds(kind, cell)`.
+/// Counts cells of a dimension for which `holds(kind, cell)` is true.
 template <class Holds>
 std::size_t count_cells(const TetMesh& mesh, std::size_t dimension, const Holds& holds) {
   std::size_t count = 0;
@@ -186,12 +186,13 @@ std::string merge_text(const MergeReport& report) {
 
 namespace {
 
-// Describes patches that were merged where parts touch: "; there patch 7 is patch 2, 9 is 3".
+// Describes patches that were merged where parts touch: "; there patch 7 became patch 2, 9 became 3".
 std::string replaced_text(const std::vector<std::pair<Tag, Tag>>& replaced) {
   std::string text;
   for (std::size_t k = 0; k < std::min(replaced.size(), listed); ++k)
-    text += text.empty() ? fmt::format("; there patch {} is patch {}", replaced[k].first, replaced[k].second)
-                         : fmt::format(", {} is {}", replaced[k].first, replaced[k].second);
+    text += text.empty()
+                ? fmt::format("; there patch {} became patch {}", replaced[k].first, replaced[k].second)
+                : fmt::format(", {} became {}", replaced[k].first, replaced[k].second);
   return replaced.size() > listed ? fmt::format("{} and {} more", text, replaced.size() - listed) : text;
 }
 

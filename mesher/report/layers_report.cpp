@@ -20,14 +20,15 @@ std::string layers_text(const LayersReport& report) {
   std::string text;
   for (std::size_t k = 0; k < std::min(listed, report.patches.size()); ++k) {
     const LayersReport::Patch& p = report.patches[k];
-    text += fmt::format("  layers: {} covered to {:.1f}%, thickness {:.4g} in the mean, {:.4g} asked for\n",
+    text += fmt::format("  layers: {} covered to {:.1f}%, mean thickness {:.4g} of {:.4g} asked for\n",
                         p.name, percent(p.covered, p.area), p.mean, p.asked);
   }
   if (report.patches.size() > listed)
     text += fmt::format("  ... and {} more faces (--report lists all)\n", report.patches.size() - listed);
   for (const LayersReport::Reduction& r : report.reductions)
-    text += fmt::format("  lower at {} nodes, down to {:.0f}% at ({:.6g}, {:.6g}, {:.6g}): {}\n", r.nodes,
-                        100 * r.smallest, r.where.x, r.where.y, r.where.z, r.why);
+    text += fmt::format(
+        "  layers lower than asked for at {} nodes, down to {:.0f}% at ({:.6g}, {:.6g}, {:.6g}): {}\n",
+        r.nodes, 100 * r.smallest, r.where.x, r.where.y, r.where.z, r.why);
   text += fmt::format("  {} prisms, {} pyramids and {} tets in layers cover {:.1f}% of the walls\n",
                       report.prisms, report.pyramids, report.tets, 100 * report.coverage());
   return text;

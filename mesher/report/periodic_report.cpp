@@ -31,8 +31,9 @@ std::string periodic_text(const PeriodicReport& report) {
                         p.text, p.nodes, p.faces, p.largest_gap);
   const std::size_t changes = report.inserted_nodes + report.removed_nodes + report.turned_edges;
   if (changes > 0)
-    text += fmt::format("  for that {} nodes were inserted, {} removed, {} edges turned\n",
-                        report.inserted_nodes, report.removed_nodes, report.turned_edges);
+    text +=
+        fmt::format("  to make both sides alike, {} nodes were inserted, {} removed, and {} edges flipped\n",
+                    report.inserted_nodes, report.removed_nodes, report.turned_edges);
   return text;
 }
 

@@ -250,7 +250,8 @@ std::string check_text(const CheckReport& r) {
     fmt::format_to(Out(text), "{} tets, {} points, {} faces, {} edges; {}\n", r.tets, r.points, r.faces,
                    r.edges, shape_text(r.min_dihedral, r.max_dihedral, r.max_radius_edge));
   if (r.thin_tets > 0)
-    fmt::format_to(Out(text), "thin: {} tets, radius-edge to {:.4g}\n", r.thin_tets, r.max_thin_radius_edge);
+    fmt::format_to(Out(text), "thin: {} tets, radius-edge up to {:.4g}\n", r.thin_tets,
+                   r.max_thin_radius_edge);
   text += forced_text(r);
   if (r.collar_tets > 0)
     fmt::format_to(Out(text), "in collars: {} tets, dihedral angles from {:.2f} to {:.2f} degrees\n",
@@ -290,7 +291,7 @@ std::string straightened_text(const SecondOrderReport& r, std::size_t most) {
         Out(text),
         "straightened: the mid-edge node {} between points {} and {} at ({:.9g}, {:.9g}, {:.9g}), on the "
         "smooth {} with "
-        "tag {}, is {:.3g} off it: a tet there would be inverted or nearly so; a smaller size there "
+        "tag {}, is {:.3g} off it, because on it a tet would be inverted or nearly so; a smaller size there "
         "or --elements-per-circle avoids that\n",
         s.point, s.edge[0], s.edge[1], s.where.x, s.where.y, s.where.z,
         s.feature.dimension == 1 ? "curve" : "patch", s.tag, s.distance);
@@ -309,7 +310,7 @@ std::string run_text(const RequestedRun& arguments, const MeshRun& run) {
   if (const auto& r = run.remeshing)
     fmt::format_to(
         Out(text),
-        "  before {} tets, dihedral angles from {:.1f} to {:.1f}; {} edges divided, {} collapsed\n",
+        "  before: {} tets, dihedral angles from {:.1f} to {:.1f}; {} edges divided, {} collapsed\n",
         r->tets_before, r->smallest_angle_before, r->largest_angle_before, r->divided_edges,
         r->contracted_edges);
   text += cleanup_text(run.plc.cleanup);

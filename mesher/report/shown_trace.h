@@ -17,9 +17,9 @@ struct ShownStep {
   std::vector<float> balls;  ///< balls of collars: a centre and a radius, four numbers for each
 };
 
-/// Returns the steps that have few enough tets to be shown, at most `most` each: of larger steps the tets at
-/// the surface and at the planes through the centre. Shows cells outside all regions only if there are no
-/// others.
+/// Returns the steps to show. A step with more than `most` tets shows only those at the surface and at the
+/// planes through the centre, and is left out if these are still too many. Shows cells outside all regions
+/// only if there are no others.
 std::vector<ShownStep> shown_trace(const Trace& trace, const ShownMesh& mesh, std::size_t most = 20000);
 
 }  // namespace collarmesh::report

@@ -25,10 +25,13 @@ std::string place_regions(const std::vector<PolygonSoup>& soups, PlcOptions opti
     const Plc plc = build_plc(soups, options);
     const Index missing = place_region_points(plc, merged);
     return warnings_text(plc) +
-           (missing > 0 ? fmt::format("{} regions or cavities are too thin for a point inside\n", missing)
-                        : "");
+           (missing > 0
+                ? fmt::format(
+                      "{} regions or cavities get no point, because they are too thin for one inside\n",
+                      missing)
+                : "");
   } catch (const PlcError& error) {
-    return fmt::format("no regions are named, because the facets do not form a valid complex: {}\n",
+    return fmt::format("no region points are written, because the facets do not form a valid complex: {}\n",
                        error.what());
   }
 }

@@ -20,13 +20,13 @@ std::string split_text(const SplitReport& report) {
           p.name, p.sides.minus, p.sides.plus, p.faces, p.area, p.where.x, p.where.y, p.where.z);
     if (p.closed > 0)
       text += fmt::format(
-          "  not split: {} triangles of {} with all corners on its front, which cannot open, one at "
-          "({:.6g}, {:.6g}, {:.6g})\n",
+          "  not split: {} triangles of {}, which cannot open because all their corners are on its front, "
+          "for example at ({:.6g}, {:.6g}, {:.6g})\n",
           p.closed, p.name, p.closed_at.x, p.closed_at.y, p.closed_at.z);
   }
   if (report.patches.size() > listed)
     text += fmt::format("  ... and {} more patches (--report lists all)\n", report.patches.size() - listed);
-  text += fmt::format("  {} nodes were split ({} at junctions), {} nodes are new, {} on fronts stay one\n",
+  text += fmt::format("  {} nodes were split ({} at junctions), {} nodes are new, {} on fronts stay single\n",
                       report.split_nodes, report.junction_nodes, report.new_nodes, report.front_nodes);
   if (!report.interfaces.prisms.empty())
     text += fmt::format("  {} cohesive elements\n", report.interfaces.prisms.size());

@@ -10,7 +10,7 @@ struct DoubleTraits : OpenMesh::DefaultTraits {
 };
 using DoubleMesh = OpenMesh::PolyMesh_ArrayKernelT<DoubleTraits>;
 
-/// Silences OpenMesh, which would print to the standard streams; our libraries never print.
+/// A guard that silences OpenMesh, which would print to the standard streams; our libraries never print.
 class Quiet {
  public:
   Quiet() : errors_(omerr().is_enabled()), log_(omlog().is_enabled()) {

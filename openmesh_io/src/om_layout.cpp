@@ -173,7 +173,7 @@ class LayoutCheck {
     const std::int64_t index = static_cast<std::int64_t>(unsigned_value(chunk.value_bytes) << shift) >> shift;
     if (index == -1 && none_allowed) return;
     if (index < 0 || static_cast<std::uint64_t>(index) >= size)
-      fail(fmt::format("index {} is out of range, there are {}", index, size));
+      fail(fmt::format("index {} is out of range; there are {} entries", index, size));
   }
 
   std::uint64_t unsigned_value(std::size_t size) {

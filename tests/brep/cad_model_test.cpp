@@ -195,10 +195,9 @@ TEST(CadModel, TellsOfEdgesAndPointsOutsideOfSolids) {
   ASSERT_EQ(with_edge.notes().size(), 1U);
   expect_mentions(with_edge.notes()[0],
                   {"part", "Edge13 at (24, 5, 5)",
-                   "is not part of any face and left out: outside of the closed solids", ".poly"});
+                   "is left out, as part of no face and outside of the closed solids", ".poly"});
   ASSERT_EQ(with_both.notes().size(), 1U);
-  expect_mentions(with_both.notes()[0],
-                  {"Edge13 at (24, 5, 5) and 1 more are not part of any face and left out: outside"});
+  expect_mentions(with_both.notes()[0], {"Edge13 at (24, 5, 5) and 1 more are left out, as part of no face"});
 }
 
 double length_of(const PolygonSoup& soup) {
@@ -223,19 +222,20 @@ TEST(CadModel, CutsEdgesInsideWhereTheyMeetOneAnother) {
     std::vector<Point> places;  // places where they meet
     const char* note = nullptr;
   };
-  const Meeting meetings[] = {{line(gp_Pnt(5, 2, 5), gp_Pnt(5, 8, 5)), 12, 4, {{5, 5, 5}}},
-                              {line(gp_Pnt(5, 5, 5), gp_Pnt(5, 5, 8)), 9, 3, {{5, 5, 5}}},
-                              {line(gp_Pnt(2, 5, 5), gp_Pnt(7, 5, 5)),
-                               6,
-                               2,
-                               {{2, 5, 5}, {7, 5, 5}},
-                               "Edge14 at (4.5, 5, 5) lies on Edge13 and gets its number there"},
-                              {line(gp_Pnt(2, 5, 5), gp_Pnt(8, 5, 5)),
-                               6,
-                               1,
-                               {{2, 5, 5}, {8, 5, 5}},
-                               "Edge14 at (5, 5, 5) lies on Edge13 and gets its number there"},
-                              {point(5, 5, 5), 6, 2, {{5, 5, 5}}}};
+  const Meeting meetings[] = {
+      {line(gp_Pnt(5, 2, 5), gp_Pnt(5, 8, 5)), 12, 4, {{5, 5, 5}}},
+      {line(gp_Pnt(5, 5, 5), gp_Pnt(5, 5, 8)), 9, 3, {{5, 5, 5}}},
+      {line(gp_Pnt(2, 5, 5), gp_Pnt(7, 5, 5)),
+       6,
+       2,
+       {{2, 5, 5}, {7, 5, 5}},
+       "Edge14 at (4.5, 5, 5) lies on Edge13 and gets the number of the latter there"},
+      {line(gp_Pnt(2, 5, 5), gp_Pnt(8, 5, 5)),
+       6,
+       1,
+       {{2, 5, 5}, {8, 5, 5}},
+       "Edge14 at (5, 5, 5) lies on Edge13 and gets the number of the latter there"},
+      {point(5, 5, 5), 6, 2, {{5, 5, 5}}}};
   for (const Meeting& meeting : meetings) {
     CadModel model(compound({box(), first, meeting.other}), "part");
     ASSERT_EQ(model.notes().size(), meeting.note == nullptr ? 0U : 1U);
@@ -256,7 +256,7 @@ TEST(CadModel, EndsEdgesAtTheFacesThatTheyMeet) {
     ASSERT_EQ(model.notes().size(), end > top ? 1U : 0U);
     if (end > top)
       expect_mentions(model.notes()[0],
-                      {"part: Edge13 at (5, 5, 40) is outside of the closed solids in part"});
+                      {"part: Edge13 at (5, 5, 40) is partly outside of the closed solids"});
     const std::vector<PolygonSoup> soups = model.tessellate({});
     ASSERT_EQ(soups.size(), 2U);
     for (const PolygonSoup& soup : soups) EXPECT_TRUE(has_vertex_at(soup, {5, 5, top}));
@@ -273,13 +273,13 @@ TEST(CadModel, KeepsEdgesThroughThinPlates) {
   CadModel model(compound({plate, line(gp_Pnt(10, 10, -100), gp_Pnt(10, 10, 100))}), "part");
   EXPECT_NEAR(length_of(model.tessellate({}).at(1)), 1, 1e-12);
   ASSERT_EQ(model.notes().size(), 1U);
-  expect_mentions(model.notes()[0], {"is outside of the closed solids in part"});
+  expect_mentions(model.notes()[0], {"is partly outside of the closed solids"});
   // Lines on faces make no vertices there, and lines beside faces are outside.
   for (const TopoDS_Shape& beside :
        {line(gp_Pnt(-5, 5, 1), gp_Pnt(15, 5, 1)), line(gp_Pnt(21, 10, -100), gp_Pnt(21, 10, 100))}) {
     CadModel without(compound({plate, beside}), "part");
     EXPECT_EQ(build_plc(without.tessellate({})).vertices.size(), 8U);
-    expect_mentions(without.notes().at(0), {"left out: outside of the closed solids, or on their faces"});
+    expect_mentions(without.notes().at(0), {"outside of the closed solids or on their faces"});
   }
 }
 
@@ -304,8 +304,7 @@ TEST(CadModel, KeepsNumbersWhereEdgesMeetFaces) {
   EXPECT_EQ(numbers(after), numbers(before));
   for (const PolygonSoup::Segment& segment : after[2].segments) EXPECT_EQ(segment.tag, 25);
   EXPECT_NEAR(length_of(after[2]), 13, 1e-12);
-  expect_mentions(with.notes().at(0),
-                  {"Edge26 at (0.5, 0, -5) is not part of any face and left out: outside"});
+  expect_mentions(with.notes().at(0), {"Edge26 at (0.5, 0, -5) is left out, as part of no face"});
 }
 
 // Also joins edges of a wire that are given separately.
@@ -370,7 +369,8 @@ TEST(CadModel, LeavesOutEdgesNearerToFacesThanTheTriangles) {
   EXPECT_TRUE(coarse.at(1).segments.empty());
   EXPECT_EQ(build_plc(coarse).curves.size(), 12U);
   ASSERT_EQ(model.notes().size(), 1U);
-  expect_mentions(model.notes()[0], {"Edge13 at (5, 5, 0.1) is so near to faces", "--distance"});
+  expect_mentions(model.notes()[0],
+                  {"Edge13 at (5, 5, 0.1) is left out, because it is so near to faces", "--distance"});
 }
 
 // The ends are on the exact face, so with coarse triangles the whole chord may be outside. Its middle is
@@ -382,7 +382,8 @@ TEST(CadModel, LeavesOutChordsOfCurvedFacesThatAreNearerThanTheTriangles) {
   CadModel model(compound({BRepPrimAPI_MakeCylinder(radius, 20).Shape(), chord}), "part");
   EXPECT_TRUE(model.tessellate({.deflection = 0.01}).at(1).segments.empty());
   ASSERT_EQ(model.notes().size(), 1U);
-  expect_mentions(model.notes()[0], {"Edge4", "is so near to faces", "--distance"});
+  expect_mentions(model.notes()[0],
+                  {"Edge4", "it is so near to faces that their triangles may cross it", "--distance"});
   EXPECT_NEAR(length_of(model.tessellate({.deflection = 1e-4}).at(1)), length, 1e-9);
   EXPECT_TRUE(model.notes().empty());
 }
@@ -399,7 +400,7 @@ TEST(CadModel, LeavesOutCurvedEdgesNearToOthers) {
   EXPECT_NEAR(one, 2 * M_PI * radius, 0.1);
   ASSERT_EQ(circles.notes().size(), 1U);
   expect_mentions(circles.notes()[0],
-                  {"Edge14", "is so near to other edges that chords", "cross it", "--distance"});
+                  {"Edge14", "is so near to other edges that their chords may cross it", "--distance"});
   const std::vector<PolygonSoup> fine = circles.tessellate({.deflection = apart / 3});
   EXPECT_TRUE(circles.notes().empty());
   EXPECT_NEAR(length_of(fine.at(1)), 2 * one, 0.1);

@@ -102,10 +102,10 @@ TEST(CadFailingFaces, AreCutInAnotherWay) {
   CadModel model(plate_with_turned_holes(), "plate");
   const auto soups = model.tessellate({});
   ASSERT_EQ(model.notes().size(), 2U);
-  EXPECT_NE(
-      model.notes()[0].find("around (10, 10, 5) cannot be cut into triangles with its neighbours; it was "
-                            "triangulated alone after shape healing"),
-      std::string::npos)
+  EXPECT_NE(model.notes()[0].find(
+                "around (10, 10, 5) cannot be cut into triangles together with its neighbours; it was "
+                "triangulated alone after shape healing"),
+            std::string::npos)
       << model.notes()[0];
   ASSERT_EQ(soups.size(), 1U);
   EXPECT_EQ(open_sides(soups[0]), 0U);

@@ -54,8 +54,8 @@ class Batch(ProgramTest):
     def test_mistakes(self):
         for code, says, *arguments in (
                 (2, "contradicts --output", self.box, "--batch", "made", "-o", self.out),
-                (2, "one mesh of .*box.off and .*box.off", self.box, MODELS / "box.off", "--batch", "made"),
-                (2, "not json or html", self.box, "--batch", "made", "--report", "r.json"),
+                (2, "the meshes of .*box.off and .*box.off the same name", self.box, MODELS / "box.off", "--batch", "made"),
+                (2, "must be json or html", self.box, "--batch", "made", "--report", "r.json"),
                 (2, "would overwrite the input", "made/box.vtu", "--batch", "made"),
                 (8, "made", self.box, "--batch", "box.off/made")):
             (self.folder / "made").mkdir(exist_ok=True)

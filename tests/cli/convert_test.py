@@ -308,7 +308,7 @@ class Partitions(ProgramTest):
         self.write("a.pvtu", listed.replace("a_1.vtu", "a_0.vtu"))
         run = self.run_program("info", "a.pvtu")
         self.assertEqual(run.returncode, 3)
-        self.assertIn("two pieces are a_0.vtu", run.stderr)
+        self.assertIn("two pieces have the same Source, a_0.vtu", run.stderr)
         self.write("a.pvtu", listed)
         self.assertEqual(self.run_program(self.box, "-o", "a_1.vtu", "--size", "0.3").returncode, 0)
         run = self.run_program("info", "a.pvtu")

@@ -113,10 +113,10 @@ class Numbers(ProgramTest):
             lines += [f"1 0 {first + k}\n4 " + " ".join(map(str, face)) for k, face in enumerate(BOX_FACES)]
             parts.append(self.write(f"{first}.poly", "\n".join([*lines, "0", "0"]) + "\n"))
         run = self.expect(0, *parts, "-o", self.out, "--size", "1", writes=True)
-        self.assertIn("merged: 2 triangles that parts have in common; there patch 12 is patch 4\n", run.stderr)
+        self.assertIn("merged: 2 triangles that parts have in common; there patch 12 became patch 4\n", run.stderr)
         self.out.unlink()
         self.expect(2, *parts, "-o", self.out, "--patch-size", "12=0.2",
-                    says=["patch 12 lies on patch 4 of another part, whose number both have; use 4"])
+                    says=["patch 12 lies on patch 4 of another part, and both now have the number 4"])
 
     @unittest.skipUnless(HAS_CAD, "no OpenCASCADE")
     def test_where_solids_of_a_file_touch_one_number_stays(self):
@@ -128,10 +128,10 @@ class Numbers(ProgramTest):
         out = self.folder / "touching.vtu"
         run = self.run_program(part, "-o", out, "--size", "1")
         self.assertEqual(run.returncode, 0, run.stderr)
-        self.assertIn("triangles that parts have in common; there patch 7 is patch 2, 17 is 6\n", run.stderr)
-        use = "patch {} of another part, whose number both have; use {}"
+        self.assertIn("triangles that parts have in common; there patch 7 became patch 2, 17 became 6\n", run.stderr)
+        use = "patch {} of another part, and both now have the number {}"
         self.expect(2, part, "-o", self.out, "--patch-size", "7=0.2", says=["patch 7 lies on " + use.format(2, 2)])
-        self.expect(2, part, "-o", self.out, "--name", "contact=17", says=["it lies on " + use.format(6, 6)])
+        self.expect(2, part, "-o", self.out, "--name", "contact=17", says=["patch 17 lies on " + use.format(6, 6)])
 
     def test_a_mesh_with_numbers_passes_check(self):
         self.expect(0, self.box, "-o", self.out, "--size", "0.5", writes=True)
@@ -309,7 +309,7 @@ class WiresOfCadFiles(ProgramTest):
 
         run = self.run_program(self.MODEL, "-o", "a.msh", "--size", "5", *options)
         self.assertEqual(run.returncode, 0, run.stderr)
-        self.assertRegex(run.stderr, r"Edge14 at \(10, 10, 18\) is outside of the closed solids in part")
+        self.assertRegex(run.stderr, r"Edge14 at \(10, 10, 18\) is partly outside of the closed solids")
         self.assertIn("every guarantee holds", run.stderr)
         mesh = meshio.read(self.folder / "a.msh")
         tags = mesh.cell_data["gmsh:physical"]

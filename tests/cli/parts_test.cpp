@@ -209,7 +209,7 @@ TEST(RepairReports, QuietOnesLeaveOutWhatIsWithinTheTolerance) {
                     quiet = report::repair_text(every_kind_of_repair(), true);
   for (const char* word : {"stitched", "collapsed", "repeated", "cut"})
     EXPECT_EQ(quiet.find(word), std::string::npos) << word;
-  for (const char* word : {"a hole", "removed", "inside out", "nothing is left", "wrapped"}) {
+  for (const char* word : {"a hole", "removed", "inside-out", "nothing is left", "wrapped"}) {
     EXPECT_NE(quiet.find(word), std::string::npos) << word;
     EXPECT_NE(all.find(word), std::string::npos) << word;
   }

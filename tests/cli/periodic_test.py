@@ -67,7 +67,8 @@ class Periodic(ProgramTest):
         self.expect(2, self.cell, "-o", self.folder / "cell.inp", "--size-field", cell, says=["would overwrite"])
 
     def test_mistakes_come_before_the_work(self):
-        self.expect(2, self.cell, "-o", self.out, "--periodic", "x", "--keep-apart", says=["copies without images"])
+        self.expect(2, self.cell, "-o", self.out, "--periodic", "x",
+                    "--keep-apart", says=["the copies would have no images"])
         for pair in ("w", "1=", "1=9", "1=2:rotation,z", "1=2:translation,0,0,0.5"):
             self.expect(2, self.cell, "-o", self.out, "--periodic", pair, says=[pair])
 

@@ -65,7 +65,7 @@ class Shells(ProgramTest):
 
     def test_formats_without_curves_are_not_checked(self):
         self.expect(0, self.box, "-o", "a.off", "--size", "0.3", "--dimension", "2")
-        self.expect(3, "check", "a.off", "--against", self.box, says=["no edges of curves", r"\.vtu", r"\.msh"])
+        self.expect(3, "check", "a.off", "--against", self.box, says=["no edges on curves", r"\.vtu", r"\.msh"])
 
     def test_some_faces_of_a_solid(self):
         named = (self.box, "--dimension", "2", "--size", "0.3", "--name", "lid=2")

@@ -28,7 +28,7 @@ class SizesWithoutEffect(ProgramTest):
         self.assertEqual(len(told), 2, told)
         self.assertIn("sources[0] (ball)", told[0])
         self.assertIn("sources[1] (ball)", told[1])
-        self.assertIn("below 0.4, that of --size", told[1])
+        self.assertIn("below 0.4, which --size asks for", told[1])
 
     def test_a_field_on_a_mesh(self):
         import meshio

@@ -75,9 +75,10 @@ TEST(IoAbaqus, RefusesBadFiles) {
                  "line 11: elements of type 'c3d20' are not supported");
   expect_refused("a.inp", replaced(inp, "C3D4", "C3D8"), "line 13: element 1 has the node 2, but");
   expect_refused("a.inp", replaced(inp, "7, 10", "1, 10"), "two elements have the number 1");
-  expect_refused("a.inp", replaced(inp, "1, 2, 1", "1, 2000000000, 1"), "line 19: the range 1 to 2000000000");
+  expect_refused("a.inp", replaced(inp, "1, 2, 1", "1, 2000000000, 1"),
+                 "line 19: the range from 1 to 2000000000");
   expect_refused("a.inp", replaced(inp, "Upper, S3", "Lower, S3"),
-                 "line 22: no element set before has the name");
+                 "line 22: no earlier element set has the name");
   expect_refused("a.inp", replaced(inp, "*STEP", "*INCLUDE, INPUT=x"), "*INCLUDE is not supported");
 }
 
@@ -142,7 +143,7 @@ TEST(IoVtk, RefusesBadFiles) {
   expect_refused("a.vtk", replaced(vtk, "CELL_TYPES 3\n10\n", "CELL_TYPES 2\n"),
                  "expected the types of 3 cells");
   expect_refused("a.vtk", replaced(vtk, "CELL_DATA 3", "CELL_DATA 4"),
-                 "data for 4 entities, but there are 3");
+                 "expected data for 3 points or cells, found data for 4");
   expect_refused("a.vtk", replaced(vtk, "VECTORS", "WRECKERS"), "expected a section");
   expect_refused("a.vtk", vtk.substr(0, vtk.find("CELLS")), "expected tetrahedra, found none");
   const TemporaryFolder folder;

@@ -222,8 +222,10 @@ TEST(IoVtu, RefusesBadValues) {
   expect_refused(replaced(text, "\"ascii\"", "\"klingon\""), "line 6: expected the format");
   expect_refused(replaced(text, "0 1 2 3 1", "0 1 2 5 1"), "line 11: cell 0 has the corner 5");
   expect_refused(replaced(text, "0 1 2 3 1", "0 1 2 -1 1"), "line 11: cell 0 has the corner -1");
-  expect_refused(replaced(text, "0 1 2 3 1", "1 2 3 1"), "cell 5 of type 1 ends at 17");
-  expect_refused(replaced(text, "4 8 11", "5 8 11"), "line 10: cell 0 of type 10 ends at 5");
+  expect_refused(replaced(text, "0 1 2 3 1", "1 2 3 1"),
+                 "cell 5 of type 1 has 1 node, but its part of the connectivity goes from 16 to 17, of 16");
+  expect_refused(replaced(text, "4 8 11", "5 8 11"),
+                 "line 10: cell 0 of type 10 has 4 nodes, but its part of the connectivity goes from 0 to 5");
   expect_refused(replaced(text, "10 10 5", "10 12 5"), "cell 1 has the type 12");
   expect_refused(replaced(text, "9 4 70", "4 70"), "expected 6 values of 'gmsh:physical', found 5");
   expect_refused(replaced(text, "\"types\"", "\"kinds\""), "line 10: expected an array 'types'");

@@ -153,7 +153,7 @@ TEST(Names, MistakesAreTold) {
            {R"({"patches": {"a": 77}})", "77"},
            {R"({"patches": {"a": "b"}})", "patches.a"},
            {R"({"patches": {"a": []}})", "empty"},
-           {R"({"patches": {"a": 1, "b": 1}})", "name already"},
+           {R"({"patches": {"a": 1, "b": 1}})", "already has a name"},
            {R"({"patches": {"a": {"at": [5, 5, 5]}}})", "away"},
            {R"({"regions": {"a": {"at": [5, 5, 5]}}})", "no region"},
            {R"({"patches": {"a": {"at": [5, 5]}}})", "number"}}) {

@@ -335,7 +335,8 @@ TEST(PlcRegions, PointsThatContradictEachOtherAreTold) {
     build({soup});
     FAIL();
   } catch (const PlcError& error) {
-    EXPECT_NE(std::string(error.what()).find("hole points empty"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("hole points mark the space inside as empty"), std::string::npos)
+        << error.what();
   }
 }
 

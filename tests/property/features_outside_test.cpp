@@ -158,7 +158,7 @@ TEST(FeaturesOutside, PointsAreTold) {
   const Meshed meshed = mesh_of(soup, with_size(0.5));
   EXPECT_EQ(faults(meshed), "");
   ASSERT_TRUE(tells_of(meshed.report, "Vertices"));
-  EXPECT_NE(meshed.report.warnings[0].find("not meshed: 1, the first one"), std::string::npos)
+  EXPECT_NE(meshed.report.warnings[0].find("not meshed: 1 in all, of which the first is"), std::string::npos)
       << meshed.report.warnings[0];
 }
 

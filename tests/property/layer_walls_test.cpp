@@ -117,7 +117,7 @@ TEST_F(LayerWalls, AMissingPrismIsFound) {
     TetMesh mesh = mesh_;
     const auto prism = std::find(mesh.layers.prism_layer.begin(), mesh.layers.prism_layer.end(), layer);
     remove_prism(mesh, static_cast<std::size_t>(prism - mesh.layers.prism_layer.begin()));
-    expect_found(mesh, "has different cells in one layer and in the first one");
+    expect_found(mesh, "has cells in one layer that differ from those in the first layer");
   }
   // If all three layers above a triangle are missing, less is covered than the report says.
   TetMesh mesh = mesh_;
@@ -166,7 +166,7 @@ TEST_F(LayerWalls, CellsWithoutAWallAreFound) {
   mesh.layers.prism_region.push_back(mesh.layers.prism_region[0]);
   mesh.layers.prism_tag.push_back(mesh.layers.prism_tag[0]);
   mesh.layers.prism_layer.push_back(mesh.layers.prism_layer[0]);
-  expect_found(mesh, mesh.layers.prism_layer[0] == 1 ? "in the first one" : "has different cells");
+  expect_found(mesh, mesh.layers.prism_layer[0] == 1 ? "in the first layer" : "has cells in one layer");
   // Layers on a face for which none were asked.
   walls_.clear();
   expect_found(mesh_, "lies on no triangle on which layers were asked for");

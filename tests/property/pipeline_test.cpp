@@ -172,7 +172,7 @@ TEST(Pipeline, WrapsLast) {
     EXPECT_FALSE(boxes.built[b].wrap_at_once);
     EXPECT_GT(boxes.built[b].tolerance, boxes.built[b - 1].tolerance);
   }
-  EXPECT_TRUE(tells(made, "wrapped, because for the complex before "));
+  EXPECT_TRUE(tells(made, "wrapped, because without wrapping: "));
 }
 
 TEST(Pipeline, TheFirstMeshStaysWhereNoOtherIsBetter) {
@@ -241,7 +241,7 @@ PolygonSoup slit_box(double degrees) {
 TEST(Pipeline, TakesTheInputAgainWhereTheRefinementWouldExplode) {
   const SoupPipelineResult made = run(slit_box(0.007), {});
   ASSERT_TRUE(made.guarantees_hold()) << made.result.message;
-  EXPECT_TRUE(tells(made, "because with 1e-05 features meet at 0.007 degrees"));
+  EXPECT_TRUE(tells(made, "because with 1e-05, features meet at 0.007 degrees"));
   EXPECT_LE(made.repair.largest_distance, made.repair.tolerance);
   EXPECT_GT(made.repair.largest_distance_of_input, 0);
   double volume = 0;

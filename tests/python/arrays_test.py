@@ -108,7 +108,7 @@ class OfArrays(unittest.TestCase):
         ours = cube()
         for arguments, words in (((ours.points, ours.tets[:, :3]), r"tets.*\(n, 4\)"),
                                  ((ours.points, ours.tets.astype(float)), "integers"),
-                                 ((ours.points, ours.tets, [1, 2]), "one for each tetrahedron"),
+                                 ((ours.points, ours.tets, [1, 2]), "one entry for each tetrahedron"),
                                  ((ours.points[:5], ours.tets), "corner")):
             with self.assertRaisesRegex(collarmesh.OptionError, words):
                 collarmesh.Mesh(*arguments)

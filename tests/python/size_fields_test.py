@@ -177,7 +177,7 @@ class Fields(unittest.TestCase):
 
     def test_mistakes_are_told(self):
         mesh = self.background
-        for field, words in (((mesh, [1, 2]), "2 values for"), ((mesh, -numpy.ones(len(mesh.tets))), "positive"),
+        for field, words in (((mesh, [1, 2]), "2 values, but"), ((mesh, -numpy.ones(len(mesh.tets))), "positive"),
                              ((mesh.points, mesh.tets + 10**6, numpy.ones(len(mesh.tets))), "corners"), ((mesh,), "tuple")):
             with self.assertRaisesRegex(collarmesh.OptionError, words):
                 collarmesh.mesh(CUBE, size_field=field)

@@ -28,8 +28,9 @@ auto on_shape(const std::string& name, const char* doing, const Work& work) {
     throw std::bad_alloc();
   } catch (const Standard_Failure& failure) {
     fail(PlcFault::Kind::intersection,
-         fmt::format("{}: OpenCASCADE failed in {} ({}); the shape is probably invalid, check and repair it.",
-                     name, doing, text(failure)));
+         fmt::format(
+             "{}: OpenCASCADE failed while {} ({}); the shape is probably invalid, check and repair it.",
+             name, doing, text(failure)));
   }
 }
 

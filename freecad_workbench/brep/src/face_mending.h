@@ -26,7 +26,7 @@ struct MendedFace {
   std::vector<Index> outline_points;              ///< one per point: index in the outline, or none
   std::vector<std::array<Index, 3>> triangles;    ///< none: all ways failed
   bool fits = false;                              ///< whether the border of the triangles is the outline
-  std::string how;                                ///< how it was mended, as "by ...", for a note
+  std::string how;  ///< the way that was used, for a note: "alone after shape healing"
 };
 
 /// Triangulates a face for which the tessellation of the whole shape fails, by the first of these ways that

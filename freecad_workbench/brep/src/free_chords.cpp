@@ -57,8 +57,7 @@ class Cutter {
  private:
   Samples samples_of(const TopoDS_Edge& edge) const {
     const BRepAdaptor_Curve curve(edge);
-    const int least =
-        curve.GetType() == GeomAbs_Line ? 2 : 3;  // number of points, so that a curve does not look straight
+    const int least = curve.GetType() == GeomAbs_Line ? 2 : 3;  // points, so that no curve counts as straight
     const GCPnts_TangentialDeflection cut(curve, options_.angle * std::numbers::pi / 180, options_.deflection,
                                           least);
     Samples samples;
@@ -154,9 +153,10 @@ class LeftOut {
     if (count_ == 0) return;
     const bool several = count_ > 1;
     notes.push_back(fmt::format(
-        "{}: {}{} so near to {} that {} may cross {}, and left out; mesh with a smaller --distance", file,
-        first_, several ? fmt::format(" and {} more are", count_ - 1) : " is", near, what,
-        several ? "them" : "it"));
+        "{}: {}{} so near to {} that {} may cross {}; mesh with a smaller --distance", file, first_,
+        several ? fmt::format(" and {} more are left out, because they are", count_ - 1)
+                : " is left out, because it is",
+        near, what, several ? "them" : "it"));
   }
 
  private:
@@ -187,8 +187,8 @@ PolygonSoup cut_free_parts(const Topology& topology, const std::string& file,
       cutter.add(part);
     }
   }
-  near_faces.tell(file, "faces", "triangles in their place", result.notes);
-  near_edges.tell(file, "other edges", "chords in their place", result.notes);
+  near_faces.tell(file, "faces", "their triangles", result.notes);
+  near_edges.tell(file, "other edges", "their chords", result.notes);
   return cutter.finish();
 }
 

@@ -330,17 +330,16 @@ class Sorter {
 
   void tell() const {
     tell(
-        outside_, "not part of any face and left out: outside of the closed solids, or on their faces",
+        outside_, "left out, as part of no face and outside of the closed solids or on their faces",
         "to get nodes on lines and points, give them as segments and points of a .poly file beside this one");
-    tell(partly_, "outside of the closed solids in part, and left out there", "end edges at the faces");
-    tell(
-        meeting_,
-        "not part of any face and left out: inside a solid, at a face or the middle of another edge, without "
-        "being cut there by OpenCASCADE's general fuse",
-        "end edges before faces, and cut them where others meet them");
+    tell(partly_, "partly outside of the closed solids, and left out there", "end edges at the faces");
+    tell(meeting_,
+         "left out, because OpenCASCADE's general fuse made no cut at a face or at the middle of another "
+         "edge inside a solid",
+         "end edges before faces, and cut edges where others meet them");
     if (!renumbered_.empty())
       topology_.notes.push_back(fmt::format(
-          "{}: {} and gets its number there{}", file_, renumbered_.front(),
+          "{}: {} and gets the number of the latter there{}", file_, renumbered_.front(),
           renumbered_.size() > 1 ? fmt::format("; so do {} more", renumbered_.size() - 1) : std::string()));
   }
   void tell(const std::vector<std::string>& names, const char* what, const char* advice) const {

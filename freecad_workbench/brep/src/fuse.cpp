@@ -99,8 +99,9 @@ bool is_plane(const TopoDS_Shape& face) {
   return BRepAdaptor_Surface(TopoDS::Face(face), false).GetType() == GeomAbs_Plane;
 }
 
-/// Returns pairs of faces of solids without a common vertex. Such faces may touch in a point, which general
-/// fuse does not find. (Two planes touch at edges, which it does find.)
+/// Returns pairs of faces of two solids that have no vertex in common. Such faces may touch in a point inside
+/// both, which general fuse does not find. Leaves out pairs of planar faces: they touch in a single point
+/// only at an edge or a vertex, which general fuse does find.
 std::vector<std::array<TopoDS_Shape, 2>> pairs_apart(const std::vector<Argument>& solids) {
   std::map<std::array<std::size_t, 2>, Bnd_Box> tight;  // by solid and face
   const auto box = [&](std::size_t s, std::size_t f) -> const Bnd_Box& {
@@ -189,10 +190,10 @@ Fuse fuse_with_contacts(const std::vector<TopoDS_Shape>& shapes) {
   }
 }
 
-/// Fuses the shapes that may touch. If it makes no sound parts of some solids, moves these from `shapes` to
-/// `left_out` and fuses again: first the worst one, because it may spoil the others. Null if that fails.
+/// Fuses the shapes that may touch. If parts of some solids are unsound, moves the worst solid from `shapes`
+/// to `left_out` and fuses again, because it may have spoilt the others. Null if that fails.
 Fuse sound_fuse(std::vector<TopoDS_Shape>& shapes, std::vector<TopoDS_Shape>& left_out) {
-  constexpr int rounds = 3;  // after so many rounds all remaining solids are left out
+  constexpr int rounds = 3;  // from this round on all solids with unsound parts are left out
   for (int round = 1; shapes.size() > 1; ++round) {
     const Fuse fuse = fuse_with_contacts(shapes);
     if (!fuse) return nullptr;

@@ -97,7 +97,7 @@ void keep_open(const Sewn& sewn, const std::string& file, Topology& topology) {
   topology.solids.push_back(open);
 }
 
-/// Returns whether it is a closed shell with some faces missing, rather than a sheet.
+/// Returns whether a shell is a closed surface with some faces missing, rather than a sheet.
 bool nearly_closed(const TopoDS_Shape& shell) {
   return 2 * open_edges(shell).size() < subshapes(shell, TopAbs_EDGE).size();
 }
@@ -177,7 +177,7 @@ void sew_faces(const std::string& file, Topology& topology) {
   std::vector<TopoDS_Shape> kept;
   for (const Topology::Solid& solid : topology.solids) kept.push_back(solid.shape);
   topology.all = compound_of(kept);
-  topology.notes.push_back(fmt::format("{}: its faces were sewn within {:.3g} to {} solid{}", file,
+  topology.notes.push_back(fmt::format("{}: its faces were sewn within {:.3g} into {} solid{}", file,
                                        result.gap, closed, closed == 1 ? "" : "s"));
   if (left_out > 0)
     topology.notes.push_back(

@@ -261,7 +261,7 @@ class Tessellator {
                  : fmt::format("it was triangulated {}{}", mended.how,
                                mended.fits ? "" : ", and its border has other points than its neighbours");
     result_.notes.push_back(
-        fmt::format("{}: {} around {} cannot be cut into triangles with its neighbours; {}", file_,
+        fmt::format("{}: {} around {} cannot be cut into triangles together with its neighbours; {}", file_,
                     topology_.name(face), text(place_of(face)), done));
   }
 
@@ -444,7 +444,7 @@ class Tessellator {
         if (found == middle_of.end()) continue;
         triangles[t] = {found->second, corners[1], corners[2]};
         triangles.push_back({corners[0], found->second, corners[2]});
-        i = std::size_t(-1);  // looks at all sides of the changed triangle
+        i = std::size_t(-1);  // begin again with all sides of the changed triangle
       }
   }
 

@@ -15,7 +15,7 @@ namespace collarmesh::brep {
 struct Samples {
   TopoDS_Shape shape;
   std::vector<Point> points;
-  std::vector<std::array<double, 2>> parameters;  ///< for an edge only the first one
+  std::vector<std::array<double, 2>> parameters;  ///< for an edge only the first of each pair counts
   std::vector<std::array<Index, 3>> triangles;    ///< for a face, corners among the points; two at a seam
 };
 

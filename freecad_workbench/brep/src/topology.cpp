@@ -145,7 +145,7 @@ std::vector<std::pair<TopoDS_Shape, TopoDS_Shape>> open_edges(const TopoDS_Shape
 std::string open_edges_text(const Topology& topology, const TopoDS_Shape& shape) {
   const auto open = open_edges(shape);
   std::string sentence =
-      fmt::format("{} edge{} border one face only", open.size(), open.size() == 1 ? "" : "s");
+      fmt::format("{} {} one face only", open.size(), open.size() == 1 ? "edge borders" : "edges border");
   constexpr std::size_t listed = 3;
   for (std::size_t i = 0; i < std::min(listed, open.size()); ++i)
     sentence += fmt::format("{} {} of {} at {}", i == 0 ? ":" : ",", topology.name(open[i].first),

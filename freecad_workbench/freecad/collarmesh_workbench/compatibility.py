@@ -113,7 +113,7 @@ _in_transaction = set()  # names of documents with an open transaction
 @contextlib.contextmanager
 def transaction(document, name):
     """Makes the enclosed changes one undo step; an exception undoes them. A nested transaction is part of the
-    outer one. Closes a transaction of FreeCAD's that is still open, as scripts and deletions leave it."""
+    outer one. Closes a transaction of FreeCAD's that scripts or deletions have left open."""
     if document.Name in _in_transaction:
         yield
         return

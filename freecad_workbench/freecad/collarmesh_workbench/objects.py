@@ -1,4 +1,4 @@
-"""What objects of a document have."""
+"""The type, property values and identifying names of a document's objects."""
 
 
 def type_of(obj):

@@ -69,7 +69,7 @@ class Handles:
     """All handles of an object, in its node of the scene, until `remove`. A drag changes the object's properties at
     once; `changed()` is called after each step.
 
-    A timer looks where the handles are: the callbacks of pivy's draggers end FreeCAD (pivy 0.6 runs them without
+    A timer reads the positions of the handles: the callbacks of pivy's draggers end FreeCAD (pivy 0.6 runs them without
     Python's lock)."""
 
     def __init__(self, obj, kind, changed):

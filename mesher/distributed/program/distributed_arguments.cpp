@@ -65,7 +65,7 @@ std::variant<DistributedArguments, process::ExitCode> parse(int argc, const char
       ->capture_default_str()
       ->type_name("N");
   app.add_option("--slack", arguments.slack,
-                 "Degrees by which dihedral angles may exceed those of the coarse mesh")
+                 "Degrees by which dihedral angles may go beyond those of the coarse mesh")
       ->check(cli::number_in(0, 180, "an angle from 0 to 180 degrees"))
       ->capture_default_str()
       ->type_name("DEGREES");

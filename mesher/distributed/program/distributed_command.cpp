@@ -35,7 +35,7 @@ namespace collarmesh::distributed {
 
 namespace {
 
-/// Initializes MPI and PETSc for its lifetime.
+/// An owner of MPI and PETSc, which are initialized during its lifetime.
 class Session {
  public:
   Session() {
@@ -84,8 +84,8 @@ class Session {
                   failure.what()));
 }
 
-/// Does work that is not collective and may end the program. If it ends on one rank, it ends on all, and the
-/// first such rank reports the reason.
+/// Does work that is not collective and may end the program. If the program ends on one rank, it ends on all,
+/// and the first such rank reports the reason.
 void together(const std::function<void()>& work) {
   std::exception_ptr thrown;
   std::optional<process::Stopped> stopped;
@@ -144,8 +144,8 @@ void require_equal_command_lines(int argc, const char* const* argv) {
   Hash hash;
   for (int i = 1; i < argc; ++i) hash.add(argv[i], std::strlen(argv[i]) + 1);
   if (const int other = first_that_differs(hash.value()); other >= 0)
-    throw OptionError(
-        fmt::format("{} has other options than rank 0; start all ranks with the same", host_of(other)));
+    throw OptionError(fmt::format("{} has other options than rank 0; start all ranks with the same options",
+                                  host_of(other)));
 }
 
 void require_equal_files(const DistributedArguments& arguments) {
@@ -161,8 +161,9 @@ void require_equal_files(const DistributedArguments& arguments) {
         hash.add(block.data(), static_cast<std::size_t>(file.gcount()));
     });
     if (const int other = first_that_differs(hash.value()); other >= 0)
-      throw ReadError(fmt::format("{}: is another file on {} than on rank 0; put the same on all machines",
-                                  path, host_of(other)));
+      throw ReadError(
+          fmt::format("{}: differs on {} from the file on rank 0; put the same file on all machines", path,
+                      host_of(other)));
   }
 }
 
@@ -237,8 +238,9 @@ Coarse make_coarse(const DistributedArguments& arguments) {
     coarse.made.run.plc = coarse.made.input->build(first_order.complex, coarse.made.repair);
   });
   if (const int other = first_that_differs(fingerprint(coarse.made.run.plc)); other >= 0)
-    throw std::runtime_error(fmt::format(
-        "{} makes another complex of the input than rank 0; are the programs the same?", host_of(other)));
+    throw std::runtime_error(
+        fmt::format("{} makes another complex of the input than rank 0; do all ranks run the same program?",
+                    host_of(other)));
   return coarse;
 }
 
@@ -246,9 +248,12 @@ std::string text_of(const LevelReport& level, unsigned number) {
   std::string text = fmt::format("level {}: {} tets in {:.2f} s; {} vertices on smooth or exact features",
                                  number, level.tets, level.seconds, level.on_features);
   if (level.spoilt > 0 || level.made_room > 0)
-    text += fmt::format(", {} tets spoilt, {} moves made room", level.spoilt, level.made_room);
+    text += fmt::format(
+        ", {} tets made poor or invalid by placing them, {} moves of other vertices to mend these",
+        level.spoilt, level.made_room);
   if (level.drawn_back > 0)
-    text += fmt::format(", {} vertices stay off, by at most {:.3g}", level.drawn_back, level.farthest_off);
+    text += fmt::format(", {} vertices off their places, by at most {:.3g}", level.drawn_back,
+                        level.farthest_off);
   return text + '\n';
 }
 
@@ -439,8 +444,8 @@ process::ExitCode mesh_distributed(const DistributedArguments& arguments) {
   if (arguments.mesh.order == 2) report.order = mesh.raise_order(shape);
   if (report.order && !arguments.mesh.quiet)
     process::tell(
-        "second order: {} nodes, {} of them off the middles of their edges; {} went back, by at most "
-        "{:.3g}\n",
+        "second order: {} nodes, {} of them not at the middles of their edges; {} straightened, off their "
+        "places by at most {:.3g}\n",
         report.order->nodes, report.order->curved, report.order->straightened, report.order->farthest_off);
   stop();
   const Timer timer;

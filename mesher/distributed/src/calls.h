@@ -23,7 +23,8 @@ struct PetscOutOfMemory : PetscFailure {
   using PetscFailure::PetscFailure;
 };
 
-/// Collects PETSc's message about its first error in one line. PETSc prints nothing during its lifetime.
+/// A collector of PETSc's message about its first error, in one line. PETSc prints nothing during its
+/// lifetime.
 class PetscMessages {
  public:
   PetscMessages();

@@ -166,7 +166,7 @@ class Certification {
     findings_.add(guarantee, where, {}, message, std::forward<Arguments>(arguments)...);
   }
 
-  /// Returns whether this rank judges a point: a vertex or, after these, the node of an edge.
+  /// Returns whether this rank judges a point. The vertices come first, then the nodes of edges.
   bool owns(std::size_t point) const {
     return point < mesh_->vertices ? vertices_.owned(point) : edges_.owned(point - mesh_->vertices);
   }
@@ -180,8 +180,9 @@ class Certification {
     if (order_ == 2) edges_.take_owners(std::span(owners).subspan(mesh_->vertices));
     for (std::size_t i = 0; i < points.size(); ++i)
       if (points[i] != owners[i])
-        find("shared_places", points[i], "A {} at {} has another place on the rank that owns it.",
-             i < mesh_->vertices ? "vertex" : "mid-side node", At{points[i]});
+        find("shared_places", points[i],
+             "A {} that is at {} on this rank is elsewhere on the rank that owns it.",
+             i < mesh_->vertices ? "vertex" : "mid-edge node", At{points[i]});
   }
 
   void check_tets() {
@@ -192,8 +193,7 @@ class Certification {
       const Tag tag = mesh_->tet_tag[t];
       if (!expected_->volumes.contains(tag)) {
         find(guarantee::region_tag, centre,
-             "A tet at {} has the label {} for its region, which the complex does not have.", At{centre},
-             tag);
+             "A tet at {} is labelled with region {}, which the complex does not have.", At{centre}, tag);
         continue;
       }
       const TetQuality quality = measure_tet(*mesh_, t);
@@ -324,7 +324,7 @@ class Certification {
       if (i < mesh_->vertices) ++certificate_.vertices;
       if (is_corner(feature)) corners_.push_back(p);
       if (feature.dimension == 1 || feature.dimension == 2)
-        check_distance(i < mesh_->vertices ? "The vertex" : "The mid-side node", p, feature, nearest);
+        check_distance(i < mesh_->vertices ? "The vertex" : "The mid-edge node", p, feature, nearest);
     }
   }
 
@@ -403,8 +403,9 @@ class Certification {
                              double wanted, double room) {
       if (!(std::fabs(measured - wanted) <= room))
         find(guarantee, plc_.bounds.centre(),
-             "The {} tagged {} measures {:.15g}, that of the complex {:.15g}; allowed is {:.6g}.", what, tag,
-             measured, wanted, room);
+             "The {} with tag {} measures {:.15g}, but {:.15g} in the complex; the allowed difference is "
+             "{:.6g}.",
+             what, tag, measured, wanted, room);
     };
     for (const auto& [tag, wanted] : expected_->volumes)
       compare(guarantee::region_volume, "region", tag, certificate_.region_volumes[tag], wanted,

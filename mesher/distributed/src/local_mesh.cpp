@@ -24,7 +24,7 @@ template <class Visit>
 std::size_t for_each_place(DM dm, PetscScalar* values, const Visit& visit) {
   PetscSection section = nullptr;
   call(DMGetCoordinateSection(dm, &section));
-  PetscInt first = 0, end = 0;  // the points that the section knows
+  PetscInt first = 0, end = 0;  // the range of points in the section
   call(PetscSectionGetChart(section, &first, &end));
   std::size_t seen = 0, edges = 0;
   for (const PetscInt depth : {0, 1}) {
@@ -71,7 +71,7 @@ std::array<Index, count> mid_nodes(const LocalMesh& mesh, const std::array<Index
     const std::array<Index, 2> wanted = sorted(cell[i], cell[j]);
     const auto found =
         std::find_if(edges.begin(), edges.end(), [&](Index e) { return sorted(mesh.ends[e]) == wanted; });
-    if (found == edges.end()) throw std::logic_error("two corners of a cell have no edge");
+    if (found == edges.end()) throw std::logic_error("no edge joins two corners of a cell");
     nodes[k] = static_cast<Index>(mesh.vertices) + *found;
   }
   return nodes;

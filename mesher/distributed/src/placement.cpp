@@ -86,8 +86,9 @@ class Placement {
     share_places();
     for (std::size_t v = 0; v < mesh_->points.size(); ++v)
       if (has_way_[v]) mesh_->points[v] = place_of(v);
-    std::vector<Index> look_at;  // tets to check; straight ones, too, may have poorer angles than the coarse
-                                 // mesh
+    // Tets beyond the bounds on angles. Some have no moved corner: division alone may give poorer angles than
+    // those of the coarse tets.
+    std::vector<Index> look_at;
     std::int64_t spoilt = 0;
     for (Index t = 0; t < mesh_->tets.size(); ++t) {
       if (score(t, mesh_->corners(t)) < 1) look_at.push_back(t);
@@ -421,8 +422,8 @@ class Placement {
     return around;
   }
 
-  /// Moves forward again those of the vertices that moved back whose tets permit it by now. Returns false if
-  /// there are none.
+  /// Moves vertices that moved back forward again, if their tets permit that by now. Returns false if there
+  /// are none.
   bool try_again(unsigned sweep) {
     std::vector<PetscInt> wishes(mesh_->points.size(), 0);
     for (std::size_t v = 0; v < wishes.size(); ++v) wishes[v] = has_way_[v] && back_[v] > 0 ? 1 : 0;

@@ -16,7 +16,7 @@ namespace collarmesh::distributed {
 namespace {
 
 // A node farther from the middle of its edge than this, relative to the edge, belongs to another part of its
-// feature. On a half circle it is 0.5.
+// feature. A half circle has the ratio 0.5.
 constexpr double farthest = 0.5;
 // The default of SecondOrderOptions::least_jacobian.
 constexpr double least_jacobian = 0.1;

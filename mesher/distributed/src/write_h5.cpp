@@ -214,8 +214,8 @@ void require_space(DM dm, const fs::path& path) {
     std::error_code unknown;
     const fs::space_info space = fs::space(path.parent_path().empty() ? "." : path.parent_path(), unknown);
     if (Ranks(communicator).rank == 0 && !unknown && static_cast<double>(space.available) < needed)
-      throw WriteError(fmt::format("{}: takes about {:.3g} GB, the disk has {:.3g} GB left", path.string(),
-                                   needed / 1e9, static_cast<double>(space.available) / 1e9));
+      throw WriteError(fmt::format("{}: needs about {:.3g} GB, but the disk has only {:.3g} GB left",
+                                   path.string(), needed / 1e9, static_cast<double>(space.available) / 1e9));
   });
 }
 

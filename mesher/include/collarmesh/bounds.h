@@ -17,7 +17,7 @@ struct Bounds {
   double thin_angle = 8;
   /// Allows thin tets only at creases and in narrow places; if false, anywhere. A place is narrow if two
   /// features without a common point, or two features that meet in a crease, are closer there than the
-  /// longest edge divided by `radius_edge`.
+  /// longest edge of the tet divided by `radius_edge`.
   bool thin_in_narrow_places_only = false;
   double collar_angle = 150;  ///< largest dihedral angle in collars; 100 to 175
   double crease_angle = 60;   ///< features that meet below it form a crease and get a collar
@@ -25,9 +25,9 @@ struct Bounds {
   double distance = 0;
   std::optional<SurfaceTolerance> tolerance = {};  ///< a tolerance that depends on the place; replaces
                                                    ///< `distance`
-  /// Share of two bounds that is kept in reserve for later stages that move vertices (`project_boundary`): of
-  /// the bounds on angles of thin tets, measured from 0 and 180 degrees, and of the width of narrow places. 0
-  /// to 0.5.
+  /// Share by which bounds are tighter until later stages have moved vertices (`project_boundary`): the
+  /// bounds on angles of thin tets, measured from 0 and 180 degrees, and the bound on the width of narrow
+  /// places. 0 to 0.5.
   double reserve = 0;
   /// Lowers the bound on the smallest angle of thin tets where the input forces edges to be short. Every mesh
   /// made with false also keeps the bounds for true.

@@ -52,7 +52,8 @@ struct CheckReport {
   std::size_t tets = 0, points = 0, faces = 0, edges = 0, collar_tets = 0, thin_tets = 0;
   double max_radius_edge = 0;  ///< largest radius-edge ratio of tets that are neither thin nor in collars
   double max_thin_radius_edge = 0;  ///< largest radius-edge ratio of thin tets
-  std::size_t forced_tets = 0;  ///< thin tets within their bounds only because the input forces short edges
+  std::size_t forced_tets = 0;  ///< thin tets that keep their bounds only because these are lower where the
+                                ///< input forces short edges
   double min_forced_dihedral = 180;             ///< smallest dihedral angle of those tets
   double min_dihedral = 180, max_dihedral = 0;  ///< dihedral angles outside collars, degrees
   double max_collar_dihedral = 0;

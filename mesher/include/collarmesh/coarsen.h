@@ -12,7 +12,7 @@ namespace collarmesh {
 struct CoarsenReport {
   std::size_t tets_before = 0, tets_after = 0;
   std::size_t contracted_edges = 0;  ///< edge collapses, including those that needed repairs
-  std::size_t repaired = 0;          ///< collapses that needed changes of the tets around
+  std::size_t repaired = 0;          ///< collapses that needed changes of the tets around them
   double seconds = 0;
   bool cancelled = false;  ///< the mesh is valid and partly coarsened
 };
@@ -24,9 +24,9 @@ struct CoarsenReport {
 /// function therefore lets thin tets exceed that bound. Their dihedral angles are at least `thin_angle`, and
 /// their dihedral and face angles at most 150 degrees (the maximum-angle condition: Babuska and Aziz 1976,
 /// Krizek 1992). Afterwards collars are the tets that touch a crease; their angles are at most
-/// `collar_angle`. A collapse that nearly fits is repaired at once, by edge removal and by moving vertices,
-/// or undone. All other guarantees still hold; planar patches stay planar, smooth patches and curves stay
-/// within the distance.
+/// `collar_angle`. If a collapse makes tets miss their bounds, it is repaired at once, by edge removal and by
+/// moving vertices, or undone. All other guarantees still hold; planar patches stay planar, smooth patches
+/// and curves stay within the distance.
 /// Preconditions: `mesh` comes from `generate` for `plc` with the options `made_with`, and is of first order.
 /// Guarantee: same input and options, same mesh. Throws OptionError for an angle out of range. Cost: linear
 /// in the tets, with local changes: some microseconds for each tet that is removed, and several times that

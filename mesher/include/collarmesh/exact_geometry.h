@@ -7,9 +7,9 @@
 
 namespace collarmesh {
 
-/// The geometry that the curves (dimension 1) and patches (2) of a complex approximate. Returns the point of
-/// a feature that is nearest to a mesh node on it, or nothing if the complex itself is the exact geometry
-/// there.
+/// The geometry that the curves (dimension 1) and patches (2) of a complex approximate. For a mesh node on a
+/// feature, returns the nearest point of that feature's exact geometry, or nothing if the complex itself is
+/// exact there.
 using ExactGeometry =
     std::function<std::optional<Point>(unsigned dimension, Index feature, const Point& node)>;
 

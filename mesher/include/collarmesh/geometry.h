@@ -43,9 +43,8 @@ inline double norm(const Vector& a) { return std::sqrt(squared_norm(a)); }
 inline double squared_distance(const Point& a, const Point& b) { return squared_norm(a - b); }
 inline double distance(const Point& a, const Point& b) { return std::sqrt(squared_distance(a, b)); }
 
-/// Six times the signed volume of the tetrahedron abcd; positive when d sees abc counterclockwise
-/// from the inside, that is, when (b-a) x (c-a) points towards d. Rounded, for measures only:
-/// decisions use the exact predicates.
+/// Returns six times the signed volume of the tetrahedron abcd, positive when (b-a) x (c-a) points towards d.
+/// Rounded, for measures only: decisions use the exact predicates.
 inline double six_volume(const Point& a, const Point& b, const Point& c, const Point& d) {
   return dot(cross(b - a, c - a), d - a);
 }

@@ -11,8 +11,8 @@ namespace collarmesh {
 
 /// Operations that `improve` may use, and its goals.
 struct ImproveOptions {
-  double min_dihedral = 20;  ///< degrees; improve tets with a smaller dihedral angle, or an obtuse one as bad
-                             ///< as that (see `improve`)
+  double min_dihedral = 20;  ///< degrees; improve tets with a smaller dihedral angle, or with an obtuse angle
+                             ///< that counts as smaller (see `improve`)
   Bounds bounds = {};        ///< bounds that no new tet breaks
   double thin_above = 0;  ///< radius-edge ratio above which later stages call tets thin; 0: the bound on the
                           ///< ratio
@@ -52,7 +52,7 @@ struct ImproveReport {
 /// thin), touches a collar, leaves the plane of a planar patch, or puts faces or edges farther than the
 /// distance from their smooth patch or curve.
 /// Preconditions: `mesh` comes from `generate` for `plc`, first order, with the same `distance`. Cost: linear
-/// in the tets, with a small factor for poor tets that can reach the bound.
+/// in the tets; poor tets cost little if they can reach the bound.
 ImproveReport improve(TetMesh& mesh, const Plc& plc, const ImproveOptions& options = {},
                       const Execution& execution = {});
 

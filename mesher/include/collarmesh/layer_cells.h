@@ -18,7 +18,8 @@ struct LayerCells {
   std::vector<Tag> prism_tag;              ///< tag of that region
   std::vector<std::uint16_t> prism_layer;  ///< number of the layer, from 1 at the wall
 
-  /// Corners a, b, c, d of a pyramid's base, counterclockwise from the apex e, d above a, c above b; then e.
+  /// Corners of a pyramid: a, b, c, d of its base, counterclockwise as seen from the apex, with d above a and
+  /// c above b; then the apex e.
   std::vector<std::array<Index, 5>> pyramids;
   std::vector<Index> pyramid_region;
   std::vector<Tag> pyramid_tag;

@@ -21,7 +21,7 @@ struct WallLayers {
   double first = 0;      ///< height of the first layer, absolute; 0: a tenth of the edges there
   double growth = 1.2;   ///< ratio of the heights of a layer and the one before it, at least 1
   unsigned count = 3;    ///< number of layers, at least 1
-  double thickness = 0;  ///< height of all layers, absolute, in place of `first`; 0: not given
+  double thickness = 0;  ///< total height of the layers, absolute, in place of `first`; 0: not given
 };
 
 struct LayerOptions {
@@ -36,7 +36,7 @@ struct LayerOptions {
 
 /// The result of layers at one group of faces.
 struct LayersReport {
-  /// A place where layers are lower than asked for.
+  /// A reason why layers are lower than asked for, and where.
   struct Reduction {
     std::string why;        ///< the reason
     std::size_t nodes = 0;  ///< nodes of the wall that this reason concerns
@@ -48,10 +48,10 @@ struct LayersReport {
     std::string name;
     double area = 0;     ///< area of the wall, absolute
     double covered = 0;  ///< part of that area that all layers cover, absolute
-    double asked = 0;    ///< height of all layers, absolute
-    double mean = 0;     ///< mean height reached, by area
+    double asked = 0;    ///< total height asked for, absolute
+    double mean = 0;     ///< mean of the total height reached, by area
     /// Histogram over the wall's area: entry i is the area where layers reach 0.1 i to 0.1 (i + 1) of the
-    /// height.
+    /// height asked for.
     std::array<double, 10> histogram{};
   };
   std::vector<Patch> patches;
@@ -78,12 +78,12 @@ void require_known_walls(const LayerOptions& options, const Plc& plc);
 /// edges of the walls stay. Nodes that also lie on other patches slide along these.
 ///
 /// Layers are lower where there is little room: in gaps, where prisms would fold, and where tets would miss
-/// their bounds (`improvement.bounds`). Heights of neighbours differ by at most a factor of 2. They are 0
-/// where no direction leads away from all walls at a node, and where layers end. There, prisms become
-/// pyramids and tets. In second order the edges of walls keep their nodes, and their bulges fade towards the
-/// tets. Precondition: `mesh` comes from `generate` for `plc`. Same mesh and options: same result, with any
-/// number of threads. If cancelled, the mesh has first order and no layers. Throws OptionError as
-/// `require_known_walls`. Cost: near linear in the tets.
+/// their bounds (`improvement.bounds`). Heights of neighbours with layers differ by at most a factor of 2.
+/// Heights are 0 where no direction leads away from all walls at a node, and where walls meet faces without
+/// layers. There, prisms become pyramids and tets. In second order the edges of walls keep their nodes, and
+/// their bulges fade towards the tets. Precondition: `mesh` comes from `generate` for `plc`. Same mesh and
+/// options: same result, with any number of threads. If cancelled, the mesh has first order and no layers.
+/// Throws OptionError as `require_known_walls`. Cost: near linear in the tets.
 LayersReport make_layers(TetMesh& mesh, const Plc& plc, const LayerOptions& options,
                          const ImproveOptions& improvement, const SecondOrderOptions& second_order = {},
                          const Execution& execution = {});

@@ -65,7 +65,7 @@ struct MeshOptions {
                                    ///< faces across a region; 0: no effect
   Bounds bounds = {};
   /// Bound on circumradius / shortest edge outside every region; used if larger than the bound inside. Edges
-  /// that lead straight across a gap do not count there.
+  /// that lead straight across a gap do not count as shortest edges there.
   double exterior_radius_edge = 8;
   NarrowCells narrow_cells = NarrowCells::bounded;
   double vertex_ratio = 0;  ///< bound on largest circumradius / shortest edge at a vertex in the regions
@@ -96,9 +96,9 @@ std::vector<std::string> sizes_without_effect(const Plc& plc, const MeshOptions&
 /// Returns the default of the surface distance tolerance, absolute: a tenth of the target edge length (0: of
 /// its default, as in MeshOptions), at most 1/200 of the diagonal. A circle whose radius is near the target
 /// length then gets about eight edges, whose chord error is about this tolerance. Small curves may be rougher
-/// than large ones, but see MeshOptions::edges_per_hole. For cells of second order it is at most 1/550 of the
-/// diagonal: it applies to the triangles of their corners, and coarser triangles could not be curved without
-/// inverting elements.
+/// than large ones, but see MeshOptions::edges_per_hole. For cells of second order the tolerance is at most
+/// 1/550 of the diagonal: it applies to the triangles between corners, and coarser triangles could not be
+/// curved without inverting elements.
 double default_distance(double size, double diagonal, int order = 1);
 
 enum class MeshStatus {

@@ -97,7 +97,7 @@ struct Option {
   /// fit.
   bool read(const std::string& text, RunOptions& options) const;
   bool fits(const OptionValue& value) const;
-  /// Describes the values that are allowed, "a number from 0 to 0.1".
+  /// Describes the allowed values, such as "a number from 0 to 0.1".
   std::string fitting() const;
   /// Returns the default as text.
   std::string default_value() const;

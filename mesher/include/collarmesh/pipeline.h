@@ -92,7 +92,7 @@ struct PipelineResult {
 
 struct SoupPipelineResult : PipelineResult {
   Plc plc;              ///< the complex that was meshed
-  RepairReport repair;  ///< the changes that made it a complex
+  RepairReport repair;  ///< the changes that made the input a valid complex
 };
 
 /// The source of the complexes to mesh. It builds one for each repair that is tried.
@@ -111,16 +111,15 @@ class ComplexSource {
 /// if no mesh passes, the first one is kept. Where features thinner than the feature size make a refinement
 /// far too fine, tries constrained tetrahedra, then coarser repairs (`coarser_repairs`). Thin rods are made
 /// of rings of vertices instead, if nothing but one size is asked for. If cells have first order, no distance
-/// is asked for and a region's volume is off by more than 2%, remakes a mesh that passes, nearer to the
-/// surfaces, at most twice and in at most half of the time left until `execution.deadline` or the time limit.
-/// A refinement ends early at a bound on vertices, so that coarser repairs can be tried; these must lose no
-/// body, region, name or tag except numbers of CAD faces. If none of them does better, the first complex is
-/// meshed within the budgets, or, without budgets, with up to twice as many vertices as the first try took;
-/// if that fails, from its constrained tetrahedra (`Start`). `check.notes` lists the attempts.
-/// `execution.progress` is also called at the beginning of each stage (`ProgressReport::begins`); its
-/// fraction covers all stages. If cancelled or out of time, the result has that status and no mesh. Throws
-/// PlcError for facets that cannot be repaired to form a complex, OptionError for conflicting options and for
-/// sizes of unknown tags.
+/// is asked for and a region's volume is off by more than 2%, makes a passing mesh again, nearer to the
+/// surfaces, at most twice and each time in at most half of the time that the time limit leaves. A refinement
+/// ends early at a bound on vertices, so that coarser repairs can be tried; these must lose no body, region,
+/// name or tag except numbers of CAD faces. If none of them does better, the first complex is meshed within
+/// the budgets, or, without budgets, with up to twice as many vertices as the first try took; if that fails,
+/// from its constrained tetrahedra (`Start`). `check.notes` lists the attempts. `execution.progress` is also
+/// called at the beginning of each stage (`ProgressReport::begins`); its fraction covers all stages. If
+/// cancelled or out of time, the result has that status and no mesh. Throws PlcError for facets that cannot
+/// be repaired to form a complex, OptionError for conflicting options and for sizes of unknown tags.
 SoupPipelineResult run_pipeline(ComplexSource& source, const PipelineOptions& options = {},
                                 const Execution& execution = {});
 

@@ -35,7 +35,7 @@ struct PlcOptions {
 Plc build_plc(std::span<const PolygonSoup> soups, const PlcOptions& options = {});
 
 /// Numbers the patches from 1 in their order if no facet has a tag, and the curves if no segment has one.
-/// `build_plc` does so. For the complex of repaired soups, call it with the original soups, because the
+/// `build_plc` calls it. For the complex of repaired soups, call it with the original soups, because the
 /// facets that fill holes have tags.
 void number_untagged(std::span<const PolygonSoup> soups, Plc& plc);
 

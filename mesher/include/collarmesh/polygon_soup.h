@@ -13,9 +13,9 @@ namespace collarmesh {
 /// The input of a file or program: points, polygonal facets and loose segments, unmerged and
 /// unchecked. `build_plc` turns one or several soups into a piecewise-linear complex.
 ///
-/// A facet is a set of polygons in one plane, as in TetGen's .poly: polygons of three or more
-/// corners bound it, a polygon of two corners is a segment inside it and one of one corner a point
-/// inside it; a hole is cut out by naming a point in it. A triangle is a facet of one polygon.
+/// A facet is a set of polygons in one plane, as in TetGen's .poly: polygons of three or more corners bound
+/// it, polygons of two corners are segments inside it, and polygons of one corner are points inside it. A
+/// point in a hole cuts the hole out. A triangle is a facet of one polygon.
 /// Storage is flat: facet f owns polygons [facets[f].first_polygon, facets[f+1].first_polygon),
 /// polygon q owns corners [polygon_starts[q], polygon_starts[q+1]).
 class PolygonSoup {
@@ -44,8 +44,8 @@ class PolygonSoup {
   std::vector<Tag> point_tags;  ///< one per point, or empty
   std::vector<Segment> segments;
   std::vector<Index> vertices;  ///< points that are features by themselves
-  /// Whether the soup gives its features: vertices, segments, borders of tags and folds above 90 degrees. The
-  /// feature angle then adds none.
+  /// Whether the soup gives all of its features: its vertices, its segments, borders between tags, and folds
+  /// above 90 degrees. If so, the feature angle adds none.
   bool given_features = false;
   std::vector<RegionPoint> region_points;  ///< .poly: region_points and hole_points decide which space of
                                            ///< their file is solid
@@ -53,7 +53,7 @@ class PolygonSoup {
   std::vector<RegionPoint> named_regions;  ///< points that give regions a name but do not decide which space
                                            ///< is solid
   std::vector<FacetHole> facet_holes;
-  TagNames tag_names;  ///< names of the file for its tags
+  TagNames tag_names;  ///< names that the file gives to its tags
   std::optional<Tag>
       region_tag;  ///< tag of regions whose boundary is mostly from this soup; by default their number
 

@@ -9,9 +9,9 @@ namespace collarmesh {
 
 /// The progress of a long operation. `fraction` never decreases within one operation.
 struct ProgressReport {
-  std::string_view phase;  ///< "read", "complex", "refine", "coarsen", "improve", "project", "second order",
-                           ///< "check", "write"
-  double fraction = 0;     ///< share of the whole operation that is done, 0 to 1; an estimate
+  std::string_view phase;    ///< the stage, such as "read", "complex", "refine", "coarsen", "improve",
+                             ///< "project", "second order", "check" or "write"
+  double fraction = 0;       ///< share of the whole operation that is done, 0 to 1; an estimate
   std::size_t vertices = 0;  ///< mesh vertices so far
   std::size_t tets = 0;      ///< cells so far
   bool begins = false;       ///< a stage of a whole run begins (`run_pipeline`)

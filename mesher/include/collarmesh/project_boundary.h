@@ -31,7 +31,7 @@ struct ProjectReport {
   std::size_t vertices = 0;      ///< vertices on features with exact geometry
   double largest_move = 0;       ///< largest move of these vertices, absolute; includes moves along their
                                  ///< features
-  std::size_t moved_inside = 0;  ///< vertices inside regions that were moved to make room
+  std::size_t moved_inside = 0;  ///< vertices inside regions that moved so that tets stay valid
   double largest_distance = 0;   ///< largest distance from the features afterwards, exceptions included
   std::vector<Exception> exceptions;
 };
@@ -42,8 +42,9 @@ struct ProjectReport {
 /// half of the tolerance (`ProjectOptions::bounds`) of the exact geometry. A vertex that cannot reach its
 /// place in this way stays where it is; the report lists it as an exception. On curves and patches that are
 /// straight or planar in the complex but not in the exact geometry, vertices go only as near as the complex
-/// permits. Preconditions: `mesh` comes from `generate` for `plc`, first order; `exact` maps each point that
-/// it returns to itself. Cost: linear in the tets, with a large factor for those that would become invalid.
+/// permits. Preconditions: `mesh` comes from `generate` for `plc`, first order; `exact` is idempotent: it
+/// does not move points that lie on the geometry. Cost: linear in the tets, with a large factor for those
+/// that would become invalid.
 ProjectReport project_boundary(TetMesh& mesh, const Plc& plc, const ExactGeometry& exact,
                                const ProjectOptions& options = {}, const Execution& execution = {});
 

@@ -84,7 +84,7 @@ struct RepairReport {
   RepairPlaces cut;              ///< pairs of facets that intersected
   RepairPlaces kept;             ///< places left unrepaired because creases there would become sharper
   RepairPlaces flakes;           ///< closed parts thinner than the tolerance, dropped; size: volume
-  std::size_t second_sides = 0;  ///< triangles dropped where a surface was doubled everywhere
+  std::size_t second_sides = 0;  ///< opposite copies dropped where the surface was double everywhere
   RepairPlaces merged;           ///< triangles inside solids, which were removed; size: area
   RepairPlaces dropped;          ///< triangles of open sheets outside of all solids, removed
   RepairPlaces thin_chambers;    ///< thin regions between facets that nearly coincide, now part of their
@@ -96,7 +96,7 @@ struct RepairReport {
   std::vector<FilledHole> filled;
   double feature_size = 0;                   ///< size below which features were collapsed, absolute
   std::vector<SmallFeature> small_features;  ///< the features that were collapsed
-  std::vector<Tag> lost_tags;                ///< tags of facets that have no facet left
+  std::vector<Tag> lost_tags;                ///< tags of the input's facets that no facet has now
   std::vector<Tag> lost_groups;   ///< the lost tags except those that are only numbers of CAD faces
   std::vector<Tag> lost_regions;  ///< tags that the input gives and that no region of the complex has
   /// The largest distance of the repaired facets from those of the input, absolute. Facets that fill holes do
@@ -157,8 +157,9 @@ RepairedPlc collapse_small_features(RepairedPlc complex, std::span<const Polygon
                                     const Execution& execution = {});
 
 /// Renumbers the patches and curves of a complex that another repair made, so that a number given by the user
-/// still means the same feature. Features that `before` has get their numbers there, new ones the numbers
-/// after these. `before` is the complex in which untagged facets and edges were numbered. Cost: O(n log n).
+/// still means the same feature. Features of `before` keep the numbers that they have there; new features get
+/// the numbers after these. `before` is the complex in which untagged facets and edges were numbered. Cost:
+/// O(n log n).
 void keep_feature_numbers(const Plc& before, Plc& after);
 
 /// Builds the complex, after `repair` if there are faults or noise, with a tolerance that grows while that

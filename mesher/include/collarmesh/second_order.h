@@ -55,8 +55,8 @@ struct SecondOrderReport {
 ///
 /// Straight tets are valid, so in the end every tet is valid. Vertices keep their numbers; mid-edge nodes
 /// follow all of them. Preconditions: `mesh` comes from `generate` for `plc`, first order. Throws OptionError
-/// unless 0 <= least_jacobian < 1. Cost: n log n in the tets, at most five times, and some milliseconds for
-/// each tet that is not valid at first.
+/// unless 0 <= least_jacobian < 1. Cost: n log n in the tets for each of at most five rounds, and some
+/// milliseconds for each tet that is not valid at first.
 SecondOrderReport make_second_order(TetMesh& mesh, const Plc& plc, const SecondOrderOptions& options = {},
                                     const Execution& execution = {});
 

@@ -15,8 +15,9 @@ enum class BallReason : std::uint8_t {
   subsegment,       ///< protects a piece of a curve that must not be split
   up_front,         ///< a collar ball, placed before the first vertex, as are all others of this run
   vertex_inserted,  ///< a collar ball: its crease vertex was inserted
-  vertex_isolated,  ///< a collar ball: every feature that meets the cell of its crease vertex contains it
-  curve_isolated,   ///< a collar ball: every feature that meets the cells along its crease curve contains it
+  vertex_isolated,  ///< a collar ball: the cell of its crease vertex meets only features that contain the
+                    ///< vertex
+  curve_isolated,   ///< a collar ball: cells along its crease curve meet only features that contain the curve
   curve_would_divide,  ///< a collar ball: a subsegment of its crease curve would have been split otherwise
   curve_left           ///< a collar ball: its crease curve had no balls yet when all other work was done
 };
@@ -46,9 +47,9 @@ struct TraceStep {
     BallReason reason;
   };
 
-  std::string stage;                    ///< box, refine, rip, stitch, coarsen, improve, project
-  std::string detail;                   ///< a line for display; may be empty
-  std::vector<Point> points;            ///< vertices, and ends of segments that are not vertices yet
+  std::string stage;          ///< the stage, such as box, refine, rip, stitch, coarsen, improve or project
+  std::string detail;         ///< a line for display; may be empty
+  std::vector<Point> points;  ///< vertices, and ends of segments that are not vertices yet
   std::vector<std::uint8_t> dimension;  ///< dimension of the feature that each point lies on; 3: none
   std::vector<std::array<Index, 4>> tets;
   std::vector<Index> region;  ///< region of each tet, 0 outside

@@ -71,7 +71,7 @@ def estimated_errors(mesh: Mesh, values: ArrayLike, *, across_regions: bool = Fa
     except numpy.linalg.LinAlgError:
         flat = int(numpy.argmin(abs(numpy.linalg.det(edges))))
         raise OptionError(f"tetrahedron {flat} at {corners[flat].mean(axis=0)} is flat, so that the solution has no gradient "
-                          "in it; remesh without a size first, which improves it") from None
+                          "in it; remesh without a size first, which mends flat tetrahedra") from None
     volumes = _volumes(mesh)
     around = mesh.tets if across_regions else _corners_by_material(mesh)
     recovered = _at_corners(around, volumes, gradients)[around]

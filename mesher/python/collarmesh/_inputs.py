@@ -58,7 +58,7 @@ def integers(values: ArrayLike, what: str, columns: Optional[int] = None) -> Arr
 def one_for_each(values: Array, count: int, what: str, of: str) -> Array:
     """Checks that there is one value for each item, and returns the values."""
     if len(values) != count:
-        raise OptionError(f"{what} must be an array of shape (n,), one for each {of}: {count}, not {len(values)}")
+        raise OptionError(f"{what} must have one entry for each {of}: {count}, not {len(values)}")
     return values
 
 
@@ -133,7 +133,8 @@ class Complex:
         cut_out = []
         for facet_row, places in (facet_holes or {}).items():
             if not 0 <= facet_row < len(facet_ends):
-                raise OptionError(f"facet_holes has the facet {facet_row}; they are 0 to {len(facet_ends) - 1}")
+                raise OptionError(
+                    f"facet_holes has the facet {facet_row}, but the facets are 0 to {len(facet_ends) - 1}")
             cut_out += [(facet_row, *place) for place in reals(places, f"facet_holes[{facet_row}]", 3)]
         self.arrays["facet_holes"] = reals(cut_out, "facet_holes", 4)
 
@@ -253,7 +254,8 @@ def _size_field(field: SizeField) -> Any:
     tets = integers(cells, "the tets of size_field", 10 if cells.ndim == 2 and cells.shape[1] == 10 else 4)
     values = reals(numpy.reshape(arrays[2], (-1, 1)), "the values of size_field", 1).ravel()
     if len(values) not in (len(points), len(tets)):
-        raise OptionError(f"size_field has {len(values)} values for {len(points)} points and {len(tets)} tets")
+        raise OptionError(f"size_field has {len(values)} values, but must have one for each of {len(points)} points "
+                          f"or {len(tets)} tets")
     if tets.size and not (0 <= tets.min() and tets.max() < len(points)):
         raise OptionError(f"the tets of size_field have corners from {tets.min()} to {tets.max()}; its points are 0 to "
                           f"{len(points) - 1}")

@@ -250,7 +250,7 @@ class Mesh:
         }
         order = 2 if nodes.shape[1] == 10 else 1
         if faces is None and (prisms is not None or pyramids is not None):
-            raise _core.OptionError("faces: with prisms or pyramids, give the triangles and quads on boundaries")
+            raise _core.OptionError("faces: needed with prisms or pyramids; give the triangles and quads on boundaries")
         for kind, cells, its_tags, columns in (
             ("prism", prisms, prism_tags, (6, 15)), ("pyramid", pyramids, pyramid_tags, (5, 13)),
             ("quad", quads, quad_tags, (4, 8)),
@@ -377,8 +377,8 @@ class Mesh:
         whole = isinstance(partitions, (int, numpy.integer)) and not isinstance(partitions, bool)
         if not whole or not 1 <= partitions <= len(self.tets):
             raise _core.OptionError(
-                f"partitions must be a whole number from 1 to {len(self.tets)}, as many as there are "
-                f"tetrahedra, not {partitions!r}")
+                f"partitions must be a whole number from 1 to {len(self.tets)}, the number of tetrahedra, "
+                f"not {partitions!r}")
         state = self.__getstate__()
         return Mesh._of({**state, "tet_partition": _core.partition(state, int(partitions))})
 
@@ -438,7 +438,7 @@ class Mesh:
     def _require_tets_alone(self, what: str) -> None:
         if len(self.prisms) + len(self.pyramids) > 0:
             raise _core.OptionError(f"{what}: the mesh has {len(self.prisms)} prisms and {len(self.pyramids)} pyramids, for "
-                                    "which this is not made; make layers of tetrahedra")
+                                    "which this is not supported; make layers of tetrahedra")
 
     def _surface(self) -> Tuple[List[Any], Array]:
         """Returns the triangles and quadrangles with their tags."""

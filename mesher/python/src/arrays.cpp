@@ -41,7 +41,7 @@ std::vector<Point> points(const py::dict& arrays, const char* key) {
 Index index(std::int64_t value, std::size_t size, const std::string& what) {
   if (value < 0 || value >= static_cast<std::int64_t>(size))
     throw OptionError(
-        fmt::format("{} has the corner {}; its points are 0 to {}", what, value, std::int64_t(size) - 1));
+        fmt::format("{} has the corner {}, but the points are 0 to {}", what, value, std::int64_t(size) - 1));
   return static_cast<Index>(value);
 }
 

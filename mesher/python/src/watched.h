@@ -16,12 +16,12 @@
 
 namespace collarmesh::python {
 
-/// Thrown if the work ended on request.
+/// The error of work that ended on request.
 struct Cancelled : Error {
   using Error::Error;
 };
 
-/// Thrown if the budget of vertices, memory or time is spent.
+/// The error of work whose budget of vertices, memory or time is spent.
 struct BudgetSpent : Error {
   using Error::Error;
 };

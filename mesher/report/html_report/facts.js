@@ -61,10 +61,10 @@ const guarantees = [
     ['conforming', 'watertight', 'curve_cover', 'curve_distance', 'patch_area', 'patch_border', 'patch_distance', 'patch_manifold',
       'patch_orientation', 'patch_plane', 'vertex_feature', 'vertex_present', 'listed_edges', 'listed_faces']],
   ['Regions: each tetrahedron lies in one, and volumes are kept', ['region_volume', 'volume_kept', 'thickness_kept', 'region_tag', 'positive_volume', 'distinct_tets']],
-  ['Tags: faces and edges know where they are from', ['curve_tag', 'patch_tag', 'patch_regions', 'face_regions']],
+  ['Tags: each face and edge has the tag of its face or edge of the input', ['curve_tag', 'patch_tag', 'patch_regions', 'face_regions']],
   ['Shape: circumradius over shortest edge is bounded', ['radius_edge']],
   ['Triangles have no small or large angle', ['triangle_angles']],
-  ['Faces of solids look outwards, those of open surfaces are oriented alike', ['shell_orientation']],
+  ['Faces of solids point outwards, those of open surfaces are oriented alike', ['shell_orientation']],
   ['Thin tetrahedra have no small or large angle', ['thin_angles']],
   ['Collars have no large angle',
     ['collar_cells', 'collar_centre', 'collar_dihedral', 'collar_disjoint', 'collar_gap']],
@@ -123,7 +123,7 @@ function layers(report, names, show) {
   const tenths = made.patches.reduce((sums, p) => sums.map((sum, i) => sum + p.area_by_tenth_of_thickness[i]), Array(10).fill(0));
   const most = 20, ordered = [...made.patches].sort((a, b) => a.covered / a.area - b.covered / b.area);
   const rows = ordered.slice(0, most).map(p => [names.face(p.tag),
-    `${percent(100 * p.covered / p.area)} covered, thickness ${number(p.thickness_mean)} in the mean of ${number(p.thickness_asked)}`]);
+    `${percent(100 * p.covered / p.area)} covered, mean thickness ${number(p.thickness_mean)} of ${number(p.thickness_asked)} asked for`]);
   const more = ordered.length > most ? [['Others', `${number(ordered.length - most)} faces, covered better`]] : [];
   const lower = made.reductions.map(r => element('li', {},
     `${number(r.nodes)} nodes, down to ${percent(100 * r.smallest_share)}: ${r.why}, the lowest at `, place(r.where, show)));

@@ -28,7 +28,8 @@ constexpr double around = 0.3;
 // Edges longer than this factor times the target are divided.
 constexpr double longest = coarsening::CoarseningRule::longest_new;
 
-// Ratio of an edge to a short edge beside it; edges may grow from there by this much per unit of distance.
+// An edge beside a short edge may be `of_shortest` times as long; from there edges may grow by `growth` per
+// unit of distance.
 constexpr double of_shortest = 1.5, growth = 1;
 
 // Graded sizes are used only if they multiply the number of tets by at most `most_times`, plus `some`.
@@ -38,7 +39,7 @@ class Bringing {
  public:
   Bringing(TetMesh& mesh, const Plc& plc, MeshOptions options, const Execution& execution)
       : mesh_(mesh), plc_(plc), options_(std::move(options)), execution_(execution) {
-    options_.edges_per_hole = 0;  // a hole may have no edges but the existing ones
+    options_.edges_per_hole = 0;  // asks for no further edges around holes
   }
 
   bool run() {
@@ -59,7 +60,7 @@ class Bringing {
            (options_.max_vertices == 0 || mesh_.points.size() < options_.max_vertices);
   }
 
-  /// Inserts vertices that face each other at tets that miss their bounds, and improves what remains, in
+  /// Divides edges of tets that miss their bounds at places that face each other, and improves tets, in
   /// rounds.
   void face_each_other() {
     for (unsigned round = 0; round < rounds && may_go_on() && divide_crossing() > 0; ++round)

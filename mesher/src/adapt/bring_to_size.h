@@ -7,9 +7,10 @@
 
 namespace collarmesh::remeshing::adapting {
 
-/// Brings a mesh of a complex, with tets of any shapes, approximately to its sizes: collapses short edges,
-/// divides long edges, and improves tets. Coarsening and improvement must follow. `options.bounds.tolerance`
-/// must be set. Returns false if it was stopped, or if the mesh reached `options.max_vertices` vertices.
+/// Brings a mesh of a complex, with tets of any shapes, approximately to the target sizes: collapses short
+/// edges, divides long edges, and improves tets. Coarsening and improvement must follow.
+/// `options.bounds.tolerance` must be set. Returns false if it was stopped, or if the mesh reached
+/// `options.max_vertices` vertices.
 bool bring_to_size(TetMesh& mesh, const Plc& plc, const MeshOptions& options, const Execution& execution);
 
 /// Improves tets and collapses short edges where that has become possible. The only bound is that no tet

@@ -24,10 +24,10 @@ constexpr double least_quality_share = 0.4;
 // Tets of at least this quality may become as bad as `least_quality_share` times it.
 constexpr double good_enough = 1;
 constexpr std::size_t edges_between_reports = 4096;
-// Crossing edges are divided in their middle part; edges on curves, which are divided in the middle, if they
-// cross near it.
+// Crossing edges are divided only if they cross in their middle part. An edge on a curve can only be divided
+// in its middle, so its middle part is smaller.
 constexpr double middle_part = 0.4, middle_part_of_curve = 0.1;  // from the middle, relative to the edge
-// Number of trials before the first division that helps, and its increase with each.
+// Number of trials before the first division that helps, and its increase with each such division.
 constexpr std::size_t first_trials = 60, trials_per_division = 8;
 constexpr unsigned most_steps = 20;  // improvement steps in a trial
 
@@ -121,8 +121,8 @@ std::vector<EdgeDivision::LongEdge> EdgeDivision::long_edges(double longest) con
   return edges;
 }
 
-// Adds the edges of a face on a smooth patch, each with the patch; and the longest one, with none, if the
-// centre of the face is too far from the patch.
+// Adds the edges of a face on a smooth patch, each with the patch; and the longest one again, without a
+// patch, if the centre of the face is too far from the patch.
 void EdgeDivision::add_edges_of_face(const std::array<Index, 3>& face, Index patch,
                                      std::vector<EdgeOfPatch>& found) const {
   const auto& p = mesh().points;
@@ -224,7 +224,7 @@ bool EdgeDivision::divide_facing_at(Index tet) {
 }
 
 /// Divides edges and improves the tets there. Keeps the result only if fewer tets miss their bounds then, or
-/// as many and the worst are better.
+/// as many as before but the worst are better.
 bool EdgeDivision::try_to_divide(const std::vector<Division>& divisions) {
   ++trials_;
   before_.clear();
@@ -290,7 +290,8 @@ Change EdgeDivision::improvement_of(Index tet) {
   return change;
 }
 
-/// Returns whether fewer tets miss their bounds than before the trial, or as many and the worst are better.
+/// Returns whether fewer tets miss their bounds than before the trial, or as many as before but the worst are
+/// better.
 bool EdgeDivision::is_better(const Trial& trial) {
   std::vector<double> now;
   for (const Index t : trial.changed())
@@ -308,8 +309,8 @@ bool EdgeDivision::is_better(const Trial& trial) {
   return false;
 }
 
-/// Returns the share of the edge's length at which a vertex faces one of the tets around, in the middle part
-/// of the edge and near it; the one nearest to the middle. One half if there is none.
+/// Returns where to divide an edge, as a share of its length: at the place nearest to the middle that a near
+/// vertex of the tets around faces; in the middle if no vertex faces the middle part of the edge.
 double EdgeDivision::share_facing(Index a, Index b, const TetComplex::Ring& ring) const {
   constexpr double middle_part = 0.3, near = 0.1;  // relative to the edge
   const Point& from = mesh().points[a];

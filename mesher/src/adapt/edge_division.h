@@ -12,7 +12,7 @@
 
 namespace collarmesh::remeshing::adapting {
 
-/// Divides the edges of a mesh that are longer than its sizes ask for: on curves, in patches and inside
+/// A division of the edges of a mesh that are longer than its sizes ask for: on curves, in patches and inside
 /// regions.
 class EdgeDivision {
  public:
@@ -23,14 +23,16 @@ class EdgeDivision {
   /// first. Returns the number of divided edges. Skips edges whose division would make much worse tets. Stops
   /// at `most_vertices`; 0: no bound.
   std::size_t divide_all(double longest, std::size_t most_vertices, const Execution& execution);
-  /// Divides once each edge on a curve or in a patch that is farther from it than the tolerance, as
-  /// `divide_all` does.
+  /// Divides, like `divide_all`, each edge that is farther from its smooth patch or curve than the tolerance,
+  /// and the longest edge of each face whose centre is.
   std::size_t divide_distant(std::size_t most_vertices, const Execution& execution);
-  /// Divides edges beside a vertex near them at the place that faces it, not in the middle.
+  /// From now on, divides an edge with a vertex near it at the place that faces the vertex, not in the
+  /// middle.
   void divide_facing() { facing_ = true; }
-  /// Divides opposite edges of a flat tet, as between the two sides of a thin wall, where they cross: at two
-  /// places that face each other. Does so for tets that miss their bounds, if fewer miss them then, or as
-  /// many and the worst are better. Returns the number of pairs.
+  /// Divides opposite edges of a flat tet, as between the two sides of a thin wall, where they cross, at two
+  /// places that face each other; or one edge at a place that faces a corner. Does so for tets that miss
+  /// their bounds, if fewer tets miss them then, or as many as before but the worst are better. Returns the
+  /// number of tets whose edges it divided.
   std::size_t divide_crossing(const Execution& execution);
 
  private:

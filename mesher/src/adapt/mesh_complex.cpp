@@ -29,8 +29,8 @@ std::string text(const Point& p) { return fmt::format("({:.9g}, {:.9g}, {:.9g})"
   throw PlcError(message, {{kind, message, std::move(points), at}});
 }
 
-/// Throws PlcError for a cell: "The `what` of the nodes ... at ...", and what is wrong. Nodes have their
-/// numbers in the whole mesh, `given`.
+/// Throws PlcError with the message "The `what` of the nodes ... at ...", followed by `wrong`. The nodes of
+/// the cell get their numbers in the whole mesh, `given`.
 template <std::size_t n>
 [[noreturn]] void refuse(std::string_view what, std::array<Index, n> cell, const std::vector<Index>& given,
                          const Point& at, std::string_view wrong,
@@ -55,9 +55,9 @@ struct MeshSide {
   Index face;           ///< index of the mesh's face; none if it is not listed
 };
 
-/// Finds the mesh sides (if the mesh lists every side of its tets, faces inside a region count if they have a
-/// tag other than 0), in the order of their tets, and which tets are connected without crossing such a
-/// triangle. Throws PlcError for sides that more than two tets share, and for listed faces that are no side
+/// The mesh sides in the order of their tets, and which tets are connected without crossing one. If the mesh
+/// lists every side of its tets, listed faces inside a region count only if they have a tag other than 0. The
+/// constructor throws PlcError for sides that more than two tets share, and for listed faces that are no side
 /// of a tet; messages name points by `given`. Cost: O(n log n).
 struct MeshSides {
   MeshSides(const TetMesh& mesh, const std::vector<Index>& given);
@@ -132,7 +132,7 @@ MeshSides::MeshSides(const TetMesh& mesh, const std::vector<Index>& given) {
 
 std::array<double, 3> coordinates(const Point& p) { return {p.x, p.y, p.z}; }
 
-/// Finds points by their coordinates.
+/// An index of points by their coordinates.
 class Places {
  public:
   /// Keeps the points by reference. Throws PlcError, with points named by `given`, if two are at one place.
@@ -253,7 +253,8 @@ class ComplexBuilder {
     plc_ = build_plc({&soup, 1}, options);
   }
 
-  /// Returns whether the mesh lists the edges along all borders between different faces.
+  /// Returns whether the mesh lists all edges where not exactly two sides meet or the tags of the two sides
+  /// differ.
   bool edges_are_complete() const {
     if (mesh_.edges.empty()) return false;
     struct EdgeUse {
@@ -276,7 +277,8 @@ class ComplexBuilder {
     return true;
   }
 
-  /// Finds the side behind each triangle of the complex.
+  /// Finds the mesh side of which each triangle of the complex was made. Throws PlcError if a side has no
+  /// triangle.
   void find_triangles() {
     std::vector<std::pair<Triangle, Index>> sides;
     for (Index s = 0; s < found_.sides.size(); ++s) sides.emplace_back(sorted(found_.sides[s].corners), s);

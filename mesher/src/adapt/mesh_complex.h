@@ -20,8 +20,8 @@ struct CornerMesh {
   std::vector<Index> given;  ///< by point: its index in the whole mesh
 };
 
-/// Returns this part. Throws PlcError for a mesh without tets, and for faces and edges with nodes that belong
-/// to no tet.
+/// Returns the part of a mesh that remeshing keeps. Throws PlcError for a mesh without tets, and for faces
+/// and edges with nodes that belong to no tet.
 CornerMesh corners_of(const TetMesh& mesh);
 
 /// Builds the complex of a mesh. Its facets are the sides of tets at a boundary or between two regions, and

@@ -12,7 +12,7 @@ namespace collarmesh::remeshing::adapting {
 
 namespace {
 
-// Collapses and divisions must leave at least this share of the quality of the worst tet around.
+// Collapses must leave at least this share of the quality of the worst tet around.
 constexpr double share_left = 0.3;
 // Edges are collapsed below these shares of the target, one share after the other.
 constexpr std::array lengths{0.05, 0.2, 0.5, 0.7};
@@ -139,7 +139,8 @@ void Relaxation::propose_contraction(Operations& operations, Index vertex, doubl
   }
 }
 
-/// Returns the vertices joined to a vertex by an edge, and the first of those near enough to collapse onto.
+/// Returns the vertices joined to a vertex by an edge, and the `most_tries` nearest of those that it may be
+/// collapsed onto.
 Relaxation::Neighbours Relaxation::neighbours_of(Index vertex, const std::vector<Index>& star,
                                                  double below) const {
   Neighbours found;

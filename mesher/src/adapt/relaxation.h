@@ -17,10 +17,10 @@
 
 namespace collarmesh::remeshing::adapting {
 
-/// Brings a mesh with any shapes and lengths close to its sizes, so that coarsening and improvement, which
-/// keep bounds, can do the rest.
-/// No operation may reduce the quality of the worst tet around below a share of it, unless all new tets are
-/// good. Collapses short edges first, shortest first, and improves tets in between; then divides long edges.
+/// A relaxation that brings a mesh with any shapes and lengths close to its sizes, so that coarsening and
+/// improvement, which keep bounds, can do the rest.
+/// No operation may reduce the quality of the worst tet around below a share of its former value, unless all
+/// new tets are good.
 class Relaxation {
  public:
   /// Keeps the mesh and the execution by reference; `sizes` are targets at the vertices.
@@ -47,14 +47,14 @@ class Relaxation {
   static constexpr unsigned kinds_of_means = 3;
   struct Proposal {
     Change change;  ///< may be none
-    /// Vertices: the change depends on the tets there. Empty: the tet had changed or was gone. Its index may
-    /// be in use again, so a change is proposed again.
+    /// The change depends on the tets at these vertices. Empty: the tet had changed or was gone. Its index
+    /// may be in use again, so a change is proposed again.
     std::vector<Index> read;
   };
   struct Neighbours {
     std::vector<Index> all;
     std::vector<Near> near;  ///< those onto which the vertex may be collapsed, by length
-    double longest = 0;      ///< edge
+    double longest = 0;      ///< length of the longest edge
   };
 
   const TetComplex& complex() const { return edited_.complex; }
@@ -81,10 +81,10 @@ class Relaxation {
   coarsening::CoarseningRule rule_;
   const Execution& execution_;
   std::size_t contractions_ = 0, others_ = 0, steps_ = 0;
-  ChangeTimes changes_{mesh().points.size()};   // of all tets at a vertex
-  ChangeTimes renewals_{mesh().points.size()};  // of tets at a vertex that were made or moved
+  ChangeTimes changes_{mesh().points.size()};   // when tets at a vertex were removed, made or moved
+  ChangeTimes renewals_{mesh().points.size()};  // when tets at a vertex were made or moved
   OrderedSpeculation<Operations> speculation_{[this] { return Operations(edited_, rule_); }};
-  // Times at which an attempt last failed. It is repeated only after a renewal.
+  // Times at which an attempt last failed. The attempt is repeated only after a renewal.
   std::vector<std::uint32_t> kept_ = std::vector<std::uint32_t>(mesh().points.size());  // by vertex
   std::array<std::vector<std::uint32_t>, kinds_of_means> not_better_;                   // by tet
 };

@@ -33,8 +33,8 @@ namespace {
 constexpr unsigned most_rounds = 40, most_passes = 3;
 // Each round divides the distance of an edge from its curve or patch by four.
 constexpr unsigned most_distance_rounds = 6;
-// The faces at one half of such an edge may be farther than those before by this factor, until the other
-// edges around are divided, too.
+// The faces at one half of an edge that was too far may be farther off than the old faces by this factor,
+// until the other edges around are divided, too.
 constexpr double distant_halves = 2;
 // If a pass of divisions changes a smaller share of the vertices, it is the last one.
 constexpr double least_share = 0.01;
@@ -46,9 +46,9 @@ constexpr double longest_at_first = 1.4142, longest_later = coarsening::Coarseni
 constexpr double any_ratio = 1e12;
 // Smaller than any ratio: with this bound angles alone decide, and slivers with a small ratio are forbidden.
 constexpr double no_ratio = 0.1;
-// Share of the distance from a given complex that operations may use: the rest is for what lies between the
-// places where they measure it, and for moves onto exact geometry. Share of the bounds on angles that is kept
-// in reserve for these moves.
+// `distance_left` is the share of the distance from a given complex that operations may use: the rest is for
+// points between those where they measure it, and for moves onto exact geometry. `angle_reserve` is the share
+// of the bounds on angles that is kept in reserve for these moves.
 constexpr double distance_left = 0.75, angle_reserve = 0.05;
 // If the smallest angle of a mesh, away from creases and narrow places, is at least this (degrees), the mesh
 // keeps it.
@@ -101,7 +101,7 @@ class Remeshing {
     made_.remeshing.tets_before = mesh().tets.size();
     measure_before();
     choose_size();
-    options_.mesh.edges_per_hole = 0;  // a hole may have no edges but the existing ones
+    options_.mesh.edges_per_hole = 0;  // asks for no further edges around holes
     if (!options_.mesh.bounds.tolerance)
       options_.mesh.bounds.tolerance =
           tolerance_of(made_.plc, options_.mesh.bounds, largest_size_, static_cast<int>(options_.order));
@@ -244,7 +244,7 @@ class Remeshing {
     return divided;
   }
 
-  /// Divides edges that the mesh was given too far from the curves and patches of the complex.
+  /// Divides edges that are too far from the curves and patches of the complex.
   std::size_t follow_features(EditableMesh& piece, EdgeDivision& division) {
     std::size_t all = 0;
     for (unsigned round = 0; round < most_distance_rounds; ++round) {

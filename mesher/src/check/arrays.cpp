@@ -1,4 +1,5 @@
 // Checks of the arrays that must pass before any other check can run.
+#include <fmt/format.h>
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
@@ -46,8 +47,10 @@ void check_corners(const std::vector<std::array<Index, n>>& entities, const TetM
     const Index corner = entities[i][k];
     const Point where = corner < mesh.points.size() ? mesh.points[corner] : Point{};
     findings.add(guarantee::valid_arrays, where, {i},
-                 "{} {} has point {} as corner {}{}; the mesh has {} points. Its writer is at fault.", kind,
-                 i, corner, k, repeated ? " again" : "", mesh.points.size());
+                 "{} {}: number {} in the list is point {}, {}. The program that wrote the mesh is at fault.",
+                 kind, i, k, corner,
+                 repeated ? "which is in the list already"
+                          : fmt::format("but the mesh has {} points", mesh.points.size()));
   }
 }
 
@@ -58,7 +61,7 @@ void check_range(const std::vector<Index>& values, std::size_t first, std::size_
     if ((values[i] < first || values[i] >= end) && !(optional && values[i] == none))
       findings.add(
           guarantee::valid_arrays, {}, {i},
-          "{} {} has {} {}, the complex has {} to {}; check the mesh against the complex it was made from.",
+          "{} {} has {} {}, but only {} to {} exist; check the mesh against the complex it was made from.",
           of, i, value, values[i], first, static_cast<std::ptrdiff_t>(end) - 1);
 }
 
@@ -66,11 +69,10 @@ void check_face_regions(const TetMesh& mesh, const Plc& plc, Findings& findings)
   for (Index f = 0; f < mesh.face_regions.size(); ++f)
     for (const Index region : mesh.face_regions[f])
       if (region >= plc.regions.size())
-        findings.add(
-            guarantee::valid_arrays, {}, {f},
-            "Face {} has region {} on a side, the complex has 0 to {}; check the mesh against the complex it "
-            "was made from.",
-            f, region, static_cast<std::ptrdiff_t>(plc.regions.size()) - 1);
+        findings.add(guarantee::valid_arrays, {}, {f},
+                     "Face {} has region {} on a side, but the complex has only 0 to {}; check the mesh "
+                     "against the complex it was made from.",
+                     f, region, static_cast<std::ptrdiff_t>(plc.regions.size()) - 1);
 }
 
 void check_lengths(const TetMesh& mesh, Findings& findings) {
@@ -88,9 +90,9 @@ void check_lengths(const TetMesh& mesh, Findings& findings) {
   check_length(mesh.edge_curve.size(), mesh.edges.size(), "curves", "edges", findings);
   check_length(mesh.edge_tag.size(), mesh.edges.size(), "tags", "edges", findings);
   if (mesh.order() == 1) return;
-  check_length(mesh.tet_mid_nodes.size(), mesh.tets.size(), "lists of mid nodes", "tets", findings);
-  check_length(mesh.face_mid_nodes.size(), mesh.faces.size(), "lists of mid nodes", "faces", findings);
-  check_length(mesh.edge_mid_nodes.size(), mesh.edges.size(), "mid nodes", "edges", findings);
+  check_length(mesh.tet_mid_nodes.size(), mesh.tets.size(), "lists of mid-edge nodes", "tets", findings);
+  check_length(mesh.face_mid_nodes.size(), mesh.faces.size(), "lists of mid-edge nodes", "faces", findings);
+  check_length(mesh.edge_mid_nodes.size(), mesh.edges.size(), "mid-edge nodes", "edges", findings);
 }
 
 void check_features(const TetMesh& mesh, const Plc& plc, Findings& findings) {
@@ -171,8 +173,8 @@ void check_collar_balls(const TetMesh& mesh, Findings& findings) {
     if (!on_crease || !is_finite(centre) || !std::isfinite(radius) || !(radius > 0))
       findings.add(
           guarantee::valid_arrays, {}, {b},
-          "Ball {} of a collar is centred at point {} with radius {:.6g}; it must be a point on a vertex "
-          "or curve, and the radius positive and finite, as its coordinates.",
+          "Ball {} of a collar is centred at point {} with radius {:.6g}; the point must lie on a vertex or "
+          "curve, the radius must be positive and finite, and the centre's coordinates finite.",
           b, point, radius);
   }
 }
@@ -182,11 +184,11 @@ void check_collar_balls(const TetMesh& mesh, Findings& findings) {
 bool check_arrays(const TetMesh& mesh, Findings& findings) {
   const std::size_t before = findings.total();
   check_lengths(mesh, findings);
-  check_corners(mesh.tets, mesh, "Tet", findings);
-  check_corners(mesh.faces, mesh, "Face", findings);
-  check_corners(mesh.edges, mesh, "Edge", findings);
-  check_corners(mesh.tet_mid_nodes, mesh, "Mid nodes of tet", findings);
-  check_corners(mesh.face_mid_nodes, mesh, "Mid nodes of face", findings);
+  check_corners(mesh.tets, mesh, "Corners of tet", findings);
+  check_corners(mesh.faces, mesh, "Corners of face", findings);
+  check_corners(mesh.edges, mesh, "Corners of edge", findings);
+  check_corners(mesh.tet_mid_nodes, mesh, "Mid-edge nodes of tet", findings);
+  check_corners(mesh.face_mid_nodes, mesh, "Mid-edge nodes of face", findings);
   return findings.total() == before;
 }
 
@@ -195,7 +197,7 @@ bool check_labels(const TetMesh& mesh, const Plc& plc, Findings& findings) {
   check_range(mesh.tet_region, 1, plc.regions.size(), false, "Tet", "region", findings);
   check_face_regions(mesh, plc, findings);
   check_range(mesh.face_patch, 0, plc.patches.size(), true, "Face", "patch", findings);
-  check_range(mesh.edge_mid_nodes, 0, mesh.points.size(), false, "Edge", "mid node", findings);
+  check_range(mesh.edge_mid_nodes, 0, mesh.points.size(), false, "Edge", "mid-edge node", findings);
   check_range(mesh.edge_curve, 0, plc.curves.size(), true, "Edge", "curve", findings);
   check_features(mesh, plc, findings);
   check_collar_balls(mesh, findings);

@@ -152,7 +152,8 @@ void check_core(const TetMesh& mesh, const Subject& subject, CheckReport& report
   check_core_angles(labelled, walls_below(mesh), subject.plc, bounds, report);
 }
 
-/// Judges a mesh of tets. `with_layers`: the mesh whose layers were cut into tets to make it, or null.
+/// Judges a mesh of tets. `with_layers`: null, or the mesh with layers that were cut into tets to make this
+/// one.
 void check_tet_mesh(const TetMesh& mesh, const TetMesh* with_layers, const Plc& plc,
                     const CheckOptions& options, const Execution& execution, CheckReport& report,
                     Findings& findings) {
@@ -169,8 +170,8 @@ void check_tet_mesh(const TetMesh& mesh, const TetMesh* with_layers, const Plc& 
 
 [[noreturn]] void refuse_mesh(const Finding& finding) {
   const std::string message = fmt::format(
-      "The mesh does not cover the shape that it should follow: {} Name the input that it was made of, or "
-      "adapt it without one.",
+      "The mesh does not cover the shape that it should follow: {} Name the input that the mesh was made "
+      "from, or adapt the mesh without an input.",
       finding.message);
   throw PlcError(message, {{PlcFault::Kind::intersection, message, finding.ids, finding.where}});
 }

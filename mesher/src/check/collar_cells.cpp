@@ -44,8 +44,8 @@ class CreaseCorners {
     if (end - corners.begin() != 2) return 0;
     return is_edge(corners[0], corners[1]) ? 2 : 0;
   }
-  /// Returns the kind of a tet as above for a coarsened mesh, where all cells that touch a crease belong to
-  /// its collar.
+  /// Returns 1 for a star, 2 for a book, 0 for neither, in a coarsened mesh, where all cells that touch a
+  /// crease belong to its collar.
   std::uint8_t kind_of_touching(const std::array<Index, 4>& tet) const {
     if (std::none_of(tet.begin(), tet.end(), [&](Index p) { return on_crease_[p]; })) return 0;
     for (unsigned i = 0; i < 4; ++i)

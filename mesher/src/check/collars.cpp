@@ -45,7 +45,8 @@ class CollarCheck {
     std::array<Index, 3> points;
   };
 
-  // Returns the place of the ball before projection: distances refer to the complex.
+  // Returns the ball's centre before vertices moved onto exact geometry: gaps and overlaps are measured
+  // against the complex, not the exact geometry.
   const Point& centre(Index ball) const { return balls_[ball].centre; }
   double radius(Index ball) const { return balls_[ball].radius; }
   const TetMesh::VertexFeature& feature_of(Index ball) const {
@@ -63,8 +64,8 @@ class CollarCheck {
       if (way <= allowed) continue;
       findings_.add(
           guarantee::collar_centre, now, {balls_[b].point},
-          "The collar's ball at {} (radius {:.9g}) has its centre at point {}, which is {:.6g} away "
-          "from there, allowed is {:.6g}; the point was moved, or the ball is another point's.",
+          "The collar's ball at {} (radius {:.9g}) belongs to point {}, which is {:.6g} away from the ball's "
+          "centre, allowed is {:.6g}; the point was moved, or the ball belongs to another point.",
           At{centre(b)}, radius(b), balls_[b].point, way, allowed);
     }
   }
@@ -152,7 +153,7 @@ class CollarCheck {
         At{centre(a)}, radius(a), At{centre(b)}, radius(b));
   }
 
-  // Finds consecutive balls: their centres are joined by an edge on their crease.
+  // Checks the circles of consecutive balls, whose centres are joined by an edge on their crease.
   void check_circles() {
     for (const auto& [p, q] : subject_.mesh.edges) {
       const Index a = ball_at_[p], b = ball_at_[q];
@@ -172,7 +173,7 @@ class CollarCheck {
         const double height = dot(to, axis);
         const double off = std::sqrt(std::max(0.0, squared_norm(to) - height * height));
         if (std::hypot(height, off - std::sqrt(squared)) < radius(k) * distance_slack)
-          report_circle(a, b, "meet in a circle that a third one reaches");
+          report_circle(a, b, "meet in a circle that a third ball reaches");
       }
     }
   }
@@ -194,11 +195,10 @@ class CollarCheck {
                                          [&](Index p) { return ball_at_[p] != none; });
       if (centres == mesh.tet_collar[t]) continue;
       const Point where = 0.5 * (subject_.point(mesh.tets[t][0]) + subject_.point(mesh.tets[t][1]));
-      findings_.add(
-          guarantee::collar_cells, where, {t},
-          "Tet {} at {} has {} centres of collars' balls among its corners, its kind {} asks for {}; a "
-          "cell is missing or marked wrongly.",
-          t, At{where}, centres, mesh.tet_collar[t], mesh.tet_collar[t]);
+      findings_.add(guarantee::collar_cells, where, {t},
+                    "Tet {} at {} has {} corners that are centres of collars' balls, but its mark demands "
+                    "{}; a cell is missing or marked wrongly.",
+                    t, At{where}, centres, mesh.tet_collar[t]);
     }
   }
 

@@ -38,7 +38,7 @@ class ConformityCheck {
   }
 
  private:
-  // Collects the tets at a triangle; a side of the same tet that is given twice counts once.
+  // Collects the tets at a triangle. If a tet is listed twice, its side counts once, and the tet is reported.
   void collect_sides(std::span<const TriangleUse> sides) {
     sides_.clear();
     for (const TriangleUse& use : sides) {
@@ -54,13 +54,14 @@ class ConformityCheck {
 
   void check_sides() {
     if (sides_.size() < 2 || (sides_.size() == 2 && sides_[0].odd != sides_[1].odd)) return;
-    findings_.add(
-        guarantee::conforming, where(),
-        {corners_[0], corners_[1], corners_[2], sides_[0].cell, sides_[1].cell},
-        "The face of points {}, {}, {} at {} is a side of {} tets, {} of them {} and {} on one side of it; "
-        "tets overlap there. If the mesher made this mesh, report it with the input and the options.",
-        corners_[0], corners_[1], corners_[2], At{where()}, sides_.size(),
-        sides_[0].odd == sides_[1].odd ? "the first two" : "more than one", sides_[0].cell, sides_[1].cell);
+    findings_.add(guarantee::conforming, where(),
+                  {corners_[0], corners_[1], corners_[2], sides_[0].cell, sides_[1].cell},
+                  "The face of points {}, {}, {} at {} is a side of {} tets, {} {} and {}; tets overlap "
+                  "there. If the mesher made this mesh, report it with the input and the options.",
+                  corners_[0], corners_[1], corners_[2], At{where()}, sides_.size(),
+                  sides_[0].odd == sides_[1].odd ? "two of them on one side of it:"
+                                                 : "several of them on one side of it, the first two being",
+                  sides_[0].cell, sides_[1].cell);
   }
 
   void check_listing() {

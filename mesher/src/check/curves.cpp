@@ -87,8 +87,7 @@ class CurveCheck {
     }
     if (chain_.size() == edges_.size() + 1) return true;
     report_gap(subject_.point(chain_.back()),
-               fmt::format("has {} edges that its chain does not reach, which ends",
-                           edges_.size() + 1 - chain_.size()));
+               fmt::format("has {} edges beyond the end of its chain", edges_.size() + 1 - chain_.size()));
     return false;
   }
 
@@ -102,8 +101,7 @@ class CurveCheck {
       const auto degree = degree_at(point);
       if (degree == expected) return;
       good = false;
-      report_gap(subject_.point(point),
-                 fmt::format("has {} edges where it should have {}", degree, expected));
+      report_gap(subject_.point(point), fmt::format("has {} edges, not {},", degree, expected));
     };
     if (!curve_.closed)
       for (unsigned i = 0; i < (is_loop() ? 1 : 2); ++i) expect(end_point(i), is_loop() ? 2 : 1);

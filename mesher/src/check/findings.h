@@ -18,7 +18,7 @@ struct At {
   Point point;
 };
 
-/// Collects findings: lists the first ones of each guarantee and counts all.
+/// A collector of findings: lists the first ones of each guarantee and counts all.
 class Findings {
  public:
   Findings(CheckReport& report, std::size_t listed_per_guarantee)

@@ -238,7 +238,7 @@ class LayerCheck {
     const Point& where = at(first->corners[0]);
     if (cells == 0 || cells > 2 || (cells == 2 && first[0].turned == first[1].turned)) {
       findings_.add(guarantee::layer_conforming, where, {first->cell},
-                    "A side of {} {} at {} has {} cells, which do not lie on its two sides.",
+                    "A side of {} {} at {} has {} cells; it must have one, or two on opposite sides.",
                     name_of(first->kind), first->cell, At{where}, cells);
       return;
     }

@@ -90,7 +90,8 @@ class WallCheck {
           std::binary_search(allowed.begin(), allowed.end(), edge_key(node.edge[0], node.edge[1])))
         continue;
       findings_.add(guarantee::layer_walls, node.place, {node.edge[0], node.edge[1]},
-                    "The node of the wall's edge from point {} to {} at {} moved by {:.3g} with the layers.",
+                    "The mid-edge node of the wall's edge from point {} to {}, at {}, moved by {:.3g} when "
+                    "the layers were made.",
                     node.edge[0], node.edge[1], At{node.place}, off);
     }
   }
@@ -124,9 +125,10 @@ class WallCheck {
       if (std::fabs(of.all - patch.area) <= rounding * of.all &&
           std::fabs(of.covered - patch.covered) <= rounding * of.all)
         continue;
-      findings_.add(guarantee::layer_walls, {}, {},
-                    "Layers cover {:.9g} of {:.9g} of patch {}, but the report says {:.9g} of {:.9g}.",
-                    of.covered, of.all, patch.tag, patch.covered, patch.area);
+      findings_.add(
+          guarantee::layer_walls, {}, {},
+          "Layers cover an area of {:.9g} of {:.9g} on patch {}, but the report says {:.9g} of {:.9g}.",
+          of.covered, of.all, patch.tag, patch.covered, patch.area);
     }
   }
 
@@ -231,7 +233,7 @@ class WallCheck {
     }
     for (std::size_t layer = 2; layer < weights.size(); ++layer)
       if (weights[layer] != weights[1]) {
-        report(sides[0], "has different cells in one layer and in the first one");
+        report(sides[0], "has cells in one layer that differ from those in the first layer");
         return;
       }
     unsigned expected_bases = 0;
@@ -243,7 +245,7 @@ class WallCheck {
       weight = 0;
     }
     if (first != std::array<unsigned, 2>{}) report(sides[0], "has cells on the wrong side");
-    if (bases != expected_bases) report(sides[0], "is no side of the cells of its layers");
+    if (bases != expected_bases) report(sides[0], "is not the base of one cell on each side that has layers");
   }
 
   void report(const WallSide& side, std::string_view what) {

@@ -21,14 +21,14 @@ inline constexpr char layer_walls[] = "layer_walls";
 
 namespace collarmesh::checks {
 
-/// The numbers of layers that are asked for, by patch and the region on that side of it.
+/// The numbers of layers that are asked for, by patch and by the region that the layers are in.
 using AskedWalls = std::map<std::pair<Index, Index>, unsigned>;
 
 /// The triangles of walls, and the curve edges that are sides of these triangles, by the places of their
 /// corners.
 struct WallGeometry {
   struct Triangle {
-    std::array<Point, 3> corners;  ///< the first one is the lowest
+    std::array<Point, 3> corners;  ///< the lexicographically lowest one first
     Index patch, face;
   };
   struct Edge {

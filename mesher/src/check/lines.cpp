@@ -35,10 +35,10 @@ void check_edge_jacobians(const Subject& subject, Findings& findings) {
                 &m = mesh.points[mesh.edge_mid_nodes[e]];
     const Vector chord = b - a;
     if (dot(4 * (m - a) - chord, chord) > 0 && dot(4 * (b - m) - chord, chord) > 0) continue;
-    findings.add(
-        guarantee::positive_jacobian, m, {e},
-        "Edge {} of tag {} at {} is of second order and folds; put its middle node nearer to its middle.", e,
-        mesh.edge_tag[e], At{m});
+    findings.add(guarantee::positive_jacobian, m, {e},
+                 "Edge {} with tag {} at {} is of second order and folds back on itself; put its mid-edge "
+                 "node nearer to its middle.",
+                 e, mesh.edge_tag[e], At{m});
   }
 }
 

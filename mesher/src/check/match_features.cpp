@@ -76,7 +76,8 @@ class PointSearch {
   std::vector<Index> order_;
 };
 
-// Assigns each piece to a feature: its entities vote, by their size, for the feature nearest to their middle.
+// A vote that assigns pieces to features: the entities of a piece vote, by their size, for the feature
+// nearest to their middle.
 class Ballot {
  public:
   void vote(Index piece, Index feature, double weight) {
@@ -110,7 +111,7 @@ class Ballot {
   std::vector<Vote> votes_;
 };
 
-// Joins edges of one tag that meet in a point where no other feature ends.
+// Joins edges of one tag that meet in a point without further edges that is no vertex of the complex.
 DisjointSets edge_pieces(const TetMesh& mesh, const std::vector<Index>& vertex_point) {
   std::vector<std::array<Index, 2>> ends;  // point, edge
   for (Index e = 0; e < mesh.edges.size(); ++e)

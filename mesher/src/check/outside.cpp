@@ -37,8 +37,8 @@ void warn_of_features_outside(const Subject& subject, CheckReport& report) {
   const auto warn = [&](std::size_t count, std::string_view kinds, std::string_view kind, Index first,
                         Tag tag, const Point& where) {
     report.warnings.push_back(
-        fmt::format("{} outside of every region are not meshed: {}, the first one {} {} (tag {}) at {}. Move "
-                    "them into a region, or remove them.",
+        fmt::format("{} outside of every region are not meshed: {} in all, of which the first is {} {} (tag "
+                    "{}) at {}. Move them into a region, or remove them.",
                     kinds, count, kind, first, tag, At{where}));
   };
   std::size_t count = 0;

@@ -99,8 +99,8 @@ class TopologyCheck {
           id_, patch_.tag, last - first, side.ends[0], side.ends[1], curve, At{where}, expected);
     else if (last - first == 1)
       findings_.add(guarantee::patch_border, where, {id_, side.face},
-                    "Patch {} (tag {}) ends at the edge of points {} and {} at {}, where the complex has no "
-                    "curve of it; faces or edges are missing or tagged with another feature.",
+                    "Patch {} (tag {}) ends at the edge of points {} and {} at {}, where it has no curve "
+                    "in the complex; faces or edges are missing or tagged with another feature.",
                     id_, patch_.tag, side.ends[0], side.ends[1], At{where});
     else
       findings_.add(

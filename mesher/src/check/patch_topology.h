@@ -12,7 +12,7 @@ struct PatchEdge {
   std::array<Index, 2> ends;  ///< its ends, sorted
   Index place;                ///< index of the face in the patch's list of faces
   Index face;
-  /// The edge runs from the smaller to the larger point if the face is oriented like its patch.
+  /// Whether the edge runs from the smaller to the larger point if the face is oriented like its patch.
   bool ascending;
 
   friend bool operator<(const PatchEdge& a, const PatchEdge& b) {

@@ -44,7 +44,7 @@ double rounding_of(const TetMesh::Motion& motion, double r) {
   return (evaluations * evaluation + others) * unit_roundoff * r;
 }
 
-/// Checks one pair of groups.
+/// The check of one pair of groups.
 class PeriodicCheck {
  public:
   PeriodicCheck(const TetMesh& mesh, std::size_t number, Findings& findings)
@@ -128,11 +128,10 @@ class PeriodicCheck {
     std::map<Index, Index> node_of;
     for (const auto& [node, image] : pair_.nodes) {
       if (!first.contains(node) || !second.contains(image))
-        findings_.add(
-            guarantee::periodic_nodes, at(node), {node, image},
-            "Periodic pair {} maps node {} at {} onto node {} at {}: not from its first side onto its "
-            "second.",
-            number_, node, At{at(node)}, image, At{at(image)});
+        findings_.add(guarantee::periodic_nodes, at(node), {node, image},
+                      "Periodic pair {} maps node {} at {} onto node {} at {}, but they are not on its first "
+                      "side and its second side.",
+                      number_, node, At{at(node)}, image, At{at(image)});
       const auto [other, added] = node_of.emplace(image, node);
       if (!added && other->second != node)
         findings_.add(guarantee::periodic_nodes, at(image), {other->second, node, image},
@@ -183,8 +182,8 @@ class PeriodicCheck {
       met.insert(found->second);
       if (!are_turned(f, images, found->second))
         findings_.add(guarantee::periodic_faces, at(mesh_.faces[f][0]), {f, found->second},
-                      "Face {} at {} and its image, face {}, of periodic pair {} look the same way, or their "
-                      "mid-edge nodes differ.",
+                      "Face {} at {} and its image, face {}, of periodic pair {} do not have opposite "
+                      "orientations, or their mid-edge nodes differ.",
                       f, At{at(mesh_.faces[f][0])}, found->second, number_);
     }
     for (const auto& [corners, f] : second_faces_)
@@ -268,7 +267,7 @@ bool commute(const TetMesh::Motion& f, const TetMesh::Motion& g, const Point& p)
 }
 
 /// Checks edges of a cell, where a node has images by two pairs and each image has an image by the other
-/// pair. If the motions commute there, both must be the same node.
+/// pair. If the motions commute there, both second images must be the same node.
 void check_corners(const TetMesh& mesh, const std::vector<std::optional<Map>>& maps, Findings& findings) {
   for (std::size_t i = 0; i < maps.size(); ++i)
     for (std::size_t j = i + 1; j < maps.size(); ++j) {
@@ -281,11 +280,10 @@ void check_corners(const TetMesh& mesh, const std::vector<std::optional<Map>>& m
         const auto one = g.find(by_f->second), other = f.find(by_g->second);
         if (one == g.end() || other == f.end() || one->second == other->second) continue;
         if (!commute(mesh.periodic[i].motion, mesh.periodic[j].motion, mesh.points[node])) continue;
-        findings.add(
-            guarantee::periodic_corners, mesh.points[node], {node, one->second, other->second},
-            "Periodic pairs {} and {} take node {} at {} to node {} in this order, to node {} in the "
-            "other.",
-            i + 1, j + 1, node, At{mesh.points[node]}, one->second, other->second);
+        findings.add(guarantee::periodic_corners, mesh.points[node], {node, one->second, other->second},
+                     "Periodic pairs {} and {} take node {} at {} to node {} if applied in this order, but "
+                     "to node {} in the other order.",
+                     i + 1, j + 1, node, At{mesh.points[node]}, one->second, other->second);
       }
     }
 }

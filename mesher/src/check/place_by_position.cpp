@@ -56,7 +56,7 @@ struct ListedSide {
   }
 };
 
-// Finds the patches with a region on both sides.
+// The patches with a region on both sides.
 class InnerPatches {
  public:
   explicit InnerPatches(const Subject& subject)
@@ -130,7 +130,7 @@ struct CurveSegments {
   std::vector<double> lengths;  // by curve
 };
 
-// Decides whether tags that are only numbers fit: whether most faces and edges of a sample lie on the patches
+// A test whether tags that are only numbers fit: whether most faces and edges of a sample lie on the patches
 // and curves of their tags. Such numbers change with the order of the facets.
 class Numbers {
  public:
@@ -323,7 +323,7 @@ class Placement {
     }
     if (!tets_known_)
       report_.notes.emplace_back(
-          "The tags of the tets are none of the input's: their regions were found by position.");
+          "The input has none of the tags of the tets: their regions were found by position.");
   }
 
   double volume(Index t) const {
@@ -365,9 +365,9 @@ class Placement {
   void make_faces() {
     report_.notes.emplace_back(
         mesh_.faces.empty()
-            ? "The mesh lists no triangles: those on the boundary and the facets were found by position."
-            : "The tags of the triangles are none of the input's: those on the boundary and the facets "
-              "were found by position.");
+            ? "The mesh lists no triangles: triangles on the boundary and on facets were found by position."
+            : "The input has none of the tags of the triangles: triangles on the boundary and on facets were "
+              "found by position.");
     mesh_.faces.clear();
     mesh_.face_regions.clear();
     mesh_.face_mid_nodes.clear();
@@ -402,12 +402,13 @@ class Placement {
     friend bool operator<(const PlaceOnCurve& a, const PlaceOnCurve& b) { return a.arc < b.arc; }
   };
 
-  // Makes edges of the edges of tets between consecutive points on a curve.
+  // Makes edges on curves: the border edges of a bent curve if they are known, otherwise the edges of tets
+  // between consecutive points on the curve.
   void make_edges() {
-    report_.notes.emplace_back(mesh_.edges.empty()
-                                   ? "The mesh lists no edges: those on curves were found by position."
-                                   : "The tags of the edges are none of the input's: those on curves were "
-                                     "found by position.");
+    report_.notes.emplace_back(
+        mesh_.edges.empty()
+            ? "The mesh lists no edges: edges on curves were found by position."
+            : "The input has none of the tags of the edges: edges on curves were found by position.");
     mesh_.edges.clear();
     mesh_.edge_mid_nodes.clear();
     mesh_.edge_curve.clear();

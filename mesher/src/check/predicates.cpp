@@ -29,8 +29,7 @@ void check_off_feature(std::string_view guarantee, const Named& node, const Poin
                        double allowed, const NamedFeature& feature, Findings& findings) {
   if (distance <= allowed) return;
   findings.add(guarantee, at, {node.id, feature.id},
-               "{} at {} is {:.6g} away from its {} {} (tag {}), allowed is {:.6g}; move it "
-               "onto it.",
+               "{} at {} is {:.6g} away from its {} {} (tag {}), allowed is {:.6g}; move the node onto it.",
                node, At{at}, distance, feature.kind, feature.id, feature.tag, allowed);
 }
 

@@ -9,17 +9,17 @@
 
 namespace collarmesh::checks {
 
-/// Tells which region of a complex a point lies in. Several threads may ask at once.
+/// A locator of points among the regions of a complex. Several threads may query it at once.
 class RegionLocator {
  public:
   /// Keeps a reference to the complex.
   explicit RegionLocator(const Plc& plc) : plc_(plc) {}
 
   /// Returns the region of a point, 0 outside of all. Precondition: the point is not on a patch. Follows a
-  /// ray from the point to a place on the nearest triangle, and returns the region on this side of the first
-  /// triangle on the ray, by exact arithmetic. If the ray meets the border of a triangle or lies in the plane
-  /// of one, tries another place, then another triangle. Cost: O(n log n) for n triangles the first time,
-  /// then that of finding the nearest triangle: logarithmic for most points.
+  /// ray from the point to a place on the nearest triangle, and returns the region on the point's side of the
+  /// first triangle on the ray, by exact arithmetic. If the ray meets the border of a triangle or lies in the
+  /// plane of one, tries another place, then another triangle. Cost: O(n log n) for n triangles the first
+  /// time, then that of finding the nearest triangle: logarithmic for most points.
   Index region_at(const Point& p) const;
 
  private:

@@ -104,7 +104,7 @@ void check_jacobians(const Subject& subject, Findings& findings) {
 void check_node(const Subject& subject, Index node, double distance, double allowed,
                 const NamedFeature& feature, CheckReport& report, bool smooth, Findings& findings) {
   if (smooth) report.max_surface_distance = std::max(report.max_surface_distance, distance);
-  check_off_feature(guarantee::mid_node_distance, {"The mid-side node", node}, subject.point(node), distance,
+  check_off_feature(guarantee::mid_node_distance, {"The mid-edge node", node}, subject.point(node), distance,
                     allowed, feature, findings);
 }
 

@@ -16,8 +16,8 @@ double volume_below_face(const TetMesh& mesh, const Point& apex, Index face) {
                            : volume_below(apex, curved_face(mesh, face));
 }
 
-/// Returns a point of the shell in the complex. With an apex far away, small volumes would be lost in
-/// cancellation.
+/// Returns a point of the shell in the complex, as an apex for volumes: with an apex far away, small volumes
+/// would be lost in cancellation.
 Point point_of(const Plc& plc, const Shell& shell) {
   return plc.points[plc.triangles[plc.patches[shell.patches[0]].first_triangle].points[0]];
 }
@@ -50,7 +50,7 @@ void judge_volume(const Subject& subject, const std::string& what, double made, 
     findings.add(guarantee::volume_kept, where, {id},
                  "{}; allowed are {:.0f} %. Ask for a smaller size or distance.", found, 100 * largest);
   else
-    report.warnings.push_back(found + "; a smaller size or distance brings it nearer.");
+    report.warnings.push_back(found + "; a smaller size or distance reduces the difference.");
 }
 
 /// Names a closed surface by its first patches.

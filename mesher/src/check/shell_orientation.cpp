@@ -40,7 +40,7 @@ void check_outward(const Subject& subject, const Plc& plc, Findings& findings) {
     }
     if ((wrong > 0) == (behind > 0) && wrong != 0)
       findings.add(guarantee::shell_orientation, where, {p},
-                   "The faces of patch {} (tag {}) at {} look into its solid; turn them.", p, patch.tag,
+                   "The faces of patch {} (tag {}) at {} point into its solid; turn them.", p, patch.tag,
                    At{where});
   }
 }

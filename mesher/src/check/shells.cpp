@@ -89,8 +89,8 @@ void check_angles(const Subject& subject, CheckReport& report, Findings& finding
     const Point where = subject.centroid(face);
     findings.add(
         guarantee::triangle_angles, where, {f},
-        "Triangle {} at {} has angles from {:.4g} to {:.4g} degrees, allowed are {:.4g} to {:.4g}; "
-        "features of the input are close to each other there: a smaller size there helps, or remove them.",
+        "Triangle {} at {} has angles from {:.4g} to {:.4g} degrees, allowed are {:.4g} to {:.4g}; features "
+        "of the input are close to each other there: choose a smaller size there, or remove them.",
         f, At{where}, angles.least(), angles.largest(), least, largest);
   }
   report.triangles = measures;

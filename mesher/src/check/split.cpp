@@ -108,8 +108,8 @@ class SplitCheck {
     for (const auto& [place, pair] : faces) {
       if (pair.size() != 2 || !are_opposite(pair[0], pair[1]))
         findings_.add(guarantee::split_pairs, at(place[0]), {pair[0]},
-                      "Face {} of a split patch at {} does not coincide with exactly one face of the other "
-                      "side, turned against it.",
+                      "Face {} of a split patch at {} does not coincide with exactly one face of opposite "
+                      "orientation on the other side.",
                       pair[0], At{at(place[0])});
     }
     for (std::size_t k = 1; k < sides_.size(); ++k) {
@@ -174,7 +174,7 @@ class SplitCheck {
       if (const auto i = static_cast<Index>(k - 1), j = static_cast<Index>(k);
           all[i].node == all[j].node && touching.same(i, j) && !together.same(i, j))
         findings_.add(guarantee::split_sectors, at(all[i].node), {all[i].node, all[i].tet, all[j].tet},
-                      "Node {} at {} joins tets {} and {}, although patches between them are split.",
+                      "Node {} at {} joins tets {} and {}, although patches that separate them are split.",
                       all[i].node, At{at(all[i].node)}, all[i].tet, all[j].tet);
   }
 

@@ -58,9 +58,10 @@ struct Subject {
 };
 
 /// The tets that may exceed the radius-edge bound if their angles are bounded: dihedral angles from below,
-/// and dihedral and face angles by 150 degrees. Only marked tets may, or any tet if a file has no marks. If
-/// features meet at less than twice the lower bound, half the angle between them is enough. If the input
-/// forces an edge of the tet to be short, half the angle that this edge leaves is enough.
+/// and dihedral and face angles by 150 degrees. Only marked tets and collars of a coarsened mesh may, or any
+/// tet if a file has no marks. If features meet at less than twice the lower bound, half the angle between
+/// them is enough. If the input forces an edge of the tet to be short, half the angle that this edge leaves
+/// is enough.
 class ThinCells {
  public:
   static constexpr double largest_angle = 150;  ///< degrees
@@ -76,8 +77,8 @@ class ThinCells {
   /// Returns whether a tet's angles are within their bounds; `face_angle` is the largest angle of its faces,
   /// degrees.
   bool are_bounded(const TetQuality& quality, double face_angle, Index tet) const;
-  /// Returns whether a tet's angles are this small only because of a forced edge. Precondition: they are
-  /// bounded.
+  /// Returns whether a tet has an angle below the bound that would hold without forced edges. Precondition:
+  /// its angles are bounded.
   bool is_forced(const TetQuality& quality, Index tet) const;
 
  private:
@@ -94,8 +95,8 @@ class ThinCells {
   std::optional<NarrowPlaces> narrow_;  // none if thin tets may be anywhere
 };
 
-/// Returns for each point the feature of lowest dimension on which the mesh has it. Precondition:
-/// subject.match is filled in.
+/// Returns for each point the feature of lowest dimension that contains it, by the mesh's faces and edges.
+/// Precondition: subject.match is filled in.
 std::vector<TetMesh::VertexFeature> features_of(const Subject& subject);
 
 /// Items in groups by a key below `groups`; leaves out items whose key is none.
@@ -150,8 +151,8 @@ void check_tets(const Subject& subject, CheckReport& report, Findings& findings)
 /// inside a region.
 void check_interior_nodes(const Subject& subject, CheckReport& report, Findings& findings);
 
-/// Checks tets against each other and against the listed faces. Visits each edge once, so it also finds their
-/// median length.
+/// Checks tets against each other and against the listed faces. Visits each edge once, so it also finds the
+/// median length of the edges.
 void check_conformity(const Subject& subject, CheckReport& report, Findings& findings);
 
 void check_watertight(const Subject& subject, Findings& findings);
@@ -177,8 +178,8 @@ void check_shape_kept(const Subject& subject, CheckReport& report, Findings& fin
 void check_thickness_kept(const Subject& subject, CheckReport& report, Findings& findings);
 
 /// Compute the allowed distances. For straight curves and planar patches: a few times their own deviation
-/// from straight or planar, because vertices are extrapolated, but at most the complex's planar tolerance.
-/// For other features: the distance tolerance. Rounding is added to all.
+/// from straight or planar, because the mesh's vertices may be extrapolated from the complex's, but at most
+/// the complex's planar tolerance. For other features: the distance tolerance. Rounding is added to all.
 std::vector<double> curve_allowances(const Subject& subject);
 std::vector<double> patch_allowances(const Subject& subject);
 

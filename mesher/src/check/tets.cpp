@@ -54,7 +54,7 @@ void check_shape(Index tet, const CornersOfTet& p, const TetQuality& quality, co
     if (!thin.has_place(tet))
       findings.add(guarantee::radius_edge, p.centre(), {tet},
                    "Tet {} at {} has circumradius / shortest edge {:.9g}, allowed is {:.9g} except in narrow "
-                   "places and at creases; leave out that bound, which lets tets be thin anywhere, or make "
+                   "places and at creases; leave that bound out, so that tets may be thin anywhere, or make "
                    "the size smaller there.",
                    tet, At{p.centre()}, quality.radius_edge, options.bounds.radius_edge);
     if (thin.are_bounded(quality, face_angle, tet)) {

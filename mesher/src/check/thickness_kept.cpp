@@ -112,8 +112,8 @@ class ThicknessKept {
   }
 
   /// Returns the length of the part of a ray between entering the region through faces of one patch and
-  /// leaving it through faces of another one; if there are several such parts, that of the part nearest to
-  /// the complex's. NaN if there is none.
+  /// leaving it through faces of another one. If there are several such places, takes those nearest to the
+  /// places in the complex. NaN if there is none.
   double between(const Thickness::Ray& ray, double distance, Index patch, Index other, Index region,
                  Thickness::Crossings& crossings) const {
     const TetMesh& mesh = subject_.mesh;
@@ -154,7 +154,7 @@ class ThicknessKept {
       findings.add(guarantee::thickness_kept, sums.where, {patch},
                    "{}; allowed are {:.0f} %. Ask for a smaller size or distance.", found, 100 * allowed);
     else
-      report.warnings.push_back(found + "; a smaller size or distance brings it nearer.");
+      report.warnings.push_back(found + "; a smaller size or distance reduces the difference.");
   }
 
   const Subject& subject_;

@@ -65,9 +65,8 @@ void check_vertices(const Subject& subject, Findings& findings) {
                                          : !patches.any(p);
     if (holds) continue;
     findings.add(guarantee::vertex_feature, mesh.points[p], {p},
-                 "Point {} at {} says that it lies on the feature {} of dimension {}, but the vertices, "
-                 "edges and faces "
-                 "there say otherwise; correct its feature.",
+                 "Point {} at {} is marked as a point of feature {} of dimension {}, but the vertices, edges "
+                 "and faces there contradict that; correct its feature.",
                  p, At{mesh.points[p]}, dimension == 3 ? "none" : std::to_string(feature),
                  static_cast<unsigned>(dimension));
   }

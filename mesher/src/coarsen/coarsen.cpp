@@ -77,8 +77,8 @@ std::vector<Item> in_order(std::vector<Item> items) {
   return ordered;
 }
 
-/// Collapses edges and improves tets, by rank, the most promising first. The result is the one that a single
-/// thread makes.
+/// A run of coarsening: collapses edges and improves tets, by rank, the most promising first. The result is
+/// the one that a single thread makes.
 class Coarsening {
  public:
   Coarsening(EditableMesh& edited, const MeshOptions& made_with, const Execution& execution)
@@ -173,7 +173,7 @@ class Coarsening {
     return found;
   }
 
-  // Finds the short edges of a tet at which a vertex is tried.
+  // Finds the edges of a tet that are short enough to try the vertices at their ends.
   void find_short_edges(Index tet, std::vector<ShortEdge>& ends) const {
     constexpr double surely_long = (1 + 1e-9) * contracted_below;
     const auto& v = complex()[tet].corners;
@@ -300,7 +300,7 @@ class Coarsening {
       if (complex()[t].alive) look_at_faces(t);
   }
 
-  // Notes the vertices that a trial examined and, without the trial, the corners of the faces there.
+  // Notes the vertices that an undone trial examined, and the corners of the faces there.
   void look_at_examined() {
     sort_uniquely(examined_);
     for (const Index v : examined_) {
@@ -536,9 +536,9 @@ class Coarsening {
 CoarsenReport coarsen(remeshing::EditableMesh& edited, const MeshOptions& made_with,
                       const Execution& execution) {
   if (!(made_with.bounds.thin_angle > 0 && made_with.bounds.thin_angle <= 30))
-    throw OptionError("the smallest angle of thin tetrahedra must be above 0 and at most 30 degrees");
+    throw OptionError("Bounds::thin_angle must be above 0 and at most 30 degrees");
   if (!(made_with.bounds.reserve >= 0 && made_with.bounds.reserve <= 0.5))
-    throw OptionError("the reserve of angles must be from 0 to 0.5");
+    throw OptionError("Bounds::reserve must be from 0 to 0.5");
   return remeshing::coarsening::Coarsening(edited, made_with, execution).run();
 }
 

@@ -5,7 +5,7 @@
 
 namespace collarmesh {
 
-/// Like `coarsen`, for a mesh that is improved next: does not write the mesh back or mark thin tets, and
+/// Coarsens a mesh that is improved next, like `coarsen`, but does not write it back or mark thin tets, and
 /// runs in the caller's arena.
 CoarsenReport coarsen(remeshing::EditableMesh& edited, const MeshOptions& made_with,
                       const Execution& execution);

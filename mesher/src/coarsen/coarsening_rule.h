@@ -47,7 +47,7 @@ class CoarseningRule final : public AngleRule {
   bool allows_edge(Index a, Index b, const Vector& edge, const Vector& before) const override {
     return squared_norm(edge) <= squared_norm(before) || !metric_.exceeds(longest_new, a, b, edge);
   }
-  // A move must gain this much, because each move makes coarsening try the collapses around it again.
+  // Returns a large share, because each move makes coarsening try the collapses around it again.
   double least_gain() const override { return 0.02; }
   unsigned step_lengths() const override { return 2; }
   bool dissolves_collars() const override { return true; }

@@ -11,8 +11,8 @@
 
 namespace collarmesh::remeshing::coarsening {
 
-/// Remembers vertices of which no collapse could be repaired, and what these trials depended on. As long as
-/// none of that changes, they would fail again in the same way.
+/// A record of vertices whose collapses could not be repaired, and of the data that these trials depended on.
+/// As long as none of this data changes, the trials would fail again in the same way.
 class FailedRepairs {
  public:
   /// Records that all collapses of a vertex failed at this time, and the vertices whose tets they examined.

@@ -84,9 +84,9 @@ void Proposer::find_neighbours(Index vertex) {
                     [](const Neighbour& n) { return std::pair(n.squared_length, n.vertex); });
 }
 
-// Returns whether the edges that a collapse makes have allowed lengths: none is longer than allowed, unless
-// it replaces an edge as long, and at least one edge around is shorter. The farthest neighbours rule out most
-// collapses.
+// Returns whether the new edges of a collapse have allowed lengths: none is shorter than the vertex's
+// shortest edge, and none is too long, unless the edge that it replaces is as long. The farthest neighbours
+// rule out most collapses.
 bool Proposer::lengths_fit(Index onto) const {
   return std::all_of(neighbours_.rbegin(), neighbours_.rend(), [&](const Neighbour& n) {
     if (n.vertex == onto) return true;

@@ -21,7 +21,7 @@ struct VertexProposal {
   std::vector<Index> read;
 };
 
-/// Finds possible changes without making them. Each thread has its own.
+/// A finder of possible changes, which it does not make. Each thread has its own.
 class Proposer {
  public:
   using Mode = CoarseningRule::Mode;
@@ -67,7 +67,7 @@ class Proposer {
   std::vector<Index> star_;            // tets at the current vertex
   std::vector<Neighbour> neighbours_;  // neighbours of that vertex, the nearest in the metric first
   std::vector<Index> targets_;         // neighbours onto which lengths allow a collapse
-  double squared_shortest_ = 0;        // squared length of its shortest edge
+  double squared_shortest_ = 0;        // squared length of the shortest edge of that vertex
   std::vector<std::uint32_t> stamps_;  // by vertex
   std::uint32_t stamp_ = 0;
   std::vector<std::uint32_t> stayed_;  // by vertex: the time when no move of it was an improvement; 0: not

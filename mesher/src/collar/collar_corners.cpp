@@ -91,7 +91,7 @@ void CollarCorners::add_around(const CollarBall& ball) {
     const bool has_border =
         std::ranges::any_of(vertex.curves, [&](Index c) { return plc_.curve_on_patch(c, patch); });
     if (plc_.patches[patch].planar || has_border) continue;
-    // The points on the sphere in the directions that are farthest from each other.
+    // Find points of the patch on the sphere, then choose the three that are farthest from each other.
     std::vector<Point> ring;
     for (const Sheet& sheet : sheets) {
       if (sheet.patch != patch) continue;

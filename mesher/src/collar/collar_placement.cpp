@@ -142,7 +142,7 @@ CollarPlacement::Profile CollarPlacement::make_profile(Index curve, double from,
     if (s >= to) break;
     require_room(flat.back(), paths_.point(curve, s));
     s = std::min(to, s + sample_step * flat.back());
-    // There are two samples per radius, and balls are 1.2 radii apart.
+    // There are two samples per radius, and balls are 1.2 radii apart: fewer than three samples per ball.
     if (stopped(profile.parameters.size() / 3)) return {};
   }
   limit_slope(profile.parameters, radius_slope, closed, profile.radii);
@@ -201,7 +201,8 @@ Index CollarPlacement::add_ball(Index curve, const PlaceOnCurve& centre, double 
   return static_cast<Index>(system_.balls_.size() - 1);
 }
 
-// On a curve between two vertices, the first and the last centre lie on the spheres of the vertices' balls.
+// Places the balls of a curve. If the curve is not closed, the first and the last centre lie on the spheres
+// of the balls at its ends.
 void CollarPlacement::add_on_curve(Index curve, std::span<const PlaceOnCurve> vertices) {
   const bool closed = plc_.curves[curve].closed;
   const double length = paths_.length(curve);

@@ -9,8 +9,8 @@
 
 namespace collarmesh {
 
-/// Places the balls of a collar system and the corner points on their circles. Throws PlcError where a ball
-/// would be too small (CollarOptions::too_small).
+/// The placement of the balls of a collar system and of the corner points on their circles. Throws PlcError
+/// where a ball would be too small (CollarOptions::too_small).
 class CollarPlacement {
  public:
   /// Keeps references to all arguments. `system` has the creases; `gap` gives the gap sizes there, which

@@ -58,8 +58,8 @@ struct CollarOptions {
   std::function<Point(const Point&)> outside = {};
 };
 
-/// The union of balls that covers every crease, with the features of its surface (paper, section 3.2). Balls
-/// of different creases are disjoint; consecutive ones overlap deeply.
+/// The union of balls that covers every crease, with the corner points on its surface (paper, section 3.2).
+/// Balls of different creases are disjoint; consecutive ones overlap deeply.
 class CollarSystem {
  public:
   CollarSystem() = default;

@@ -19,7 +19,7 @@ constexpr double deviation_per_radius = 0.14;
 constexpr double radius_per_length = 1.0 / 8;
 // Another piece of a feature counts like a feature that does not contain the centre: radii are at most a
 // third of the distance to it. A point of a curve is on another piece if its distance along the curve exceeds
-// that through space by this many radii.
+// `detour` times its distance through space.
 constexpr double pieces_per_radius = 3;
 constexpr double detour = 1.5;
 // Positions along a chord at which it is compared with the feature.
@@ -40,8 +40,8 @@ bool Flatness::matters_on(Index curve) const {
          std::ranges::any_of(c.patches, [&](Index patch) { return !plc_.patches[patch].planar; });
 }
 
-// Returns the largest radius with an allowed deviation. On a smooth feature the deviation grows with the
-// square of the radius, at a bend linearly.
+// Shrinks a radius until the deviation is allowed. On a smooth feature the deviation grows with the square of
+// the radius, at a bend linearly.
 template <class Deviation>
 double Flatness::shrunk(double radius, double tolerance, const Deviation& deviation) {
   for (int step = 0; step < most_steps; ++step) {
@@ -221,7 +221,7 @@ double Flatness::radius_at_vertex(Index vertex, double radius) const {
       radius = shrunk(radius, tolerance, [&](double r) {
         return at_start ? off_chord(c, 0, r) : off_chord(c, length, length - r);
       });
-      // A closed loop may return to the neighbourhood of the centre.
+      // A loop's other end is at the centre, too, so the distance to it would be 0.
       if (curve.ends[0] != curve.ends[1])
         radius = other_arcs(c, at_start ? 0 : length, pieces_per_radius * radius) / pieces_per_radius;
     }

@@ -48,7 +48,7 @@ double area_of_boxes(std::span<const Point> points, Triangles triangles, const B
 }  // namespace
 
 BoxFrame::BoxFrame(std::span<const Point> points, Triangles triangles) {
-  constexpr double worthwhile = 1. / 8;  // share of the area that boxes must save
+  constexpr double worthwhile = 1. / 8;  // largest ratio of the areas of turned and unturned boxes
   constexpr double roundings = 32;
   BoxFrame turned;
   Box bounds;

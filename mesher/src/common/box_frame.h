@@ -19,7 +19,8 @@ class BoxFrame {
 
   bool turned() const { return turned_; }
 
-  /// Extends the box by all points within `reach` of a point along each axis, with room for rounding errors.
+  /// Extends the box by all points within `reach` of a point along each axis, with a margin for rounding
+  /// errors.
   void add(Box& box, const Point& p, double reach = 0) const {
     const Point q =
         turned_ ? Point{dot(axes_[0], p - origin_), dot(axes_[1], p - origin_), dot(axes_[2], p - origin_)}

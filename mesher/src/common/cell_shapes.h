@@ -15,9 +15,10 @@ inline constexpr std::array<CellKind, cell_kinds> all_cell_kinds{CellKind::tet, 
                                                                  CellKind::quadrangle, CellKind::edge};
 inline constexpr std::size_t most_nodes_of_cell = 15;
 
-/// Places of the corners of a cell's edge.
+/// Positions of the ends of an edge among the corners of its cell.
 using EdgePlaces = std::array<std::uint8_t, 2>;
-/// Places of the corners of a side of a cell, counterclockwise as seen from outside; three for a triangle.
+/// Positions of the corners of a side among the corners of its cell, counterclockwise as seen from outside;
+/// three for a triangle.
 struct SidePlaces {
   std::size_t corners;
   std::array<std::uint8_t, 4> places;
@@ -51,7 +52,7 @@ struct CellShape {
   constexpr std::size_t nodes(int order) const { return order == 2 ? corners + edges.size() : corners; }
 };
 
-/// Returns the shape of a kind of cells, with the places of TetMesh and LayerCells.
+/// Returns the shape of a kind of cells, with corners and edges in the order of TetMesh and LayerCells.
 constexpr CellShape shape_of(CellKind kind) {
   using namespace cell_shapes;
   switch (kind) {

@@ -66,9 +66,9 @@ class Hierarchy {
       if (is_leaf(node)) nodes_[node].first = item(nodes_[node].first);
   }
 
-  /// Visits the items of leaves below a node. `narrow(bounds, state)` returns the state for the nodes below
-  /// one; if it is 0 or false, these are skipped. `visit(item, state)` may return true to end the search.
-  /// Returns whether a visit ended it.
+  /// Visits the items of leaves below a node. `narrow(bounds, state)` returns the state for the nodes below a
+  /// node, or 0 or false to skip them. `visit(item, state)` may return true to end the search. Returns
+  /// whether a visit ended it.
   template <ChildOrder order = ChildOrder::left_first, class State, class Narrow, class Visit>
   bool descend(Index start, State state, const Narrow& narrow, const Visit& visit) const {
     struct Waiting {

@@ -44,7 +44,8 @@ Derivatives<n> slopes_of(const std::array<Dual, n>& functions) {
   return derivatives;
 }
 
-/// The 15-node prism of serendipity type: L1, L2, L3 across, z from -1 to 1 upwards.
+/// Differentiates the shape functions of the 15-node serendipity prism: barycentric coordinates across, z
+/// from -1 to 1 upwards.
 Derivatives<15> prism_slopes(double x, double y, double z) {
   const Dual second{x, {1, 0, 0}}, third{y, {0, 1, 0}}, up{z, {0, 0, 1}};
   const std::array<Dual, 3> l{1 - (second + third), second, third};
@@ -62,7 +63,8 @@ Derivatives<15> prism_slopes(double x, double y, double z) {
   return slopes_of(n);
 }
 
-/// The 13-node pyramid with rational functions (Bedrosian 1992): base from -1 to 1, apex at z = 1.
+/// Differentiates the rational shape functions of the 13-node pyramid (Bedrosian 1992): base from -1 to 1,
+/// apex at z = 1.
 Derivatives<13> pyramid_slopes(double x, double y, double z) {
   const Dual u{x, {1, 0, 0}}, v{y, {0, 1, 0}}, w{z, {0, 0, 1}};
   const Dual room = 1 - w, quotient = (u * v * w) / room;

@@ -12,8 +12,8 @@ namespace collarmesh {
 using PrismCorners = std::array<Point, 6>;
 using PyramidCorners = std::array<Point, 5>;
 
-/// The Jacobian along the edge of a linear prism that rises from a corner of its triangle: a quadratic
-/// polynomial in Bernstein form. Between these edges the Jacobian is linear.
+/// Returns the Jacobian along the edge of a linear prism that rises from a corner of its triangle: a
+/// quadratic polynomial in Bernstein form. Between these edges the Jacobian is linear.
 inline std::array<double, 3> jacobian_along_edge(const PrismCorners& p, unsigned corner) {
   const unsigned a = corner, b = (corner + 1) % 3, c = (corner + 2) % 3;
   const Vector u = p[b] - p[a], v = p[c] - p[a], u_above = p[b + 3] - p[a + 3], v_above = p[c + 3] - p[a + 3],
@@ -22,8 +22,8 @@ inline std::array<double, 3> jacobian_along_edge(const PrismCorners& p, unsigned
           dot(cross(u_above, v_above), rise)};
 }
 
-/// Returns a lower bound of that polynomial on the whole edge, which is positive exactly if the polynomial
-/// is.
+/// Returns a lower bound of the polynomial of `jacobian_along_edge` on the whole edge; it is positive exactly
+/// if the polynomial is.
 inline double least_along_edge(const std::array<double, 3>& b) {
   const double ends = std::min(b[0], b[2]);
   if (b[1] >= ends || !(ends > 0)) return std::min(ends, b[1]);
@@ -48,8 +48,8 @@ inline double volume_of(const PrismCorners& p) {
   return sum / 18;
 }
 
-/// Returns the Jacobians of a linear pyramid at the corners of its base, one of which is the least of all its
-/// points; three times its volume if they are equal.
+/// Returns the Jacobians of a linear pyramid at the corners of its base. The smallest of them is the least
+/// Jacobian of the pyramid. If they are equal, each is three times the volume.
 inline std::array<double, 4> jacobians_at_base(const PyramidCorners& p) {
   std::array<double, 4> found{};
   for (unsigned i = 0; i < 4; ++i) found[i] = six_volume(p[i], p[(i + 1) % 4], p[(i + 3) % 4], p[4]);

@@ -44,7 +44,7 @@ class MidNodes {
     mesh_.points.push_back(middle);
     if (!mesh_.features.empty()) mesh_.features.push_back({});
   }
-  /// Moves the node of a listed quadrangle onto its patch.
+  /// Records that the node of a listed quadrangle's diagonal lies on its patch.
   void place_diagonal(const Quadrangle& q, Index patch) {
     if (!mesh_.features.empty()) mesh_.features[find(q[0], q[2])] = {2, patch};
   }

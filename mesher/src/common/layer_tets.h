@@ -8,13 +8,13 @@
 namespace collarmesh {
 
 /// Returns the mesh with its prisms and pyramids cut into tets, which follow its own tets, and its
-/// quadrangles into triangles, along the diagonals through their smallest points, so that neighbours fit. In
-/// second order each diagonal gets a node, where the quadrangle's nodes place its middle. `layers` keeps only
-/// `tet_layer`, which is above 0 for all tets of prisms and pyramids. Precondition: the arrays of a kind of
-/// cell have the same length. Cost: O(n log n) in the quadrangles' sides.
+/// quadrangles into triangles, along the diagonals from their corners of smallest index, so that neighbours
+/// conform. In second order each diagonal gets a node, where the quadrangle's nodes place its middle.
+/// `layers` keeps only `tet_layer`, which is above 0 for all tets of prisms and pyramids. Precondition: the
+/// arrays of a kind of cell have the same length. Cost: O(n log n) in the quadrangles' sides.
 TetMesh tets_of_layers(const TetMesh& mesh);
 
-/// Throws OptionError if the mesh has prisms or pyramids. `what`: begins the message.
+/// Throws OptionError if the mesh has prisms or pyramids. `what` begins the message.
 void require_tets_alone(const TetMesh& mesh, std::string_view what);
 
 /// Returns for each point in layers the wall's point below it, found along the rising edges of cells; none

@@ -20,7 +20,7 @@ namespace collarmesh {
 /// certificate and the stages that keep the tolerance use the same samples.
 class PatchDistance {
  public:
-  /// A sample point on one side, with the nearest place on the other side.
+  /// A sample point on the faces or on the patch, compared with the nearest place on the other of the two.
   struct Sample {
     const Point& place;
     Index face;        ///< face that the sample lies on, or the nearest one

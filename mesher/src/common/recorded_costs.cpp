@@ -62,7 +62,7 @@ class Record {
   Record(const Record&) = delete;
   Record& operator=(const Record&) = delete;
 
-  // A process that starts another one for the work records nothing.
+  // Writes nothing if no part was recorded: a process that starts another one for the work records none.
   ~Record() {
     if (parts_ > 0) write();
   }

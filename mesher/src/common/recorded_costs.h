@@ -7,11 +7,11 @@
 
 namespace collarmesh {
 
-/// Records the costs of everything between and inside parallel parts, for developers: a machine with few
-/// cores then shows the gain by more threads. With COLLARMESH_RECORD_COSTS=FILE in the environment the
-/// program runs on one thread, but divides the work as for `--threads` threads (COLLARMESH_CORES allows more
-/// than the machine has). At the end of the program FILE gets a table (bench/schedule.py): CPU seconds by
-/// stage and place.
+/// Records the costs of everything between and inside parallel parts, so that developers can estimate the
+/// gain from more threads on a machine with few cores. With COLLARMESH_RECORD_COSTS=FILE in the environment
+/// the program runs on one thread, but divides the work as for `--threads` threads (COLLARMESH_CORES allows
+/// more than the machine has). At the end of the program FILE gets a table of CPU seconds by stage and place,
+/// which bench/schedule.py reads.
 namespace recorded_costs {
 
 /// True if costs are recorded.

@@ -13,7 +13,7 @@ namespace collarmesh {
 /// Thrown if a stage stops early; `PipelineResult::result` says why.
 struct Ended {};
 
-/// The time limit, the cancelling and the progress that all stages of a run share.
+/// The time limit, the cancellation and the progress that all stages of a run share.
 class RunControl {
  public:
   /// Keeps references to the execution and the result. The time starts now.
@@ -39,9 +39,9 @@ class RunControl {
   [[noreturn]] void stop();
   bool out_of_time() const;
 
-  /// Runs an attempt at a better result in at most this share of the time that is left until the time limit,
-  /// so that the result at hand is not lost. If that time is up, stages end as at the time limit. Does
-  /// nothing if no time is left.
+  /// Runs an attempt at a better result in at most this share of the remaining time, so that the time limit
+  /// cannot lose the result at hand. When the share is used up, stages end as at the time limit. Does nothing
+  /// if no time remains.
   void attempt(double share_of_time, const std::function<void()>& work);
 
  private:

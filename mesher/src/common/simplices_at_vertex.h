@@ -98,8 +98,8 @@ class FittingTetsAtVertex : public EdgesAtVertex {
   }
 
   /// Returns whether every triangle whose smallest corner is the vertex is a side of two tets of one region,
-  /// one on either side, and no listed face. Returns false without a check if the vertex has more than 32
-  /// edges.
+  /// one on either side, and is not a listed face. Returns false without a check if the vertex has more than
+  /// 32 edges.
   bool fit() const { return fit_; }
 
  private:
@@ -140,16 +140,16 @@ struct TriangleUse {
   std::uint64_t larger_corners;  ///< upper 32 bits: the middle corner; lower ones: the largest corner
   Index cell;                    ///< the tet, or the face
   std::uint8_t corner;           ///< the tet's corner opposite the side, or listed_face
-  bool odd;  ///< whether the order from smallest to largest is an odd permutation of counterclockwise, as
-             ///< seen from outside the tet or from where the face's normal points
+  bool odd;  ///< whether the order from smallest to largest is an odd permutation of the counterclockwise
+             ///< order, as seen from outside the tet or from where the face's normal points
 
   bool listed() const { return corner == listed_face; }
   Index middle() const { return static_cast<Index>(larger_corners >> 32U); }
   Index largest() const { return static_cast<Index>(larger_corners); }
 };
 
-/// Returns the smallest corner, and the use of the triangle by `cell`. Corners: counterclockwise as seen from
-/// outside the tet or from where the face's normal points.
+/// Returns the smallest corner, and the use of the triangle by `cell`. Precondition: the corners `c` are
+/// counterclockwise as seen from outside the tet or from where the face's normal points.
 inline std::pair<Index, TriangleUse> triangle_use(std::array<Index, 3> c, Index cell, std::uint8_t corner) {
   bool odd = false;
   const auto sort_pair = [&](unsigned i, unsigned j) {

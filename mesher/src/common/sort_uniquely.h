@@ -5,7 +5,7 @@
 
 namespace collarmesh {
 
-/// Sorts a list by a key and leaves only one item of each key.
+/// Sorts a list by a key and keeps only one item of each key.
 template <class Items, class Key = std::identity>
 void sort_uniquely(Items& items, const Key& key = {}) {
   std::ranges::sort(items, {}, key);

@@ -28,7 +28,7 @@ std::vector<SpatialKey> spatial_order_by_all_threads(std::span<const Point> poin
 /// there are at least two items.
 std::size_t spatial_split(std::span<const SpatialKey> keys);
 
-/// The maximum depth of a hierarchy made of such splits.
+/// The maximum depth of a hierarchy made by `spatial_split`.
 inline constexpr std::size_t most_spatial_levels = 63 + 32;
 
 }  // namespace collarmesh

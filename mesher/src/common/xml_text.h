@@ -5,7 +5,7 @@
 
 namespace collarmesh {
 
-/// Returns a text as it stands between tags, or between the quotes of an attribute, of XML and HTML.
+/// Escapes a text for use between tags, or between the quotes of an attribute, of XML and HTML.
 inline std::string xml_text(std::string_view text) {
   std::string result;
   for (const char c : text) switch (c) {

@@ -20,7 +20,7 @@ constexpr double most_errors = 512;  // rounding errors by which a point may be 
 // Largest and smallest distance from a flat tetrahedron at which a point beside it is tried, relative to the
 // longest side of the crossed face.
 constexpr double farthest_room = 0.1, nearest_room = 1e-6;
-// After this many triangulated rings for one edge or facet, no other edges are removed first any more.
+// After this many triangulated rings for one edge or facet, an edge is removed without removing others first.
 constexpr std::size_t most_rings = 1000;
 // Limit of added points: `most_times` times the number of points of the complex, plus `some`.
 constexpr std::size_t most_times = 20, some = 1000;

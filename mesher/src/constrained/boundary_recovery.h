@@ -22,14 +22,14 @@ struct Facet {
   bool alive = true;  ///< false: divided into other facets, which replace it
 };
 
-/// How features are recovered. Rounded points may make the recovery fail in one way but not in another.
+/// A way to recover features. Rounded points may make the recovery fail in one way but not in another.
 struct RecoveryWay {
   bool turns_first = false;  ///< flip missing edges between facets in one plane before points divide them
   bool reversed = false;     ///< recover the edges in the reverse order
 };
 
-/// Changes a mesh until it has the edges and triangles of a complex: by local changes of the tetrahedra that
-/// obstruct them and, if no change helps, by inserting a point at a crossing.
+/// A recovery, which changes a mesh until it has the edges and triangles of a complex: by local changes of
+/// the tetrahedra that obstruct them and, if no change helps, by inserting a point at a crossing.
 /// Edges come first. Features do not cross, so a triangle whose edges exist can only be obstructed by edges
 /// that pass through its interior. Each change or point leaves fewer obstacles, so the process ends.
 class BoundaryRecovery {

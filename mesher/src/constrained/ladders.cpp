@@ -136,7 +136,8 @@ class Ladders {
     return *std::ranges::find_if(p, [&](Index v) { return v != a && v != b; });
   }
 
-  /// Finds the quadrilateral of an edge whose replacement by the other diagonal moves the surface by little.
+  /// Finds the quadrilateral of an edge. Returns false unless replacing the edge by the other diagonal is
+  /// possible and moves the surface by little.
   bool find_flat_quad(std::uint64_t key, Quad& quad) const {
     const auto found = edges_.find(key);
     if (found == edges_.end()) return false;
@@ -183,7 +184,7 @@ class Ladders {
     }
   }
 
-  /// Finds the long sides of strips. Those of strips beside each other get equally many pieces.
+  /// Finds the long sides of strips. The long sides of strips beside each other get equally many pieces.
   void find_rails() {
     std::unordered_map<std::uint64_t, Index> number;
     std::vector<std::uint64_t> keys;

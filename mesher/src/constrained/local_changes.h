@@ -8,7 +8,7 @@
 
 namespace collarmesh::constrained {
 
-/// Counts the obstacles to a missing edge or triangle.
+/// A counter of the obstacles to a missing edge or triangle.
 class Obstacles {
  public:
   virtual ~Obstacles() = default;
@@ -18,8 +18,8 @@ class Obstacles {
   virtual int edge(Index a, Index b) const = 0;
 };
 
-/// Makes local changes: reconnects a few tetrahedra, or inserts a point. Required edges and faces that carry
-/// a facet stay.
+/// The local changes of a mesh: reconnections of a few tetrahedra, and insertions of points. Required edges
+/// and faces that carry a facet stay.
 class LocalChanges {
  public:
   /// Keeps references to both arguments. Required edges are given by their keys.

@@ -11,7 +11,7 @@ namespace collarmesh::constrained {
 namespace {
 
 constexpr double full_turn = 2 * std::numbers::pi;
-// Rods are thinner than this share of the size, and at least this many radii long.
+// The largest radius of a rod, as a share of the size, and its least length, in radii.
 constexpr double thinner_than_size = 0.5, least_length = 8;
 // Ratio of the largest to the smallest distance of the patch from the axis in one section.
 constexpr double roundest = 1.25;
@@ -23,14 +23,13 @@ constexpr double share_around = 0.75;
 constexpr std::size_t fewest_in_ring = 8, most_in_ring = 24;
 // The smallest angle of tets, a little above the bound on thin tets, degrees.
 constexpr double least_angle = 8.2;
-// Share of the tolerance that the patch may be away from chords around the rod where it is looked at.
+// Shares of the tolerance that the measured distance of the patch from chords around the rod may reach.
 constexpr double share_measured = 0.95, share_measured_of_bent = 0.6;
 constexpr std::size_t rays_of_section = 16, most_sections = 200'000, fewest_rings_of_loop = 8;
 constexpr double step_in_radii = 1, rays_per_radius = 8;
 
-/// Returns the largest distance of rings with this many vertices, in radii. The angle at an edge from the
-/// axis to a ring, between the planes through the axis and through the next vertex of the ring, is the
-/// smallest one.
+/// Returns the largest distance of rings with this many vertices, in radii. The smallest angle is that at an
+/// edge from the axis to a ring, between the planes through the axis and through the next vertex of the ring.
 double largest_spacing(std::size_t in_ring) {
   const double chord = 2 * std::sin(std::numbers::pi / static_cast<double>(in_ring)),
                slope = std::tan(least_angle * std::numbers::pi / 180) / chord, rest = slope * slope - 0.25;
@@ -229,7 +228,8 @@ bool Rod::finish_at_end() {
   return set_directions();
 }
 
-/// Begins anywhere: at the middle of the shortest chord through the middle of a chord along a normal.
+/// Begins at the middle of a chord along any normal. This chord and the shortest one through its middle span
+/// the section.
 bool Rod::begin_loop(RodSection& first) const {
   constexpr unsigned directions = 48;
   const auto [a, b, c] = hierarchy_->corners(0);
@@ -479,7 +479,8 @@ RodSection Rod::frame_at(double share) const {
   return section;
 }
 
-/// Returns the point of the curve around an end in a direction; `triangle` is none if there is none.
+/// Returns the point of the curve around an end in a direction; its `triangle` is none if there is no
+/// such point.
 Rod::Hit Rod::on_curve(const RodEnd& end, const RodSection& section, const Vector& way) const {
   const std::vector<Index> loop = points_of(plc_.curves[end.curve]);
   const Vector beside = cross(section.along, way);
@@ -487,7 +488,7 @@ Rod::Hit Rod::on_curve(const RodEnd& end, const RodSection& section, const Vecto
     const Point &a = plc_.points[loop[i]], &b = plc_.points[loop[(i + 1) % loop.size()]];
     const double of_a = dot(a - end.centre, beside), of_b = dot(b - end.centre, beside);
     constexpr double near = 1e-7;
-    // The vertex at the end itself, if there is one.
+    // If a point of the curve lies in the direction, that point itself is the result.
     if (std::fabs(of_a) < near * reach_ && dot(a - end.centre, way) > 0) return {a, 0, 0};
     if (of_a * of_b >= 0) continue;
     const Point at = a + of_a / (of_a - of_b) * (b - a);

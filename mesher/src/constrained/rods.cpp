@@ -13,7 +13,7 @@ namespace collarmesh {
 namespace constrained {
 namespace {
 
-/// Numbers the vertices of a rod in a mesh, and adds its elements.
+/// The filling of a rod: numbers its vertices in a mesh, and adds its elements.
 class Filling {
  public:
   Filling(const Rod& rod, TetMesh& mesh)
@@ -63,7 +63,7 @@ class Filling {
     mesh_.face_tag.push_back(rod_.plc().patches[patch].tag);
   }
 
-  /// Adds the tets between the faces from one ring to the next and the vertex on the axis between these.
+  /// Adds the tets between the faces from one ring to the next and the vertex on the axis between the rings.
   void add_between(std::size_t j) {
     for (std::size_t k = 0; k < ring_size(); ++k) {
       const Index a = at(j, k), b = at(j, k + 1), c = at(j + 1, k), d = at(j + 1, k + 1);

@@ -29,8 +29,7 @@ struct ConflictZone {
   std::vector<Index> vertices;  ///< vertices of the zone's cells: the new vertex's neighbours
   std::vector<Index> created;   ///< after insert: the new cell over border[i]; the new vertex is its corner
                                 ///< opposite that face
-  std::vector<FaceId>
-      outer;  ///< after insert: the face beyond border[i], seen from outside; no_face on the hull
+  std::vector<FaceId> outer;  ///< after insert: border[i] as a face of the cell outside; no_face on the hull
 };
 
 /// The largest numbers of vertices and cells of any replaced zone.
@@ -87,7 +86,7 @@ class Triangulation {
   Index incident_cell(Index vertex) const { return vertices_[vertex].cell; }
 
   const std::array<Index, 4>& corners(Index cell) const { return cells_[cell].corners; }
-  /// Returns the same face as seen from the other cell; no_face on the hull.
+  /// Returns the id of the same face in the cell on its other side; no_face on the hull.
   FaceId opposite(FaceId face) const { return cells_[cell_of(face)].neighbours[corner_of(face)]; }
   std::array<Index, 3> face_vertices(FaceId face) const {
     const auto& v = corners(cell_of(face));
@@ -144,7 +143,8 @@ class Triangulation {
   /// Finds the vertices joined to this one by an edge.
   void adjacent_vertices(Index vertex, std::vector<Index>& adjacent);
 
-  /// Returns a fresh stamp for marking vertices, and the array of marks.
+  /// Returns a fresh stamp for marking vertices. `stamp_vertex` returns false if a vertex already has the
+  /// stamp.
   std::uint32_t new_vertex_stamp() { return ++workspace_.vertex_stamp; }
   bool stamp_vertex(Index vertex, std::uint32_t stamp) {
     if (vertices_[vertex].stamp == stamp) return false;
@@ -176,7 +176,7 @@ class Triangulation {
     std::uint32_t generation;
   };
 
-  /// The marks of one thread that searches and inserts; their values only increase.
+  /// The marks, free cells and edge table of one thread that searches and inserts. Marks only increase.
   struct Workspace {
     std::uint32_t search = 0;
     std::uint32_t vertex_stamp = 0;
@@ -216,7 +216,7 @@ class Triangulation {
 class Triangulation::Block {
  public:
   /// Finds all cells in conflict with p, as Triangulation::find_conflict_zone does. Returns false if the zone
-  /// has a vertex of another block, or if there is no more room.
+  /// has a vertex of another block, or if the block may have no more vertices or cells.
   bool find_conflict_zone(const Point& p, Index start, ConflictZone& zone);
   /// Inserts the zone's point. Precondition: the zone lies in this block. The vertex gets another number when
   /// blocks are joined.

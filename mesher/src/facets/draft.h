@@ -49,7 +49,7 @@ struct Draft {
   std::vector<Claim> claims;
 
   std::vector<std::string> soup_names;
-  std::vector<bool> soup_is_complex;      ///< PolygonSoup::Kind::complex, by soup
+  std::vector<bool> soup_is_complex;      ///< `is_complex`, by soup
   std::vector<bool> soup_gives_features;  ///< PolygonSoup::given_features, by soup
 
   Box bounds;

@@ -7,7 +7,7 @@ namespace collarmesh::facets {
 
 namespace {
 
-// Sorts pairs; uses insertion sort if there are few of them, as at most points.
+// Sorts pairs. Uses insertion sort for few pairs, because most points have few.
 void sort_few(std::span<std::pair<Index, Index>> pairs) {
   constexpr std::size_t few = 16;
   if (pairs.size() > few) {

@@ -150,8 +150,8 @@ class FacetTriangulator {
     if (bent_->where.size() < most_places) bent_->where.push_back(where);
   }
 
-  // Makes a fan of triangles from the first corner of each loop, whatever its shape, so that it has the edges
-  // of the facets around it.
+  // Makes a fan of triangles from the first corner of each loop, whatever its shape, so that the fan keeps
+  // the edges that it shares with other facets.
   void fan(const Facet& facet) {
     for (const auto& loop : facet.loops)
       for (std::size_t i = 1; i + 1 < loop.size(); ++i) {
@@ -273,8 +273,8 @@ class FacetHoles {
   std::size_t next_ = 0;
 };
 
-// Adds a polygon, in indices of the draft and without repeated corners, to the facet: as a loop, a segment or
-// a point.
+// Adds a polygon to the facet as a loop, a segment or a point, in indices of the draft and without repeated
+// corners.
 void add_polygon(std::span<const Index> polygon, const std::vector<Index>& merged, Facet& facet) {
   std::vector<Index> loop;
   for (const Index corner : polygon)

@@ -17,13 +17,13 @@ void triangulate_facets(std::span<const PolygonSoup> soups, const PointMap& map,
 
 /// Counts of facets that `triangulate_any_facets` had to change.
 struct BentFacets {
-  Index split = 0;           ///< not planar, or with crossing edges: cut into triangles between its corners
-  Index dropped = 0;         ///< without area: left out
+  Index split = 0;           ///< facets that are not planar or have crossing edges, cut into triangles
+  Index dropped = 0;         ///< facets without area, left out
   std::vector<Point> where;  ///< places of some of them
 };
 
 /// Cuts facets into triangles without reporting faults. Cuts a polygon that is not planar in its best-fitting
-/// plane or, if its edges cross there, from one of its corners. Leaves out a polygon without area.
+/// plane or, if its edges cross there, into a fan from one of its corners. Leaves out a polygon without area.
 BentFacets triangulate_any_facets(std::span<const PolygonSoup> soups, const PointMap& map, Draft& draft);
 
 }  // namespace collarmesh::facets

@@ -13,8 +13,8 @@ namespace {
 constexpr double needle_height = 10;
 // A triangle lower than this many tolerances may belong to a plane that does not match its own normal.
 constexpr double foldable_height = 2;
-// Tolerance of a triangle's plane, relative to its height, if that is less than the planar tolerance. So even
-// a body smaller than the tolerance has sides.
+// Tolerance of a triangle's plane, relative to its height, if that is less than the planar tolerance. So the
+// faces of a body smaller than the tolerance stay distinct.
 constexpr double share_of_height = 0.1;
 
 double longest_side(const Draft& draft, Index t) {

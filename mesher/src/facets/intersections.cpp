@@ -114,8 +114,8 @@ class IntersectionFinder {
     return pair;
   }
 
-  // Returns whether they meet outside their common corners. The first simplex has at least as many corners as
-  // the second, which has at most two.
+  // Returns whether the simplices of a pair meet outside their common corners. The first simplex has at least
+  // as many corners as the second, which has at most two.
   bool illegal(const Pair& pair) const {
     const auto& f = pair.first.points;
     const auto& s = pair.second.points;

@@ -236,8 +236,7 @@ class NearTouchingFinder {
   }
 
   const Plc& plc_;
-  double limit_, margin_ = 0;  // elements whose boxes are farther apart than the margin are farther apart
-                               // than the limit
+  double limit_, margin_ = 0;  // `margin_`: the limit plus a bound on rounding errors
   std::vector<Element> elements_;
   std::map<Pair, Nearest> found_;
 };

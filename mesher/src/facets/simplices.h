@@ -17,8 +17,8 @@ struct Simplex {
   std::span<const Index> corners() const { return {points.data(), size}; }
 };
 
-/// The simplices of a draft and their boxes: its triangles, numbered as there, then its segments that are not
-/// sides of triangles, then its loose points.
+/// The simplices of a draft and their boxes: its triangles, with the same numbers, then its segments that are
+/// not sides of triangles, then its loose points.
 class Simplices {
  public:
   Simplices(const Draft& draft, const EdgeTable& edges);

@@ -124,8 +124,8 @@ bool Detours::help(Index tet, Effort effort) {
   return best.better && attempt(step, [](const Result&) { return true; }).taken;
 }
 
-// Returns whether a result is worth it. More thin tets are worth it only if all other tets are good
-// afterwards.
+// Returns whether to accept a result. Except as a last resort, more thin tets are accepted only if all other
+// tets are good afterwards.
 bool Detours::is_worth_it(const Result& result, Effort effort) const {
   return effort == Effort::last_resort || !result.more_thin || result.worst >= remedies_.wanted();
 }

@@ -11,10 +11,10 @@
 
 namespace collarmesh::remeshing::improvement {
 
-/// Detours: sequences of operations for tets that no single operation improves. An operation is applied all
-/// the same, at the tet or beside it, and its tets are improved for some steps. The result is kept if it is
-/// better than the mesh before, else undone. Meshes are compared from the worst tet up, so the mesh never
-/// returns to an earlier state.
+/// Detours: sequences of operations for tets that no single operation improves. The first operation, at the
+/// tet or beside it, need not improve any tet; the tets that it makes are then improved for some steps. The
+/// result is kept if it is better than the mesh before, else undone. Meshes are compared from the worst tet
+/// up, so the mesh never returns to an earlier state.
 /// Uses one thread. Precondition: `Remedies::forget` was called, so that a repeated trial has the same
 /// result.
 class Detours {

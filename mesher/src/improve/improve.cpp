@@ -28,15 +28,15 @@ constexpr std::size_t steps_between_reports = 1024;
 // The least relative gain of a move. Tets at walls stay poor however often their vertices move a little, so
 // small gains do not pay. In detours, which work on few tets, they may help.
 constexpr double least_gain = 0.02, least_gain_in_detours = 1e-3;
-// Detours are taken if they are needed by at most `few` tets and 2% of all; with more such tets the bound is
-// out of reach.
+// Detours are taken if at most `few` tets, plus one in `tets_per_few` of all tets, need them; with more such
+// tets the bound is out of reach.
 constexpr std::size_t few = 50, tets_per_few = 50;
-// The number of operations to try in detours: `trials`, plus one for this many tets.
+// The number of operations to try in detours: `trials`, plus one for each `tets_per_trial` tets.
 constexpr std::size_t trials = 4000, tets_per_trial = 50;
 
-/// Improves the tets below a quality, worst first. Several threads propose changes for the worst few tets;
-/// the changes are made one after the other, and proposals that touch an earlier change are made again. So
-/// the result does not depend on the number of threads.
+/// A run of improvement: improves the tets below a quality, worst first. Several threads propose changes for
+/// the worst few tets; the changes are made one after the other, and proposals that touch an earlier change
+/// are made again. So the result does not depend on the number of threads.
 class Improvement {
  public:
   Improvement(EditableMesh& edited, const ImproveOptions& options, const Execution& execution,
@@ -168,8 +168,8 @@ class Improvement {
     failed_in_[tet] = changes_.now();
   }
 
-  // Returns whether nothing has helped this tet and nothing has changed since that a proposal may depend on:
-  // the tets at its corners and at the neighbours of these.
+  // Returns whether nothing has helped this tet and the tets on which a proposal may depend have not changed
+  // since: those at its corners and at the neighbours of the corners.
   bool is_known_to_fail(Index tet) const {
     if (tet >= failed_in_.size() || failed_in_[tet] == 0) return false;
     const auto is_old = [&](Index v) { return !complex().pinched(v) && changes_.at(v) < failed_in_[tet]; };
@@ -205,7 +205,7 @@ class Improvement {
 
   // Returns whether the tets that the change replaces or has read are as they were when the batch began. The
   // change depends on nothing else: places of corners, mesh faces, samples and curve edges only change with
-  // the tets there. This relies on complete stars; no change is proposed elsewhere.
+  // the tets there. This relies on complete stars; no change is proposed where stars are incomplete.
   bool is_untouched(const Change& change) const {
     const auto untouched = [&](Index t) { return complex()[t].alive && changed_in_[t] != changes_.now(); };
     return std::ranges::all_of(change.replacement.old, untouched) &&

@@ -8,7 +8,7 @@
 
 namespace collarmesh {
 
-/// Like `improve`, but works on the mesh that the caller edits: does not write it back or mark thin tets, and
+/// Improves a mesh that the caller edits, like `improve`, but does not write it back or mark thin tets, and
 /// runs in the caller's arena. `thoroughly`: take detours and fill cavities again, which is slow where many
 /// tets stay poor.
 ImproveReport improve(remeshing::EditableMesh& edited, const ImproveOptions& options,

@@ -8,7 +8,7 @@
 
 namespace collarmesh::remeshing::improvement {
 
-/// Proposes operations that may improve a poor tet, in the order in which to try them. Remembers for each
+/// A source of operations that may improve a poor tet, in the order in which to try them. Remembers for each
 /// vertex whether moving it is known to be useless. Only reads the mesh; several threads may call it at once,
 /// each with its own operations.
 class Remedies {
@@ -24,7 +24,8 @@ class Remedies {
   /// Returns the quality of a tet that needs improvement; infinite for others.
   double poor_quality(Index tet) const;
 
-  /// Returns the first operation that helps: removal of an edge, move of a corner, edge collapse, insertion.
+  /// Returns the first operation that helps: removal of an edge, move of a corner, edge collapse, insertion;
+  /// for a blunt tet also reconnection, and a collapse that makes longer edges.
   Change propose(Operations& operations, Index tet) const;
   /// Returns whether the tet counts as thin.
   bool is_thin(Index tet) const { return !thin_above_.holds(complex_.corners(tet)); }
@@ -32,16 +33,16 @@ class Remedies {
   /// far more than others, as the space around it is filled anew in many ways.
   bool is_blunt(Index tet) const { return rule_.is_blunt(quality(tet)); }
   /// Returns whether the number of vertices may change at this tet. Walls of a coarsened mesh are one element
-  /// thick, which makes their tets poor, but new vertices would undo coarsening. So the number may change
-  /// only at tets with an angle above the largest one of thin tets, and at tets that are not near a thin one.
+  /// thick, which makes their tets poor, but new vertices would undo coarsening. So if vertices are to be
+  /// kept, their number may change only at blunt tets, and at tets that are not near a thin one.
   bool may_change_vertices(Index tet) const;
 
   /// Records that no operation helps this tet until something changes at its vertices.
   void nothing_helps(Index tet) { set_stays(tet, move_vertices_); }
   /// Records that the tet is new or that one of its corners has moved.
   void changed(Index tet) { set_stays(tet, false); }
-  /// Forgets these records, for example because the rule asks for less. Until `nothing_helps` is called,
-  /// proposals depend on the mesh alone.
+  /// Forgets all records of `nothing_helps`, for example because the rule asks for less. Until
+  /// `nothing_helps` is called again, proposals depend on the mesh alone.
   void forget() { stays_.clear(); }
 
  private:

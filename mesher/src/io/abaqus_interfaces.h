@@ -10,7 +10,8 @@ namespace collarmesh::io {
 
 using NamesByTag = std::map<Tag, std::string>;
 
-/// Does the same as `write_abaqus` of the mesh alone, and adds the elements and conditions between the sides.
+/// Writes a mesh like `write_abaqus` without interfaces, and adds the elements and conditions between the
+/// sides of split patches.
 void write_abaqus(const std::string& path, const TetMesh& mesh, const Interfaces& interfaces);
 
 /// Writes the elements and conditions between the sides of split patches to an .inp file. `names` are those

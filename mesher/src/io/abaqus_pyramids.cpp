@@ -14,8 +14,8 @@ constexpr std::uint8_t middle_node = 13;
 constexpr std::array<std::array<std::uint8_t, 10>, 2> nodes_of_halves{
     {{0, 1, 2, 4, 5, 6, middle_node, 9, 10, 11}, {0, 2, 3, 4, middle_node, 7, 8, 9, 11, 12}}};
 
-// For each side of such a pyramid except its base: the half that has this side, and the side's number there,
-// 1 for S1.
+// For each side of such a pyramid: the half that has this side (for the base, the first half's part of it),
+// and the side's number there, 1 for S1.
 constexpr std::array<HalvedPyramids::Side, 5> sides_of_halves{{{0, 1}, {0, 2}, {0, 3}, {1, 3}, {1, 4}}};
 
 }  // namespace

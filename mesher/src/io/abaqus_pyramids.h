@@ -11,9 +11,9 @@
 
 /// Pyramids of second order in .inp files. Neither CalculiX nor Abaqus has them, and hexahedra of second
 /// order with equal nodes would not fit the triangles of tets. Each pyramid becomes two tets, C3D10, with a
-/// node in the middle of its base. This node depends on the base's eight nodes like the middle of a prism's
-/// side. Linear displacements and temperatures are exact then if the base is a parallelogram, and nearly so
-/// if it almost is one.
+/// node in the middle of its base. The values at this node are interpolated from the base's eight nodes, as
+/// in the middle of a prism's side. Linear displacements and temperatures are exact then if the base is a
+/// parallelogram, and nearly so if it almost is one.
 namespace collarmesh::io {
 
 /// The set of the halves of pyramids, in pairs; the name is in lower case.
@@ -57,8 +57,8 @@ class HalvedPyramids {
 std::optional<std::vector<Index>> join_pyramids(const std::vector<std::array<Index, 2>>& halves,
                                                 TetMesh& mesh);
 
-/// Returns the side of the pyramid to which a side of a half belongs; nothing for the second part of the
-/// base.
+/// Returns the side of the pyramid to which a side of a half belongs; nothing for the second half's part of
+/// the base.
 std::optional<std::size_t> side_of_pyramid(std::size_t half, unsigned number);
 
 }  // namespace collarmesh::io

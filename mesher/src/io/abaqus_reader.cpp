@@ -114,7 +114,7 @@ struct ElementType {
     return is_hexahedron() ? abaqus_pyramid_order.size() : shape_of(kind).nodes(order);
   }
 };
-/// The longest prefix counts: c3d10m is a c3d10, c3d20 is not a c3d2.
+/// The longest matching prefix determines the type: c3d10m is a c3d10, c3d20 is not a c3d2.
 constexpr ElementType element_types[] = {
     {"c3d4", CellKind::tet, 1},          {"c3d10", CellKind::tet, 2},
     {"dc3d4", CellKind::tet, 1},         {"dc3d10", CellKind::tet, 2},
@@ -163,7 +163,7 @@ struct Set {
 struct CellPlace {
   CellKind kind = CellKind::tet;
   Index index = 0;
-  std::optional<unsigned> half = {};  ///< of a pyramid of second order that the file has as two tets
+  std::optional<unsigned> half = {};  ///< which half of a pyramid that is two tets in the file
 };
 
 class AbaqusReader {
@@ -201,7 +201,7 @@ class AbaqusReader {
     else if (keyword.name == "surface")
       read_surface(keyword);
     else if (keyword.name == "include")
-      lines_.fail("*INCLUDE is not supported; put the files into one");
+      lines_.fail("*INCLUDE is not supported; copy the included files into this one");
     else if (keyword.name == "instance")
       read_instance();
     else
@@ -304,7 +304,8 @@ class AbaqusReader {
       const std::optional<CellNodes> pyramid = CellNodes::gathered(listed, abaqus_pyramid_order);
       if (pyramid) return *pyramid;
       lines_.fail(fmt::format(
-          "element {} is a hexahedron, which is not supported, unless its last four nodes are one", number));
+          "element {} is a hexahedron, which is not supported, unless its last four nodes are the same",
+          number));
     }
     CellNodes nodes;
     for (const Index node : listed) nodes.add(node);
@@ -331,7 +332,10 @@ class AbaqusReader {
     }
     const auto before = static_cast<Index>(mesh_.layers.pyramids.size());
     const auto numbers = join_pyramids(pairs, mesh_);
-    if (!numbers) lines_.fail(fmt::format("the elements of {} are not halves of pyramids", abaqus_halves));
+    if (!numbers)
+      lines_.fail(
+          fmt::format("the elements of the set {} are not pairs of halves of pyramids; export the mesh again",
+                      abaqus_halves));
     for (CellPlace& place : places_)
       if (place.kind == CellKind::tet) place.index = (*numbers)[place.index];
     for (Index k = 0; k < pairs.size(); ++k)
@@ -360,15 +364,16 @@ class AbaqusReader {
 
   void add_range(const Fields& fields, std::vector<std::int64_t>& members) {
     if (fields.size() < 2) lines_.fail("expected the first and last number of a range");
-    const std::int64_t first = integer(fields[0], "a first number"),
-                       last = integer(fields[1], "a last number"),
-                       step = fields.size() > 2 ? integer(fields[2], "a step") : 1;
+    const std::int64_t first = integer(fields[0], "the first number of a range"),
+                       last = integer(fields[1], "the last number of a range"),
+                       step = fields.size() > 2 ? integer(fields[2], "the step of a range") : 1;
     if (step < 1 || first < 0 || last < first)
-      lines_.fail(fmt::format("the range {} to {} by {} is empty", first, last, step));
+      lines_.fail(fmt::format("the range from {} to {} in steps of {} is empty", first, last, step));
     const std::int64_t steps = (last - first) / step;
     if (static_cast<std::size_t>(steps) > places_.size())
-      lines_.fail(fmt::format("the range {} to {} by {} is larger than the {} elements before it", first,
-                              last, step, places_.size()));
+      lines_.fail(fmt::format(
+          "the range from {} to {} in steps of {} has more members than there are elements before it, {}",
+          first, last, step, places_.size()));
     require_room(static_cast<std::size_t>(steps) + 1);
     for (std::int64_t k = 0; k <= steps; ++k) members.push_back(first + k * step);
   }
@@ -389,7 +394,7 @@ class AbaqusReader {
   const std::vector<std::int64_t>& members_of(const std::string& name, std::string_view written) const {
     const auto found = set_index_.find(name);
     if (found == set_index_.end())
-      lines_.fail(fmt::format("no element set before has the name {}", in_quotes(written)));
+      lines_.fail(fmt::format("no earlier element set has the name {}", in_quotes(written)));
     return sets_[found->second].members;
   }
 
@@ -399,10 +404,10 @@ class AbaqusReader {
     constexpr std::size_t most_repeats = 64;
     repeated_members_ += members;
     if (repeated_members_ > most_repeats * (places_.size() + 1))
-      lines_.fail(fmt::format(
-          "sets and surfaces have more than {} times as many members as there are elements; leave out what "
-          "repeats others",
-          most_repeats));
+      lines_.fail(
+          fmt::format("sets and surfaces have more than {} times as many members as there are elements; "
+                      "leave out repeated members",
+                      most_repeats));
   }
 
   void read_surface(const Keyword& keyword) {
@@ -447,8 +452,8 @@ class AbaqusReader {
     });
   }
 
-  /// Sets the tags of cells. If a cell is in several sets, one with a name of ours counts, or else the first
-  /// one of an *ELSET (but not the set of everything), or else that of its *ELEMENT.
+  /// Sets the tags of cells. If a cell is in several sets, a set with a name of ours decides; else the first
+  /// *ELSET (but not the set of everything); else the set of its *ELEMENT.
   void tag_cells() {
     Tagged tagged;
     for (const CellKind kind : all_cell_kinds) {
@@ -519,8 +524,8 @@ class AbaqusReader {
     }
   }
 
-  /// Returns our cell's side for S1 and so on; nothing for a face without area, and for the second part of a
-  /// base.
+  /// Returns our cell's side for S1 and so on; nothing for a face without area, and for the second half's
+  /// part of a pyramid's base.
   static std::optional<std::size_t> side_of(const CellPlace& place, unsigned number) {
     if (place.half) return side_of_pyramid(*place.half, number);
     const auto numbers = abaqus_faces(place.kind);

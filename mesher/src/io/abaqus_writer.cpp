@@ -1,12 +1,11 @@
-// Abaqus' and CalculiX's input format (.inp): nodes, C3D4 or C3D10, of boundary layers C3D6 or
-// C3D15 and pyramids as C3D8 whose last four nodes are one
-// (of second order: abaqus_pyramids.h), an element set for each region of the complex
-// (VOLUME_1) and for each of their tags (REGION_7), a surface for each tag of patches (PATCH_7: faces
-// of the tets behind it), a node set for each tag of patches and curves (PATCH_7_NODES, CURVE_7_NODES).
-// Conditions for periodic faces are in a separate file beside it. EALL and NALL contain everything. Triangles
-// without tets are S3 or S6, or in the plane z = 0 CPS3, CPE6 and so on, with an element set for each tag of
-// patches (PATCH_7); curve edges without triangles are B31 or B32, one set for each tag of curves (CURVE_7).
-// Numbers take 20 characters at most, as both programs require.
+// Abaqus' and CalculiX's input format (.inp): nodes; tets as C3D4 or C3D10; prisms as C3D6 or C3D15; pyramids
+// as C3D8 whose last four nodes are one (for second order see abaqus_pyramids.h); an element set for each
+// region of the complex (VOLUME_1) and for each tag of regions (REGION_7); a surface for each tag of patches
+// (PATCH_7: faces of the elements behind it); a node set for each tag of patches and curves (PATCH_7_NODES,
+// CURVE_7_NODES). Conditions for periodic faces are in a separate file beside it. EALL and NALL contain
+// everything. Triangles without tets are S3 or S6, or in the plane z = 0 CPS3, CPE6 and so on, with an
+// element set for each tag of patches (PATCH_7); curve edges without triangles are B31 or B32, one set for
+// each tag of curves (CURVE_7). Numbers take 20 characters at most, as both programs require.
 #include <fmt/format.h>
 
 #include <array>

@@ -1,7 +1,7 @@
 // Ansys' archive format (.cdb; Mechanical APDL, "Guide to Interfacing with ANSYS", NBLOCK, EBLOCK and
-// CMBLOCK): nodes, SOLID285 or SOLID187, for prisms and pyramids SOLID185 or SOLID186, with the
-// region as material, a component of elements for each tag of
-// regions and of nodes for each tag of patches and curves.
+// CMBLOCK): nodes; tets as SOLID285 or SOLID187, prisms and pyramids as SOLID185 or SOLID186, with the region
+// as material; a component of elements for each tag of regions; a component of nodes for each tag of patches
+// and curves.
 #include <fmt/format.h>
 
 #include <algorithm>

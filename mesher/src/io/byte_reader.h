@@ -12,8 +12,8 @@
 
 namespace collarmesh::io {
 
-/// Reads plain values of either byte order from memory and knows its position. Every failure is a ReadError
-/// "PATH: byte N: ...".
+/// A reader of plain values, in either byte order, from memory. It knows its position. Every failure is a
+/// ReadError "PATH: byte N: ...".
 class ByteReader {
  public:
   /// `first_byte` is the position of `bytes` in the file. Precondition: `path` and `bytes` outlive the
@@ -26,15 +26,16 @@ class ByteReader {
   T get(std::string_view what) {
     static_assert(std::is_arithmetic_v<T>);
     if (left() < sizeof(T))
-      fail(
-          fmt::format("expected {} ({} bytes), found the end of the file after {}", what, sizeof(T), left()));
+      fail(fmt::format("expected {} ({} bytes), found the end of the file after {} of them", what, sizeof(T),
+                       left()));
     at_ += sizeof(T);
     return value_at<T>(bytes_, at_ - sizeof(T), order_);
   }
 
   void skip(std::size_t count, std::string_view what) {
     if (left() < count)
-      fail(fmt::format("expected {} ({} bytes), found the end of the file after {}", what, count, left()));
+      fail(fmt::format("expected {} ({} bytes), found the end of the file after {} of them", what, count,
+                       left()));
     at_ += count;
   }
 

@@ -22,7 +22,7 @@ struct PerKind : std::array<Item, cell_kinds> {
   }
 };
 
-/// Returns the mid-edge nodes of a cell as a span: edges have a number, other cells an array.
+/// Returns the mid-edge nodes of a cell as a span: an edge stores one index, other cells an array.
 template <class Nodes>
 auto as_span(Nodes& nodes) {
   if constexpr (std::is_same_v<std::remove_const_t<Nodes>, Index>)
@@ -32,7 +32,7 @@ auto as_span(Nodes& nodes) {
 }
 
 /// The nodes of a cell of either order: its corners, then its mid-edge nodes in the order of TetMesh and
-/// LayerCells (of a tet ab, bc, ca, ad, bd, cd). VTK, Abaqus and Medit number those of tets in the same way.
+/// LayerCells (of a tet ab, bc, ca, ad, bd, cd). VTK, Abaqus and Medit have the same order for tets.
 class CellNodes {
  public:
   template <class Cell, class Middle>
@@ -82,7 +82,7 @@ class CellNodes {
   std::uint8_t count_ = 0;
 };
 
-// The arrays of a mesh by the kind of cells. A format's writer and reader go over the kinds.
+// The arrays of a mesh by the kind of cells, for writers and readers that loop over the kinds.
 
 /// Calls `call(cells, middle)` with the cells of a kind and their mid-edge nodes.
 template <class Mesh, class Call>
@@ -158,10 +158,10 @@ auto& layers_of(Mesh& mesh, CellKind kind) {
   }
 }
 
-/// Numbers of layers that are read must be below this.
+/// Layer numbers read from files must be below this.
 constexpr std::int64_t most_layers = 0x10000;
 
-/// Returns the number of a cell's layer, 0 for a cell of none.
+/// Returns the number of a cell's layer, 0 for a cell outside layers.
 inline std::uint16_t layer_of(const TetMesh& mesh, CellKind kind, std::size_t i) {
   if (shape_of(kind).dimension < 3) return 0;
   const std::vector<std::uint16_t>& layers = layers_of(mesh, kind);

@@ -5,7 +5,7 @@
 
 namespace collarmesh::io {
 
-/// Returns six times the volume of a tet, prism or pyramid with straight edges; roughly, where a quadrangle
+/// Returns six times the volume of a tet, prism or pyramid with straight edges; approximate if a quadrangle
 /// is not planar.
 double six_volume_of(const TetMesh& mesh, CellKind kind, std::size_t cell);
 

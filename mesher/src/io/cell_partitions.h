@@ -8,7 +8,8 @@
 /// the tets around it or, if there are none, to the lowest of all. Cost: linear.
 namespace collarmesh::io {
 
-/// Partition numbers that are read must be below this: formats have 32 bits for them, and some count from 1.
+/// Partition numbers read from files must be below this: formats have 32 bits for them, and some count from
+/// 1.
 constexpr Index most_partitions = 0x7fffffff;
 
 std::vector<Index> partitions_of_faces(const TetMesh& mesh);
@@ -19,8 +20,8 @@ std::vector<Index> partitions_of_points(const TetMesh& mesh);
 /// Returns the numbers of the partitions that have tets, ascending.
 std::vector<Index> partition_numbers(const TetMesh& mesh);
 
-/// Returns for each partition, in the order of `partition_numbers`, the tets of others that share a vertex
-/// with one of its tets, ascending.
+/// Returns for each partition, in the order of `partition_numbers`, the tets of other partitions that share a
+/// vertex with one of its tets, ascending.
 std::vector<std::vector<Index>> ghost_tets(const TetMesh& mesh);
 
 }  // namespace collarmesh::io

@@ -26,7 +26,7 @@ void turn_cell(TetMesh& mesh, CellKind kind, std::size_t i) {
 }
 
 /// Reverses all cells of a kind if most are negative, because programs differ in the order of corners. Cells
-/// whose orientation differs from the others are inverted, and stay.
+/// that are negative then are really inverted, and stay so.
 void orient(TetMesh& mesh, CellKind kind) {
   const std::size_t count = count_of(mesh, kind);
   std::size_t negative = 0, positive = 0;
@@ -68,8 +68,8 @@ class MidNodes {
   std::unordered_map<std::uint64_t, Index> nodes_;
 };
 
-/// Rejects cells of both orders. Volumes have one order; the triangles, the quadrangles or the edges have it,
-/// too, or no mid-edge nodes at all.
+/// Rejects a mix of first and second order. All cells of volumes must have one order. All triangles must have
+/// this order or no mid-edge nodes at all; so must all quadrangles, and all edges.
 void require_one_order(const std::string& path, const TetMesh& mesh) {
   for (const CellKind kind : all_cell_kinds) {
     const bool in_layers = kind == CellKind::prism || kind == CellKind::pyramid;
@@ -109,7 +109,7 @@ void number_regions(TetMesh& mesh) {
   for (const CellKind kind : surface_kinds) regions_beside(mesh, kind).clear();
 }
 
-/// Returns whether the numbers of regions are from 1 to 999 999 999, for which every format has room.
+/// Returns whether the numbers of regions are from 1 to 999 999 999, which every format can store.
 bool has_region_numbers(const TetMesh& mesh) {
   constexpr Index largest = 999'999'999;
   return !mesh.tet_region.empty() &&

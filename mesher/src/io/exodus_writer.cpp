@@ -77,8 +77,8 @@ class ExodusFile {
   }
 
  private:
-  /// Makes a block for each region and kind of cells. The first one of a region has the region's number,
-  /// others have numbers above.
+  /// Makes a block for each region and kind of cells. The first block of a region has the region's number;
+  /// its further blocks get numbers above those of all regions.
   void make_blocks() {
     std::map<std::pair<Index, CellKind>, Block> blocks;
     for_each_kind(mesh_, 3, [&](CellKind kind) {

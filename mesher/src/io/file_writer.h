@@ -11,7 +11,7 @@
 
 namespace collarmesh::io {
 
-/// Writes a file that appears under its name when it is complete, or not at all. Throws WriteError with
+/// A writer of a file that appears under its name when it is complete, or not at all. Throws WriteError with
 /// the path and the system's reason.
 class FileWriter {
  public:

@@ -1,5 +1,5 @@
-// Loads the writers on HDF5 from a module when one is used: HDF5 and MED bring some forty libraries, and
-// loading these costs as much as a small mesh.
+// Loads the readers and writers that use HDF5 from a module when one is needed: HDF5 and MED bring some forty
+// libraries, and loading these costs as much as a small mesh.
 #include <fmt/format.h>
 
 #include "collarmesh/error.h"

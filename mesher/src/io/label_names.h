@@ -28,11 +28,11 @@ std::string capital_name(const TetMesh& mesh, std::size_t dimension, Tag tag);
 /// Returns the tag that a name of ours stands for, in upper or lower case.
 std::optional<Tag> tag_of_group_name(std::size_t dimension, std::string_view name);
 
-/// Returns whether the name differs from that of kind and tag, "patch_7". Names of CAD shapes do.
+/// Returns whether the name was given, as in CAD shapes, rather than made from kind and tag ("patch_7").
 bool is_given_name(std::size_t dimension, std::string_view name);
 
-/// Gives tags to the groups of another program's file: groups with names of ours get the tags that these
-/// stand for, others are numbered from 1 in the order of the file, skipping tags in use.
+/// The tags of the groups in another program's file: groups with names of ours get the tags that these stand
+/// for, others are numbered from 1 in the order of the file, skipping tags in use.
 class GroupTags {
  public:
   Tag find(std::size_t dimension, const std::string& name);

@@ -9,8 +9,9 @@ namespace collarmesh::io {
 /// The first line of our own files, in which the reference of a tet is the index of its region.
 constexpr std::string_view medit_signature = "# Written by collarmesh.\n";
 
-/// Returns the keyword of a kind of cells of first order. The keywords of second order end in P2, except that
-/// P2 of prisms and pyramids, and Q2 of quadrilaterals, have nodes on their faces, too.
+/// Returns the keyword of a kind of cells of first order. Tets, triangles and edges of second order add P2.
+/// The other kinds have none for second order: PrismsP2, PyramidsP2 and QuadrilateralsQ2 have nodes on their
+/// faces, too.
 constexpr std::string_view medit_keyword(CellKind kind) {
   switch (kind) {
     case CellKind::tet: return "Tetrahedra";

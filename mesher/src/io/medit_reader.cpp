@@ -63,8 +63,8 @@ bool read_cells(TextScanner& scan, std::string_view keyword, TetMesh& mesh) {
 void refuse_cells(TextScanner& scan, std::string_view keyword) {
   if (scan.count("the number of cells", 2) > 0)
     scan.fail(
-        fmt::format("{} are not supported, only tetrahedra, prisms and pyramids, their triangles, "
-                    "quadrilaterals and edges",
+        fmt::format("{} are not supported, only tetrahedra, triangles and edges, and prisms, pyramids and "
+                    "quadrilaterals of first order",
                     keyword));
 }
 
@@ -112,7 +112,8 @@ TetMesh read(const std::string& path, bool needs_tets) {
   while (!scan.at_end() && read_section(scan, mesh)) {
   }
   if (needs_tets && mesh.tets.empty()) scan.fail("expected tetrahedra, found none");
-  // In our files references are region indices; in others only their order is known.
+  // In our files references are region indices. For others, `complete_mesh` numbers regions by ascending
+  // reference.
   if (text.starts_with(medit_signature))
     for_each_kind(mesh, 3, [&](CellKind kind) {
       features_of(mesh, kind).assign(tags_of(mesh, kind).begin(), tags_of(mesh, kind).end());

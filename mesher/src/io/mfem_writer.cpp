@@ -29,7 +29,7 @@ constexpr int geometry_of(CellKind kind) {
   }
 }
 
-/// The order of nodes: corners first, then mid-edge nodes in the order in which MFEM numbers edges: as they
+/// The order of nodes: corners first, then mid-edge nodes. MFEM numbers edges in the order in which they
 /// appear, element by element.
 struct Order {
   std::vector<Index> corner_number;  ///< by point; none: it is no corner

@@ -19,7 +19,7 @@ namespace collarmesh::io {
 
 namespace {
 
-/// Gives each pair of a feature and a tag an entity of one dimension. The entity has the number of the
+/// The entities of one dimension, one for each pair of a feature and a tag. The entity has the number of the
 /// feature if that is known and free.
 class EntityTable {
  public:
@@ -55,7 +55,8 @@ class EntityTable {
   }
 
  private:
-  /// Rejects numbers that leave no room for larger ones.
+  /// Adds an entity. Its preferred number is ignored if it is taken, or so large that few larger ones are
+  /// left.
   void add(Index number, Tag tag) {
     constexpr Index limit = std::numeric_limits<int>::max() / 2;
     MshEntity entity;
@@ -120,8 +121,8 @@ void assign_cells(const TetMesh& mesh, CellKind kind, EntityTable& table, std::v
   });
 }
 
-/// Assigns the nodes of cells of a kind, in each cell those from number `from` on, to the entity of the last
-/// cell that has them.
+/// Assigns each node of cells of a kind to the entity of the last cell that has it. Skips the first `from`
+/// nodes of each cell.
 void place_nodes(const TetMesh& mesh, CellKind kind, std::size_t from, MshEntities& result) {
   const auto dimension = static_cast<std::uint8_t>(shape_of(kind).dimension);
   for (std::size_t i = 0; i < count_of(mesh, kind); ++i) {
@@ -238,7 +239,8 @@ void find_physicals(MshEntities& result) {
   }
 }
 
-/// Divides entities into parts, ordered by entity and partition, numbered after the entities.
+/// The division of entities into parts. Parts are ordered by entity and partition, and numbered after the
+/// entities.
 class Divider {
  public:
   Divider(const TetMesh& mesh, const MshEntities& whole, MshParts& result)
@@ -269,7 +271,7 @@ class Divider {
   }
 
  private:
-  /// Adds entities for these parts, and fills in their places.
+  /// Adds an entity for each part, and stores its index in `parts`.
   void add(std::size_t dimension, std::map<std::pair<Index, Index>, Index>& parts) {
     int number = 0;
     for (const MshEntity& entity : whole_.of_dimension[dimension]) number = std::max(number, entity.number);

@@ -39,8 +39,8 @@ struct MshEntities {
 
 MshEntities find_entities(const TetMesh& mesh);
 
-/// The divided entities of a partitioned mesh: one for each entity and partition that has cells or points of
-/// it. Points belong to the lowest partition around them.
+/// The divided entities of a partitioned mesh: one for each pair of an entity and a partition that has some
+/// of its cells or points. Points belong to the lowest partition around them.
 struct MshParts {
   struct Part {
     int parent = 0;  ///< number of the whole entity

@@ -52,7 +52,7 @@ class PairLinks {
   }
 
   void add(std::size_t dimension, Index entity, Index master, const CellNodes& nodes) {
-    if (entity == master) return;  // it lies on an axis
+    if (entity == master) return;  // the entity lies on an axis
     auto& listed = nodes_[{dimension, entity, master}];
     for (const Index node : nodes)
       if (image_of(node) != none) listed.emplace(node, image_of(node));

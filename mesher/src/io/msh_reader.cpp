@@ -41,7 +41,7 @@ struct Cell {
   Index partition = none;
 };
 
-/// A part of an entity, in one partition or between several, of which only the first is kept.
+/// A part of an entity, in one partition or between several; only the first partition is stored.
 struct PartitionEntity {
   std::size_t parent_dimension = 0;
   int parent = 0;
@@ -135,7 +135,8 @@ CellNodes read_cell_nodes(Values& values, const Contents& contents, const GmshTy
 template <class Values>
 std::size_t read_dimension(Values& values) {
   const int dimension = values.integer("the dimension of an entity");
-  if (dimension < 0 || dimension > 3) values.fail(fmt::format("the dimension of an entity is {}", dimension));
+  if (dimension < 0 || dimension > 3)
+    values.fail(fmt::format("the dimension of an entity is {}, but must be from 0 to 3", dimension));
   return static_cast<std::size_t>(dimension);
 }
 
@@ -200,7 +201,8 @@ void read_partition_entities(Values values, int point_numbers, Contents& content
       const Index partitions = values.count("the number of partitions of an entity", 1);
       for (Index k = 0; k < partitions; ++k) {
         const int partition = values.integer("a partition");
-        if (partition < 1) values.fail(fmt::format("a partition is {}; they are counted from 1", partition));
+        if (partition < 1)
+          values.fail(fmt::format("a partition has the number {}; partitions are counted from 1", partition));
         if (k == 0) entity.partition = static_cast<Index>(partition) - 1;
       }
       read_rest_of_entity(values, dimension, point_numbers);
@@ -406,7 +408,10 @@ void read_elements_2(MshBinary2 values, Contents& contents) {
     const int of_block = values.integer("the number of elements of a block"),
               tags = values.integer("the number of tags");
     if (of_block < 1 || static_cast<Index>(of_block) > n - i || tags < 0)
-      values.fail(fmt::format("a block has {} of the {} elements left and {} tags", of_block, n - i, tags));
+      values.fail(
+          fmt::format("a block has {} elements with {} tags each, but must have from 1 to {} elements, and "
+                      "at least 0 tags",
+                      of_block, tags, n - i));
     for (int k = 0; k < of_block; ++k, ++i)
       read_element_2(values, type, values.number("the number of an element"), tags, contents);
   }
@@ -544,7 +549,7 @@ void add_features(const Contents& contents, TetMesh& mesh) {
     mesh.features.push_back({node.dimension, node.dimension == 3 ? none : feature_of(node.entity)});
 }
 
-/// Adds one value for each cell of a kind, 0 where the file gives none, within these bounds.
+/// Adds one value for each cell of a kind, limited to these bounds; 0 where the file gives none.
 template <class T>
 void add_data(Contents& contents, std::string_view name, CellKind kind, double least, double most,
               std::vector<T>& data) {
@@ -565,7 +570,7 @@ void add_once(Tag tag, std::vector<Tag>& tags) {
   if (at == tags.end() || *at != tag) tags.insert(at, tag);
 }
 
-/// Joins links of one motion. Only in our own files does each tag cover whole faces.
+/// Joins links with the same motion. Call it only for our own files, in which each tag covers whole faces.
 void add_periodic(const Contents& contents, TetMesh& mesh) {
   for (const SurfaceLink& link : contents.links) {
     const auto alike = [&](const TetMesh::PeriodicFaces& faces) {

@@ -80,8 +80,8 @@ class MshBinary : public MshBytes {
   }
 };
 
-/// The values of a section of a binary file of version 2: a count as text on the first line, then
-/// numbers of 32 bits.
+/// The values of a section of a binary file of version 2: a count as text on the first line, then integers of
+/// 32 bits and doubles.
 class MshBinary2 : public MshBytes {
  public:
   MshBinary2(const std::string& path, const MshSection& section, std::endian order);

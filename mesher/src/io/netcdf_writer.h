@@ -11,7 +11,7 @@
 
 namespace collarmesh::io {
 
-/// Writes NetCDF's classic format with offsets of 64 bits (docs.unidata.ucar.edu, "NetCDF Classic Format
+/// A writer of NetCDF's classic format with offsets of 64 bits (docs.unidata.ucar.edu, "NetCDF Classic Format
 /// Specification"): first a description, then the values of the variables in their order, numbers with the
 /// highest byte first.
 class NetcdfWriter {
@@ -40,7 +40,8 @@ class NetcdfWriter {
   /// Writes the description of everything added. Throws WriteError for a variable that is too large for the
   /// format.
   void write_header();
-  /// Write the values of the next variable that does not grow, one after the other, and then its end.
+  /// Write the values of the next variable that does not grow, one after the other. After the last one call
+  /// `end_variable`.
   void write(std::int32_t value);
   void write(double value);
   /// Writes a text padded with zeros to `length`.
@@ -70,7 +71,7 @@ class NetcdfWriter {
   std::vector<Dimension> dimensions_;
   std::vector<Attribute> attributes_;
   std::vector<Variable> variables_;
-  std::uint64_t written_ = 0;  // bytes of the current variable
+  std::uint64_t written_ = 0;  // bytes of text in the current variable
 };
 
 }  // namespace collarmesh::io

@@ -10,8 +10,8 @@
 
 namespace collarmesh::io {
 
-/// Maps a file's own numbers of entities to indices. Cost: constant if the numbers are consecutive, else
-/// logarithmic.
+/// A map from a file's own numbers of entities to indices. Cost: constant if the numbers are consecutive,
+/// else logarithmic.
 class NumberTable {
  public:
   /// Adds a number. Call it in the order of the entities.

@@ -19,8 +19,8 @@ namespace collarmesh::io {
 
 namespace {
 
-/// An element of an .obj file. Faces may come before their vertices, so indices are checked at the end, with
-/// the line.
+/// An element of an .obj file. Faces may come before their vertices, so indices are checked at the end;
+/// `line` is for errors.
 struct ObjElement {
   std::size_t first_corner, line;
   bool is_face;
@@ -65,11 +65,11 @@ std::int64_t read_corner(TextScanner& scan, std::size_t points_so_far) {
   const std::string_view word = scan.word("a corner");
   std::int64_t index = 0;
   if (!parse(word.substr(0, word.find('/')), index) || index == 0)
-    scan.fail("the index of a vertex, from 1 or from -1 downwards", word);
+    scan.fail("the index of a vertex, a whole number other than 0", word);
   if (index > 0) return index - 1;
   const std::int64_t resolved = static_cast<std::int64_t>(points_so_far) + index;
   if (resolved < 0)
-    scan.fail(fmt::format("the corner {} counts back beyond the first of {} vertices so far", index,
+    scan.fail(fmt::format("the corner {} counts back beyond the first of the {} vertices so far", index,
                           points_so_far));
   return resolved;
 }

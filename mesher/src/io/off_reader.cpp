@@ -25,8 +25,8 @@ void read_keyword(TextScanner& scan) {
   if (rest.starts_with("C")) rest.remove_prefix(1);
   if (rest.starts_with("N")) rest.remove_prefix(1);
   if (rest == "4OFF" || rest == "nOFF" || rest == "4nOFF")
-    scan.fail(
-        fmt::format("{} has points of other than 3 coordinates; convert it to OFF", in_quotes(keyword)));
+    scan.fail(fmt::format("{} is for points that do not have 3 coordinates; save the file as OFF",
+                          in_quotes(keyword)));
   if (rest != "OFF") scan.fail("the keyword OFF", keyword);
   if (!scan.at_line_end() && scan.peek() == "BINARY")
     scan.fail("binary OFF is not supported; convert it to text");

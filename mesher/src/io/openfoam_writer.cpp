@@ -1,6 +1,6 @@
 // OpenFOAM's polyMesh: the file `boundary` and beside it `points`, `faces`, `owner`, `neighbour`, `cellZones`
-// and `faceZones` (OpenFOAM User Guide, "Mesh description"). Each tag of faces on the boundary is a patch, of
-// type wall if its name begins with wall, and symmetry likewise. Each tag of regions is a zone of cells, and
+// and `faceZones` (OpenFOAM User Guide, "Mesh description"). Each tag of faces on the boundary is a patch.
+// Its type is wall or symmetry if its name begins with that word. Each tag of regions is a zone of cells, and
 // each tag of faces inside is a zone of faces.
 #include <fmt/format.h>
 
@@ -111,7 +111,7 @@ std::string header(std::string_view kind, std::string_view object, std::string_v
   return text + fmt::format("    location    \"constant/polyMesh\";\n    object      {};\n}}\n\n", object);
 }
 
-/// Writes a file of the folder.
+/// A writer of one file of the folder.
 class List {
  public:
   List(const std::filesystem::path& folder, const char* name, std::string_view kind,
@@ -203,7 +203,8 @@ void write_face_zones(FileWriter& out, const TetMesh& mesh, const Sides& sides) 
 void write_openfoam(const std::string& path, const TetMesh& mesh) {
   const std::filesystem::path boundary_path(path), folder = boundary_path.parent_path();
   if (boundary_path.filename() != "boundary")
-    throw WriteError(path + ": a polyMesh is written as its file boundary; name constant/polyMesh/boundary");
+    throw WriteError(
+        path + ": a polyMesh is named by its file boundary; give a path such as constant/polyMesh/boundary");
   if (mesh.order() == 2)
     throw WriteError(path + ": a polyMesh has no elements of second order; write those of first order");
   const Sides sides(mesh);

@@ -66,7 +66,8 @@ PlyElement read_element(TextScanner& scan) {
   element.name = scan.word("the name of an element");
   element.line = scan.line();
   const std::int64_t count = scan.integer("the number of elements");
-  if (count < 0 || count >= none) scan.fail(fmt::format("the number of elements is {}", count));
+  if (count < 0 || count >= none)
+    scan.fail(fmt::format("the number of elements is {}, but must be from 0 to {}", count, none - 1));
   element.count = static_cast<std::uint64_t>(count);
   return element;
 }
@@ -192,7 +193,7 @@ class Body {
     return 0;
   }
 
-  /// Returns our own column; past the last column if there is none.
+  /// Returns the column of our tags; past the last column if there is none.
   static std::size_t tag_column(const PlyElement& element) {
     const auto found =
         std::find_if(element.properties.begin(), element.properties.end(), [](const Property& p) {

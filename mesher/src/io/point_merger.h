@@ -7,7 +7,8 @@
 
 namespace collarmesh::io {
 
-/// Gives points of equal coordinates (0 and -0 are equal) one index. Appends new ones to `points`.
+/// A merger that gives points of equal coordinates (0 and -0 are equal) one index. Appends new ones to
+/// `points`.
 /// Cost: constant per point, expected.
 class PointMerger {
  public:

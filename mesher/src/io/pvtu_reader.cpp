@@ -36,10 +36,10 @@ const std::vector<std::int64_t>& numbers(const NamedPiece& named, const VtkPiece
   const auto found = arrays.find(name);
   if (found != arrays.end() && found->second.size() == count) return found->second;
   if (count == 0) return nothing;
-  throw ReadError(fmt::format(
-      "{}: expected an array '{}', by which the pieces are put together; save numbers of points and "
-      "cells with them, or use the pieces one by one",
-      named.path, name));
+  throw ReadError(
+      fmt::format("{}: expected an array '{}', by which the pieces are put together; save the pieces with "
+                  "numbers of points and cells, or use them one by one",
+                  named.path, name));
 }
 
 /// A point or a cell: its number in the whole mesh, its piece, and its index there.
@@ -109,7 +109,7 @@ void join_cells(const std::vector<NamedPiece>& pieces, VtkPiece& whole) {
   sort_by_number(members);
   for (std::size_t i = 1; i < members.size(); ++i)
     if (members[i].number == members[i - 1].number)
-      throw ReadError(fmt::format("{}: cell {} occurs twice, and neither is marked as a ghost",
+      throw ReadError(fmt::format("{}: cell {} occurs twice, and neither copy is marked as a ghost",
                                   pieces[members[i].piece].path, members[i].number));
   for (const PieceMember& member : members) {
     const auto& [path, piece, point_of] = pieces[member.piece];
@@ -117,7 +117,7 @@ void join_cells(const std::vector<NamedPiece>& pieces, VtkPiece& whole) {
     const std::int64_t begin = member.index == 0 ? 0 : piece.ends[member.index - 1],
                        end = piece.ends[member.index];
     if (begin < 0 || end < begin || end > size)
-      throw ReadError(fmt::format("{}: cell {} has the corners {} to {}, but there are {}", path,
+      throw ReadError(fmt::format("{}: the connectivity of cell {} goes from {} to {}, of {} entries", path,
                                   member.index, begin, end, size));
     for (std::int64_t at = begin; at < end; ++at) {
       const std::int64_t corner = piece.connectivity[static_cast<std::size_t>(at)];
@@ -149,7 +149,8 @@ std::vector<std::string> pieces_of_pvtu(const std::string& path) {
     const std::string source = piece.attribute("Source").value();
     if (source.empty()) throw ReadError(path + ": a Piece has no Source");
     std::string file = (fs::path(path).parent_path() / source).string();
-    if (!known.insert(file).second) throw ReadError(fmt::format("{}: two pieces are {}", path, source));
+    if (!known.insert(file).second)
+      throw ReadError(fmt::format("{}: two pieces have the same Source, {}", path, source));
     files.push_back(std::move(file));
   }
   return files;

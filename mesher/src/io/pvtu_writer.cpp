@@ -68,7 +68,7 @@ std::vector<T> picked(const std::vector<T>& values, const std::vector<Index>& wh
   return result;
 }
 
-/// Cuts pieces out of a mesh.
+/// A tool that cuts pieces out of a mesh.
 class Cutter {
  public:
   explicit Cutter(const TetMesh& mesh) : mesh_(mesh), local_(mesh.points.size(), none) {}
@@ -186,7 +186,7 @@ void write_list(const std::string& path, const VtkGrid& like, const std::vector<
   out.commit();
 }
 
-/// Writes the pieces. `told`: the partitions are also written as an array, because they are the mesh's own.
+/// Writes the pieces. `told`: the mesh itself has partitions, so they are also written as an array.
 void write_pieces(const std::string& path, const TetMesh& mesh, bool told, bool with_ghosts) {
   const std::vector<Index> numbers = partition_numbers(mesh), owners = partitions_of_points(mesh);
   std::vector<Members> members = members_by_partition(mesh, numbers, with_ghosts);

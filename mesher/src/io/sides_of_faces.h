@@ -50,7 +50,7 @@ void for_each_listed_side(const TetMesh& mesh, CellKind kind, const Call& call) 
     for_each_side_among(mesh.layers.quads, mesh, call);
 }
 
-/// Finds a side for each triangle or quadrangle: of the cell behind it, if there is one.
+/// Finds a side for each triangle or quadrangle, preferably the one of the cell behind it.
 inline std::vector<SideOfCell> sides_of_faces(const TetMesh& mesh, CellKind kind = CellKind::triangle) {
   std::vector<SideOfCell> found(count_of(mesh, kind));
   for_each_listed_side(mesh, kind, [&](const SideOfCell& side, Index face, bool behind) {

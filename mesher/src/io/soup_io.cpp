@@ -31,8 +31,7 @@ constexpr std::array<std::string_view, 6> cad_extensions{".step", ".stp", ".iges
 std::string unknown(const std::string& path) {
   if (std::ranges::count(cad_extensions, format_of(path)) > 0)
     return path +
-           ": this is a CAD shape, not a surface; programs mesh CAD shapes with mesh_files "
-           "(collarmesh::files)";
+           ": this is a CAD shape, not a surface; to mesh CAD shapes, call mesh_files (collarmesh::files)";
   return fmt::format("{}: unknown kind of file; surfaces are {}", path, fmt::join(soup_formats(), " "));
 }
 

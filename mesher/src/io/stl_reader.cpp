@@ -125,7 +125,7 @@ PolygonSoup read_binary(const std::string& path, std::string_view bytes) {
   const std::uint32_t count = reader.get<std::uint32_t>("the number of triangles");
   if (reader.left() != triangle_bytes * std::size_t{count})
     reader.fail(
-        fmt::format("expected {} triangles ({} bytes), found {} bytes; the file is cut off or no STL file",
+        fmt::format("expected {} triangles ({} bytes), found {} bytes; the file is cut off or is no STL file",
                     count, triangle_bytes * std::size_t{count}, reader.left()));
   PolygonSoup soup;
   PointMerger merger(soup.points);

@@ -26,8 +26,7 @@ namespace {
 /// - a line in tests/fast/io_round_trip_test.cpp if it is read, else a case of
 ///   tests/io/solver_formats_test.py and its name in the list in tests/CMakeLists.txt;
 /// - if it is read, its name in `formats` in tests/fuzz/CMakeLists.txt (write_seeds.cpp compares this list
-/// with
-///   the readers'), and malformed files in tests/fast/io_hostile_test.cpp;
+///   with the readers'), and malformed files in tests/fast/io_hostile_test.cpp;
 /// - if it is read and has a place for prisms, a line in `formats` in tests/fast/io_layers_test.cpp;
 /// - its extension in the comment on `written_tet_mesh_formats` in include/collarmesh/io/tet_mesh_io.h;
 /// - if its surface may be an input, a line in `mesh_formats` in mesh_surface_io.cpp;
@@ -108,7 +107,8 @@ void require_place_for_layers(const std::string& path, const TetMesh& mesh, cons
                                  format.extension, format.order_of_layers > 0 ? " of second order" : "",
                                  fmt::join(formats_with_layers(mesh.order()), " ")));
   if (!mesh.tet_partition.empty())
-    throw WriteError(path + ": a mesh with prisms or pyramids is not written in partitions; leave them out");
+    throw WriteError(
+        path + ": a mesh with prisms or pyramids cannot be written in partitions; leave the partitions out");
 }
 
 }  // namespace

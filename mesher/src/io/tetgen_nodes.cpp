@@ -12,7 +12,8 @@ TetgenNodeHeader read_tetgen_node_header(TextScanner& scan) {
     if (dimension != 3) scan.fail(fmt::format("the dimension is {}, but has to be 3", dimension));
   }
   if (!scan.at_line_end()) header.attributes = scan.integer("the number of attributes of a point");
-  if (header.attributes < 0) scan.fail(fmt::format("the number of attributes is {}", header.attributes));
+  if (header.attributes < 0)
+    scan.fail(fmt::format("the number of attributes is {}, but must be at least 0", header.attributes));
   header.markers = read_tetgen_marker_flag(scan);
   scan.skip_line();
   return header;

@@ -59,7 +59,7 @@ Index TextScanner::count(std::string_view what, std::size_t least_bytes) {
   const std::string_view text = word(what);
   std::uint64_t value = 0;
   if (!parse(text, value)) fail(fmt::format("{}, an integer of at least 0", what), text);
-  // One more, because the last line may lack its line end.
+  // One more byte, because the last line may lack its line end.
   if (value > (left() + 1) / least_bytes || value >= none)
     fail(fmt::format("{} is {}, but only {} bytes follow; the file is cut off or its header is wrong", what,
                      value, left()));
@@ -71,7 +71,7 @@ Index TextScanner::index(std::string_view what, std::int64_t first, std::size_t 
   std::int64_t value = 0;
   if (!parse(text, value)) fail(fmt::format("{}, an integer", what), text);
   if (value < first || value - first >= static_cast<std::int64_t>(size))
-    fail(size == 0 ? fmt::format("{} is {}, but nothing is there to refer to", what, value)
+    fail(size == 0 ? fmt::format("{} is {}, but there is nothing to refer to", what, value)
                    : fmt::format("{} is {}, but has to be from {} to {}", what, value, first,
                                  first + static_cast<std::int64_t>(size) - 1));
   return static_cast<Index>(value - first);

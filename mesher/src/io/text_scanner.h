@@ -7,8 +7,8 @@
 
 namespace collarmesh::io {
 
-/// Reads words and numbers from a text in memory and knows the line it is on. Line ends are \n or
-/// \r\n. Every failure is a ReadError "PATH: line N: what was expected and what was found".
+/// A reader of words and numbers from a text in memory. It knows the current line. Line ends are \n or \r\n.
+/// Every failure is a ReadError "PATH: line N: what was expected and what was found".
 class TextScanner {
  public:
   /// `comment` is a character that starts a comment up to the end of the line; 0: no comments. `first_line`

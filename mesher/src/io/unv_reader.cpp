@@ -32,10 +32,10 @@ class UnvReader {
   UnvReader(const std::string& path, std::string_view text) : path_(path), scan_(path, text, 0) {}
 
   TetMesh read() {
-    if (scan_.peek() != "-1") scan_.fail("-1, the begin of a dataset", scan_.peek());
+    if (scan_.peek() != "-1") scan_.fail("-1, the beginning of a dataset", scan_.peek());
     while (!scan_.at_end()) {
       if (const std::string_view mark = scan_.word("-1"); mark != "-1")
-        scan_.fail("-1, the begin of a dataset", mark);
+        scan_.fail("-1, the beginning of a dataset", mark);
       read_dataset(scan_.integer("the number of a dataset"));
       if (const std::string_view mark = scan_.word("-1"); mark != "-1")
         scan_.fail("-1, the end of a dataset", mark);
@@ -137,8 +137,8 @@ class UnvReader {
     const std::optional<CellNodes> nodes =
         CellNodes::gathered(std::span(listed).first(count), known->node_order());
     if (!nodes)
-      scan_.fail(fmt::format("element {} is a brick, which is not supported, unless its upper nodes are one",
-                             number));
+      scan_.fail(fmt::format(
+          "element {} is a brick, which is not supported, unless its upper nodes are the same", number));
     add_cell(known->kind, *nodes, mesh_);
     element_numbers_.add(number);
     elements_.push_back({known->kind, material, 0, false});

@@ -29,7 +29,7 @@ constexpr std::array<XmlType, 10> xml_types{{{"Int8", NumberType::i8},
                                              {"Float32", NumberType::f32},
                                              {"Float64", NumberType::f64}}};
 
-/// Takes bytes from the front of the stored data.
+/// A reader that takes bytes from the front of the stored data.
 class Stored {
  public:
   Stored(std::string_view text, bool base64) : text_(text), base64_(base64) {}
@@ -93,7 +93,8 @@ void unpack_block(VtkCompression compression, std::string_view packed, std::uint
                   std::string& bytes) {
   const bool lz4 = compression == VtkCompression::lz4;
   if (size / (lz4 ? lz4_largest_ratio : vtk_largest_ratio) > packed.size())
-    throw VtkArrayError{fmt::format("a block of {} compressed bytes cannot hold {}", packed.size(), size)};
+    throw VtkArrayError{
+        fmt::format("a block of {} compressed bytes cannot hold {} bytes of values", packed.size(), size)};
   if (!(lz4 ? lz4_unpack : zlib_unpack)(packed, size, bytes))
     throw VtkArrayError{"a compressed block is damaged"};
 }
@@ -107,7 +108,8 @@ std::string decode_compressed(Stored& stored, const VtkStorage& storage) {
   const std::uint64_t blocks = header_number(first, 0, storage);
   if (blocks == 0) return {};
   if (blocks > stored.left() / storage.header_bytes)
-    throw VtkArrayError{fmt::format("expected {} blocks, found {} bytes", blocks, stored.left())};
+    throw VtkArrayError{
+        fmt::format("expected the sizes of {} blocks, found only {} bytes", blocks, stored.left())};
   const std::string header = stored.take((3 + blocks) * storage.header_bytes);
   const std::uint64_t block_size = header_number(header, 1, storage),
                       last_size = header_number(header, 2, storage);
@@ -116,7 +118,7 @@ std::string decode_compressed(Stored& stored, const VtkStorage& storage) {
     const std::uint64_t size = header_number(header, 3 + b, storage);
     if (size > stored.left() - packed_size)
       throw VtkArrayError{
-          fmt::format("block {} has {} bytes, but only {} are there", b, size, stored.left() - packed_size)};
+          fmt::format("block {} has {} bytes, but only {} follow", b, size, stored.left() - packed_size)};
     packed_size += size;
   }
   const std::string packed = stored.take(packed_size);

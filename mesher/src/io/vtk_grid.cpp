@@ -55,7 +55,7 @@ float finite(double value) {
   return static_cast<float>(std::min(value, double{std::numeric_limits<float>::max()}));
 }
 
-/// Makes the arrays of a grid, several at once.
+/// A maker of a grid's arrays, several at once.
 class GridMaker {
  public:
   explicit GridMaker(const TetMesh& mesh) : mesh_(mesh) {
@@ -251,9 +251,10 @@ CellKinds add_cells(const VtkPiece& piece, std::size_t first_point, TetMesh& mes
     const ReadType type = find_type(i, piece.types[i]);
     if (piece.ends[i] < begin || piece.ends[i] > corner_count ||
         piece.ends[i] - begin != static_cast<std::int64_t>(type.nodes))
-      throw VtkPieceError{"types",
-                          fmt::format("cell {} of type {} ends at {} of {} corners, but begins at {}", i,
-                                      piece.types[i], piece.ends[i], corner_count, begin)};
+      throw VtkPieceError{"types", fmt::format("cell {} of type {} has {} node{}, but its part of the "
+                                               "connectivity goes from {} to {}, of {} entries",
+                                               i, piece.types[i], type.nodes, type.nodes == 1 ? "" : "s",
+                                               begin, piece.ends[i], corner_count)};
     const auto* first = piece.connectivity.data() + begin;
     const CellNodes nodes = read_nodes(piece, i, {first, type.nodes}, first_point);
     if (type.kind) {
@@ -263,7 +264,9 @@ CellKinds add_cells(const VtkPiece& piece, std::size_t first_point, TetMesh& mes
     begin = piece.ends[i];
   }
   if (begin != corner_count)
-    throw VtkPieceError{"connectivity", fmt::format("expected {} corners, found {}", begin, corner_count)};
+    throw VtkPieceError{"connectivity",
+                        fmt::format("the cells have {} corners in all, but the connectivity has {} entries",
+                                    begin, corner_count)};
   return kinds;
 }
 
@@ -320,8 +323,9 @@ void add_read_features(const VtkPiece& piece, TetMesh& mesh) {
   if (dimensions.empty() || features.empty()) return;
   for (std::size_t i = 0; i < piece.points.size(); ++i) {
     if (dimensions[i] < 0 || dimensions[i] > 3)
-      throw VtkPieceError{"feature_dimension",
-                          fmt::format("point {} has the feature dimension {}", i, dimensions[i])};
+      throw VtkPieceError{
+          "feature_dimension",
+          fmt::format("point {} has the feature dimension {}, which must be from 0 to 3", i, dimensions[i])};
     mesh.features.push_back({static_cast<std::uint8_t>(dimensions[i]), static_cast<Index>(features[i])});
   }
 }

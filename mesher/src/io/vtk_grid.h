@@ -60,7 +60,7 @@ constexpr std::string_view vtk_point_ids = "GlobalPointIds", vtk_cell_ids = "Glo
 /// added, too.
 std::vector<VtkArray> take_boundary(const TetMesh& mesh, VtkGrid& grid);
 constexpr std::string_view vtk_boundary_prefix = "boundary_";
-/// The cell arrays that arrays of the boundary continue.
+/// The cell arrays for which `take_boundary` adds arrays of the boundary.
 constexpr std::array<std::string_view, 6> vtk_boundary_arrays{"tag",          "region",  "region_back",
                                                               "region_front", "feature", vtk_cell_ids};
 

@@ -1,5 +1,5 @@
-// Reads VTK's legacy format for unstructured grids, versions 1 to 5.1, text and binary: tetrahedra, triangles
-// and lines with their labels; skips other data.
+// Reads VTK's legacy format for unstructured grids, versions 1 to 5.1, text and binary: tetrahedra, prisms,
+// pyramids, triangles, quadrangles and lines with their labels; skips other data.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -105,7 +105,7 @@ class LegacyReader {
 
   /// Rejects data that belong to an earlier item.
   void require_no_data(const VtkPiece::Arrays& arrays, std::string_view section) const {
-    if (!arrays.empty()) fail(fmt::format("{} come after their data", section));
+    if (!arrays.empty()) fail(fmt::format("{} come after their data, but must come before", section));
   }
 
   void read_points() {
@@ -149,13 +149,14 @@ class LegacyReader {
       at += static_cast<std::size_t>(count);
     }
     if (at != numbers.size())
-      fail(fmt::format("{} cells have {} numbers, but {} were announced", n, at, size));
+      fail(fmt::format("the {} cells have {} numbers, not {} as the section CELLS announces", n, at, size));
   }
 
   template <std::size_t count>
   void begin_data(std::size_t tuples, std::size_t expected, VtkPiece::Arrays& arrays,
                   const std::array<std::string_view, count>& wanted) {
-    if (tuples != expected) fail(fmt::format("data for {} entities, but there are {}", tuples, expected));
+    if (tuples != expected)
+      fail(fmt::format("expected data for {} points or cells, found data for {}", expected, tuples));
     tuples_ = tuples;
     arrays_ = &arrays;
     wanted_ = wanted;

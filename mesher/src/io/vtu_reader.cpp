@@ -1,5 +1,6 @@
 // Reads VTK's XML format for unstructured grids: arrays as text, inline or appended, base64 or raw,
-// compressed with zlib or LZ4 or not, with 32- or 64-bit headers; tetrahedra, triangles and lines.
+// compressed with zlib or LZ4 or not, with 32- or 64-bit headers; tetrahedra, prisms, pyramids, triangles,
+// quadrangles and lines.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -198,7 +199,7 @@ class VtuFile {
     }
   }
 
-  /// Limits memory: arrays of many pieces could share their bytes.
+  /// Limits memory: the arrays of many pieces could refer to the same bytes of the file.
   void require_room(std::size_t decoded) const {
     decoded_ += decoded;
     if (decoded_ > text_.size() * (storage_.compression == VtkCompression::none ? 1 : vtk_largest_ratio))

@@ -1,6 +1,7 @@
 // VTK's XML format for unstructured grids: appended arrays, compressed in blocks, base64. Headers are UInt64.
 // See "VTK File Formats" (VTK User's Guide) and vtkXMLDataReader. vtk_grid.h describes the arrays. The cells
-// are the tets; faces and edges are in FieldData. In a mesh without tets, triangles and edges are the cells.
+// are those of volumes; faces and edges are in FieldData. In a mesh without volumes, triangles and edges are
+// the cells.
 #include <tbb/task_arena.h>
 
 #include <array>

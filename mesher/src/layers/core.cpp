@@ -22,7 +22,7 @@ namespace {
 constexpr unsigned rings_moved = 5, sweeps = 12;
 // A move that would make tets flat is halved at most this many times, then left out.
 constexpr unsigned most_halvings = 6;
-// A move must leave each tet this share of its quality, or at least the quality `good_quality`.
+// A move must leave each tet the share `quality_left` of its quality, or at least the quality `good_quality`.
 constexpr double quality_left = 0.2, good_quality = 0.15;
 // While the front moves, tets are improved until their angles are this multiple of the bound; at the end, as
 // far as the options ask.
@@ -112,8 +112,7 @@ bool Core::push(Heights& heights, const std::vector<std::uint8_t>& levels) {
   return false;
 }
 
-/// Lowers heights until tets keep a share of their bounds when only their nodes move. The engine of
-/// improvement does the rest.
+/// Lowers heights until tets would keep a share of their bounds if their nodes moved without any improvement.
 void Core::fit_tets(Heights& heights, const std::vector<std::uint8_t>& levels) {
   constexpr std::array<double, strictest + 1> shares{0.4, 1.0};
   const std::vector<Index> near = vertices_near_front(rings_moved);
@@ -154,7 +153,8 @@ void Core::fit_tets(Heights& heights, const std::vector<std::uint8_t>& levels) {
   }
 }
 
-/// Returns the angles of a tet relative to their bounds: at least 1 if it keeps them.
+/// Returns the smaller ratio of the sines of a tet's extreme angles to those of their bounds: at least 1 if
+/// it keeps both, -1 if it is flat or inverted.
 double Core::margin(const remeshing::Corners& p, Index tet) const {
   const auto [sharp, blunt] =
       thin_->squared_margins(remeshing::extreme_cosines(p), p, piece_->complex[tet].corners);
@@ -174,7 +174,7 @@ void Core::go(const Heights& heights, double enough, bool thoroughly) {
   }
 }
 
-/// Returns the largest number of poor tets for which lowering heights in place pays.
+/// Returns the number of poor tets above which a push gives up instead of lowering heights at these tets.
 std::size_t Core::most_left(const Heights& heights) const {
   constexpr std::size_t few_nodes = 20, nodes_per_tet = 40;
   return few_nodes + heights.size() / nodes_per_tet;
@@ -332,8 +332,8 @@ std::vector<double> Core::shares_of(const std::vector<Vector>& moves, const std:
 }
 
 /// Improves tets below this angle: first only by tets within their bounds, then poor tets by any better ones.
-/// At a crease or forced edge, a better tet may miss its bound where a worse one keeps it. `thoroughly`: also
-/// by slow means.
+/// (Bounds are lower at creases and forced edges, so a better tet elsewhere may miss its bound.)
+/// `thoroughly`: also by slow means.
 void Core::improve_tets(double angle, bool thoroughly) {
   piece_->leave({});
   improve_by(angle, thoroughly, no_ratio);
@@ -411,8 +411,8 @@ std::vector<Index> Core::nodes_near(const std::vector<Index>& tets, unsigned rin
   return nodes;
 }
 
-/// Lowers the front at these tets or, if they have none of its nodes, in the nearest ring around them that
-/// has.
+/// Lowers the front at these tets or, if it has no nodes there, in the nearest ring around them where it has
+/// some.
 bool Core::lower_at(const std::vector<Index>& tets, double share, Heights& heights) const {
   for (unsigned rings = 0; rings < 4; ++rings) {
     bool any = false;

@@ -22,8 +22,8 @@ class Core {
        const ImproveOptions& improvement, const Execution& execution);
 
   /// Moves the copies to these heights, as far as tets stay positive, and improves the tets; where that does
-  /// not suffice, lowers the heights. Returns false if that fails; `failed()` are then the nodes that should
-  /// get no layers.
+  /// not suffice, lowers the heights. Returns false if that fails, too; `failed()` then returns the nodes at
+  /// which it failed.
   /// `levels`: by node of the front, how strictly the tets there limit its height at first.
   bool push(Heights& heights, const std::vector<std::uint8_t>& levels);
   /// From this level on, the limit keeps tets within their bounds without any improvement.

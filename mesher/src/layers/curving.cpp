@@ -104,10 +104,10 @@ class Curving {
     return true;
   }
 
-  /// Lists the sides that the core shares with layers as faces of no patch: nodes inside regions may move for
-  /// curved tets, but nodes on such faces stay in the middle of their edges, as the cells of layers need.
-  /// `sides`: those of all tets of the core, sorted. Call it before other faces are listed, because these
-  /// decide on the edges that they share.
+  /// Adds the sides between the core and the layers to the core's faces, with no patch. Mid-edge nodes inside
+  /// regions may move to make curved tets valid, but those on such faces stay in the middle of their edges,
+  /// as the cells of layers need. `sides`: the sides of all tets of the core, sorted. Call it before other
+  /// faces are added: where faces share an edge, the last one decides on which patch the edge's node lies.
   void keep_front_straight(const std::vector<std::array<Index, 3>>& sides, TetMesh& core) const {
     std::vector<std::array<Index, 3>> listed;
     for (const auto& face : mesh_.faces) listed.push_back(sorted(face));

@@ -1,11 +1,11 @@
-// Finds the direction whose smallest cosine to the normals of walls is largest: that of the point of the
+// Finds the direction whose smallest cosine to the normals of walls is largest. It leads to the point of the
 // normals' convex hull that is nearest to the origin (Aubry and Loehner, On the most normal normal, 2008).
 // Uses the method of Frank and Wolfe, in its variant that moves weight from the normal with the largest
 // cosine to the one with the smallest.
 //
 // Where walls meet sharply, uses Gilbert's algorithm, which only adds weight. After the same number of steps
-// its result is nearer to the mean of the normals. In such places, layers along it become higher and cover
-// more than layers along the steepest direction.
+// its result is nearer to the mean of the normals. In such places, layers along this direction become higher
+// and cover more than along the steepest one.
 #include "layers/direction.h"
 
 #include <algorithm>
@@ -43,8 +43,8 @@ std::optional<Direction> DirectionSearch::best() const {
   return above_means && above_means->least_cosine > enough ? above_means : steepest;
 }
 
-/// Returns the point of the convex hull of these normals, in the plane if there is one, that is nearest to
-/// the origin.
+/// Returns the point nearest to the origin in the convex hull of these normals or, if there is a plane, of
+/// their projections onto it.
 Vector DirectionSearch::nearest_to_origin(const std::vector<Vector>& of) const {
   std::vector<Vector> normals;
   for (const Vector& n : of) normals.push_back(in_plane(n));

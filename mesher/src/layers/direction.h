@@ -12,8 +12,8 @@ struct Direction {
   double least_cosine;  ///< of the angles between it and the normals of walls; positive
 };
 
-/// Finds the direction that is as steep as possible above all walls at a node, within the planes and along
-/// the lines on which the node has to stay.
+/// The search for the direction that is as steep as possible above all walls at a node, within the planes and
+/// along the lines on which the node has to stay.
 class DirectionSearch {
  public:
   /// Adds the normal of a wall: a unit vector that points away from the wall.

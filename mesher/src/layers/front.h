@@ -41,7 +41,7 @@ struct WallSide {
     Index beyond = none;  ///< the other side; none: there is a face without layers, or nothing
     /// The face of the mesh that the layers meet at the edge, at their end or between regions; none: no face.
     Index across = none;
-    bool outwards = false;  ///< that face is oriented away from the tets on this side
+    bool outwards = false;  ///< `across` is oriented away from the tets on this side
     bool blocked = false;   ///< no layers are possible
   };
   std::array<Edge, 3> edges;
@@ -51,8 +51,8 @@ struct WallSide {
 struct FrontNode {
   Index vertex = none;
   Vector direction{};  ///< unit; into the sector
-  /// The mean cosine, weighted by angles, between the direction and the normals of a patch's sides: the least
-  /// of all patches.
+  /// The least over all patches of the mean cosine, weighted by angles, between the direction and the normals
+  /// of the patch's sides.
   double cosine = 0;
   double least_cosine = 0;  ///< the least cosine of all sides
   bool blocked = false;     ///< there can be no layer

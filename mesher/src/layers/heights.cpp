@@ -24,7 +24,7 @@ constexpr double of_shared_gap = 0.3, of_gap = 0.5;
 // The least Jacobian in a stack, relative to the largest one.
 constexpr double least_jacobian_share = 0.15;
 constexpr double largest_step_of_neighbours = 2, rounding = 1e-9;
-// Stacks lower than this share of the height asked for, or of the room in gaps, are left out.
+// Stacks lower than this share of the height that is asked for, or that gaps allow, are left out.
 constexpr double least_share = 0.01;
 // Edges of the wall may bulge to at most this share of the layers' height.
 constexpr double most_bulging = 0.4;
@@ -51,12 +51,12 @@ std::string text_of(Cause cause) {
   switch (cause) {
     case Cause::ends: return "layers end there, at faces without layers or at facets inside";
     case Cause::direction:
-      return "the faces there meet so sharply that no steep direction leads away from all";
+      return "the faces there meet so sharply that no direction leads steeply away from all of them";
     case Cause::patch: return "nodes would leave a curved face without layers";
     case Cause::gap: return "the gap to the opposite face is narrow";
     case Cause::fold: return "cells would fold, at a sharp edge or a curved wall";
     case Cause::core: return "tetrahedra beside the layers would miss their bounds";
-    case Cause::step: return "neighbours are lower";
+    case Cause::step: return "the layers beside them are lower";
     default: return "";
   }
 }
@@ -218,7 +218,7 @@ double Heights::relative_jacobian(const WallSide& side) const {
     for (const double b : jacobians_at_base({below[j], below[i], above[i], above[j], below[z]})) see(b);
   } else {
     see(six_volume(below[0], below[1], below[2], above[first_raised]));
-    // Flat against the wall is as bad as folded.
+    // A cell flat against the wall is as bad as a folded one.
     const Vector n = cross(below[1] - below[0], below[2] - below[0]);
     see(flattest * norm(n) * length_[side.nodes[first_raised]]);
     largest = std::max(largest, 0.0);
@@ -243,7 +243,7 @@ bool Heights::unfold(bool strictly) {
   return !at.empty();
 }
 
-/// Lowers stacks to twice the heights of neighbours, lowest first.
+/// Lowers stacks to at most twice the heights of their neighbours, starting from the lowest.
 bool Heights::limit_steps() {
   using Item = std::pair<double, Index>;
   std::priority_queue<Item, std::vector<Item>, std::greater<>> queue;

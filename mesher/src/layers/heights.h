@@ -68,7 +68,7 @@ class Heights {
   const Plc& plc_;
   const WallChoice& walls_;
   std::vector<double> length_, asked_, asked_height_;
-  std::vector<double> possible_;  // the distance asked for, or less where gaps have less room
+  std::vector<double> possible_;  // the distance asked for, or less where gaps allow less
   std::vector<Cause> cause_;
   std::vector<const WallLayers*> walls_at_;
 };

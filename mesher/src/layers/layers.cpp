@@ -21,10 +21,11 @@ namespace collarmesh {
 namespace layering {
 namespace {
 
-// Layers are made again at most this many times, without those at places where the last try failed. After
+// There are at most this many tries. Each lowers layers, or leaves them out, where the last one failed. After
 // `last_levels` tries, layers are also left out in ever wider rings around these places.
 constexpr unsigned most_tries = 9, last_levels = 4;
-// If a try fails with heights that hardly change the tets, this share of the heights is tried, then none.
+// If a node fails even at the level `Core::strictest`, the next try takes this share of its height, the one
+// after it no layers.
 constexpr double further_share = 0.25;
 // Number of times that layers are left out where curved cells fold, in ever wider rings. After that, edges of
 // walls get straighter.

@@ -184,7 +184,8 @@ void Stack::add_pyramid(const std::array<Index, 5>& corners, bool from_first, co
   add_tet(from_first ? std::array{a, apex, c, d} : std::array{b, d, apex, c}, side, layer);
 }
 
-/// Divides a prism so that diagonals begin below at the smaller node of the wall.
+/// Divides a prism into tets. The diagonal of each side begins at its lower corner above the smaller node of
+/// the wall.
 void Stack::divide_prism(const WallSide& side, unsigned layer) {
   std::array<unsigned, 3> order{0, 1, 2};
   std::sort(order.begin(), order.end(),
@@ -203,7 +204,8 @@ void Stack::divide_prism(const WallSide& side, unsigned layer) {
   }
 }
 
-/// Lists the quadrangles and triangles of the layers on an edge where they meet a face without layers.
+/// Lists the sides of the layers that lie on a face without layers, along an edge of a wall: quadrangles, or
+/// triangles where only one end of the edge is raised or the layers are tets.
 void Stack::close(Index s, unsigned corner) {
   const WallSide& side = front_.sides[s];
   const WallSide::Edge& edge = side.edges[corner];

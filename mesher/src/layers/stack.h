@@ -8,7 +8,7 @@
 
 namespace collarmesh::layering {
 
-/// Builds the mesh of a core and the layers between it and the walls.
+/// A builder of the mesh of a core and the layers between it and the walls.
 class Stack {
  public:
   /// Keeps references to all arguments but `tets`. `given`: the mesh without layers. `tets`: whether to

@@ -65,7 +65,7 @@ void set(ReadWall& read, const std::string& setting, const std::string& text) {
     refuse(text, fmt::format("sets '{}'; after the faces give first, growth, count, thickness or region, "
                              "as in inlet,wall:first=0.1,growth=1.2,count=3",
                              key));
-  if (!value) refuse(text, fmt::format("gives {} no number", key));
+  if (!value) refuse(text, fmt::format("sets {} to no number", key));
   if (key == "growth") {
     if (*value < 1 || *value > largest_growth)
       refuse(text,
@@ -132,12 +132,11 @@ void WallChoice::require_heights(const LayerOptions& options, const Plc& plc) co
     const double first = std::min(asked, box.diagonal()) / relative,
                  least = least_share_of_shape * box.diagonal();
     if (first < least)
-      refuse(
-          options.walls[w],
-          fmt::format("makes the first of {} layers with a growth of {} at most {:.3g} high, too little for "
-                      "a shape of {:.6g}; use a larger first height (at least {:.3g}) or thickness, a "
-                      "smaller growth or a smaller count",
-                      wall.count, wall.growth, first, box.diagonal(), least));
+      refuse(options.walls[w],
+             fmt::format("makes the first of {} layers with a growth of {} at most {:.3g} high, which is too "
+                         "little for a shape with a diagonal of {:.6g}; use a larger first height (at least "
+                         "{:.3g}) or thickness, a smaller growth or a smaller count",
+                         wall.count, wall.growth, first, box.diagonal(), least));
   }
 }
 
@@ -180,7 +179,7 @@ void WallChoice::put_on_named(const Plc& plc) {
       if (std::none_of(plc.patches.begin(), plc.patches.end(),
                        [&](const Plc::Patch& patch) { return named.contains(patch.tag); }))
         throw OptionError(
-            fmt::format("layers: no face is called '{}'; they are {}", face, list_of_patches(plc)));
+            fmt::format("layers: no face is called '{}'; the faces are {}", face, list_of_patches(plc)));
       tags.insert(named.begin(), named.end());
     }
     for (Index p = 0; p < plc.patches.size(); ++p)

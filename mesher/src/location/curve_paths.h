@@ -8,7 +8,7 @@
 
 namespace collarmesh {
 
-/// A point on a curve, and its arc length there.
+/// A point on a curve, and the arc length of the curve up to it.
 struct PlaceOnCurve {
   double parameter;
   Point point;

@@ -83,7 +83,7 @@ class SegmentBundle {
   static constexpr std::size_t lane_count = 4;
   static constexpr Mask lanes_of_a_group = 15;
   // Bound on rounding. Numbers in single precision have a relative error of 6e-8. The points are at most 1
-  // from the centre, so they are off by at most that; the tests are off by a few times that, relative to the
+  // from the centre, so their error is at most 6e-8; the tests err by a few times as much, relative to the
   // extent of the boxes that the segments meet.
   static constexpr double slack = 4e-6;
   using Lanes [[gnu::vector_size(lane_count * sizeof(float))]] = float;

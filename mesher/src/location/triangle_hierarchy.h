@@ -56,7 +56,7 @@ class TriangleHierarchy {
   }
 
   /// Replaces `found` by the nodes whose boxes meet the box, each at the coarsest level whose extent does not
-  /// exceed `extent`, and by the larger triangles whose planes meet it, too. Precondition: the nodes of
+  /// exceed `extent`, and by larger triangles whose boxes and planes meet the box. Precondition: the nodes of
   /// `from` cover every triangle that meets the box. Conservative: a node found may contain no triangle that
   /// meets the box. Cost: linear in the nodes found plus the levels between them and `from`.
   void nodes_meeting(const Box& box, double extent, std::span<const Index> from, Marks& marks,
@@ -85,22 +85,25 @@ class TriangleHierarchy {
   double squared_distance_to(const Point& p, double bound = INFINITY, Index* nearest = nullptr) const {
     return squared_distance_to(p, bound, nearest, [](Index) { return true; });
   }
-  /// Returns the squared distance to the nearest triangle that `counts` accepts, likewise.
+  /// Returns the squared distance to the nearest triangle that `counts` accepts, with the same use of
+  /// `bound`.
   template <class Counts>
   double squared_distance_to(const Point& p, double bound, Index* nearest, const Counts& counts) const {
     return squared_distance_to(
         p, bound, nearest, [](Index) { return false; }, counts);
   }
-  /// Does so without visiting triangles below nodes that `skips` accepts.
+  /// Returns the same without visiting triangles below nodes that `skips` accepts.
   template <class Skips, class Counts>
   double squared_distance_to(const Point& p, double bound, Index* nearest, const Skips& skips,
                              const Counts& counts) const;
 
-  /// Returns a triangle whose squared distance from p is below `bound` (the `hint` if it is one), or none.
+  /// Returns a triangle whose squared distance from p is below `bound` (the `hint` if it is such a triangle),
+  /// or none.
   Index triangle_within(const Point& p, double bound, Index hint = none) const {
     return triangle_within(p, bound, hint, [](Index) { return true; });
   }
-  /// Returns such a triangle among those that `counts` accepts. Precondition: it accepts the hint.
+  /// Returns a triangle within the bound among those that `counts` accepts. Precondition: `counts` accepts
+  /// the hint.
   template <class Counts>
   Index triangle_within(const Point& p, double bound, Index hint, const Counts& counts) const;
 
@@ -112,7 +115,7 @@ class TriangleHierarchy {
     visit_near(
         nodes, p, squared_bound, [](Index) { return false; }, visit);
   }
-  /// Visits triangles likewise, except those below nodes that `skips` accepts.
+  /// Visits the same triangles, except those below nodes that `skips` accepts.
   template <class Skips, class Visit>
   void visit_near(std::span<const Index> nodes, const Point& p, const double& squared_bound,
                   const Skips& skips, const Visit& visit) const;

@@ -127,34 +127,36 @@ void require_consistent(const RunOptions& o) {
           "interaction and cohesive are for patches that are split; add split or keep-apart");
   require(o.layers.any() || !o.layers.tets, "layers-tets is for layers; add layers, or leave it out");
   require(!o.layers.any() || o.dimension == 3,
-          "layers are for meshes of solids; leave them out, or dimension");
+          "layers are for meshes of solids; leave layers or dimension out");
   require(!o.layers.any() || !o.split.any(),
-          "layers and split change the nodes on the same faces; leave one of them out");
+          "layers and split both change the nodes of faces; leave one of them out");
   require(!o.layers.any() || !o.periodic.any(),
-          "layers would move nodes of periodic faces away from their images; leave one of them out");
+          "layers would move nodes of periodic faces away from their images; leave layers or periodic out");
   require(!o.layers.any() || o.layers.tets || o.partitions == 0,
-          "partitions are of tetrahedra; add layers-tets, or leave partitions out");
+          "partitions consist of tetrahedra alone; add layers-tets, or leave partitions out");
   read_walls(o.layers);
   require(!o.split.any() || !o.periodic.any(),
-          "split and keep-apart would give nodes on periodic faces copies without images; leave one of them "
-          "and periodic out");
+          "split and keep-apart would copy nodes on periodic faces, and the copies would have no images; "
+          "leave out either these or periodic");
   require(o.coarsen || !o.periodic.any(),
-          "periodic coarsens the elements beside its faces anew; leave it out, or coarsen");
+          "periodic needs coarsening, for the elements beside the faces; leave it out, or set coarsen on");
   require(o.faces.empty() || o.dimension == 2,
           "faces are for triangles alone; add dimension 2, or leave them out");
   require(o.triangle_elements == TriangleElements::shell || o.dimension == 2,
           "triangle-elements are for triangles alone; add dimension 2, or leave them out");
   const bool is_papers = o.mesh.profile == Profile::paper;
   require(o.start != Start::constrained || (o.coarsen && !is_papers),
-          "start constrained is for meshes that are coarsened; leave it out, or coarsen");
+          "start constrained needs coarsening, which coarsen off and profile paper switch off; leave one of "
+          "them out");
   require(!o.mesh.bounds.interior_node || (o.coarsen && !is_papers),
-          "interior-node is for meshes that are coarsened; leave it out, or coarsen");
+          "interior-node needs coarsening, which coarsen off and profile paper switch off; leave one of them "
+          "out");
   require(!is_papers || o.mesh.bounds.radius_edge * o.mesh.bounds.radius_edge > 8 ||
               !o.mesh.bounds.thin_in_narrow_places_only,
           "radius-edge must be above 2 sqrt 2 with profile paper; make it 2.83 or more");
   require(!is_papers || o.mesh.theta > 0, "theta must be above 0 with profile paper; make it 0.3");
   require(is_papers || !o.coarsen || o.mesh.bounds.thin_angle > 0,
-          "thin-angle 0 is for meshes that are not coarsened; make it at least 0.1, or coarsen off");
+          "thin-angle 0 is for meshes without coarsening; make it at least 0.1, or set coarsen off");
 }
 
 }  // namespace

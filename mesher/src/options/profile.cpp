@@ -17,7 +17,7 @@ MeshOptions with_profile(MeshOptions options) {
   Bounds& bounds = options.bounds;
   bounds.crease_angle = right_angle;
   bounds.thin_angle = 0;
-  if (!bounds.thin_in_narrow_places_only)  // else thin tets may be anywhere, and no ratio was given
+  if (!bounds.thin_in_narrow_places_only)  // no ratio was given, so thin tets may be anywhere
     bounds.radius_edge = std::max(bounds.radius_edge, proved_radius_edge);
   options.exterior_radius_edge = bounds.radius_edge;
   options.narrow_cells = NarrowCells::bounded;

@@ -22,7 +22,7 @@ constexpr Kind kind_of(bool has_words) {
   return std::is_same_v<T, std::vector<std::string>> ? Kind::texts : Kind::sizes;
 }
 
-/// Accesses a member of a member of RunOptions. If it is a choice, it has `words`.
+/// Access to a member of RunOptions, or of a struct in it. A choice has words.
 template <bool has_words, auto... members>
 struct At {
   static auto& of(auto& options) { return (options.*....*members); }
@@ -64,14 +64,14 @@ constexpr Option::Place in_mesh = at<&RunOptions::mesh, member>;
 template <auto member>
 constexpr Option::Place in_bounds = at<&RunOptions::mesh, &MeshOptions::bounds, member>;
 
-/// Accesses the bound on the radius-edge ratio. Without this option tets may be thin anywhere.
+/// The bound on the radius-edge ratio. Without this option tets may be thin anywhere.
 constexpr Option::Place asked_ratio{Kind::number, in_bounds<&Bounds::radius_edge>.get,
                                     [](const Option&, RunOptions& options, const OptionValue& value) {
                                       options.mesh.bounds.radius_edge = std::get<double>(value);
                                       options.mesh.bounds.thin_in_narrow_places_only = true;
                                     }};
 
-/// Accesses the dimension of the elements. Surfaces need not bound anything.
+/// The dimension of the elements. Below 3, the facets need not bound a solid.
 constexpr Option::Place asked_dimension{Kind::count, at<&RunOptions::dimension>.get,
                                         [](const Option&, RunOptions& options, const OptionValue& value) {
                                           options.dimension =
@@ -163,7 +163,7 @@ std::vector<Option> quality_options() {
       {.name = "start",
        .words = {"auto", "refinement", "constrained"},
        .place = choice_at<&RunOptions::start>,
-       .help = "What the mesh begins with; constrained: tetrahedra with the facets as they are",
+       .help = "Mesh that the run begins with; constrained: tetrahedra with the facets as they are",
        .details =
            "`auto`: refinement, and `constrained` where that takes far more vertices than the sizes ask "
            "for; see [Parts that explode](architecture/constrained.md)",
@@ -173,10 +173,9 @@ std::vector<Option> quality_options() {
        .unit = Unit::ratio,
        .low = 1,
        .help = "Bound on circumradius / shortest edge of a tetrahedron that is not thin",
-       .details =
-           "if it is given, tetrahedra may be thin only at creases and in narrow places, where parts of "
-           "the shape that do not touch, or meet in a crease, are nearer than the longest edge / RHO; "
-           "else anywhere; below sqrt 2 refinement may not terminate",
+       .details = "if it is given, tetrahedra may be thin only at creases and in narrow places, where parts "
+                  "of the shape that do not touch, or meet in a crease, are nearer than the longest edge / "
+                  "RHO; without it they may be thin anywhere; below sqrt 2 refinement may not terminate",
        .commands = judging},
       {.name = "vertex-ratio TAU",
        .place = in_mesh<&MeshOptions::vertex_ratio>,
@@ -185,9 +184,8 @@ std::vector<Option> quality_options() {
        .finer = true,
        .zero = true,
        .default_text = "none",
-       .help =
-           "Refine until at each vertex the largest circumradius over the shortest edge is below this; more "
-           "than 2 sqrt 2",
+       .help = "Refine until at each vertex the largest circumradius / the shortest edge is below this, "
+               "which must exceed 2 sqrt 2",
        .details = "not certified: coarsening and improvement may exceed it, so a warning asks for "
                   "`--coarsen off`",
        .commands = refining},
@@ -196,8 +194,9 @@ std::vector<Option> quality_options() {
        .unit = Unit::degrees,
        .low = 100,
        .high = 175,
-       .help = "Bound on dihedral angles in the collars around creases, the tetrahedra that touch one",
-       .details = "130 and more were reached on all shapes tried, 110 on most if the mesh is coarsened",
+       .help = "Bound on dihedral angles in collars, the tetrahedra that touch a crease",
+       .details = "bounds of 130 and more were kept on all shapes tried, those of 110 and more on most if "
+                  "the mesh is coarsened",
        .commands = refining | Option::check},
       {.name = "collar-creation",
        .words = {"in-pass", "up-front"},
@@ -209,8 +208,8 @@ std::vector<Option> quality_options() {
       {.name = "theta THETA",
        .place = in_mesh<&MeshOptions::theta>,
        .high = 0.449,
-       .help = "Instead of a gap ball's centre, insert a point of the input within this share of the "
-               "ball's radius; 0: never",
+       .help = "Instead of a gap ball's centre, insert a point of the input that is nearer to it than this "
+               "share of the ball's radius; 0: never",
        .commands = refining},
       {.name = "distance LENGTH",
        .place = in_bounds<&Bounds::distance>,
@@ -243,15 +242,15 @@ std::vector<Option> quality_options() {
        .low = 0.1,
        .high = 30,
        .zero = true,
-       .help = "Smallest dihedral angle of thin tetrahedra, at sharper creases half their angle; 0: none "
-               "may be thin",
+       .help = "Smallest dihedral angle of thin tetrahedra, at sharper creases half of the crease's angle; "
+               "0: none may be thin",
        .details = "values below 5 save tetrahedra in sharp wedges only",
        .commands = judging},
       {.name = "improve LEVEL",
        .place = at<&RunOptions::improve>,
        .high = 3,
-       .help = "Removal of slivers: 0 none, 1 quick (below 15 degrees, connections only), 2 good (20), 3 "
-               "best (30)"},
+       .help = "Removal of slivers: 0 none; 1 quick: angles below 15 degrees, vertices stay; 2 good: below "
+               "20; 3 best: below 30"},
       {.name = "min-dihedral DEGREES",
        .place = at<&RunOptions::min_dihedral>,
        .unit = Unit::degrees,
@@ -290,8 +289,8 @@ std::vector<Option> element_options() {
       {.name = "triangle-elements",
        .words = {"shell", "plane-stress", "plane-strain"},
        .place = choice_at<&RunOptions::triangle_elements>,
-       .help = "Elements of --dimension 2 in .inp: S3 and S6, CPS3 and CPS6, or CPE3 and CPE6, which lie in "
-               "the plane z = 0",
+       .help = "Elements of --dimension 2 in .inp: S3 and S6, CPS3 and CPS6, or CPE3 and CPE6; the CP types "
+               "need a mesh in the plane z = 0",
        .commands = Option::mesh},
       {.name = "interior-node",
        .place = in_bounds<&Bounds::interior_node>,
@@ -305,8 +304,8 @@ std::vector<Option> split_options() {
   return {
       {.name = "split NAME",
        .place = at<&RunOptions::split, &SplitOptions::patches>,
-       .help =
-           "Give both sides of this internal patch (name or number) nodes of their own: a crack, a contact",
+       .help = "Give both sides of this internal patch (name or number) nodes of their own, for a crack or a "
+               "contact",
        .details = "see [Cracks](embedded.md#open-the-crack)"},
       {.name = "keep-apart",
        .place = at<&RunOptions::split, &SplitOptions::keep_apart>,
@@ -315,7 +314,8 @@ std::vector<Option> split_options() {
        .words = {"free", "tie", "contact"},
        .place = choice_at<&RunOptions::split, &SplitOptions::interaction>,
        .help = "In .inp files, join the sides of split patches by ties or contact pairs",
-       .details = "the job defines the contact pairs' interaction by the name CONTACT",
+       .details =
+           "for contact, define `*SURFACE INTERACTION, NAME=CONTACT` in the job before the mesh is included",
        .commands = Option::mesh},
       {.name = "cohesive",
        .place = at<&RunOptions::split, &SplitOptions::cohesive>,
@@ -340,9 +340,9 @@ std::vector<Option> layer_options() {
 std::vector<Option> periodic_options() {
   return {{.name = "periodic PAIR",
            .place = at<&RunOptions::periodic, &PeriodicOptions::pairs>,
-           .help = "Mesh two groups of planar patches alike: x, y or z, the low and the high end of the "
-                   "shape; or A=B, "
-                   "names or numbers, followed by a motion: A=B:translation, A=B:rotation,z,90",
+           .help = "Mesh two groups of planar patches alike: x, y or z for those at both ends of the shape "
+                   "along this axis; or A=B with names or numbers, and a motion if needed: A=B:translation, "
+                   "A=B:rotation,z,90",
            .details = "see [Periodic cells](periodic.md#pairs)"}};
 }
 
@@ -357,7 +357,8 @@ std::vector<Option> partition_options() {
        .details = "see [Formats](formats.md#partitions)"},
       {.name = "ghost-cells",
        .place = at<&RunOptions::ghost_cells>,
-       .help = "Write with each partition the tetrahedra of others that share a vertex with it; .pvtu .msh",
+       .help = "Write with each partition the tetrahedra of others that share a vertex with it; for .pvtu "
+               "and .msh",
        .commands = writing},
       {.name = "cell-decomposition FILE",
        .place = at<&RunOptions::cell_decomposition>,
@@ -372,15 +373,14 @@ std::vector<Option> complex_options() {
        .place = choice_at<&RunOptions::complex, &PlcOptions::domain>,
        .help = "enclosed: mesh what the facets enclose; box: mesh a box around everything, so that points, "
                "segments and facets need not enclose anything",
-       .details = "the space between the box and what is in it is the last region",
+       .details = "the space between the box and its contents is the last region",
        .commands = refining | Option::check | Option::info},
       {.name = "box-margin SHARE",
        .place = at<&RunOptions::complex, &PlcOptions::box_margin>,
        .low = 0.01,
        .high = 1000,
-       .help =
-           "Distance of that box from the shape inside, relative to the largest side of the shape's bounding "
-           "box",
+       .help = "Distance from the shape to the box of --domain box, relative to the largest side of the "
+               "shape's bounding box",
        .commands = refining | Option::check | Option::info},
       {.name = "feature-angle DEGREES",
        .place = at<&RunOptions::complex, &PlcOptions::feature_angle>,
@@ -420,10 +420,9 @@ std::vector<Option> complex_options() {
       {.name = "feature-size F",
        .place = at<&RunOptions::repair, &RepairOptions::feature_size>,
        .high = 0.1,
-       .help =
-           "Collapse curves, narrow patches and sharp tips of patches that are smaller than this share of "
-           "the target size and have no name, size or group, and equally thin walls and gaps that cannot "
-           "be meshed otherwise; 0: keep all",
+       .help = "Collapse curves, narrow patches and sharp tips of patches that are smaller than this share "
+               "of the target size and have no name, size or group; also walls and gaps thinner than that, "
+               "if they cannot be meshed otherwise; 0: keep all",
        .details = "see [Features to the size](repair.md#features-to-the-size)",
        .commands = refining | Option::check},
       {.name = "wrap-offset T",
@@ -441,13 +440,14 @@ std::vector<Option> complex_options() {
        .commands = complexes},
       {.name = "names FILE.json",
        .place = at<&RunOptions::names>,
-       .help =
-           "Names of patches, curves and regions, by number or by a point on them, for formats with names",
-       .details = "or the JSON itself, where it begins with `{`; see [Names](names.md)",
+       .help = "Names of patches, curves and regions, each with its number or a point on it; for formats "
+               "that store names",
+       .details = "an argument that begins with `{` is taken as the JSON itself, not as a path; see "
+                  "[Names](names.md)",
        .commands = complexes},
       {.name = "name NAME=NUMBER",
        .place = at<&RunOptions::given_names>,
-       .help = "Name a patch; NAME=1,2 names several, NAME=curve:4 and NAME=region:1 others",
+       .help = "Name a patch; NAME=1,2 names several, NAME=curve:4 a curve, NAME=region:1 a region",
        .details = "added to those of `--names`",
        .commands = complexes & ~unsigned{Option::programs}},
       {.name = "crease-angle DEGREES",
@@ -501,7 +501,7 @@ std::vector<Option> run_options() {
        .commands = Option::check},
       {.name = "findings N",
        .place = at<&RunOptions::findings>,
-       .help = "List at most this many per guarantee",
+       .help = "List at most this many findings per guarantee",
        .commands = Option::check | Option::programs},
       {.name = "report FILE",
        .place = at<&RunOptions::reports>,
@@ -515,7 +515,7 @@ std::vector<Option> run_options() {
       {.name = "progress",
        .words = {"auto", "json", "none"},
        .place = choice_at<&RunOptions::progress>,
-       .help = "auto: a bar on a terminal; json: one object a line; none: no progress",
+       .help = "auto: a bar on a terminal; json: one object per line; none: no progress",
        .details = "with `json`, `info` reports each prediction as soon as it is made",
        .commands = writing | Option::info},
       {.name = "verbose",

@@ -97,8 +97,8 @@ class Levelling {
     return static_cast<Part>(found - members_.begin());
   }
 
-  /// Returns the tet of partition `from` that adds the fewest cut faces if moved to `to`: a tet beside that
-  /// partition, if there is one.
+  /// Returns the tet of partition `from` that adds the fewest cut faces if moved to `to`: a tet beside `to`,
+  /// if there is one.
   Tet cheapest(Part from, Part to) {
     Tet best = members(from).front();
     auto best_cost = std::pair(true, std::numeric_limits<std::ptrdiff_t>::max());

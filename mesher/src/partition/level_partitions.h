@@ -8,9 +8,10 @@
 namespace collarmesh {
 
 /// Moves single tets until no partition is empty and none has more than `most`: along the shortest path from
-/// a partition with too many tets to one with room, choosing tets whose move cuts the fewest faces.
-/// Preconditions: there are at least as many tets as partitions, and `most` leaves room for all tets. Cost:
-/// for each surplus tet a search over the tets of the partitions on the path; at worst over all tets.
+/// a partition with too many tets to one with fewer than `most`, choosing tets whose move cuts the fewest
+/// faces. Preconditions: there are at least as many tets as partitions, and `most` times `partitions` is at
+/// least their number. Cost: for each surplus tet a search over the tets of the partitions on the path; at
+/// worst over all tets.
 void level_partitions(const DualGraph& graph, std::size_t partitions, std::size_t most,
                       std::vector<GraphIndex>& partition_of);
 

@@ -31,7 +31,7 @@ ScotchPartition find_scotch() {
 #else
   throw OptionError(
       "partitions cannot be made, because the program was built without Scotch; install libscotch-dev and "
-      "build again");
+      "build it again");
 #endif
 }
 
@@ -39,7 +39,8 @@ DualGraph dual_graph(const TetMesh& mesh) {
   constexpr std::size_t limit = std::numeric_limits<GraphIndex>::max() / 4;
   if (mesh.tets.size() > limit)
     throw OptionError(
-        fmt::format("partitions of {} tets cannot be made; there may be {}", mesh.tets.size(), limit));
+        fmt::format("a mesh of {} tets cannot be divided into partitions; it may have at most {}",
+                    mesh.tets.size(), limit));
   std::vector<std::pair<Index, Index>> edges;
   edges.reserve(2 * mesh.tets.size());
   DualGraph graph;
@@ -72,7 +73,8 @@ std::size_t cut_of(const DualGraph& graph, const std::vector<GraphIndex>& partit
   return cut / 2;
 }
 
-/// Returns the best partition over several seeds for small meshes, where luck matters most and time least.
+/// Returns the partition with the fewest cut faces: among several seeds for small meshes, where luck matters
+/// most and time least, and with one seed for others.
 std::vector<GraphIndex> best_by_scotch(ScotchPartition by_scotch, const DualGraph& graph,
                                        unsigned partitions) {
   constexpr std::size_t small = 50'000;

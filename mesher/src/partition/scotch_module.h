@@ -3,13 +3,13 @@
 #include <cstdint>
 #include <vector>
 
-/// The functions that `partition` calls in the module with Scotch.
+/// The interface of the module with Scotch, which `partition` loads.
 namespace collarmesh {
 
 using GraphIndex = std::int32_t;  // Scotch's integer type, as in Debian's library
 
-/// The graph of tets that share a face. The neighbours of t are neighbours[starts[t]] to neighbours[starts[t
-/// + 1]]; each pair is listed at both tets.
+/// The graph of tets that share a face. The neighbours of t begin at neighbours[starts[t]] and end before
+/// neighbours[starts[t + 1]]; each pair is listed at both tets.
 struct DualGraph {
   std::vector<GraphIndex> starts, neighbours;
 };

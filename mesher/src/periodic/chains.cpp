@@ -13,7 +13,7 @@ namespace {
 
 constexpr double near = 0.3;  // a node this near to a place is moved there; relative to the edges at the node
 constexpr double good_removal = 0.3;  // quality that a removal must leave; otherwise the node is kept and
-                                      // inserted on the other side
+                                      // inserted on the pair's other curve
 constexpr double good_enough = 0.1;   // quality that a move or a removal must leave
 
 /// Follows the edges of one curve.

@@ -63,8 +63,8 @@ class Matcher {
  private:
   [[noreturn]] void refuse(const std::string& feature, const Deviation& off) const {
     throw OptionError(fmt::format(
-        "periodic '{}': {} has no image among the second patches; the nearest is {:.3g} from where it "
-        "would be, ({:.6g}, {:.6g}, {:.6g}). Patches that are to be periodic are images of each other",
+        "periodic '{}': {} has no image on the second patches: the nearest candidate is {:.3g} away from the "
+        "image's place, ({:.6g}, {:.6g}, {:.6g}); periodic patches must be images of each other",
         pair_.text, feature, off.distance, off.where.x, off.where.y, off.where.z));
   }
 
@@ -160,8 +160,8 @@ class Matcher {
           second.find({images_of(of.curves, image_of_curve), images_of(of.vertices, image_of_vertex)});
       if (found == second.end())
         throw OptionError(
-            fmt::format("periodic '{}': patch {} has no image among the second patches: none has the "
-                        "images of its curves as its border",
+            fmt::format("periodic '{}': patch {} has no image: none of the second patches is bordered by the "
+                        "images of its curves; periodic patches must be images of each other",
                         pair_.text, of.tag));
       images_.patches.emplace_back(patch, found->second);
       second.erase(found);
@@ -172,8 +172,8 @@ class Matcher {
   void require_same_number(std::size_t first, std::size_t second, const char* of) const {
     if (first != second)
       throw OptionError(
-          fmt::format("periodic '{}': the first patches have {} {}, the second {}; patches that are "
-                      "to be periodic are images of each other",
+          fmt::format("periodic '{}': the first patches have {} {}, the second {}; periodic patches must be "
+                      "images of each other",
                       pair_.text, first, of, second));
   }
 

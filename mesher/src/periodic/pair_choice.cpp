@@ -21,8 +21,7 @@ constexpr double at_end = 1e-9;  // relative to the diagonal; patches this near 
                                  // the end
 
 constexpr std::string_view grammar =
-    "a pair is x, y, z, FIRST=SECOND, or FIRST=SECOND with :translation,DX,DY,DZ or :rotation,AXIS,DEGREES "
-    "behind it";
+    "a pair is x, y, z or FIRST=SECOND, which :translation,DX,DY,DZ or :rotation,AXIS,DEGREES may follow";
 
 [[noreturn]] void refuse(const std::string& text, const std::string& why) {
   throw OptionError(fmt::format("periodic '{}': {}", text, why));
@@ -65,11 +64,10 @@ class PairReader {
     pair.first = patches_at(axis, low);
     pair.second = patches_at(axis, high);
     if (pair.first.empty() || pair.second.empty())
-      refuse(text_,
-             fmt::format("no planar patch lies at the {} end of the shape, {} = {:.9g}; name the patches "
-                         "(FIRST=SECOND), they are {}",
-                         pair.first.empty() ? "low" : "high", text_, pair.first.empty() ? low : high,
-                         list_of_patches(plc_)));
+      refuse(text_, fmt::format("no planar patch lies at the {} end of the shape, {} = {:.9g}; name two "
+                                "patches (FIRST=SECOND) of {}",
+                                pair.first.empty() ? "low" : "high", text_, pair.first.empty() ? low : high,
+                                list_of_patches(plc_)));
     Vector by{0, 0, 0};
     by[axis] = high - low;
     pair.motion = translation(by);
@@ -104,7 +102,8 @@ class PairReader {
       for (Index patch = 0; patch < plc_.patches.size(); ++patch)
         if (tags.contains(plc_.patches[patch].tag)) patches.push_back(patch);
       if (patches.size() == before)
-        refuse(text_, fmt::format("no patch is called '{}'; there are {}", name, list_of_patches(plc_)));
+        refuse(text_,
+               fmt::format("no patch is called '{}'; the patches are {}", name, list_of_patches(plc_)));
     }
     sort_uniquely(patches);
     return patches;
@@ -128,7 +127,7 @@ class PairReader {
     if (kind == "translation" && values.size() == 3) return translation({values[0], values[1], values[2]});
     if (kind == "rotation" && values.size() == 7) {
       const Vector direction{values[3], values[4], values[5]};
-      if (norm(direction) == 0) refuse(text_, "the axis has no direction");
+      if (norm(direction) == 0) refuse(text_, "the direction of the axis is 0 0 0; give another");
       return rotation({values[0], values[1], values[2]}, direction, values[6]);
     }
     refuse(text_, std::string(grammar));
@@ -144,10 +143,11 @@ class PairReader {
 
   void require_usable(Index patch) const {
     const Plc::Patch& of = plc_.patches[patch];
-    if (!of.planar) refuse(text_, fmt::format("patch {} is not planar", of.tag));
+    if (!of.planar) refuse(text_, fmt::format("patch {} is not planar; choose planar patches", of.tag));
     if ((of.regions[0] == 0) == (of.regions[1] == 0))
-      refuse(text_, fmt::format("patch {} is not on the boundary: periodic patches have material on one side",
-                                of.tag));
+      refuse(text_,
+             fmt::format("patch {} is not on the boundary; choose patches with material on one side only",
+                         of.tag));
   }
 
   const std::string& text_;

@@ -23,8 +23,8 @@ struct HashOfTriangle {
 template <class Value>
 using ByTriangle = std::unordered_map<std::array<Index, 3>, Value, HashOfTriangle>;
 
-// Largest number of groups that are moved; 2 to this power is the largest number of copies of the complex.
-// Groups of further pairs stay where they are.
+// Largest number of groups that are moved. So there are at most 2^6 copies of the complex. Groups of further
+// pairs stay where they are.
 constexpr std::size_t most_moved = 6;
 
 std::vector<Index> keys_of(const std::unordered_map<Index, Index>& map) {
@@ -341,9 +341,8 @@ void Recut::note_vertices(const remeshing::TetComplex& complex) {
   points_.resize(kept);
 }
 
-// Returns the feature of the original complex that a feature of the tiled complex is for the tets of the copy
-// with this shift. A feature on a seam stands for two originals, one in each group of the pair; the shift
-// tells which.
+// Returns the original of a feature of the tiled complex, as tets of the copy with this shift need it. A
+// feature on a seam has two originals, one in each group of the pair; the shift determines which one.
 Index Recut::feature_back(unsigned dimension, Index feature, Shift shift) const {
   if (feature == none) return none;
   const Shift own = copies_[feature / count(dimension)];

@@ -53,10 +53,10 @@ class Recut {
   using Shift = std::uint32_t;  // one bit for each pair: 1 if moved
   struct Seam {
     Motion motion;                                          // motion of the moved part
-    std::unordered_map<Index, Index> image_of;              // images of vertices on the group beside the
-                                                            // moved part
+    std::unordered_map<Index, Index> image_of;              // by vertex of the group whose tets move: its
+                                                            // image on the other group
     std::unordered_map<Index, Index> on_other;              // inverse of `image_of`
-    std::array<std::map<Index, Index>, 3> image, original;  // images of features, by dimension
+    std::array<std::map<Index, Index>, 3> image, original;  // of features, by dimension
   };
   struct Place {
     Index vertex;

@@ -13,11 +13,11 @@ struct SpacedPlace {
   double spacing;
 };
 
-/// Chooses nodes inside a planar patch of a refined mesh whose distances are at least a small share of the
-/// target edge length. Refinement may leave nodes far nearer to each other; if all were fixed, they would
-/// stay. On the patch's borders, lengths are at most those of the border's edges; with the distance from
-/// them, this limit grows by half of the distance. `targets`: target edge length at every vertex. Cost: n log
-/// n in the faces, times the number of nodes that one node covers.
+/// Chooses nodes inside a planar patch of a refined mesh, so that their distances are at least a small share
+/// of the target edge length. Refinement may leave nodes far nearer to each other, and fixing all nodes would
+/// keep these. On the patch's borders, lengths are at most those of the border's edges; away from the
+/// borders, this limit grows by half of the distance. `targets`: target edge length at every vertex. Cost: n
+/// log n in the faces, times the number of nodes that one node covers.
 std::vector<SpacedPlace> sparse_nodes(const TetMesh& mesh, std::span<const Index> faces,
                                       const std::vector<double>& targets);
 

@@ -40,7 +40,7 @@ bool has_flat_tet(const TetMesh& mesh) {
   return false;
 }
 
-/// Makes the constrained tetrahedra of a complex with the features of the job's.
+/// Makes the constrained tetrahedra of a complex that has the features of the job's complex.
 void fill(MeshJob& job, const Plc& plc) {
   job.control.begin("tetrahedralize", 0.06, 0.2);
   job.control.watch(
@@ -83,7 +83,7 @@ std::size_t fill_ladders(MeshJob& job, const Plc& divided) {
   fill(job, divided);
   TetMesh& mesh = job.made.result.mesh;
   job.control.begin("remesh", 0.2, 0.6);
-  job.made.coarsening.emplace();  // what coarsening may leave counts as good
+  job.made.coarsening.emplace();  // thin tets count as good, as after coarsening
   improve_before_coarsening(job, mesh);
   std::size_t poor = mesh.tets.size();
   if (tets_per_poor_before * count_misshapen(job, mesh) <= mesh.tets.size()) {
@@ -95,9 +95,9 @@ std::size_t fill_ladders(MeshJob& job, const Plc& divided) {
 }
 
 /// Fills the complex between the rungs of its strips, if there are any. Returns whether hardly any tet misses
-/// its bounds. Then nothing else is needed, as vertices face each other, and collapses that keep no bounds
-/// would do harm. Rounding of the cells' corners decides whether all of their diagonals can be recovered
-/// without further points, so diagonals along other directions are tried, too.
+/// its bounds. If so, vertices on opposite sides face each other, and further work is not needed: collapses
+/// that ignore bounds would do harm. Rounding decides whether all diagonals of the ladders' cells can be
+/// recovered without further points, so tries diagonals along several directions.
 bool is_good_with_ladders(MeshJob& job) {
   constexpr std::array<Vector, 3> directions{{{0.36, 0.48, 0.8}, {-0.36, 0.48, 0.8}, {0.36, -0.48, 0.8}}};
   const double size = smallest_size(job.options.mesh, job.plc->bounds.diagonal());
@@ -203,16 +203,19 @@ void settle(MeshJob& job, Hope hope) {
   PipelineResult& made = job.made;
   std::size_t least = count_misshapen(job, made.result.mesh);
   if (hope == Hope::good && tets_per_poor * least > made.result.mesh.tets.size()) throw Hopeless();
-  // No tet is misshapen: coarsens and improves once more, thoroughly, and keeps the result if none is then.
+  // If no tet is misshapen, coarsen and improve once more, thoroughly. Keep the result if no tet is misshapen
+  // then.
   if (least == 0 && hope == Hope::any) {
     TetMesh mesh = made.result.mesh;
     coarsen_and_improve(job, mesh, {}, true);
     if (count_misshapen(job, mesh) == 0) made.result.mesh = std::move(mesh);
     return;
   }
-  // Detours are not taken for more tets than this. While there are more, only rounds that gain much go on.
+  // Take no detours if more tets than this are poor; then another round follows only if the last one gained
+  // much.
   const std::size_t in_reach = within_reach + made.result.mesh.tets.size() / tets_per_poor;
-  // Vertices that face each other fix more tets in less time than detours do.
+  // Begin without detours, which are slow: `relax` divides edges so that vertices face each other, and that
+  // mends more tets in less time.
   bool thoroughly = false;
   for (unsigned round = 0; round < most_rounds && least > 0; ++round) {
     TetMesh mesh = made.result.mesh;

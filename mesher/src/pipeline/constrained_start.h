@@ -20,8 +20,8 @@ bool keeps_lengths(const TetMesh& mesh, double size);
 /// is asked of distances and shapes.
 bool may_have_rods(const MeshJob& job);
 
-/// Makes a mesh of rings around rods, if all bodies of the complex are thin rods. Returns whether all are,
-/// and all tets keep the bounds on their shapes. Throws Ended.
+/// Makes a mesh of rings around rods, if all bodies of the complex are thin rods. Returns false if not, or if
+/// a tet misses the bounds on its shape. Throws Ended.
 bool fill_rods(MeshJob& job);
 
 /// Makes the constrained tetrahedra of the complex, and brings their edges to the target lengths. Throws
@@ -32,8 +32,8 @@ void tetrahedralize(MeshJob& job);
 /// bounds. With Hope::good, throws Hopeless if many tets miss them.
 void settle(MeshJob& job, Hope hope);
 
-/// Mends flat tets of a refined and coarsened mesh that miss their bounds, by vertices that face each other.
-/// Keeps the result if fewer tets miss them.
+/// Mends flat tets of a refined and coarsened mesh that miss their bounds, by dividing edges at vertices that
+/// face each other. Keeps the result if fewer tets miss them.
 void mend_flat_tets(MeshJob& job);
 
 }  // namespace collarmesh::pipeline

@@ -36,8 +36,8 @@ std::string describe_explosion(const Plc& plc, std::size_t most, const Point& wh
       fmt::format("the refinement takes more than {} vertices, far more than the sizes ask for, around {}",
                   most, checks::At{where});
   if (const std::vector<Near> near = nearest_patches(plc, where); near.size() >= 2)
-    text += fmt::format(" within {:.3g} of patches {} and {}", std::sqrt(near[1].first), near[0].second,
-                        near[1].second);
+    text += fmt::format(", which is within {:.3g} of patches {} and {}", std::sqrt(near[1].first),
+                        near[0].second, near[1].second);
   return text;
 }
 

@@ -27,8 +27,8 @@ void require_tags(const std::map<Tag, double>& sizes, const Features& features, 
       }
       known += (known.empty() ? "" : ", ") + std::to_string(each);
     }
-    throw OptionError(fmt::format("{} {}={}: no {} has the tag {}; the tags are {}", option, tag, size, what,
-                                  tag, known.empty() ? "none" : known));
+    throw OptionError(fmt::format("{} {}={}: no {} has the tag {}; {}", option, tag, size, what, tag,
+                                  known.empty() ? "there are no tags" : "the tags are " + known));
   }
 }
 
@@ -40,9 +40,10 @@ void refuse_replaced_patches(const std::map<Tag, double>& sizes, const Plc& plc)
     const bool there = std::ranges::any_of(
         plc.patches, [gone = gone](const Plc::Patch& patch) { return patch.tag == gone; });
     if (found != sizes.end() && !there)
-      throw OptionError(fmt::format(
-          "patch-size {}={}: patch {} lies on patch {} of another part, whose number both have; use {}", gone,
-          found->second, gone, stays, stays));
+      throw OptionError(
+          fmt::format("patch-size {}={}: patch {} lies on patch {} of another part, and both now have the "
+                      "number {}; use it",
+                      gone, found->second, gone, stays, stays));
   }
 }
 

@@ -52,8 +52,8 @@ void raise_order(MeshJob& job) {
   if (job.made.second_order.cancelled) job.control.stop();
 }
 
-/// Returns sets of the two smooth patches of walls, layers and shells. Chords on both sides of these cancel
-/// only if they are equally long.
+/// Unites the two smooth patches of each wall, layer or shell. Volumes that chords cut off on both sides
+/// cancel only if the chords are equally long.
 DisjointSets sides_of_walls(const Plc& plc) {
   std::vector<std::vector<Index>> smooth(plc.regions.size());
   for (Index p = 0; p < plc.patches.size(); ++p)
@@ -72,7 +72,9 @@ void MeshMaker::make(const Plc& plc, std::uint64_t seed) {
   if (take_rods() || take_sheathed_rods()) return;
   if (may_be_better_constrained()) {
     if (!refines_with_few_vertices() &&
-        take_constrained(plc, "its curved walls or gaps are far thinner than the elements", Lengths::kept))
+        take_constrained(
+            plc, "curved walls or gaps that are far thinner than the elements may take too many vertices",
+            Lengths::kept))
       return;
     set_up(plc, seed);
   }
@@ -124,7 +126,8 @@ bool MeshMaker::take_rods() {
     certify(job_, tolerance(*job_.plc));
     if (job_.made.guarantees_hold()) {
       is_constrained_ = true;
-      job_.made.check.notes.push_back("made of rings around rods that are far thinner than the elements");
+      job_.made.check.notes.push_back(
+          "made of rings of vertices around rods, which are far thinner than the elements");
       return true;
     }
   }
@@ -172,8 +175,8 @@ bool MeshMaker::is_good_with_sheaths(std::vector<SheathedRod>& rods) {
   return false;
 }
 
-/// Returns whether a refinement probably makes many times the elements that are needed. Cylinders that nearly
-/// touch look the same but need few elements, so `refines_with_few_vertices` decides.
+/// Returns whether a refinement probably makes many times the elements that are needed. The same is returned
+/// for cylinders that nearly touch, which need few elements, so `refines_with_few_vertices` decides.
 bool MeshMaker::may_be_better_constrained() const {
   if (job_.start != Start::automatic || !may_start_constrained(job_.given) ||
       !may_take_constrained(*job_.plc))
@@ -215,7 +218,8 @@ bool MeshMaker::replace_refined() {
   KnownNeighbours neighbours = std::move(job_.neighbours);
   const MeshOptions refined_with = job_.refined_with;
   if (take_constrained(*job_.plc,
-                       fmt::format("the refinement makes {} tets", job_.made.result.mesh.tets.size())))
+                       fmt::format("the refinement makes {} tets, many times as many as the sizes ask for",
+                                   job_.made.result.mesh.tets.size())))
     return true;
   job_.neighbours = std::move(neighbours);
   job_.refined_with = refined_with;
@@ -282,7 +286,8 @@ std::optional<PipelineResult> MeshMaker::from_constrained(const Plc& plc, const 
       come_nearer(plc, share);
       make(plc, given.mesh.seed);
     }
-    made.check.notes.push_back(fmt::format("begun with constrained tetrahedra, because {}", why));
+    made.check.notes.push_back(
+        fmt::format("begun with constrained tetrahedra, because without them: {}", why));
     if (std::ranges::all_of(made.check.findings, is_about_shape)) found = std::move(made);
   } catch (const Hopeless&) {
     found.reset();
@@ -307,7 +312,7 @@ void MeshMaker::take_new_complex() {
 void MeshMaker::move_to(const Plc& plc) {
   if (std::exchange(job_.plc, &plc) == &plc) return;
   if (source_ != nullptr && job_.options.exact)
-    source_->adapt(plc, job_.options);  // it refers to the complex
+    source_->adapt(plc, job_.options);  // exact geometry refers to the complex
 }
 
 void MeshMaker::come_nearer(const Plc& plc, double share) { nearer_ = tolerance(plc, 1).scaled(share); }

@@ -12,11 +12,12 @@
 
 namespace collarmesh::pipeline {
 
-/// Makes meshes of one complex after another, with a given seed. If a refinement makes far too many tets,
-/// starts from constrained tetrahedra instead.
+/// A maker of meshes of one complex after another, with given seeds. If a refinement makes far too many tets,
+/// it starts from constrained tetrahedra instead.
 class MeshMaker {
  public:
-  /// Whether edges of constrained tetrahedra must be about as short as the targets, as those of a refinement.
+  /// Whether edges of constrained tetrahedra must be about as short as the targets, as those of a refinement
+  /// are.
   enum class Lengths { any, kept };
 
   /// Keeps a reference to the job. `source` makes the complexes; null if there is only one.
@@ -24,7 +25,8 @@ class MeshMaker {
 
   /// Forgets everything about the previous complex.
   void take_new_complex();
-  /// Sets the complex of the kept mesh, the last one that the source built; it now lies here.
+  /// Sets the complex of the kept mesh: the one that the source built last, which has moved to this place
+  /// since.
   void move_to(const Plc& plc);
 
   /// Takes a complex through all stages. Throws Ended, PlcError and, with Fineness::as_asked, FarTooFine.

@@ -36,8 +36,8 @@ Point point_of(const Json& value, const std::string& place) {
   return {at[0].get<double>(), at[1].get<double>(), at[2].get<double>()};
 }
 
-/// Finds the feature nearest to a point by the features' triangles; segments of curves are triangles without
-/// area.
+/// A search for the feature nearest to a point, by the features' triangles; segments of curves are triangles
+/// without area.
 class Nearest {
  public:
   void add(const Plc& plc, Index a, Index b, Index c, Index feature) {
@@ -95,7 +95,7 @@ class Namer {
         find_(find) {}
 
   void name(const Json& names, const std::string& group) {
-    if (!names.is_object()) fail(group, "expected an object of names, {\"inlet\": 3}");
+    if (!names.is_object()) fail(group, "expected an object of names, such as {\"inlet\": 3}");
     std::set<Index> named;
     for (const auto& [name, value] : names.items()) {
       const std::string place = fmt::format("{}.{}", group, name);
@@ -105,12 +105,12 @@ class Namer {
       if (members.empty()) fail(place, "the list is empty");
       for (const Index member : members)
         if (!named.insert(member).second)
-          fail(place, fmt::format("the {} of number {} has a name already", what_, features_[member].tag));
+          fail(place, fmt::format("the {} with number {} already has a name", what_, features_[member].tag));
       Tag tag = features_[members.front()].tag;
       for (const Index member : members) tag = std::min(tag, features_[member].tag);
       chosen_.push_back({name, tag, std::move(members)});
     }
-    for (const Chosen& each : chosen_) {  // the text has the numbers before this change
+    for (const Chosen& each : chosen_) {  // last, because the text uses the old numbers
       for (const Index member : each.members) features_[member].tag = each.tag;
       plc_.names.set(dimension_, each.tag, each.name);
     }
@@ -133,14 +133,15 @@ class Namer {
       fail(place, fmt::format("no {} has the number {}{}", what_, tag, in_place_of(tag)));
   }
 
-  /// Returns a hint for messages: the number that replaces this tag where parts touch; empty if the input did
-  /// not have the tag.
+  /// Returns a hint for messages: the number that replaces this tag where parts touch; empty if no number
+  /// replaces it.
   std::string in_place_of(Tag tag) const {
     if (dimension_ != 2) return {};
     for (const auto& [gone, stays] : plc_.cleanup.replaced_tags)
       if (gone == tag)
-        return fmt::format(": it lies on patch {} of another part, whose number both have; use {}", stays,
-                           stays);
+        return fmt::format(
+            ": patch {} lies on patch {} of another part, and both now have the number {}; use it", gone,
+            stays, stays);
     return {};
   }
 

@@ -25,7 +25,7 @@ namespace {
 using pipeline::MeshJob;
 using pipeline::Tries;
 
-/// Determines the number of usable threads in the background while refinement runs.
+/// A thread that determines the number of usable threads while refinement runs.
 class ThreadCounter {
  public:
   explicit ThreadCounter(unsigned threads) {

@@ -27,9 +27,9 @@ constexpr double reserve_for_layers = 0.2;
 // reach smaller bounds.
 constexpr double reached_collar_angle = 130;
 
-/// Compares the number of vertices of a refinement with the number that its sizes ask for. That number, and
-/// whether thin features may cause more vertices, are costly, so they are computed only if a refinement
-/// inserts many, and the number only as far as a comparison needs it.
+/// A comparison of the number of vertices of a refinement with the number that its sizes ask for. It is
+/// costly to compute the latter, and whether thin features may cause more. So both are computed only if a
+/// refinement inserts many vertices, and the number only as far as a comparison needs it.
 class VertexCounter {
  public:
   VertexCounter(const MeshJob& job, Fineness fineness) : job_(job), fineness_(fineness) {}
@@ -60,15 +60,15 @@ class VertexCounter {
   }
 
  private:
-  // Parts without thin features mostly have less than `few` vertices, plus one for each tet that is left
-  // after coarsening.
+  // Parts without thin features mostly have fewer than `few` vertices plus one for each tet of the coarsened
+  // mesh.
   static constexpr std::size_t few = 1500;
   static constexpr double largest = 1e15;
 
   // Returns whether a refinement that has reached this number of vertices must end with too many. The moments
   // of progress reports depend on the clock, so this must be false throughout a refinement that does not
-  // exceed the limit at its end. While it bounds narrow cells, such a refinement may have twice as many
-  // vertices and some more; it drops those if it begins again.
+  // exceed the limit at its end. While it bounds narrow cells, such a refinement may have twice that limit
+  // plus `some_more` vertices; if it begins again, it drops them.
   bool will_exceed(std::size_t vertices) {
     constexpr std::size_t some_more = 5000;
     return fineness_ == Fineness::as_asked && vertices > few + some_more &&
@@ -87,7 +87,8 @@ class VertexCounter {
     is_known_ = tets < enough;
   }
 
-  // Returns whether thin places can have that many vertices. This costs far more than the prediction.
+  // Returns whether thin places may take more vertices than the sizes ask for. This costs far more than the
+  // prediction.
   bool may_be_thin() {
     if (!thin_) {
       const double thinner = thinner_than_asked(job_.given, job_.plc->bounds.diagonal());
@@ -147,8 +148,8 @@ void refine(MeshJob& job, Fineness fineness) {
   if (result.status == MeshStatus::cancelled && job.control.out_of_time()) job.control.stop();
   if (job.hit_bound())
     result.message = describe_explosion(*job.plc, job.budget.most(), result.where) +
-                     "; mend what nearly meets there, raise the repair tolerance (repair-tolerance), wrap "
-                     "it (repair wrap), or let it go on (max-vertices)";
+                     "; mend the features that nearly meet there, raise the repair tolerance "
+                     "(repair-tolerance), wrap it (repair wrap), or let the refinement go on (max-vertices)";
   if (result.status == MeshStatus::cancelled || result.status == MeshStatus::budget_hit) throw Ended();
   job.refined_with.bounds.lower_where_forced = result.has_narrow_cells;
 }

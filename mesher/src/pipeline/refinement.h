@@ -26,7 +26,7 @@ struct FarTooFine {
 enum class Fineness { any, as_asked };
 
 /// Makes the refined mesh. Throws Ended if the run is cancelled or a budget is hit; with Fineness::as_asked,
-/// throws FarTooFine, whether or not there is a mesh.
+/// throws FarTooFine, during the refinement or at its end.
 void refine(MeshJob& job, Fineness fineness = Fineness::any);
 
 }  // namespace collarmesh::pipeline

@@ -70,7 +70,7 @@ void complete_interior_nodes(MeshJob& job, remeshing::EditableMesh& edited) {
                                                     *job.made.interior_nodes);
 }
 
-/// Improves tets that miss their bounds, or nearly so, with operations that insert and remove vertices.
+/// Improves tets that miss or nearly miss their bounds, with operations that insert and remove vertices.
 void insert_where_poor(MeshJob& job, remeshing::EditableMesh& edited) {
   constexpr double nearly = 1.25;
   if (job.options.improve == 0) return;

@@ -25,8 +25,8 @@ namespace collarmesh::pipeline {
 
 namespace {
 
-/// Sets the size with which features are compared, and the tags of those with a size. No feature is collapsed
-/// where sizes depend on the place.
+/// Sets the size with which features are compared, and the tags of patches and curves that have sizes. No
+/// feature is collapsed where sizes depend on the place.
 void find_feature_size(const MeshOptions& mesh, RepairOptions& repair) {
   if (mesh.size_field) return;
   double size = mesh.size;
@@ -42,7 +42,7 @@ void find_feature_size(const MeshOptions& mesh, RepairOptions& repair) {
   repair.target_size = size;
 }
 
-/// Throws PlcError unless a coarser repair changed something and loses no part.
+/// Throws PlcError unless a coarser repair changed something and lost no part.
 void require_kept(const SoupPipelineResult& finer, const SoupPipelineResult& coarser) {
   const bool same =
       finer.plc.triangles.size() == coarser.plc.triangles.size() && finer.plc.points == coarser.plc.points;
@@ -130,15 +130,15 @@ void Tries::mesh_any_repaired(SoupPipelineResult& all) {
     all.repair = std::move(other.repair);
     has_mesh = true;
     made.check.notes.push_back(
-        all.repair.wrapped ? fmt::format("wrapped, because for the complex before {}", why)
-                           : fmt::format("repaired with a tolerance of {:.3g}, because with {:.3g} {}",
+        all.repair.wrapped ? fmt::format("wrapped, because without wrapping: {}", why)
+                           : fmt::format("repaired with a tolerance of {:.3g}, because with {:.3g}: {}",
                                          repair.tolerance, given.repair.tolerance, why));
     if (made.guarantees_hold() || end == End::exploded) break;
   }
   if (has_mesh && made.guarantees_hold()) return;
   if (!built_last) {
     try {
-      build(current, all);  // makes the source know this complex again
+      build(current, all);  // so that the source built this complex last
     } catch (const PlcError&) {
       if (!has_mesh) throw;
       return;
@@ -181,11 +181,11 @@ std::string Tries::repair_sharp_creases(RepairOptions& repair, SoupPipelineResul
     all.plc = std::move(other.plc);
     all.repair = std::move(other.repair);
     return fmt::format(
-        "repaired with a tolerance of {:.3g}, because with {:.3g} features meet at {:.2g} degrees at {}",
+        "repaired with a tolerance of {:.3g}, because with {:.3g}, features meet at {:.2g} degrees at {}",
         coarser.tolerance, job_.given.repair.tolerance, creases.front().angle,
         checks::At{creases.front().where});
   }
-  build(repair, all);  // makes the source know this complex again
+  build(repair, all);  // so that the source built this complex last
   return {};
 }
 
@@ -199,7 +199,7 @@ std::pair<Tries::End, std::string> Tries::attempt_simplest(RepairOptions& repair
   auto tried = attempt(all.plc, error);
   bool gave_up = false, better = false;
   if (tried.first == End::too_fine) {
-    better = maker_.take_constrained(all.plc, "thin features make far more vertices than the sizes ask for",
+    better = maker_.take_constrained(all.plc, "thin features take far more vertices than the sizes ask for",
                                      MeshMaker::Lengths::kept);
     gave_up = maker_.has_given_up_constrained(all.plc);
     if (!better) better = overlay_thin_features(repair, all, most_asked_for_);
@@ -207,7 +207,7 @@ std::pair<Tries::End, std::string> Tries::attempt_simplest(RepairOptions& repair
   maker_.set_fineness(Fineness::any);
   if (better) return {End::holds, {}};
   if (tried.first != End::too_fine) return tried;
-  build(repair, all);  // makes the source know this complex again
+  build(repair, all);  // so that the source built this complex last
   if (gave_up) maker_.give_up_constrained(all.plc);
   return attempt(all.plc, error);
 }
@@ -245,8 +245,8 @@ bool Tries::overlay_thin_features(RepairOptions& repair, SoupPipelineResult& all
     all.plc = std::move(other.plc);
     all.repair = std::move(other.repair);
     job_.made.check.notes.push_back(fmt::format(
-        "repaired with a tolerance of {:.3g}: with {:.3g}, features thinner than the feature size make more "
-        "than {} vertices, far more than the sizes ask for; feature-size 0 keeps them",
+        "repaired with a tolerance of {:.3g}, because with {:.3g}, features thinner than the feature size "
+        "take more than {} vertices, far more than the sizes ask for; feature-size 0 keeps these features",
         coarser.tolerance, before, most));
     return true;
   }
@@ -359,7 +359,7 @@ void Tries::try_narrow_places_otherwise(const Plc& plc) {
   if (find_better(true, [&] { maker_.make(plc, job_.given.mesh.seed); })) {
     seed_ = job_.given.mesh.seed;
     narrow_cells_ = otherwise;
-    made.check.notes.push_back(fmt::format("made with {} narrow places, because otherwise {}",
+    made.check.notes.push_back(fmt::format("made with {} narrow places, because otherwise: {}",
                                            were_left ? "a bounded ratio in" : "any ratio in", missed));
   }
   job_.budget.set_most(before);
@@ -390,7 +390,7 @@ double Tries::share_for_volumes() const {
 }
 
 /// Returns the largest relative deviation of a region's volume. Lowers the shares of the patches around each
-/// region whose volume is off by more than the limit of warnings to those that may bring it within the limit.
+/// region whose volume calls for a warning, so that it may come within the limit.
 double Tries::largest_loss(const Plc& plc, std::vector<double>* shares) const {
   constexpr double aim = 0.7, least = 0.25;
   const ShapeMeasures &input = job_.made.check.of_input, &mesh = job_.made.check.of_mesh;
@@ -407,7 +407,8 @@ double Tries::largest_loss(const Plc& plc, std::vector<double>* shares) const {
   return largest;
 }
 
-/// Returns whether the kept mesh is good and was refined with the distances of first order, without trouble.
+/// Returns whether the kept mesh is small, keeps every guarantee, and was refined with the default distances
+/// of first order, without hitting the bound on vertices.
 bool Tries::may_keep_volumes() const {
   constexpr std::size_t most_tets = 100'000;
   const PipelineOptions& given = job_.given;

@@ -9,9 +9,9 @@
 namespace collarmesh {
 
 /// Returns an upper limit far above the number of vertices that refinement needs for a complex without
-/// features much finer than the sizes. (Sheets at a hundredth of a degree, needles and folds make millions of
-/// vertices.) It does not depend on the distances of features. Cost: linear if there are only target edge
-/// lengths everywhere and in regions, else near linear.
+/// features much finer than the sizes. (Sheets that meet at a hundredth of a degree, needles and folds make
+/// millions of vertices.) It does not depend on the distances of features. Cost: linear if there are only
+/// target edge lengths everywhere and in regions, else near linear.
 std::size_t most_vertices_expected(const Plc& plc, const PipelineOptions& options);
 
 /// Returns an upper limit, at most a million, on the number of vertices that refinement needs on rods and

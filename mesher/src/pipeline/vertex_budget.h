@@ -17,7 +17,7 @@ class VertexBudget {
   /// Keeps a reference to the options.
   explicit VertexBudget(const PipelineOptions& given) : given_(given) {}
 
-  /// Bounds the number of vertices of further refinements, less tightly if no other ways are left. The bound
+  /// Bounds the number of vertices of further refinements, less tightly if there are no other ways. The bound
   /// is computed when it is needed.
   void bound(Ways ways);
 
@@ -35,7 +35,7 @@ class VertexBudget {
 
  private:
   const PipelineOptions& given_;
-  Ways ways_ = Ways::none;  // the ways that are left
+  Ways ways_ = Ways::none;  // whether there are other ways
   bool is_known_ = false;
   std::size_t most_ = 0;
 };

@@ -43,8 +43,8 @@ Areas areas_of(const TetMesh& mesh) {
 
 /// Returns how much layers may change the volume of each region. Walls keep their triangles, so only patches
 /// along which nodes slide count. Their triangles are within the tolerance of the surface before and after,
-/// so the volume in between is at most twice the tolerance times the area. Planar patches are as flat as the
-/// complex was built.
+/// so the volume in between is at most twice the tolerance times the area. For planar patches, the planar
+/// tolerance of the complex counts.
 std::map<Index, double> volume_allowances(const MeshJob& job, const Areas& areas,
                                           const SurfaceTolerance& tolerance) {
   std::set<Tag> walls;
@@ -89,7 +89,7 @@ std::string warning_of(const LayersReport& layers) {
       layers.reductions,
       [](const LayersReport::Reduction& a, const LayersReport::Reduction& b) { return a.nodes < b.nodes; });
   if (most != layers.reductions.end())
-    text += fmt::format(", at {} nodes because {}", most->nodes, most->why);
+    text += fmt::format(", mostly (at {} nodes) because {}", most->nodes, most->why);
   return text + "; use a smaller first height or thickness, a smaller count or a smaller size";
 }
 

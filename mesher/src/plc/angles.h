@@ -27,7 +27,7 @@ double angle_between(const Sector& s, const Sector& t);
 /// aperture for a round cone, and at least 90 for any flat open fan.
 double fold_angle(std::span<const Vector> rays, bool closed);
 
-/// Returns the points where a smooth patch folds by an angle below 90 degrees (such as the apex of a cone);
+/// Returns the points where a smooth patch folds to an angle below 90 degrees (such as the apex of a cone);
 /// they become vertices. Reads the patches and triangles of `plc` and its planar tolerance; needs no curves.
 std::vector<Index> find_folds(std::span<const Point> points, const Plc& plc,
                               std::span<const FeatureSegment> segments);

@@ -67,8 +67,8 @@ void report_nothing_solid(const Draft& draft, std::span<const PolygonSoup> soups
     if (!soups[s].hole_points.empty()) {
       const Point& hole = soups[s].hole_points.front();
       faults.add(PlcFault::Kind::empty,
-                 fmt::format("The facets enclose no region, because hole points empty what they enclose, the "
-                             "first one {} of {}; remove it to mesh the space around it.",
+                 fmt::format("The facets enclose no region, because hole points mark the space inside as "
+                             "empty; the first is {} of {}. Remove it to mesh the space around it.",
                              text(hole), draft.soup_names[s]),
                  {}, hole);
       return;
@@ -175,11 +175,11 @@ void warn_of_patches_outside(Plc& plc) {
     }
   }
   if (count == 0) return;
-  plc.warnings.push_back({fmt::format("Part of the surface bounds no region and is not meshed: an area of "
-                                      "{:.3g}, triangles: {}, the first one "
-                                      "at {} on a patch with tag {}. Close the surface there, or remove it.",
-                                      area, count, text(first), tag),
-                          first});
+  plc.warnings.push_back(
+      {fmt::format("Part of the surface bounds no region and is not meshed: an area of {:.3g} (triangles: "
+                   "{}), beginning at {} on a patch with tag {}. Close the surface there, or remove it.",
+                   area, count, text(first), tag),
+       first});
 }
 
 }  // namespace

@@ -106,7 +106,7 @@ class CurveFinder {
         if (s.edge == none && fan_of[p] != none) is_vertex_[p] = true;
   }
 
-  // Returns whether exactly one curve passes this point.
+  // Returns whether exactly one curve passes through this point.
   bool passes(Index point) const {
     const auto at = segments_at_[point];
     if (at.size() != 2) return false;

@@ -48,7 +48,7 @@ struct Extent {
   double low = INFINITY, high = -INFINITY;
 };
 
-// Returns the corners without duplicates.
+// Returns the corners of these triangles, with duplicates.
 std::vector<Index> corners_of(const Draft& draft, const std::vector<Index>& triangles) {
   std::vector<Index> points;
   points.reserve(3 * triangles.size());

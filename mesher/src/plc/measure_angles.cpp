@@ -336,8 +336,8 @@ class AngleFinder {
   std::vector<Crease> result_;
 };
 
-// If all normals are within this cosine of one of them, the triangles are within 30 degrees of each other:
-// their fan is too flat to fold.
+// If the cosines between all normals and one of them exceed this, the triangles are within 30 degrees of each
+// other: their fan is too flat to fold.
 constexpr double flat_cosine = 0.966;
 
 // Returns points where the triangles of some smooth patch face different ways; all other points are flat.

@@ -76,7 +76,7 @@ class RegionFinder {
   }
 
  private:
-  // The part of a chamber's inner shell that a soup has.
+  // The part of a chamber's inner shell that comes from one soup.
   struct Share {
     double area = 0;
     Index first_triangle = none;
@@ -329,11 +329,9 @@ class RegionFinder {
       }
       const PlacedPoint*& before = last[r];
       if (before != nullptr && (before->point.tag != p.point.tag || before->point.size != p.point.size))
-        warn(
-            p.point.point,
-            fmt::format("{} lies in the same region as {}, which has no effect: remove one of them, or close "
-                        "the facets that should part them.",
-                        description(p), description(*before)));
+        warn(p.point.point, fmt::format("{} lies in the same region as {}; the latter has no effect. Remove "
+                                        "one of them, or close the facets that should part them.",
+                                        description(p), description(*before)));
       before = &p;
       result.list[r].tag = p.point.tag;
       result.list[r].size = p.point.size;

@@ -32,7 +32,7 @@ PipelineOptions with_size(PipelineOptions options, double size) {
 }
 
 void require_valid(const PipelineOptions& options, std::span<const double> sizes, const Plc& plc) {
-  if (!options.coarsen) throw OptionError("only meshes that are coarsened can be predicted");
+  if (!options.coarsen) throw OptionError("only meshes that are coarsened can be predicted; set coarsen on");
   require_known_tags(options.mesh, plc);
   if (sizes.empty()) validate({options});
   for (const double size : sizes) {

@@ -15,9 +15,9 @@ namespace {
 
 // Limits on the number of pieces and cubes; beyond these, the remaining ones are not divided.
 constexpr std::size_t most_pieces = 40000, most_cubes = 20000;
-constexpr double most_pieces_of_segment = 1000, most_pieces_of_curves = 40000;  // in addition to one piece
-                                                                                // for each segment
-constexpr double least_share = 0.002;  // limit of the reduction by walls and strips, relative to the size
+// Limits for one segment, and for all curves in addition to one piece for each segment.
+constexpr double most_pieces_of_segment = 1000, most_pieces_of_curves = 40000;
+constexpr double least_share = 0.002;  // smallest size by walls and strips, relative to the target size
 
 /// Returns a value that rises from 0 to 1 between two bounds.
 double ramp(double x, double from, double to) { return std::clamp((x - from) / (to - from), 0.0, 1.0); }

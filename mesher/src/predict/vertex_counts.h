@@ -39,8 +39,8 @@ inline Model model_of_refinement() {
 
 /// Predicts the number of tets from the number of vertices and the share of directions around each that lead
 /// into regions. Infinite if a double cannot hold it. Cost: grows with the mesh, up to a bound that is linear
-/// in the complex. Stops as soon as there are `enough` of them and returns the number so far, because many
-/// questions need no more than that.
+/// in the complex. Stops as soon as it has counted `enough` tets and returns their number so far, which is
+/// all that many callers need.
 double count_tets(const Shape& shape, const MeshOptions& options, const Model& model = {},
                   double enough = INFINITY);
 

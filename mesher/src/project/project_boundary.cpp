@@ -1,6 +1,6 @@
-// Moves all boundary vertices onto exact geometry at once, then makes room where tets became invalid. Moves
-// vertices back that have no room, take faces too far from the complex, or leave thin tets outside narrow
-// places.
+// Moves all boundary vertices onto exact geometry at once, then relaxes the vertices around tets that became
+// invalid. Moves boundary vertices back where tets stay invalid, where faces are too far from the complex, or
+// where thin tets are no longer in narrow places.
 #include "collarmesh/project_boundary.h"
 
 #include <algorithm>
@@ -64,11 +64,12 @@ class BoundaryProjection {
   }
 
  private:
-  // Largest distances from the exact geometry, relative to the tolerance: of edges and triangles between
-  // vertices, and of vertices.
+  // Largest distances from the exact geometry, relative to the tolerance: `largest_sag` of edges and
+  // triangles between vertices, `most_off` of vertices before they move.
   static constexpr double largest_sag = 0.5, most_off = 0.75;
   // Limit of a vertex's move, relative to its shortest edge: a longer move would pass through other tets.
-  // (The faces of a CAD file may be farther from their edges than features are from each other.)
+  // Such moves arise because the faces of a CAD file may be farther from their edges than features are from
+  // each other.
   static constexpr double longest_way = 2;
   static constexpr int retries = 2;
 
@@ -76,7 +77,7 @@ class BoundaryProjection {
     Index point;
     Point to;
     bool limited;   // stays off the exact geometry because its feature is flat
-    bool hopeless;  // farther away than the tets there can follow
+    bool hopeless;  // the move exceeds `longest_way`
     bool done = false;
     std::uint32_t tried = 0;  // number of commits after which no place was found
   };
@@ -133,7 +134,7 @@ class BoundaryProjection {
       for (const auto& pair : faces.nodes) stays_.insert(pair.begin(), pair.end());
   }
 
-  // Makes room until these tets are good.
+  // Relaxes these tets, and moves vertices back, until all are good.
   void make_room(std::vector<Index> tets) {
     do {
       for (tets = room_.relax(std::move(tets)); !tets.empty();) tets = give_way(tets);
@@ -144,16 +145,16 @@ class BoundaryProjection {
 
   double way_of(Index slot) const { return distance(room_.origin(moves_[slot].point), moves_[slot].to); }
 
-  // Records whether a vertex is on its exact feature; then it may slide along it, unless it is the centre of
-  // a ball or a node of periodic faces.
+  // Records whether a vertex is on its exact feature. If so, it may slide along the feature, unless it is the
+  // centre of a ball or a node of periodic faces.
   void set_done(Index slot, bool done) {
     moves_[slot].done = done;
     room_.set_free(moves_[slot].point, done && stays_.count(moves_[slot].point) == 0);
   }
 
-  // Moves back vertices that passed the end of an exact curve: curves of CAD files may end beside their
-  // vertices, within tolerances. Moves back the end of such an edge that moved farther, until no such edge is
-  // left. Returns the tets around the vertices moved back.
+  // Moves back vertices that passed the end of an exact curve, because curves of CAD files may end beside
+  // their vertices, within tolerances. As long as an edge has turned too far (`on_course`), moves back the
+  // one of its ends that moved farther. Returns the tets around the vertices moved back.
   std::vector<Index> keep_courses() {
     std::vector<Index> around;
     for (bool turned = true; turned;) {
@@ -198,7 +199,7 @@ class BoundaryProjection {
     return around;
   }
 
-  /// Returns whether one of these vertices had moved.
+  /// Moves back the vertex that moved farthest. Returns false if none of them had moved.
   template <std::size_t n>
   bool move_farthest_back(const std::array<Index, n>& vertices, std::vector<Index>& around) {
     const auto moved = [&](Index p) { return distance(mesh_.points[p], room_.origin(p)); };
@@ -215,8 +216,8 @@ class BoundaryProjection {
   }
 
   // Moves back corners of thin tets that no longer are in a narrow place: moving vertices turns the normals
-  // that define narrow places. Moves back the corner that moved farthest; if no corner moved, does so for
-  // each tet around. Returns the tets around these vertices.
+  // that define narrow places. Moves back the corner that moved farthest; if no corner moved, treats each tet
+  // around it in the same way. Returns the tets around these vertices.
   std::vector<Index> keep_narrow_places() {
     std::vector<Index> around;
     if (!options_.bounds.thin_in_narrow_places_only) return around;
@@ -238,8 +239,8 @@ class BoundaryProjection {
     around.insert(around.end(), tets.begin(), tets.end());
   }
 
-  // Moves back, in each spoilt tet, the vertex that moved farthest, or all moved vertices. Returns the tets
-  // that are spoilt afterwards.
+  // In each spoilt tet, moves back the vertex that moved farthest to its exact feature or, if there is none,
+  // all corners. Returns the tets that are still spoilt.
   std::vector<Index> give_way(const std::vector<Index>& spoilt) {
     std::vector<Index> around;
     for (const Index t : spoilt) {
@@ -262,7 +263,7 @@ class BoundaryProjection {
   }
 
   // Tries again to move the vertices that were moved back, one by one, because later changes may have made
-  // room. Returns whether anything changed.
+  // this possible. Returns whether anything changed.
   bool retry(bool again) {
     bool any = false;
     for (Index slot = 0; slot < moves_.size() && !execution_.cancelled(); ++slot) {

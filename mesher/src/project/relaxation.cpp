@@ -13,16 +13,16 @@ namespace collarmesh::projection {
 
 namespace {
 
-// Sweeps go on as long as the penalty falls to the share `worthwhile` within `idle_sweeps`, at most `sweeps`
-// times.
+// At most `sweeps` sweeps are made, and only as long as every `idle_sweeps` of them reduce the penalty to the
+// share `worthwhile` of its value.
 constexpr unsigned sweeps = 50, idle_sweeps = 3;
 constexpr double worthwhile = 0.9;
 // Vertices move by steps that start with this share of their shortest edge and are halved this many times.
 constexpr double first_step = 0.3;
 constexpr unsigned halvings = 5;
-// Least gain of a move.
+// Least gain of a move, relative to the penalty before it.
 constexpr double least_gain = 1e-3;
-// Tets get room until they are as good as before the move, or until the smallest sine of their dihedral
+// Tets are relaxed until they are as good as at the beginning, or until the smallest sine of their dihedral
 // angles reaches this value.
 constexpr double good_shape = 0.2;
 // Least cosine between an edge of a curve and its initial direction.
@@ -110,7 +110,8 @@ bool Relaxation::in_vain(Index vertex) const {
   return stuck_[vertex] > 0 && !any_around_after(moves_, stuck_[vertex], vertex);
 }
 
-// Returns 1 if the tet keeps its bound and its shape; a smaller positive value if it has positive volume.
+// Returns 1 if the tet keeps its bound and its shape; else a smaller value, positive if the tet has positive
+// volume.
 double Relaxation::score(Index tet, const Corners& p) const {
   const double six = six_volume(p[0], p[1], p[2], p[3]);
   if (six <= 0) {
@@ -314,7 +315,7 @@ double Relaxation::sag_around(Index vertex) const {
   for (const Index f : faces_at_[vertex]) {
     const auto& [a, b, c] = mesh_.faces[f];
     see(2, mesh_.face_patch[f], (points[a] + points[b] + points[c]) / 3);
-    const Index next = vertex == a ? b : vertex == b ? c : a;  // another face has its other side
+    const Index next = vertex == a ? b : vertex == b ? c : a;  // another face has the other side
     see(2, mesh_.face_patch[f], 0.5 * (points[vertex] + points[next]));
   }
   for (const Index e : edges_at_[vertex]) {

@@ -25,9 +25,9 @@ struct Bounds {
   std::vector<double> patch_sag, curve_sag;
 };
 
-/// Makes room for placed vertices: moves the corners of the tets that became invalid, inside their regions or
-/// along their exact features, until the tets are within their bounds again. Changes since the last `commit`
-/// can be undone.
+/// A relaxation of the tets that became invalid when vertices were placed: it moves their other corners,
+/// inside regions or along exact features, until the tets are within their bounds again. Changes since the
+/// last `commit` can be undone.
 class Relaxation {
  public:
   /// Keeps a reference to the mesh. A tet that misses a bound at the beginning may still miss it, but not by
@@ -48,15 +48,16 @@ class Relaxation {
   /// Returns whether a mesh edge of a curve has turned by less than 60 degrees. If it turned by more, a
   /// vertex has passed its neighbour.
   bool on_course(Index edge) const;
-  /// Returns whether all such edges at the vertex are on course.
+  /// Returns whether all mesh edges of curves at the vertex are on course.
   bool keeps_course(Index vertex);
 
   void put(Index vertex, const Point& place);
   /// Sets whether `relax` may move a vertex. By default only vertices inside regions may move.
   void set_free(Index vertex, bool is_free) { free_[vertex] = is_free; }
 
-  /// Moves vertices of spoilt tets sweep by sweep, each to a place where the worst tet around it is better.
-  /// Returns the tets that still miss a bound, among `tets` and all tets around moved vertices.
+  /// Moves vertices of spoilt tets sweep by sweep, each to a place where the penalties of the tets around it
+  /// have a smaller sum. Returns the tets that still miss a bound, among `tets` and all tets around moved
+  /// vertices.
   std::vector<Index> relax(std::vector<Index> tets);
 
   void commit();
@@ -74,7 +75,7 @@ class Relaxation {
   struct Wanted {
     double shape = -1;  // negative until computed
     double ratio = 0;
-    double angle = 0;   // bound on its angles at creases
+    double angle = 0;   // bound on its dihedral angles in a collar
     bool thin = false;  // whether its angles are bounded instead of its ratio
   };
 
@@ -110,7 +111,7 @@ class Relaxation {
   mutable std::vector<Wanted> wanted_;  // by tet
   remeshing::ChangeTimes commits_;      // by number of commits
   remeshing::ChangeTimes moves_;        // by number of moves
-  std::vector<std::uint32_t> stuck_;    // by vertex: the last attempt without a better place, likewise
+  std::vector<std::uint32_t> stuck_;  // by vertex: number of moves at the last search without a better place
   std::vector<std::pair<double, Index>> worst_first_;
   std::vector<Index> around_;
   std::vector<std::pair<Index, Point>> log_;  // vertices and their previous places, in order

@@ -197,7 +197,7 @@ bool BlockRefinement::may_belong_to_block(Index vertex) const {
 }
 
 // Deals the entries to blocks: an entry of a cell, or of a triangle between cells, goes to a block if all
-// vertices of the cells belong to the block. Puts the other entries back.
+// vertices of the cells belong to the block. Puts the others back if they are still due.
 std::vector<std::vector<WorkQueue::Entry>> BlockRefinement::deal(const std::vector<WorkQueue::Entry>& taken) {
   constexpr std::uint16_t gone = Triangulation::no_owner - 1;
   std::vector<std::uint16_t> owner(taken.size());
@@ -329,8 +329,8 @@ BlockRefinement::Fate BlockRefinement::destroy(const WorkQueue::Item& item, Bloc
   }
 }
 
-// Inserts a candidate. Returns false if the block has no room for it. If no part of the complex is found from
-// the zone's vertices, the new cells get the region of the old ones.
+// Inserts a candidate. Returns false if the block has no room for it. If no vertex of the zone has nodes
+// (SurfaceNodes), the new cells get the region of the old ones.
 bool BlockRefinement::insert(const Candidate& candidate, Block block, Worker& worker) {
   ConflictZone& zone = worker.zone;
   const bool quiet = std::ranges::none_of(zone.vertices, [&](Index v) { return nodes_.any_at(v); });

@@ -16,7 +16,7 @@ class Budget {
   struct Usage {
     std::size_t vertices, cells, bytes;
     std::size_t planned_vertices;  ///< vertices that will be inserted for sure
-    Point last_vertex;             ///< if refinement does not end, it stays near this vertex
+    Point last_vertex;             ///< refinement that does not end stays near this vertex
     double expected_cells;         ///< estimated cells of the complete mesh
   };
 
@@ -44,8 +44,8 @@ class Budget {
   Outcome& outcome_;
   std::chrono::steady_clock::time_point started_;
   std::size_t peak_bytes_ = 0;
-  double reported_ = -1, fraction_ = 0;  // for progress: seconds at the last report, and the largest fraction
-                                         // so far
+  double reported_ = -1, fraction_ = 0;  // reported_: seconds at the last progress report; fraction_: the
+                                         // largest fraction so far
 };
 
 }  // namespace collarmesh

@@ -13,7 +13,7 @@ struct Candidate {
   Point ball_centre;
   Feature feature;      ///< feature that the point lies on; dimension 3: none
   Index start;          ///< a cell in conflict with the point
-  Index across = none;  ///< the mesh vertex that it faces across a gap
+  Index across = none;  ///< the mesh vertex that the point faces across a gap
 };
 
 }  // namespace collarmesh

@@ -11,9 +11,8 @@ namespace {
 constexpr double tet_offset = 0.05;
 // A cell whose volume is below this share of its longest edge cubed is flat.
 constexpr double least_volume = 1e-11;
-// Largest number of cells at a new vertex for which narrow cells may exceed the ratio. Between lines a vertex
-// may have as many cells as the product of the numbers of their vertices; in a mesh with bounded ratios it
-// has at most 60.
+// Largest number of cells at a new vertex for which narrow cells may exceed the ratio. A vertex between two
+// lines with m and n vertices may have m n cells; in a mesh with bounded ratios it has at most 60.
 constexpr std::size_t most_narrow_cells = 80;
 
 struct Shape {
@@ -46,12 +45,12 @@ void CellQuality::judge(Index cell, WorkQueue& queue, bool leaves_narrow_cells) 
       region == 0 ? std::max(domain_.options.exterior_radius_edge, domain_.options.bounds.radius_edge)
                   : domain_.options.bounds.radius_edge;
   const bool skinny = r2 > bound * bound * shape.shortest_squared_edge;
-  // Cocircular input makes cells whose volume is only rounding noise although their radius-edge ratio is
-  // small. Cells with all vertices on one patch are handled when the queue is empty.
   const auto fills_gap = [&] {
     return (region == 0 && facing_sheets_.is_within(cell, bound)) ||
            (leaves_narrow_cells && is_narrow(cell, region));
   };
+  // Cocircular input makes cells whose volume is only rounding noise although their radius-edge ratio is
+  // small. Flat cells with all vertices on one patch are handled when the queue is empty.
   if ((skinny || (shape.flat && region != 0 && !mesh_.on_one_patch(v))) && !fills_gap()) {
     if (domain_.in_box(centre)) queue.push(WorkQueue::skinny_cells, r2, {cell, mesh_.generation(cell)});
     return;

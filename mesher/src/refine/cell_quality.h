@@ -40,11 +40,11 @@ class CellQuality {
 
   /// Returns a candidate that destroys a cell, if there is one. Not thread-safe.
   std::optional<Candidate> candidate(Index cell) { return candidate(cell, random_); }
-  /// Returns such a candidate. Several threads may call this at once, each with its own offsets and for cells
-  /// of its own block.
+  /// Returns a candidate that destroys a cell, if there is one. Several threads may call this at once, each
+  /// with its own offsets and for cells of its own block.
   std::optional<Candidate> candidate(Index cell, RandomOffsets& random) const;
   /// Returns whether the cell of a queue entry still exists and is outside the collars. In the paper's
-  /// profile cells inside count, too.
+  /// profile skinny cells inside collars are due, too.
   bool due(const WorkQueue::Item& item) const {
     return mesh_.alive(item.entry.id, item.entry.stamp) &&
            (!collar_cells_.inside(item.entry.id) ||

@@ -25,7 +25,7 @@ class CollarCells {
   bool near(Index vertex) const { return vertex < near_.size() && near_[vertex] != 0; }
   /// Returns whether any vertex of a zone is near.
   bool any_near(const ConflictZone& zone) const;
-  /// Returns whether a ball contains a point that lies in the Voronoi cells of all these vertices.
+  /// Returns whether a ball contains p. Precondition: p lies in the Voronoi cells of all these vertices.
   bool holds(const std::array<Index, 3>& vertices, const Point& p) const;
 
   void cells_made(const ConflictZone& zone, Index vertex);
@@ -60,7 +60,7 @@ class CollarCells {
   GrowingArray<std::uint8_t> inside_, near_;     // flags by cell and by vertex; empty without balls
   std::unordered_map<Index, TakenIn> taken_in_;  // by cell
   std::vector<Index> balls_;                     // balls near the last vertex
-  Index last_vertex_ = none;                     // none if there are too many to list
+  Index last_vertex_ = none;                     // none if balls_ may lack balls near it
   std::vector<Index> cells_;                     // scratch
 };
 

@@ -122,8 +122,8 @@ bool CollarCreator::create_remaining() {
 void CollarCreator::create_on_curve(Index curve, BallReason reason) {
   const OpenCreases::Chain chain = open_creases_.close(curve);
   isolated_.erase(curve);
-  // Only the balls on rims are centred on mesh vertices: on other curves the surface of a repaired link did
-  // not settle.
+  // Centre balls on mesh vertices on closed curves only: on other curves this kept the repair of the collar
+  // surface from ending.
   std::vector<PlaceOnCurve> vertices;
   if (domain_.plc.curves[curve].closed) vertices = curves_.vertices_amid(curve);
   const Index at_chain = curves_.remove_chain(curve),

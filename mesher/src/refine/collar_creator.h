@@ -67,16 +67,17 @@ class CollarCreator {
   void cells_made(const ConflictZone& zone, Index vertex);
   /// Creates the balls of curves that have become isolated.
   void create_on_isolated_curves();
-  /// Creates the balls of a crease instead of splitting its subsegment, if its chain has started. Returns
-  /// whether it did so; then the subsegment no longer exists. Precondition: the subsegment exists.
+  /// Creates the balls of a crease instead of splitting its subsegment, unless the crease still waits for
+  /// points of its chain. Returns whether it did so; then the subsegment no longer exists. Precondition: the
+  /// subsegment exists.
   bool create_at_subsegment(Index subsegment);
   /// Creates the balls of all creases that have none yet. Returns false if there are no such creases.
   /// Precondition: the queue is empty, so the ends of creases have their balls.
   bool create_remaining();
 
-  /// Returns the gap size in the current mesh.
+  /// Returns the explorer of gap sizes in the current mesh.
   GapExplorer& gap_size();
-  /// Returns the explorer of gaps; null unless it was used.
+  /// Returns the explorer of gap sizes; null if it was never used.
   const GapExplorer* gap_explorer() const { return gap_.get(); }
   /// For tests: sets a function to call for every ball.
   void observe(std::function<void(const CollarBall&)> observer) { observer_ = std::move(observer); }

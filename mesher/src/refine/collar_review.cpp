@@ -231,7 +231,7 @@ void CollarReview::find_exposed_vertices(const std::vector<Index>& cells) {
   sort_uniquely(exposed_);
 }
 
-// Returns the cells of regions outside the collar that have the vertex.
+// Returns the cells at a vertex that lie in a region and outside the collars.
 const std::vector<Index>& CollarReview::cells_outside(Index vertex) {
   mesh_.incident_cells(vertex, scratch_);
   std::erase_if(scratch_, [&](Index cell) { return surface_.region(cell) == 0 || cells_.inside(cell); });

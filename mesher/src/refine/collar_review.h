@@ -83,7 +83,7 @@ class CollarReview {
   CollarTriangles triangles_;
   std::vector<FaceId> poor_;                  // triangles to review, inside regions
   std::unordered_map<Index, Index> ball_at_;  // by mesh vertex on a crease
-  std::vector<Index> exposed_;                // such vertices to review
+  std::vector<Index> exposed_;                // exposed mesh vertices on creases, to review
   std::vector<Index> scratch_;
 };
 

@@ -12,9 +12,9 @@ namespace collarmesh {
 
 /// The collar surface as a restricted Delaunay triangulation (paper, section 4): the triangles between cells
 /// inside and outside the collars. Decides whether they represent the surface well enough to be stitched to
-/// the balls' centres, and finds the points that repair it elsewhere, lower dimension first.
-/// State: the faces whose dual edges are known to meet no ball. CollarReview asks which triangles are poor,
-/// and decides when; RipAndStitch takes them all. The loop reports insertions.
+/// the balls' centres; if not, finds the points that repair it, lower dimension first.
+/// State: the faces whose dual edges are known to meet no ball. CollarReview decides when to ask which
+/// triangles are poor; RipAndStitch takes all triangles. The loop reports insertions.
 class CollarSurface {
  public:
   /// Keeps all by reference.
@@ -43,8 +43,9 @@ class CollarSurface {
   /// Returns whether the book tet between two triangles of consecutive balls would be inverted, or its angle
   /// too large.
   bool poor_book(const CollarTriangle& t, const CollarTriangle& u, const std::array<Index, 2>& edge) const;
-  /// Returns whether an edge leads from one sheet of a smooth patch to another. The edge and the ball's
-  /// centre form a face between two regions. Always false in balls smaller than the distance tolerance.
+  /// Returns whether an edge leads from one sheet of a smooth patch to another. Always false in balls smaller
+  /// than the distance tolerance. Precondition: the edge and the ball's centre form a face between two
+  /// regions.
   bool spans_sheets(const CollarBall& ball, Index a, Index b) const;
   /// Returns the point that repairs a triangle: its representation point, or the nearest point of an arc
   /// where a patch through the ball's centre meets the sphere. Returns nothing if there is none, or if it is

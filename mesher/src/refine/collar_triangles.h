@@ -6,26 +6,26 @@
 
 namespace collarmesh {
 
-/// A face between a cell inside the collars and a cell outside, with the ball that its dual edge enters first
-/// and the point where it enters (paper, Definition 9).
+/// A face whose dual edge meets the collar surface, usually between a cell inside the collars and one
+/// outside, with the ball that the edge enters first and the point where it enters (paper, Definition 9).
 struct CollarTriangle {
   FaceId face;               ///< seen from the cell outside
   std::uint32_t generation;  ///< generation of that cell
   Index ball;
   Point representation;
-  bool several;             ///< its dual edge meets the collar surface more than once
+  bool several;             ///< the dual edge meets the collar surface more than once
   bool poor_alone = false;  ///< poor regardless of its neighbours
   bool poor = false;
   /// A smooth patch that is too far from the triangle between an edge of the face and the ball's centre; none
   /// if there is no such patch.
   Index bent_on = none;
-  Point bent_at = {};  ///< a point inside a side of that triangle
+  Point bent_at = {};  ///< a point on an edge of that triangle
 };
 
 /// Collar triangles by their faces. Records of a removed cell are reused for the next cell in its slot.
 class CollarTriangles {
  public:
-  /// Returns the record of a face; none if there is none since the cell was created.
+  /// Returns the record of a face; null if none was made since the cell was created.
   CollarTriangle* find(FaceId face, std::uint32_t generation) {
     for (Index at = first(cell_of(face)); at != none; at = triangles_[at].next)
       if (triangles_[at].face == face && triangles_[at].generation == generation) return &triangles_[at];

@@ -107,8 +107,8 @@ void CurveChains::point_resolved(Index point) {
   if (!points_[point].dormant && open_creases_.note_resolved(curve)) chain_resolved(curve, piece);
 }
 
-// Has balls created on a crease whose chain was split and is resolved: queues a piece, in place of whose
-// split they are placed; in the paper's profile marks the crease, since they must wait until it is isolated.
+// Requests the balls of a crease whose chain was split and is resolved: queues a piece, whose split creates
+// them instead. In the paper's profile they must wait until the crease is isolated, so only marks the crease.
 void CurveChains::chain_resolved(Index curve, Index piece) {
   if (domain_.is_papers())
     open_creases_.touch(curve);
@@ -354,8 +354,8 @@ void CurveChains::drop_ball(const Split& split) {
   s.ball = none;
 }
 
-// Splits a subsegment at a vertex. If the vertex has created a ball at an end of the curve, the piece is a
-// different one now.
+// Splits a subsegment at a vertex. If inserting the vertex has created a ball at an end of the curve, another
+// piece has taken the place of the subsegment.
 void CurveChains::split_at(const Split& split, Index vertex) {
   Index piece = split.link.subsegment;
   if (!is_there(split.link)) {

@@ -19,8 +19,8 @@
 
 namespace collarmesh {
 
-/// The chains of curves: each curve is cut into subsegments, whose protective balls keep other features'
-/// samples away until they are split.
+/// The chains of curves: each curve is cut into subsegments. Until a subsegment is split, its protective ball
+/// keeps other features' samples away.
 ///
 /// Chains run ahead of the mesh, like the paper's one-dimensional meshes: a subsegment ends at mesh vertices
 /// or at unresolved points. A subsegment that a vertex encroaches is split by an unresolved point, which is
@@ -43,7 +43,7 @@ class CurveChains {
   /// The place where a curve that is no crease leaves the ball at its end.
   struct ClippedEnd {
     Index curve, ball;
-    Index point;  ///< its unresolved point
+    Index point;  ///< the unresolved point there
   };
   /// Keeps all by reference.
   CurveChains(const Domain& domain, const RefinedMesh& mesh, const CollarSystem& collars,
@@ -67,7 +67,7 @@ class CurveChains {
   /// Returns the subsegment in whose protective ball a candidate with this zone lies deepest (paper,
   /// Procedure 2); none if it encroaches none.
   Index encroached(const ConflictZone& zone, const Candidate& candidate) const;
-  /// Returns whether any ball is found from this mesh vertex.
+  /// Returns whether the centre of any ball lies in the Voronoi cell of this mesh vertex.
   bool any_at(Index mesh_vertex) const { return balls_.first_at(mesh_vertex) != none; }
   /// Returns the unresolved end of a subsegment that is inserted instead of a candidate that encroaches the
   /// subsegment: of the medial ends, the one nearer to the candidate. None if there is no such end.
@@ -93,7 +93,7 @@ class CurveChains {
   void drop_ball(const Split& split);
   /// Splits a subsegment by a mesh vertex at the place. Precondition: the vertex was reported to the sizes.
   void split_at(const Split& split, Index vertex);
-  /// Queues a subsegment that is too coarse again, if it still exists after another insertion.
+  /// Queues again a subsegment that is too coarse, if it still exists after another insertion.
   void queue_again(const Split& split);
 
   /// Reports that an unresolved point has become a mesh vertex; updates the subsegments that end there.

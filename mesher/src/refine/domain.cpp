@@ -81,8 +81,8 @@ double Domain::floor_at(const Point& p) const {
   return std::min(floor, std::max(floor_per_tiny_edge * edge, precise));
 }
 
-// Returns the nearest point in the plane of the patch. In a facet that is planar only within a tolerance,
-// normals of needle triangles are unreliable.
+// Returns the nearest point in the plane of the patch. Uses the patch's normal, because normals of needle
+// triangles are unreliable in a facet that is planar only within a tolerance.
 Point Domain::on_plane(Index patch, const Point& p) const {
   const Plc::Patch& plane = plc.patches[patch];
   return p - dot(p - frame.inside(plane.origin), plane.normal) * plane.normal;

@@ -206,7 +206,7 @@ class Extraction {
     permute(mesh_.face_tag, order);
   }
 
-  // Removes the feature of vertices that lie in the plane of their patch, but may lie beside the patch: the
+  // Removes the patch from vertices that no face has. They lie in its plane, but may lie beside it: the
   // middle of a triangle can be outside the patch.
   void forget_features_off_the_surface() {
     std::vector<bool> on_surface(mesh_.points.size(), false);

@@ -15,7 +15,8 @@ constexpr std::size_t bytes_per_pair = 32;
 // Largest width of a gap, relative to the radius of the ball to split. In wider gaps the distance of samples
 // is already about the width of the gap.
 constexpr double widest_gap_per_radius = 0.9;
-// Least distance of a new vertex from all vertices on its own side, relative to that radius.
+// Least distance of a new vertex from all vertices on its own side, relative to the radius of the ball to
+// split.
 constexpr double least_spacing_per_radius = 0.35;
 // Least cosine between the direction across the gap and the normals of sheets that face each other.
 constexpr double least_facing = 0.97;

@@ -47,7 +47,7 @@ class GapExplorer final : public GapSize {
   std::size_t queries() const { return queries_; }
   /// Returns the number of vertices whose cells were explored, over all queries.
   std::size_t explored() const { return explored_; }
-  /// Returns the number of elements below the nodes of these cells whose distance was computed.
+  /// Returns the number of elements whose distance was computed, over all queries.
   std::size_t interviews() const { return interviews_; }
 
  private:
@@ -64,8 +64,8 @@ class GapExplorer final : public GapSize {
 
   void find_borders();
   double explore(const Feature& at, const Point& x, double bound);
-  /// Calls witness(a, b, c) with the points of each element below the nodes whose features do not contain
-  /// `at`, if the element is nearer to x than the bound, which may be lowered.
+  /// Calls witness(a, b, c) with the points of each element below the nodes that is nearer to x than the
+  /// bound and whose features do not contain `at`. `witness` may lower the bound.
   template <class Found>
   void interview(std::span<const Index> nodes, const Feature& at, const Point& x, const double& squared_bound,
                  const Found& witness);

@@ -16,7 +16,7 @@ namespace {
 
 bool outside(const Plc::Patch& patch) { return patch.regions[0] == 0 && patch.regions[1] == 0; }
 
-// The features to keep, and their new numbers by old ones; `none` for removed features.
+// The features to keep, and their new numbers by old numbers; `none` for removed features.
 struct KeptNumbers {
   std::vector<Index> kept, number;
 
@@ -120,7 +120,7 @@ void require_valid(const MeshOptions& o) {
   options.mesh = o;
   options.coarsen = false;  // coarsening validates its own options
   validate(options);
-  require(o.edges_per_hole >= 0, "edges per hole must not be negative; 0 switches them off");
+  require(o.edges_per_hole >= 0, "edges per hole must be at least 0 (0: no minimum)");
   require(o.exterior_radius_edge >= 1, "the exterior radius-edge bound must be at least 1");
   require(o.representation_angle > 0 && o.representation_angle < 90,
           "the representation angle must be between 0 and 90 degrees");

@@ -7,8 +7,8 @@ namespace collarmesh {
 namespace {
 
 constexpr unsigned most_gradings = 20;
-// Elements between two surfaces are as fine as the surfaces: if the options ask for elements across gaps,
-// sizes grow from the surfaces by this much per unit length.
+// If the options ask for elements across gaps and give no gradation, sizes grow from the surfaces by this
+// much per unit length, so that elements inside a gap are nearly as fine as those on its surfaces.
 constexpr double gradation_in_gaps = 0.25;
 
 }  // namespace

@@ -43,7 +43,7 @@ class OpenCreases {
   /// Returns the chain of a crease. Precondition: the crease is open.
   const Chain& chain(Index curve) const { return creases_.at(curve).chain; }
 
-  /// Reports that the chain of a curve starts with one more unresolved point.
+  /// Reports that the crease waits for one more unresolved point of its chain.
   void note_unresolved(Index curve) {
     if (Crease* crease = find(curve)) ++crease->chain.unresolved;
   }

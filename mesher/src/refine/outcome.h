@@ -28,7 +28,7 @@ class Outcome {
   /// Returns the status: `complete` unless the refinement was stopped.
   MeshStatus status() const { return status_; }
   const std::string& message() const { return message_; }
-  /// Returns the place, in the frame.
+  /// Returns the place that the message is about, in the frame.
   const Point& where() const { return where_; }
 
  private:

@@ -6,8 +6,8 @@ namespace collarmesh {
 
 namespace {
 
-// Number of offsets that are tried if they lead into a collar; the first `offsets_of_full_length` have full
-// length.
+// Number of offsets that are tried if all of them lead into a collar; the first `offsets_of_full_length` have
+// full length.
 constexpr int most_offsets = 16, offsets_of_full_length = 8;
 
 }  // namespace

@@ -331,7 +331,7 @@ bool Refinement::check_collars() { return !outcome_.given_up() && collar_review_
 bool Refinement::stopped(std::size_t planned_vertices) {
   if (most_with_narrow_cells_ > 0 && mesh_.vertex_count() > most_with_narrow_cells_)
     outcome_.stop(MeshStatus::budget_hit, mesh_.point(mesh_.last_vertex()),
-                  "narrow places take too many vertices", "leave them");
+                  "narrow places take too many vertices", "leave their ratio unbounded");
   const bool spent = outcome_.stopped() || is_budget_spent(planned_vertices);
   narrow_cells_are_dear_ =
       most_with_narrow_cells_ > 0 && outcome_.status() == MeshStatus::budget_hit && !budget_.is_out_of_time();
@@ -396,7 +396,7 @@ WorkCounts Refinement::work_counts() const {
   return counts;
 }
 
-// Returns the number of vertices that only cells in collars have: no cell outside and no stitched tet.
+// Returns how many vertices of cells in collars belong to no cell outside and no stitched tet.
 std::size_t Refinement::ripped_out() const {
   enum : std::uint8_t { elsewhere, ripped, kept };
   std::vector<std::uint8_t> where(mesh_.vertex_count(), elsewhere);

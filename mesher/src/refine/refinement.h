@@ -51,8 +51,7 @@ class Refinement {
 
   /// For tests: sets a function to call whenever no skinny cell is left, before anything else is inserted.
   void observe_quality_phases(std::function<void()> observer) { observer_ = std::move(observer); }
-  /// For tests: sets a function to call for every ball that is created in the pass, with the mesh as it is
-  /// then.
+  /// For tests: sets a function to call for every ball at the time when it is created in the pass.
   void observe_collars(std::function<void(const CollarBall&)> observer) {
     collar_creator_.observe(std::move(observer));
   }
@@ -60,7 +59,7 @@ class Refinement {
   const Feature& feature_of(Index vertex) const { return mesh_.feature(vertex); }
   const Triangulation& triangulation() const { return mesh_.triangulation(); }
   bool in_collar(Index cell) const { return collar_cells_.inside(cell); }
-  /// Returns the gap size in the current mesh.
+  /// Returns the explorer of gap sizes in the current mesh.
   GapExplorer& gap_size() { return collar_creator_.gap_size(); }
 
   /// Turns on the recording of steps. Call it before run().

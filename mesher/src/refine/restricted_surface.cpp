@@ -25,7 +25,7 @@ std::vector<FaceId> RestrictedSurface::marked_faces() const {
   });
 }
 
-// The box's corners lie outside every region.
+// Labels a cell from a corner of the box, because the box's corners lie outside every region.
 void RestrictedSurface::label_from_outside(Index cell, Workspace& w) {
   w.crossings_.clear();
   if (!nodes_.hierarchy().empty()) nodes_.crossings(mesh_.point(0), mesh_.circumcentre(cell), w.crossings_);
@@ -298,7 +298,7 @@ void RestrictedSurface::unmark(FaceId face, Workspace& w) {
   w.free_records_.push_back(record_of(face));
 }
 
-// Marks a face if it is restricted. Precondition: crossings_ are those of its dual edge.
+// Marks a face and makes its record. Precondition: crossings_ are those of its dual edge, at least one.
 void RestrictedSurface::restrict_face(FaceId face, Workspace& w) {
   const Index record = new_record(w);
   mark(face, record);

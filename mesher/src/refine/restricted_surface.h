@@ -68,7 +68,7 @@ class RestrictedSurface {
   const RestrictedTriangle& triangle(FaceId face) const { return record(face).triangle; }
   Index patch(FaceId face) const { return patch_of(triangle(face)); }
   const TriangleNotes& notes(FaceId face) const { return record(face).notes; }
-  // Notes of the parts that judge them:
+  // Notes of the parts that judge marked faces:
   void note_judged(FaceId face) { own_notes(face).judged = true; }
   void note_given_up(FaceId face) { own_notes(face).given_up = true; }
   void note_needed(FaceId face) { own_notes(face).surface_needs_it = true; }
@@ -114,8 +114,8 @@ class RestrictedSurface {
   /// in its block, and `has_room` is true; otherwise a record would be added to those that all threads share.
   void cells_vanish(const ConflictZone& zone, Workspace& workspace);
   void cells_made(const ConflictZone& zone, Index vertex, Workspace& workspace);
-  /// To be called for each new cell, in place of cells_vanish and cells_made, if no vertex of the zone has
-  /// nodes (SurfaceNodes). The cell's region is that of the cells that it replaces.
+  /// Labels a new cell with the region of the cells that it replaces. Call it instead of cells_vanish and
+  /// cells_made if no vertex of the zone has nodes (SurfaceNodes).
   void quiet_cell_made(Index cell, Index region) { labels_[cell] = {.region = region}; }
 
   /// Reports a new ball: checks whether it contains the places of this cell's triangles.

@@ -7,7 +7,7 @@
 
 namespace collarmesh {
 
-/// The tets that replace the cells inside the collars, in mesh vertices.
+/// The tets that replace the cells inside the collars, with mesh vertices as corners.
 struct Stitched {
   struct Tet {
     std::array<Index, 4> corners;
@@ -27,8 +27,8 @@ struct Stitched {
   std::vector<Tet> tets;
   std::vector<Face> faces;
   std::vector<Edge> edges;
-  std::vector<Index> open;  ///< mesh vertices of faces between regions that lie on no patch between them, and
-                            ///< of cells that would have a corner twice
+  std::vector<Index> open;  ///< mesh vertices of faces that separate regions without lying on a patch, and of
+                            ///< cells that would have a corner twice
 };
 
 /// Rip and stitch (paper, Procedure 5). `extract` drops the cells inside the collars, and this class makes

@@ -19,7 +19,7 @@ void judge(const char* option, const std::map<Tag, double>& sizes, double size,
                                  tag, asked, size));
 }
 
-/// Returns the shortest edge that the number of elements per full circle leads to anywhere.
+/// Returns the shortest edge length that the number of elements per full circle asks for.
 double smallest_of(const CurvatureSizes& sizes) {
   double smallest = INFINITY;
   for (const double each : sizes.triangle) smallest = std::min(smallest, each);

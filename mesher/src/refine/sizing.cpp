@@ -57,10 +57,10 @@ double default_size(const Plc& plc, const MeshOptions& options) {
 }
 
 void Sizing::refuse(double asked, const Point& place) {
-  throw OptionError(fmt::format(
-      "size-field: the size is {} at ({:.9g}, {:.9g}, {:.9g}); sizes must be positive, and infinite "
-      "where none is asked for",
-      asked, place.x, place.y, place.z));
+  throw OptionError(
+      fmt::format("size-field: the size is {} at ({:.9g}, {:.9g}, {:.9g}); sizes must be positive; infinity "
+                  "asks for no size",
+                  asked, place.x, place.y, place.z));
 }
 
 double Sizing::curve_size(Index curve, std::size_t first, std::size_t last, const Point& p) const {

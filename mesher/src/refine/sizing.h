@@ -26,8 +26,8 @@ class Sizing {
   /// edge length: in wider gaps a bounded ratio costs little, and angles are better.
   static constexpr double narrow_gap_per_size = 0.1;
 
-  /// Makes the sizes. Functions of a place throw OptionError if the field returns no positive size there; an
-  /// infinite size means none.
+  /// Makes the sizes. Functions that take a place throw OptionError if the field returns no positive size
+  /// there; an infinite size sets no bound.
   Sizing(const Plc& plc, const MeshOptions& options, const Frame& frame);
 
   /// Returns the largest allowed circumradius of a cell of this region at this point; infinite outside.

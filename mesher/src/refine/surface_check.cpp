@@ -83,7 +83,8 @@ bool SurfaceCheck::another_round() {
   if (++rounds_ <= most_rounds) return true;
   outcome_.give_up(
       mesh_.point(mesh_.last_vertex()),
-      fmt::format("the surface did not settle in {} rounds of repairs; the last vertex is", most_rounds),
+      fmt::format("the surface still had to be repaired after {} rounds of repairs; the last vertex is",
+                  most_rounds),
       "raise distance, or try a smaller size or another seed");
   return false;
 }
@@ -136,8 +137,8 @@ bool SurfaceCheck::check_patch_topology(const std::vector<FaceId>& faces) {
   return found;
 }
 
-// Returns whether p is within the tolerance of the patch. The search starts at triangle `near`, which becomes
-// the triangle that proves it.
+// Returns whether p is within the tolerance of the patch. The search starts at triangle `near`; sets `near`
+// to the triangle found within the tolerance.
 bool SurfaceCheck::is_near_patch(const Point& p, Index patch, Index& near) const {
   const SurfaceTolerance& tolerance = domain_.tolerance;
   const Index found = triangle_within_tolerance(
@@ -187,7 +188,7 @@ bool SurfaceCheck::refine_distant_triangles(const std::vector<FaceId>& faces) {
   return found;
 }
 
-// Inserts a point of a patch for which no triangle was found, because dual edges cross it back and forth.
+// Seeds a patch for which no triangle was found, because dual edges cross it back and forth.
 void SurfaceCheck::seed_missed_patch(Index patch) {
   const std::size_t seeds = seeds_per_missed_patch << std::min(rounds_, 16U);
   for (const Index point : spread_points(domain_.patch_points[patch], domain_.points, seeds))
@@ -334,8 +335,8 @@ bool SurfaceCheck::at_boundary(FaceId face) const {
   return regions[0] != regions[1] && (regions[0] == 0 || regions[1] == 0);
 }
 
-// Queues flat cells for destruction. A cell with all vertices on one planar patch cannot stay between two
-// regions or inside one, so its centre is inserted. At a domain boundary relabel_flat_cells handles it.
+// Queues a triangle of each cell that is flat on a patch between two regions or inside one, because the cell
+// cannot stay there. At a domain boundary relabel_flat_cells handles it.
 bool SurfaceCheck::check_flat_cells() {
   bool found = false;
   for (const Index cell : cells_on_surface()) {

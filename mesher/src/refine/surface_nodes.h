@@ -12,8 +12,8 @@
 
 namespace collarmesh {
 
-/// The elements of the complex that are found from a mesh vertex: nodes of a hierarchy over all elements,
-/// coarse ones while the vertex's Voronoi cell is large.
+/// The elements of the complex near each mesh vertex, as nodes of a hierarchy over all elements: coarse nodes
+/// while the vertex's Voronoi cell is large.
 ///
 /// Invariant: the nodes of a vertex cover every element that meets the box of its Voronoi cell. There may be
 /// more nodes; they are filtered now and then. The loop reports insertions, BlockRefinement reports those

@@ -39,9 +39,9 @@ class TriangleQuality {
   FaceId encroached(const ConflictZone& zone, const Candidate& candidate) const;
   /// Returns a candidate that destroys a triangle, if there is one.
   std::optional<Candidate> candidate(FaceId face);
-  /// Returns such a candidate if no vertex of the triangle lies on another sheet and a cell beside it is in
-  /// conflict with the candidate. Otherwise returns nothing: only the loop can decide. Several threads may
-  /// call it at once, each with its own offsets and for triangles in its own block.
+  /// Returns a candidate that destroys a triangle if no vertex of the triangle lies on another sheet and a
+  /// cell beside it is in conflict with the candidate. Otherwise returns nothing: only the loop can decide.
+  /// Several threads may call it at once, each with its own offsets and for triangles in its own block.
   std::optional<Candidate> candidate_beside(FaceId face, RandomOffsets& random) const;
   /// Returns whether the triangle of a queue entry must still be destroyed.
   bool due(const WorkQueue::Entry& entry) const;

@@ -8,8 +8,8 @@ namespace collarmesh {
 
 namespace {
 
-// Returns the exponent of a ball's squared radius. It is the stamp of a queued point: a stale entry has
-// another one.
+// Returns the exponent of a ball's squared radius. It is the stamp of a queued point: an entry with another
+// stamp is stale.
 int exponent(double squared_radius) { return std::ilogb(std::max(squared_radius, 1e-300)); }
 
 }  // namespace
@@ -58,8 +58,8 @@ void UnresolvedPoints::resolve(Index point, Index vertex) {
   points_[point].vertex = vertex;
 }
 
-// Returns the point that a candidate warps to. All points near enough are found from one of the zone's
-// vertices.
+// Returns the point that a candidate warps to. All points near enough lie in the Voronoi cell of one of the
+// zone's vertices.
 Index UnresolvedPoints::warp_target(const ConflictZone& zone, const Candidate& candidate) const {
   Index best = none;
   double reach = theta_ * theta_ * candidate.squared_radius;

@@ -21,10 +21,10 @@ class UnresolvedPoints {
     Point point;
     Feature feature;
     Index object = none;   // index in objects_; none when resolved or withdrawn
-    Index vertex = none;   ///< the mesh vertex that it became
-    Index across = none;   ///< the mesh vertex that it faces across a gap
+    Index vertex = none;   ///< the mesh vertex that the point became
+    Index across = none;   ///< the mesh vertex that the point faces across a gap
     bool dormant = false;  ///< inserted only when a candidate warps to it
-    double apart = 0;      ///< a vertex of the same patch nearer than this can take its place
+    double apart = 0;      ///< a vertex of the same patch nearer than this takes the point's place
   };
 
   /// Keeps all by reference. `theta`: how far to warp (paper, Procedure 2).
@@ -53,20 +53,20 @@ class UnresolvedPoints {
   /// Returns whether a queue entry with this stamp is current. If not, the mesh has become finer there since:
   /// queues the point again, because other points may have larger balls now.
   bool due(Index point, std::uint32_t stamp);
-  /// Queues a point again after another insertion in its place, if it is still needed.
+  /// Queues a point again, if it is still needed, because another point was inserted instead.
   void queue_again(Index point) {
     if (points_[point].object != none) queue(point);
   }
-  /// Returns whether any point is found from this mesh vertex.
+  /// Returns whether any unresolved point lies in the Voronoi cell of this mesh vertex.
   bool any_at(Index mesh_vertex) const { return objects_.first_at(mesh_vertex) != none; }
-  /// Records that a point becomes this vertex, which may be about to be inserted.
+  /// Records that a point becomes this vertex, which exists or is inserted next.
   void resolve(Index point, Index vertex);
 
   /// Returns the point that a candidate with this zone warps to (paper, Procedure 2): of the points within
   /// theta r of the ball's centre, the one of lowest containment dimension. None if there is no such point.
   Index warp_target(const ConflictZone& zone, const Candidate& candidate) const;
-  /// Returns the only unresolved vertex of the complex that is found from this mesh vertex; none if there are
-  /// several or none.
+  /// Returns the only unresolved vertex of the complex in the Voronoi cell of this mesh vertex; none if there
+  /// are several or none.
   Index only_vertex_at(Index mesh_vertex) const;
 
   void cells_made(const ConflictZone& zone, Index vertex);

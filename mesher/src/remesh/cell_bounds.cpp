@@ -11,7 +11,7 @@ namespace collarmesh::remeshing {
 
 namespace {
 
-// The same value as in `thin_shape.cpp`.
+// The same value as `least_cosine_of_sides` in `thin_shape.cpp`.
 constexpr double least_cosine_of_forced = -0.92;
 // Narrow places must be narrower than the certificate's by this factor, because vertices move afterwards. If
 // they will move onto exact geometry, the reserve is subtracted, too.

@@ -34,8 +34,8 @@ class CreaseCells {
 inline constexpr Index inserted_on_surface = none - 1;
 
 /// The bounds of a coarsened mesh that depend on the place: the largest dihedral angle of cells that touch a
-/// crease and, if a radius-edge bound holds away from creases and narrow places, these places. Other rules
-/// contain the bounds of thin tets and the radius-edge bound itself.
+/// crease and, if only these cells and cells in narrow places may exceed the radius-edge bound, the narrow
+/// places. Other rules contain the bounds of thin tets and the radius-edge bound itself.
 class CellBounds {
  public:
   /// Factor on the quality of a tet that `allow` forbids, so that other tets in its place are better.
@@ -44,7 +44,7 @@ class CellBounds {
   /// Keeps the mesh by reference if each tet needs an interior node.
   CellBounds(const Plc& plc, const TetMesh& mesh, const Bounds& bounds);
 
-  /// Returns whether a tet may be made here. With default options thin tets always may.
+  /// Returns whether a tet may be made here. With default options all thin tets may be made.
   bool allow(const Corners& p, const std::array<Index, 4>& corners) const {
     if (lacks_interior_node(corners)) return false;
     if (creases_.touch(corners)) return dihedral_cosines(p).largest_angle >= cosine_;

@@ -10,7 +10,7 @@
 
 namespace collarmesh::remeshing {
 
-/// The times at which vertices, or tets at them, last changed: 0 if they never did. What was read at some
+/// The times at which vertices, or tets at them, last changed: 0 if they never did. Data read at some
 /// vertices is up to date as long as none of them has changed since.
 class ChangeTimes {
  public:

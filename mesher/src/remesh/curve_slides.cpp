@@ -116,7 +116,8 @@ void CurveSlides::skipped(Index vertex) {
   join(after, 0, before);
 }
 
-// Returns whether vertex `next` follows on the curve. Precondition: a mesh edge on the curve joins both.
+// Returns whether vertex `next` comes after `vertex` on the curve. Precondition: an edge on the curve joins
+// them.
 bool CurveSlides::follows(Index curve, Index vertex, Index next) const {
   if (mesh_.features[vertex].dimension == 1) return places_[vertex].neighbours[1] == next;
   if (mesh_.features[next].dimension == 1) return places_[next].neighbours[0] == vertex;

@@ -51,7 +51,7 @@ class CurveSlides {
   /// if that part is unknown.
   bool edge_is_near(Index curve, Index a, Index b) const;
   Point place(Index curve, const Middle& middle) const { return paths_.point(curve, middle.parameter); }
-  /// Records that a new vertex at its middle divides the edge.
+  /// Records that a new vertex divides an edge at this middle.
   void divided(Index vertex, const Middle& middle);
 
   /// Finds the places of all vertices now instead of at the first query.

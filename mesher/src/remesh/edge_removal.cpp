@@ -164,8 +164,8 @@ bool Operations::may_lose(Index tet, Index a, Index b) const {
   return true;
 }
 
-// Returns whether two faces of a patch may be replaced by these, which share a new edge. They may not if that
-// edge has faces already, because one of them would then occur twice.
+// Returns whether two faces of a patch may be replaced by these, which share a new edge. They may not if the
+// mesh has faces at that edge already, because a face could then occur twice.
 bool Operations::may_turn(Change& change) {
   const auto& turned = change.replacement.created_faces;
   std::array<Index, 2> shared{none, none};

@@ -53,15 +53,15 @@ class EditableMesh {
         forced(forced_edges_of(meant, mesh, lower_where_forced)),
         kept_(patches_to_keep(meant, mesh)) {}
 
-  /// The same with the tolerance of these bounds, or, where they have none, the one for any size.
+  /// Makes an editable mesh with the tolerance of these bounds; if they have none, with the one for any size.
   EditableMesh(TetMesh& mesh, const Plc& meant, const Bounds& bounds, double edges_per_hole = 0,
                const KnownNeighbours& neighbours = {})
       : EditableMesh(mesh, meant, tolerance_of_any_size(meant, bounds), edges_per_hole,
                      bounds.lower_where_forced, neighbours) {}
 
-  /// Writes the tets back to the mesh. Nothing may be asked afterwards.
+  /// Writes the tets back to the mesh. Call no other function afterwards.
   void store() { complex.store(); }
-  /// Does so and marks the mesh's collars and thin tets, by these bounds.
+  /// Writes the tets back like `store`, and marks the mesh's collars and thin tets by these bounds.
   void store_marked(const Bounds& bounds);
 
   /// Returns the bounds for the tets of this mesh.
@@ -73,7 +73,7 @@ class EditableMesh {
   /// Returns whether the triangles of this patch must stay, like those of periodic faces.
   bool keeps(Index patch) const { return !kept_.empty() && patch != none && kept_[patch]; }
 
-  /// From now on the triangles of further patches must stay, too. `patches`: whether they must, by patch.
+  /// Keeps the triangles of further patches from now on. `patches`: by patch, whether to keep them.
   void keep_triangles_of(const std::vector<bool>& patches) {
     kept_.resize(patches.size(), false);
     for (std::size_t patch = 0; patch < patches.size(); ++patch)
@@ -142,8 +142,8 @@ class Trial {
   explicit Trial(EditableMesh& on) : on_(on) {
     on.complex.begin_trial(), on.surfaces.begin_trial(), on.curves.begin_trial();
   }
-  /// Undoes what is neither kept nor undone, as an exception does. Undoing may need memory; what fails then
-  /// is not told, because the exception ends the work on this mesh.
+  /// Undoes changes that are neither kept nor undone, as after an exception. Undoing may fail for lack of
+  /// memory; such a failure is ignored, because the exception ends the work on this mesh.
   ~Trial() {
     try {
       undo();

@@ -9,8 +9,8 @@
 
 namespace collarmesh::remeshing {
 
-/// The faces of a hull, for measuring the tets that they make with an apex. Measures two tets at a time, as
-/// `extreme_cosines` does, in half the time. Terms that do not depend on the apex are computed once.
+/// The faces of a hull, for measuring the tets that they make with an apex. Measures two tets at a time, in
+/// half the time of `extreme_cosines`. Terms that do not depend on the apex are computed once.
 class HullShapes {
  public:
   static constexpr std::size_t at_once = 2;

@@ -29,14 +29,14 @@ class Metric {
     const double unit = target(a, b);
     return squared_norm(edge) / (unit * unit);
   }
-  /// Returns whether the length is above this one. Needs no division.
+  /// Returns whether an edge is longer than `length`. Needs no division.
   bool exceeds(double length, Index a, Index b, const Vector& edge) const {
     const double unit = target(a, b);
     return squared_norm(edge) > length * length * (unit * unit);
   }
   /// Returns the length of a vector inside a tet.
   double length(const std::array<Index, 4>& tet, const Vector& way) const { return norm(way) / target(tet); }
-  /// Returns a volume inside a tet.
+  /// Returns a volume inside a tet in units of the tet's target length cubed.
   double volume(const std::array<Index, 4>& tet, double in_space) const {
     const double unit = target(tet);
     return in_space / (unit * unit * unit);

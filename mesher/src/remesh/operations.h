@@ -45,14 +45,15 @@ class Operations {
   /// Inserts a vertex on an edge inside a region or a patch, at the best place, if the tets around it are all
   /// better than `least`.
   void split_edge(Index a, Index b, double least, Change& change);
-  /// Does the same even if the tets at the edge are better now.
+  /// Inserts a vertex like `split_edge`, even if the tets at the edge are better now.
   void split_edge_anyhow(Index a, Index b, double least, Change& change);
   /// Inserts a vertex inside a region. Removes a tet or all tets at one of its edges, and as many around them
   /// as make the worst new tet better, and fills the cavity from the vertex. Does so only if all new tets are
   /// better than `least` and than `change`.
   void insert_in_cavity(Index tet, double least, Change& change);
-  /// Inserts a vertex at this share of the length of an edge, inside a region or in a patch, or in the middle
-  /// of an edge on a curve, with any number of tets there, if all new tets are better than `least`.
+  /// Inserts a vertex on an edge with any number of tets, if all new tets are better than `least`: inside a
+  /// region or in a patch at this share of the edge's length or, if that fails, at the best place; on a curve
+  /// in the middle of the edge.
   void divide_edge(Index a, Index b, double share, double least, Change& change);
   /// Lengths of the edges that a collapse makes: at most that of the longest edge of the cavity, or any.
   enum class Lengths { no_longer, any };

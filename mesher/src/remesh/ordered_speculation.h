@@ -35,7 +35,7 @@ class OrderedSpeculation {
   /// Calls `propose(proposer, item, proposal)` and then `use(item, proposal)`, which may change the mesh, for
   /// one item after the other, with the result of a single thread. Other threads propose ahead; a proposal
   /// counts only if `is_up_to_date(item, proposal, begun)` finds that nothing it depends on has changed since
-  /// the time `begun`. Ends as soon as `use` returns false; returns whether it never did.
+  /// the time `begun`. Ends and returns false as soon as `use` returns false; otherwise returns true.
   template <class Proposal>
   bool for_each(const auto& items, ChangeTimes& times, const auto& propose, const auto& is_up_to_date,
                 const auto& use) {

@@ -58,8 +58,8 @@ inline Circumsphere circumsphere(const Corners& p) {
           std::fabs(det)};
 }
 
-/// Returns the edges of a tet, longest first: removing the longest edges of a sliver helps most. `length`:
-/// measures two points.
+/// Returns the edges of a tet, longest first: removing the longest edges of a sliver helps most. `length`
+/// returns the distance of two points.
 template <class Length>
 std::array<EdgePlaces, 6> longest_first(const Corners& p, const Length& length) {
   std::array<std::pair<double, EdgePlaces>, 6> by_length;

@@ -11,7 +11,8 @@ namespace collarmesh::remeshing {
 
 class AngleRule;
 
-/// Defines the quality of tets, and which tets operations may make. Several threads may query it at once.
+/// A definition of the quality of tets, and of the tets that operations may make. Several threads may query
+/// it at once.
 class ShapeRule {
  public:
   ShapeRule() = default;

@@ -179,8 +179,9 @@ bool SmoothSurfaces::samples_are_near(std::span<const Index> old, std::span<cons
   return true;
 }
 
-// Returns whether the created faces are no farther from the patches than the old ones and agree with them or,
-// where the old ones are beyond the tolerance, are within the accepted ratio.
+// Returns whether the created faces are accepted beyond the tolerance. If the old faces are beyond it, the
+// created ones must be within the accepted ratio; otherwise they must agree with the patches and be no
+// farther from them than the old ones.
 bool SmoothSurfaces::are_excused(std::span<const Index> old, std::span<const Face> created,
                                  bool agree) const {
   double farthest = 0;
@@ -199,7 +200,7 @@ bool SmoothSurfaces::are_excused(std::span<const Index> old, std::span<const Fac
 double SmoothSurfaces::agreement(Index patch, const Triangle& t, Index triangle) const {
   const Vector n = normal(t), m = normal(triangles(patch).corners(triangle));
   const double lengths = norm(n) * norm(m);
-  return lengths > 0 ? std::fabs(dot(n, m)) / lengths : 0;
+  return lengths > 0 ? dot(n, m) / lengths : 0;
 }
 
 double SmoothSurfaces::worst_agreement(std::span<const Index> faces) const {

@@ -38,11 +38,12 @@ class SmoothSurfaces {
     Point point;
     Vector normal;  ///< normal of the patch's triangle there; of any length
   };
-  /// Returns the point of a smooth patch that is nearest to p. A known point near p makes it faster.
+  /// Returns the point of a smooth patch that is nearest to p. Searches the distance `near` first, which is
+  /// faster if the patch is that near.
   Nearest nearest(Index patch, const Point& p, double near = INFINITY) const;
-  /// From now on accepts faces beyond the tolerance if they are no farther from the patch than the faces that
-  /// they replace, or at most `ratio` times as far if those are beyond all tolerances. For meshes that were
-  /// not made within the tolerance. 0: accepts none.
+  /// Accepts faces beyond the tolerance from now on, for meshes that were not made within it. The faces may
+  /// be as far from the patch as the faces that they replace or, if the old faces are beyond the tolerance,
+  /// `ratio` times as far. 0: accepts none.
   void accept_distant(double ratio) { accepted_ratio_ = ratio; }
   /// Returns whether an edge is within the tolerance of a smooth patch, judged by samples.
   bool edge_is_near(Index patch, const Point& a, const Point& b) const {
@@ -107,6 +108,8 @@ class SmoothSurfaces {
   bool samples_are_near(std::span<const Index> old, std::span<const Face> created,
                         double least_squared_bound) const;
   bool are_excused(std::span<const Index> old, std::span<const Face> created, bool agree) const;
+  /// Returns the cosine of the angle between a triangle and the nearest one of the patch. Orientations count:
+  /// faces lie like the triangles of their patch.
   double agreement(Index patch, const Triangle& t, Index triangle) const;
   double worst_agreement(std::span<const Index> faces) const;
   Triangle corners(Index face) const;

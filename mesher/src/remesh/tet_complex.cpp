@@ -32,7 +32,8 @@ bool has_face(const std::array<Index, 4>& tet, const std::array<Index, 3>& face)
          3;
 }
 
-// Tets of a mesh that was rounded or read may be oriented so that they lead in a circle beside the edge.
+// Returns the error about an edge without a ring. In a mesh that was rounded or read, tets may be oriented so
+// that a walk around the edge never returns to its start.
 PlcError no_ring(const Point& p) {
   const std::string message = fmt::format(
       "The tetrahedra at an edge at ({:.9g}, {:.9g}, {:.9g}) form no ring: features there are too near to "

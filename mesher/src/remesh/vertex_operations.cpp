@@ -293,7 +293,7 @@ std::pair<Point, double> Operations::best_place(const Point& start, Index id, co
   return {place, best};
 }
 
-// Searches likewise along the curve of a vertex for the best arc length to slide by.
+// Searches along the curve of a vertex, like `best_place`, for the best arc length to slide by.
 std::pair<double, double> Operations::best_way(Index vertex, double best) {
   const auto& points = mesh_.points;
   double shortest = INFINITY;
@@ -375,8 +375,9 @@ void Operations::move_to_face(Index vertex, Change& change) {
   if (place) fill_move(vertex, *place, best, change);
 }
 
-// Returns the places of the patch of the vertex that are nearest to the other vertices of the current cone,
-// and those beside them along the longest edge of the cone.
+// Returns places on the patch of `vertex`. For each other vertex of the current cone: the place nearest to
+// it, if it lies on a feature, and the place nearest to its projection onto the line of the longest edge from
+// `vertex` to the cone.
 std::vector<Point> Operations::facing_places(Index vertex, const Freedom& where) {
   const Point& p = mesh_.points[vertex];
   std::vector<Index> others;
@@ -488,7 +489,8 @@ void Operations::contract_onto(Index onto, double least, double enough, Change& 
   fill_contraction(vertex_, onto, quality, change);
 }
 
-// Returns whether the edge to `onto` lies in the vertex's feature.
+// Returns whether the edge to `onto` lies in the vertex's feature. On a curve, a single edge must also be
+// able to replace both edges at the vertex.
 bool Operations::may_contract(Index vertex, Index onto) {
   const auto& feature = mesh_.features[vertex];
   if (feature.dimension == 3) return true;

@@ -423,8 +423,8 @@ void note_places(const Draft& draft, std::span<const Simplex> simplices,
   }
 }
 
-// Finds simplices of earlier rounds by their corners. Points never move, so simplices with the same corners
-// are at the same place.
+// The simplices of earlier rounds, found by their corners. Points never move, so simplices with the same
+// corners are at the same place.
 class KnownSimplices {
  public:
   void clear() { corners_.clear(); }
@@ -464,8 +464,8 @@ class Settled {
   KnownSimplices known_;
 };
 
-// Merges corners that come near other corners or edges. Simplices of the last round need not be compared with
-// each other.
+// A tool that merges corners that come near other corners or edges. Simplices of the last round need not be
+// compared with each other.
 class GrainSnapper {
  public:
   GrainSnapper(Draft& draft, double reach, Work* work, bool cancel, KeptMerges kept)

@@ -18,7 +18,7 @@ struct ArrangementReport {
   std::vector<Point> places;  ///< some places where triangles met, in the first round
 };
 
-/// Which merges of near corners are kept.
+/// The merges of near corners that are kept.
 enum class KeptMerges {
   all,  ///< all; merging pauses or resumes after each round of cutting that leaves no fewer intersections
   where_nothing_meets  ///< only merges after which no facets intersect at their place
@@ -29,10 +29,10 @@ enum class KeptMerges {
 /// (absolute) of other corners or edges are merged with them, unless the merge undoes cuts; intersections
 /// that merges cause are cut in further rounds. Merges that undid cuts are tried once more at the end, and
 /// undone if they undo cuts again. Triangles that cover each other become copies of one triangle: copies
-/// stay, because their orientations tell what is inside. Only opposite copies that merging makes cancel,
-/// unless `cancel_twins` is false. Throws WorkStopped; the draft is then unusable. Pieces keep their
-/// triangle's origin, except `Origin::facet`, which is renumbered. Cost: O(n log n), and for k intersecting
-/// pairs O(k log k) exact constructions.
+/// stay, because their orientations tell what is inside. Only opposite copies that result from merging cancel
+/// each other, and none do if `cancel_twins` is false. Throws WorkStopped; the draft is then unusable. Pieces
+/// keep their triangle's origin, except `Origin::facet`, which is renumbered. Cost: O(n log n), and for k
+/// intersecting pairs O(k log k) exact constructions.
 ArrangementReport arrange(facets::Draft& draft, double grain, Work* work = nullptr, bool cancel_twins = true,
                           KeptMerges kept = KeptMerges::all);
 

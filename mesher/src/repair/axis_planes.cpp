@@ -18,7 +18,7 @@ struct FlatFacet {
   Index triangle;
 };
 
-/// Flattens along one axis.
+/// The flattening along one axis.
 class AxisFlattener {
  public:
   AxisFlattener(Draft& draft, std::size_t axis, double tolerance, FlattenReport& report)

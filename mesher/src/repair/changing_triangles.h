@@ -22,8 +22,8 @@ namespace collarmesh::repairing {
 class ChangingTriangles {
  public:
   /// Makes the lists of sides. Two triangles are near each other if each comes within `reach` (absolute) of
-  /// the plane of the other, and if their boxes meet: along the axes of a frame, enlarged by half of `reach`
-  /// on all sides. Spends the pairs of boxes that meet from `work`.
+  /// the plane of the other, and if their boxes meet. Boxes are parallel to the axes of a frame, and enlarged
+  /// by half of `reach` on all sides. Each visited pair of boxes that meet costs a unit of `work`.
   ChangingTriangles(facets::Draft& draft, double reach, Work& work);
 
   /// Returns the number of triangles.
@@ -86,10 +86,10 @@ class ChangingTriangles {
     for (const Index s : changed) trees_.for_each_meeting(box_of(s), [&](Index t) { meet_once(s, t); });
   }
 
-  /// Calls visit(p, edge) for each corner p and each edge without it whose boxes meet, enlarged by half of
-  /// `reach` on all sides, if a changed triangle has the corner or the edge; some pairs are visited several
-  /// times. Corners and edges may no longer exist. Spends these pairs from `work`. Cost: as above, regardless
-  /// of the number of triangles at a corner.
+  /// Calls visit(p, edge) for each corner p and each edge that does not end at p, if their enlarged boxes
+  /// meet and a changed triangle has the corner or the edge. Visits some pairs several times. Corners and
+  /// edges may no longer exist. Each pair costs a unit of `work`. Cost: as above, regardless of the number of
+  /// triangles at a corner.
   template <class Visit>
   void for_each_corner_near_edge(const std::vector<Index>& changed, const Visit& visit) {
     const std::vector<Index> corners = corners_of(changed);
@@ -152,8 +152,8 @@ class ChangingTriangles {
   double reach_;
   Work& work_;
   const BoxFrame frame_;                                        // axes of the boxes
-  bool searched_triangles_ = false, searched_corners_ = false;  // whether the last search went without trees,
-                                                                // because few triangles had changed
+  bool searched_triangles_ = false, searched_corners_ = false;  // whether the first search for few changed
+                                                                // triangles is over; it keeps no trees
   std::size_t count_ = 0;
   std::vector<bool> alive_;
   std::vector<Vector> normals_;

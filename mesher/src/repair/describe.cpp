@@ -62,8 +62,10 @@ std::string small_features_text(const RepairReport& r) {
 std::vector<std::string> describe(const RepairReport& r) {
   std::vector<std::string> lines;
   if (r.split_polygons > 0)
-    lines.push_back(fmt::format("{} polygon{} not planar or crossing {} cut into triangles", r.split_polygons,
-                                plural(r.split_polygons), r.split_polygons == 1 ? "itself" : "themselves"));
+    lines.push_back(fmt::format("{} polygon{} cut into triangles, because {}", r.split_polygons,
+                                plural(r.split_polygons),
+                                r.split_polygons == 1 ? "it was not planar or crossed itself"
+                                                      : "they were not planar or crossed themselves"));
   if (r.dropped_polygons > 0)
     lines.push_back(
         fmt::format("{} polygon{} without an area dropped", r.dropped_polygons, plural(r.dropped_polygons)));
@@ -71,12 +73,12 @@ std::vector<std::string> describe(const RepairReport& r) {
     lines.push_back(fmt::format("{} repeated facet{} dropped{}", r.repeated.count, plural(r.repeated.count),
                                 first_place(r.repeated)));
   if (r.turned.count > 0)
-    lines.push_back(fmt::format("{} closed surface{} turned inside out{}", r.turned.count,
+    lines.push_back(fmt::format("{} inside-out closed surface{} turned around{}", r.turned.count,
                                 plural(r.turned.count), first_place(r.turned)));
   if (r.stitched.count > 0)
-    lines.push_back(fmt::format("{} place{} where borders nearly met stitched, over at most {:.3g}{}",
-                                r.stitched.count, plural(r.stitched.count), r.stitched.size,
-                                first_place(r.stitched)));
+    lines.push_back(
+        fmt::format("{} place{} stitched where borders nearly met, over a distance of at most {:.3g}{}",
+                    r.stitched.count, plural(r.stitched.count), r.stitched.size, first_place(r.stitched)));
   for (const FilledHole& hole : r.filled)
     lines.push_back(fmt::format("a hole of {} edges around {} filled with an area of {:.4g}, tag {}",
                                 hole.edges, place(hole.where), hole.area, hole.tag));
@@ -95,19 +97,20 @@ std::vector<std::string> describe(const RepairReport& r) {
                     r.second_sides, plural(r.second_sides)));
   if (r.merged.count > 0)
     lines.push_back(
-        fmt::format("{} triangle{} inside solids or enclosing nothing removed, an area of {:.4g}{}",
+        fmt::format("{} triangle{} removed that lay inside solids or enclosed nothing, an area of {:.4g}{}",
                     r.merged.count, plural(r.merged.count), r.merged.size, first_place(r.merged)));
   if (r.dropped.count > 0)
     lines.push_back(fmt::format("{} triangle{} of open sheets outside of all solids removed", r.dropped.count,
                                 plural(r.dropped.count)));
   if (r.collapsed.count > 0)
-    lines.push_back(fmt::format("{} feature{} below the tolerance of {:.3g} collapsed, over at most {:.3g}{}",
-                                r.collapsed.count, plural(r.collapsed.count), r.tolerance, r.collapsed.size,
-                                first_place(r.collapsed)));
+    lines.push_back(fmt::format(
+        "{} feature{} below the tolerance of {:.3g} collapsed, over a distance of at most {:.3g}{}",
+        r.collapsed.count, plural(r.collapsed.count), r.tolerance, r.collapsed.size,
+        first_place(r.collapsed)));
   if (r.thin_chambers.count > 0)
     lines.push_back(fmt::format(
-        "{} chamber{} thinner than the tolerance of {:.3g} between facets that nearly coincide added to "
-        "the regions around {}, a volume of {:.3g}{}",
+        "{} chamber{} between nearly coincident facets, thinner than the tolerance of {:.3g}, added to the "
+        "regions around {}, a volume of {:.3g}{}",
         r.thin_chambers.count, plural(r.thin_chambers.count), r.tolerance,
         r.thin_chambers.count == 1 ? "it" : "them", r.thin_chambers.size, first_place(r.thin_chambers)));
   if (r.vanished.count > 0)
@@ -118,12 +121,13 @@ std::vector<std::string> describe(const RepairReport& r) {
         r.vanished.count == 1 ? "it" : "them"));
   if (r.united.count > 0)
     lines.push_back(
-        fmt::format("{} region{} less than before, because regions nearer to each other than the tolerance "
+        fmt::format("{} region{} fewer than before, because regions nearer to each other than the tolerance "
                     "of {:.3g} were merged{}; a smaller --repair-tolerance keeps them apart",
                     r.united.count, plural(r.united.count), r.tolerance, first_place(r.united)));
   if (r.kept.count > 0)
-    lines.push_back(fmt::format("{} place{} left as before, as creases there would become sharper{}",
-                                r.kept.count, plural(r.kept.count), first_place(r.kept)));
+    lines.push_back(
+        fmt::format("{} place{} left as before, because repair would make creases sharper there{}",
+                    r.kept.count, plural(r.kept.count), first_place(r.kept)));
   if (!r.small_features.empty()) lines.push_back(small_features_text(r));
   if (!r.lost_tags.empty())
     lines.push_back(fmt::format("nothing is left of the facets with tag{} {}", plural(r.lost_tags.size()),

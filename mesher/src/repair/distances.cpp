@@ -73,9 +73,9 @@ double diagonal_of(std::span<const CornerPoints> triangles) {
   return box.diagonal();
 }
 
-/// Finds the sample outside of a surface that is farthest from it. Winding numbers cost far more than
-/// distances, so they are only computed for the farthest of many samples. A sample inside has a ball around
-/// it, up to the surface, in which all other samples are inside, too.
+/// The search for the sample outside of a surface that is farthest from it. Winding numbers cost far more
+/// than distances, so they are only computed for the farthest of many samples. A sample inside has a ball
+/// around it, up to the surface, in which all other samples are inside, too.
 class FarthestOutside {
  public:
   explicit FarthestOutside(const WindingNumber& winding) : winding_(winding) {}

@@ -21,7 +21,7 @@ struct RepairDistances {
 /// Measures both distances, at the triangles' corners and at further points no farther apart than 1/50 of the
 /// diagonal. Skips triangles that both surfaces have. Leaves out `filled` triangles of the repaired surface,
 /// which are far from the input on purpose, and parts of the input that the repaired surface encloses
-/// (winding number above 1/2), because walls inside solids are meant to vanish. Cost: O(n log n).
+/// (winding number above 1/2), because repair removes walls inside solids on purpose. Cost: O(n log n).
 RepairDistances measure_distances(std::span<const CornerPoints> input, std::span<const CornerPoints> repaired,
                                   std::span<const CornerPoints> filled);
 

@@ -37,7 +37,7 @@ bool turned_against(const Corners& a, const Corners& b) {
   return b[(at + 1) % 3] != a[1];
 }
 
-// Keeps the largest few of some triangles.
+// The largest few of some triangles.
 class Largest {
  public:
   static constexpr std::size_t count = 24;
@@ -214,10 +214,10 @@ class BoundaryKeeper {
     return WindingNumber(std::move(triangles));
   }
 
-  // Removes open sheets: patches at edges where the soup is open. Such a patch bounds nothing if the winding
-  // number there, without the patch, is that of a single place and not the mean of inside and outside. Starts
-  // with the smallest patch: if a box has a wall inside, half of the box could be removed instead, because
-  // the wall closes the other half.
+  // Removes open sheets: patches at edges where the soup is open. Such a patch bounds nothing if, without it,
+  // the winding number there is nearly an integer; on a boundary it would be the mean of inside and outside.
+  // Starts with the smallest patch: if a box has a wall inside, half of the box could be removed instead,
+  // because the wall closes the other half.
   void remove_open_sheets(Index soup, std::vector<int>& weights) {
     constexpr std::size_t most = 100;
     for (std::size_t count = 0; count < most; ++count) {

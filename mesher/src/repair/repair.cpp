@@ -136,8 +136,8 @@ class Repairer {
   bool encloses_nothing() const { return encloses_nothing_; }
 
   /// Measures how much of the input's volume is kept, for surfaces that are closed or nearly so. Measures
-  /// nothing if parts of the input outside the result are all near it, because little volume can be lost
-  /// then.
+  /// nothing if all parts of the input outside the result are near the result, because little volume can be
+  /// lost then.
   KeptVolume kept_volume(const RepairReport& report) const {
     constexpr double far = 10;  // in tolerances
     const bool any_complex = std::ranges::any_of(draft_.soup_is_complex, [](bool b) { return b; });
@@ -545,10 +545,10 @@ void compare_regions(const Plc& before, RepairedPlc& repaired) {
 }
 
 PlcError given_up(const PlcError& error, const RepairOptions& options) {
-  return {
-      fmt::format("{} Its repair was given up after {} steps; try a smaller repair tolerance, or wrap it.",
-                  error.what(), options.max_work),
-      error.faults};
+  return {fmt::format("{} The repair was given up after {} steps; try a smaller repair tolerance, or wrap "
+                      "the input (repair wrap).",
+                      error.what(), options.max_work),
+          error.faults};
 }
 
 // Returns the size below which features are collapsed, absolute; 0: none are.
@@ -667,13 +667,12 @@ RepairedPlc remove_noise(Plc plc, std::span<const PolygonSoup> soups, const PlcO
     }
   }
   plc.warnings.push_back(
-      {fmt::format(
-           "Features below the repair tolerance of {:.3g} stay, the first one at {}: to remove them {}; they "
-           "cost elements and time, another --repair-tolerance may help.",
-           tolerance, text(*noise),
-           result.report.gave_up ? "takes too long"
-           : changes             ? "would make the facets no valid complex"
-                                 : "would make others that are worse"),
+      {fmt::format("Features below the repair tolerance of {:.3g} stay, the first one at {}: removing them "
+                   "{}. They cost elements and time; another --repair-tolerance may help.",
+                   tolerance, text(*noise),
+                   result.report.gave_up ? "takes too long"
+                   : changes             ? "would make the complex invalid"
+                                         : "would make worse ones"),
        *noise});
   return with_lost_regions({std::move(plc), {}, {}}, soups);
 }
@@ -685,7 +684,7 @@ RepairedPlc build_repaired_plc(std::span<const PolygonSoup> soups, const PlcOpti
                               execution);
   if (repair_options.mode == RepairMode::wrap && repair_options.wrap_at_once) {
     if (auto wrapped = build_wrapped_plc(soups, options, repair_options)) return *std::move(wrapped);
-    throw PlcError("The closed surface around everything is no complex; try another wrap offset.", {});
+    throw PlcError("The closed surface around everything is no valid complex; try another wrap offset.", {});
   }
   std::optional<PlcError> first;
   try {

@@ -55,7 +55,7 @@ Needle needle_of(const Draft& draft, const Corners& c) {
   return needle;
 }
 
-/// Decides which patches and curves of a complex are small and may be collapsed.
+/// The patches and curves of a complex that are small and may be collapsed.
 class SmallOnes {
  public:
   SmallOnes(const Plc& plc, const Draft& draft, double size, const RepairOptions& options)
@@ -121,7 +121,7 @@ class SmallOnes {
     return thin;
   }
 
-  // Keeps the small patches of a tag that no other patch has, except if the tag is only a number.
+  // Keeps the patches of a tag if all of them are small, except if the tag is only a number.
   void keep_groups(const Draft& draft) {
     if (plc_.numbered_patches) return;
     std::set<Tag> stay;
@@ -140,7 +140,7 @@ class SmallOnes {
   std::vector<bool> kept_;  // by patch: whether it and its curves stay, however small
 };
 
-/// Finds the points of a complex in the draft that it was built from.
+/// A map from the points of a complex to those of the draft that it was built from.
 class DraftPoints {
  public:
   DraftPoints(const Plc& plc, const Draft& draft) : of_plc_(plc.points.size(), none) {
@@ -301,7 +301,7 @@ class FeatureCollapser {
         const Index other = other_side / 3;
         if (other == t) continue;
         const Corners& c = draft_.triangles[other];
-        const bool is_needle = needle_of(draft_, c).height < size_;  // its normal says little
+        const bool is_needle = needle_of(draft_, c).height < size_;  // its normal is unreliable
         const Point& a = draft_.points[c[0]];
         const Vector n = cross(draft_.points[c[1]] - a, draft_.points[c[2]] - a);
         if (is_feature(side[0], side[1]) && !is_needle)
@@ -422,14 +422,14 @@ class FeatureCollapser {
   }
 
   static constexpr int of_fixed = 100'000;     // rank of points that stay
-  static constexpr Index in_narrow_patch = 1;  // number of the facet of triangles in narrow patches
+  static constexpr Index in_narrow_patch = 1;  // facet number that marks triangles in narrow patches
 
   Draft& draft_;
   const Plc& plc_;
   double size_;
   SnapState state_;
   SnapCuts cuts_;
-  std::set<Edge> features_, short_;  // pieces of curves, and of curves to be collapsed
+  std::set<Edge> features_, short_;  // pieces of all curves; pieces of curves to be collapsed
   std::vector<int> rank_;            // by point, except added ones
   std::vector<CollapsedFeature> collapsed_;
   std::set<Index> tips_;       // points of the tips among the narrow triangles
@@ -440,8 +440,8 @@ class FeatureCollapser {
   std::vector<std::pair<Index, Index>> merges_;  // a point, and the one that takes its place
 };
 
-/// The points of a feature, and its direction: a patch's mean normal, or from a curve's first point to its
-/// last one.
+/// The points of a feature, and its direction: a patch's mean normal, or the vector from a curve's first
+/// point to its last one.
 struct Shape {
   std::set<std::array<double, 3>> points;
   Vector direction;
@@ -470,9 +470,9 @@ std::vector<Shape> shapes_of_curves(const Plc& plc) {
   return shapes;
 }
 
-/// Returns a tag for each new feature: that of the old feature with which it has the most points in common,
-/// or of the most parallel one of several. Each old tag is given once; other new features get numbers after
-/// these.
+/// Returns a tag for each new feature: that of the old feature with which it has the most points in common;
+/// of several such features, the most parallel one. Each old tag is given once; other new features get
+/// numbers after these.
 std::vector<Tag> numbers_from(const std::vector<Shape>& before, const std::vector<Tag>& tags,
                               const std::vector<Shape>& after) {
   std::map<std::array<double, 3>, std::vector<Index>> at;

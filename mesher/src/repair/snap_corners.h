@@ -13,7 +13,7 @@ namespace collarmesh::repairing {
 /// Factor on the limit that covers rounding in distances from planes and edges.
 inline constexpr double beyond_plane = 1 + 1e-9;
 
-/// Inserts corners into edges that they are near to, the longest edges first.
+/// The step of snapping that inserts corners into edges near them, the longest edges first.
 class CornerSnapper {
  public:
   enum class Outcome { nothing_near, snapped, too_many };

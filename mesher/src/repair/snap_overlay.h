@@ -10,7 +10,8 @@
 
 namespace collarmesh::repairing {
 
-/// Overlays triangles that run along each other: each gets the corners and edges of the other.
+/// The step of snapping that overlays triangles which run along each other: each gets the corners and edges
+/// of the other.
 class Overlay {
  public:
   /// Keeps references to both arguments.

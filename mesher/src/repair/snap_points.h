@@ -12,15 +12,16 @@ namespace collarmesh::repairing {
 /// segments that become degenerate are removed.
 void rename_points(SnapState& state, const std::vector<std::pair<Index, Index>>& merged);
 
-/// Merges points that are near each other.
+/// The step of snapping that merges points near each other.
 class PointMerger {
  public:
-  /// Keeps a reference to the state. Points of `known` triangles must already be apart from each other.
+  /// Keeps a reference to the state. The points of `known` triangles must already be farther from each other
+  /// than the limit.
   PointMerger(SnapState& state, const std::vector<bool>& known);
 
-  /// Merges points that are new, or whose triangles have changed, since the last call. Points that were
-  /// compared before are apart from each other: new ones are compared with them and among themselves, in an
-  /// order that does not depend on the input's. Returns whether any points were merged.
+  /// Merges points that are new, or whose triangles have changed, since the last call. Compares new points
+  /// with those compared before and among themselves, in an order that does not depend on the input's.
+  /// Returns whether any points were merged.
   bool merge();
 
  private:

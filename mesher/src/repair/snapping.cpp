@@ -22,7 +22,7 @@ using namespace facets;
 constexpr std::size_t most_rounds = 50, most_rounds_after_overlay = 12;
 constexpr std::size_t most_overlays = 10, few_crossings = 100;
 
-// Snaps in rounds. Each round only examines triangles that the round before has changed.
+// The snapping, in rounds. Each round only examines triangles that the round before has changed.
 class Snapper {
  public:
   Snapper(Draft& draft, double distance_limit, SnapWhat what, Work& work, const std::vector<bool>& known,
@@ -39,8 +39,8 @@ class Snapper {
 
   SnapReport run() {
     if (knows_some_) cancel_new_twins();
-    // Snapping corners makes few triangles. If it multiplies them, triangles run along each other, and this
-    // limit stops it.
+    // Snapping corners makes few triangles. If this multiplies them, triangles run along each other, and the
+    // limit stops the snapping.
     const std::size_t count = state_.triangles().count();
     most_triangles_ = count / (what_ == SnapWhat::corners ? 4 : 1) + count + 1000;
     if (Draft before = draft_; !snap_all_corners()) return keep_settled(before, 0, SnapState::by_corners);
@@ -49,8 +49,8 @@ class Snapper {
 
  private:
   // Overlays triangles until nothing changes. Overlays make new corners. Stops if an overlay makes many
-  // crossings, more than half as many as the one before; if corners never settle; or after too many overlays.
-  // Then undoes the changes at places that still change.
+  // crossings and more than half the number of the one before, if corners never settle, or after too many
+  // overlays. Then undoes the changes at places that still change.
   SnapReport overlay_until_settled() {
     const Draft before = state_.triangles().compacted();
     const std::size_t done_before = state_.done().size();
@@ -74,7 +74,7 @@ class Snapper {
     return std::move(report_);
   }
 
-  // Undoes the changes since `before` at places with triangles that these parts still have to examine.
+  // Undoes the changes since `before` at places with triangles that the parts `by` still have to examine.
   SnapReport keep_settled(const Draft& before, std::size_t done_before, SnapState::By by) {
     const Draft after = state_.triangles().compacted();
     const std::vector<bool> unseen = state_.unseen(by);

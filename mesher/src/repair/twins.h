@@ -23,7 +23,7 @@ struct Twin {
 /// Returns whether the corners are an odd permutation of the sorted ones.
 bool is_odd(const facets::Corners& corners);
 
-/// Returns which of these triangles, all those of one soup with the same corners, cancel: pairs of opposite
+/// Returns which triangles cancel, given all triangles of one soup with the same corners: pairs of opposite
 /// orientation; in a complex, where orientation has no meaning, all but one.
 std::vector<Index> cancelled_among(std::vector<Twin> twins, bool in_complex);
 

@@ -11,7 +11,7 @@ struct WorkStopped {
   bool cancelled;  ///< false: the limit of work was reached
 };
 
-/// Limits the work of repair. Work is counted instead of timed, so that repair stops in the same place on
+/// A limit on the work of repair. Work is counted instead of timed, so that repair stops in the same place on
 /// every machine. A unit is one visited pair of near triangles.
 class Work {
  public:

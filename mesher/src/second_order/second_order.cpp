@@ -26,7 +26,7 @@ namespace {
 using remeshing::UnwantedTet;
 
 // A node farther than this from the middle of its edge, relative to the edge, does not belong to the edge:
-// the nearest point lies on another part of the feature. On a half circle it is 0.5.
+// the nearest point lies on another part of the feature. A half circle has the ratio 0.5.
 constexpr double farthest = 0.5;
 
 // Two edges have the same tangent if the area between their tangents is smaller than this share of the area
@@ -62,8 +62,8 @@ class Curving {
 
   /// Finds tets that would be flat at a corner, with the edge to split there. If two curved edges have the
   /// same tangent, or three have tangents in one plane, as at a corner inside a smooth patch, the Jacobian
-  /// determinant vanishes, however small the edges are. The edges that join their other ends, inside a region
-  /// or on a planar patch, have to be split.
+  /// determinant vanishes, however small the edges are. The edges that join the other ends of the curved
+  /// edges, inside a region or on a planar patch, have to be split.
   std::vector<UnwantedTet> flat_at_corners() const {
     std::vector<UnwantedTet> found;
     if (moves_.empty()) return found;

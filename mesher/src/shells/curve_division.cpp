@@ -98,7 +98,7 @@ std::vector<double> divide_by_size(const std::function<double(double)>& size, do
 std::vector<double> divide_curve(const Plc& plc, const CurvePaths& paths, const SagLimit& limit,
                                  const SurfaceSizes& sizes, Index curve, const std::array<double, 2>& tips) {
   const double length = paths.length(curve), shortest = 1e-6 * length;
-  constexpr double rounding = 0.3;  // edges are longer than the size by a third at most
+  constexpr double rounding = 0.3;  // edges exceed the size by at most 30%
   const double from = tips[0], to = length - tips[1];
   const double of_tips = (tips[0] > 0 ? 1 : 0) + (tips[1] > 0 ? 1 : 0);
   std::vector<double> at;

@@ -9,7 +9,7 @@
 
 namespace collarmesh::shells {
 
-/// Returns the distance that a curve's chord may have from a point of the complex.
+/// A function from a point of the complex to the allowed distance between a curve there and its chord.
 using SagLimit = std::function<double(Index)>;
 
 /// Returns the distance between a curve and its chord from one parameter to another, relative to the limit.
@@ -29,10 +29,10 @@ std::vector<double> divide_by_size(const std::function<double(double)>& size, do
                                    double least_count, double rounding);
 
 /// Returns the arc lengths at which the edges of a curve begin and end; the last one is the curve's length.
-/// There are as many edges as the sizes ask for, short enough to be within the limit. A closed curve, or a
-/// loop at one vertex, has at least three edges. A curve that shares both ends with another curve has at
-/// least two, unless it is straight. `tips` are the lengths of the first and the last edge, 0 if these are
-/// free; tips are not divided. Cost: linear in the curve's points and edges.
+/// Edges are as long as the sizes ask for, or shorter to be within the limit. A closed curve, or a loop at
+/// one vertex, has at least three edges. A curve that shares both ends with another curve has at least two,
+/// unless it is straight. `tips` are the lengths of the first and the last edge, 0 if these are free; tips
+/// are not divided. Cost: linear in the curve's points and edges.
 std::vector<double> divide_curve(const Plc& plc, const CurvePaths& paths, const SagLimit& limit,
                                  const SurfaceSizes& sizes, Index curve, const std::array<double, 2>& tips);
 

@@ -42,9 +42,10 @@ void for_narrow_triangles(const SurfaceComplex& complex, const Visit& visit) {
   }
 }
 
-/// Divides the curves of a complex where their distance across a patch is smaller than the length of their
-/// edges, so that triangles between them have good angles. Edge lengths grow from there by the gradation. The
-/// distance is measured in triangles with all corners on curves; it becomes more exact as these are divided.
+/// The division of the curves of a complex where their distance across a patch is smaller than the length of
+/// their edges, so that triangles between them have good angles. Edge lengths grow away from such places by
+/// the gradation. Distances are measured in triangles with all corners on curves; dividing these triangles
+/// makes the distances more exact.
 class NarrowPlaces {
  public:
   /// Keeps references to all arguments.

@@ -70,7 +70,7 @@ class Run {
       throw PlcError(
           plc.curves.empty()
               ? "The input has no faces to mesh with triangles; add some, or leave --dimension 2 out."
-              : "The input has no faces to mesh with triangles, but curves; add faces, or mesh its curves "
+              : "The input has no faces to mesh with triangles, only curves; add faces, or mesh its curves "
                 "with "
                 "lines (--dimension 1).",
           {});

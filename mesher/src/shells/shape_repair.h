@@ -9,10 +9,10 @@
 
 namespace collarmesh::shells {
 
-/// Improves triangles whose angles are out of bounds: by flips, moves and contractions if that suffices; else
-/// by a vertex at the circumcentre or, if that lies beyond a curve, by dividing the curve's edge (J. Ruppert:
-/// A Delaunay refinement algorithm for quality 2-dimensional mesh generation, 1995). The vertex is closer to
-/// the shortest edge if that suffices (A. Ungor, Off-centers, 2004).
+/// The improvement of triangles whose angles are out of bounds: by flips, moves and contractions if that
+/// suffices; else by a vertex at the circumcentre or, if that lies beyond a curve, by dividing the curve's
+/// edge (J. Ruppert: A Delaunay refinement algorithm for quality 2-dimensional mesh generation, 1995). The
+/// vertex is closer to the shortest edge if that suffices (A. Ungor, Off-centers, 2004).
 class ShapeRepair {
  public:
   /// Keeps references to all arguments.
@@ -31,7 +31,7 @@ class ShapeRepair {
   /// Contracts edges if the shapes stay good.
   void coarsen();
 
-  /// Sets a height, relative to the target edge length: lower triangles between curves are not refined.
+  /// Sets the least height, relative to the target edge length, of triangles between curves that are refined.
   void set_narrowest(double share) { narrowest_ = share; }
 
   /// Returns the bound on a triangle's shape. It is smaller at a sharp corner of the input.

@@ -135,8 +135,8 @@ bool SurfaceEditor::flip(Index a, Index b) {
   return true;
 }
 
-/// Returns whether contracting an edge keeps the topology: the neighbourhoods of its ends may have nothing in
-/// common but that of the edge.
+/// Returns whether contracting an edge keeps the topology (link condition): the links of its ends may share
+/// only the link of the edge.
 bool SurfaceEditor::can_contract(Index from, Index to) const {
   const std::vector<Index> around = complex_.neighbours(from), around_to = complex_.neighbours(to);
   std::vector<Index> common, thirds;

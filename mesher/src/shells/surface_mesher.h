@@ -17,9 +17,9 @@ namespace collarmesh::shells {
 class ChordLimits;
 class SharpCorners;
 
-/// Meshes the patches of a complex in steps. Makes the triangles of the complex editable; divides curves by
-/// size; divides long edges and contracts short ones; refines triangles with poor angles by circumcentres;
-/// coarsens places that became too fine.
+/// The mesher of a complex's patches. Its steps: make the triangles of the complex editable; divide curves by
+/// size; divide long edges and contract short ones; refine triangles with poor angles by circumcentres;
+/// coarsen places that became too fine.
 class SurfaceMesher {
  public:
   /// Keeps all but the tolerance by reference. The mesh takes the share `most_excess` of the tolerance.

@@ -19,7 +19,7 @@ struct Side {
 
 struct Neighbour {
   Index patch;
-  bool alike;  // whether their triangles agree already
+  bool alike;  // whether both patches already have consistent orientations there
 };
 
 std::vector<std::vector<Neighbour>> neighbours_of(const TetMesh& mesh, std::size_t patches) {

@@ -48,8 +48,8 @@ class VertexFan {
     return at_ + flat + bend_ * squared_norm(flat) * normal_;
   }
 
-  /// Returns the least shape of the triangles if the vertex were at p; if it is below `bound`, any number
-  /// below that.
+  /// Returns the least shape of the triangles if the vertex were at p; if that is below `bound`, any number
+  /// below `bound`.
   double least_shape(const Point& p, double bound) const {
     double least = INFINITY;
     for (const auto& [a, b] : sides_)

@@ -8,8 +8,8 @@
 
 namespace collarmesh::shells {
 
-/// Removes vertices that neither sizes, distances nor angles need. Such vertices remain where edge lengths
-/// grow only slowly away from short curves and narrow places.
+/// The removal of vertices that neither sizes, distances nor angles need. Such vertices remain where edge
+/// lengths grow only slowly away from short curves and narrow places.
 class VertexRemoval {
  public:
   /// Keeps references to all arguments.

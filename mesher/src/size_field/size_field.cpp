@@ -202,8 +202,8 @@ SizeField size_field_from_json(const std::string& text, const Plc& plc,
   try {
     json = Json::parse(text, [](int depth, Json::parse_event_t, const Json&) {
       if (depth > deepest)
-        throw ReadError(
-            fmt::format("size field: it is nested deeper than {} levels; this is not a size field", deepest));
+        throw ReadError(fmt::format(
+            "size field: the JSON is nested deeper than {} levels, so it is no size field", deepest));
       return true;
     });
   } catch (const Json::parse_error& error) {
@@ -212,15 +212,15 @@ SizeField size_field_from_json(const std::string& text, const Plc& plc,
     throw OptionError(
         "size field: a number is larger than any double; leave it out where no size is asked for");
   }
-  allow_only(json, "the top", {"size", "sources"});
-  const double everywhere = json.contains("size") ? positive(json, "the top", "size") : INFINITY;
+  allow_only(json, "the top level", {"size", "sources"});
+  const double everywhere = json.contains("size") ? positive(json, "the top level", "size") : INFINITY;
   std::vector<Source> sources;
   const Json list = json.value("sources", Json::array());
   if (!list.is_array()) fail("sources", "expected a list");
   for (std::size_t i = 0; i < list.size(); ++i) {
     const std::string place = fmt::format("sources[{}]", i);
     if (std::ranges::count_if(kinds, [&](const auto& kind) { return list[i].contains(kind); }) > 1)
-      fail(place, fmt::format("expected one of {}; make several sources of it", fmt::join(kinds, ", ")));
+      fail(place, fmt::format("expected only one of {}; make it several sources", fmt::join(kinds, ", ")));
     std::vector<std::string> keys(kinds.begin(), kinds.end());
     keys.insert(keys.end(), {"size", "growth", "within"});
     allow_only(list[i], place, keys);
@@ -230,7 +230,7 @@ SizeField size_field_from_json(const std::string& text, const Plc& plc,
                        use ? use->add(called(i, list[i])) : 0});
   }
   if (sources.empty() && everywhere == INFINITY)
-    fail("the top", "it asks for no size; give 'size' or 'sources'");
+    fail("the top level", "it asks for no size; give 'size' or 'sources'");
   return [=](const Point& p) {
     double size = everywhere;
     for (const Source& source : sources) {

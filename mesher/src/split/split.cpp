@@ -34,7 +34,7 @@ std::string internal_patches(const TagNames& names, const std::vector<Candidate>
   std::set<Tag> tags;
   for (const Candidate& candidate : all)
     if (candidate.is_internal()) tags.insert(candidate.tag);
-  return tags.empty() ? "there are none" : "they are " + list_of_patches(tags, names);
+  return tags.empty() ? "there are none" : list_of_patches(tags, names);
 }
 
 /// The internal patches that the options name.
@@ -47,11 +47,11 @@ class PatchChoice {
       const std::set<Tag> tags = tags_named(text, 2, names);
       const auto named = [&](const Candidate& candidate) { return tags.contains(candidate.tag); };
       if (std::ranges::none_of(all, named))
-        throw OptionError(fmt::format("split: no patch is called '{}'; patches inside can be split, {}", text,
-                                      internal_patches(names, all)));
+        throw OptionError(fmt::format("split: no patch is called '{}'; only patches inside can be split: {}",
+                                      text, internal_patches(names, all)));
       if (std::ranges::none_of(all, [&](const Candidate& each) { return named(each) && each.is_internal(); }))
         throw OptionError(
-            fmt::format("split: patch '{}' lies on the boundary; patches inside can be split, {}", text,
+            fmt::format("split: patch '{}' lies on the boundary; only patches inside can be split: {}", text,
                         internal_patches(names, all)));
       tags_.insert(tags.begin(), tags.end());
     }
@@ -78,7 +78,7 @@ struct SidePair {
 void add_prisms(const TetMesh& mesh, const std::vector<SidePair>& pairs, Interfaces& interfaces) {
   for (const SidePair& pair : pairs) {
     const auto [a, b, c] = mesh.faces[pair.minus];
-    const auto [p, r, q] = mesh.faces[pair.plus];  // counterclockwise as seen from its own side
+    const auto [p, r, q] = mesh.faces[pair.plus];  // in the opposite orientation
     interfaces.prisms.push_back({a, b, c, p, q, r});
     interfaces.prism_tag.push_back(mesh.face_tag[pair.minus]);
     if (mesh.order() == 1) continue;
@@ -362,7 +362,7 @@ class Splitter {
   std::vector<bool> chosen_;                   // by face
   std::vector<bool> marked_;                   // nodes of chosen faces
   std::vector<Beside> beside_;                 // by face with a marked corner: the tets beside it
-  std::vector<Index> copies_;                  // by node
+  std::vector<Index> copies_;                  // by node: the number of its copies
   std::map<Tag, SplitReport::Patch> patches_;  // by tag before the split
   std::vector<SidePair> pairs_;
   SplitReport report_;

@@ -12,14 +12,14 @@ namespace collarmesh {
 std::vector<std::array<Index, 3>> corners_of_triangles(const Plc& plc);
 /// Returns whether two patches are the same, or have a curve or a vertex in common.
 bool are_neighbours(const Plc& plc, Index patch, Index other);
-/// Returns the least cosine between a direction and the normal of a surface that faces it. It is larger for
-/// neighbours, because they may form a wedge.
+/// Returns the least cosine between a direction and a surface's normal at which the surface faces that
+/// direction. The cosine is larger for neighbours, because they may form a wedge.
 double least_facing(bool neighbours);
 
 /// Returns the distance from a point x of a patch to the plane of a triangle, along a unit normal of the
 /// patch; infinite if the triangle does not face the patch. The ray from x in the direction `way` (the normal
 /// or its opposite) crosses the triangle. Patches that meet elsewhere face each other only if they are almost
-/// parallel, because otherwise gaps would close in wedges.
+/// parallel, because a wedge is no gap.
 double facing_distance(const Plc& plc, Index patch, const Point& x, const Vector& normal, const Vector& way,
                        Index triangle, const std::array<Point, 3>& corners);
 

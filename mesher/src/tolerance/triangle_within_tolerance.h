@@ -4,10 +4,10 @@
 
 namespace collarmesh {
 
-/// Returns a triangle whose distance from p is within the tolerance there: the `hint`, if it is such a
-/// triangle; else any triangle within the `least` tolerance; else the nearest one; none if there is no such
-/// triangle. `at` returns the tolerance of a triangle, from `least` to `most`; `counts` returns whether a
-/// triangle counts, the hint included.
+/// Returns a triangle within the tolerance of p, among those that `counts` accepts: one nearer than `least`,
+/// the `hint` if possible; else the nearest one, if its own tolerance allows its distance; else none. `at`
+/// returns the tolerance of a triangle, from `least` to `most`. Precondition: `counts` accepts the hint, if
+/// there is one.
 template <class At, class Counts>
 Index triangle_within_tolerance(const TriangleHierarchy& triangles, const Point& p, double least, double most,
                                 const At& at, Index hint, const Counts& counts) {

@@ -86,8 +86,8 @@ struct Certificate {
 ///
 /// The DMPlex has vertices, edges, faces and tets, without overlap, and the labels `region` (tets, the tag),
 /// `collar` (tets in collars: 1 star, 2 book), `patch` (faces, the tag) and `curve` (edges, the tag). The
-/// label `feature` is for this library: four times the index of the vertex, curve or patch of the complex
-/// plus its dimension, on vertices, edges and faces.
+/// label `feature`, on vertices, edges and faces, is for this library: four times the index of the curve or
+/// patch of the complex plus its dimension; 0 for all vertices of the complex.
 class ParallelMesh {
  public:
   /// Distributes a mesh that rank 0 has; others pass an empty one. Tags must fit PETSc's integers. PTScotch

@@ -16,17 +16,17 @@ namespace collarmesh::io {
 void write_tet_mesh(const std::string& path, const TetMesh& mesh, std::string_view format = {},
                     GhostCells ghost_cells = GhostCells::off);
 
-/// Reads the files of `write_tet_mesh` and, as far as they carry tetrahedra, prisms, pyramids, triangles,
-/// quadrangles and lines of first or second order, other programs' files of these formats.
-/// Throws ReadError (path, line or byte).
+/// Reads the files of `write_tet_mesh`, and other programs' files of these formats as far as they contain
+/// tetrahedra, prisms, pyramids, triangles, quadrangles and lines of first or second order. Throws ReadError
+/// (path, line or byte).
 TetMesh read_tet_mesh(const std::string& path, std::string_view format = {});
 
 /// Returns the extensions of the formats that this program can write: .vtu (VTK), .pvtu (the same, with a
-/// .vtu beside it for each partition), .vtk (its legacy format), .msh (Gmsh; 4.1 is written), .mesh (Medit),
-/// .inp (Abaqus, CalculiX), .unv (I-DEAS), .ele (TetGen, with .node, .face and .edge beside it). Formats that
-/// are only written: .bdf (Nastran), .cdb (Ansys), .mfem (MFEM), .exo (Exodus II), .su2 (SU2), .polymesh
-/// (OpenFOAM: the file constant/polyMesh/boundary, with the others beside it). Optional formats: .xdmf (XDMF
-/// 3, with .h5 beside it), .med (SALOME) and, only written, .cgns.
+/// .vtu beside it for each partition), .vtk (VTK's legacy format), .msh (Gmsh; 4.1 is written), .mesh
+/// (Medit), .inp (Abaqus, CalculiX), .unv (I-DEAS), .ele (TetGen, with .node, .face and .edge beside it).
+/// Formats that are only written: .bdf (Nastran), .cdb (Ansys), .mfem (MFEM), .exo (Exodus II), .su2 (SU2),
+/// .polymesh (OpenFOAM: the file constant/polyMesh/boundary, with the others beside it). Optional formats:
+/// .xdmf (XDMF 3, with .h5 beside it), .med (SALOME) and, only written, .cgns.
 std::vector<std::string> written_tet_mesh_formats();
 std::vector<std::string> read_tet_mesh_formats();
 /// Returns the extensions of formats that can hold partitions, and ghost cells.

@@ -1,7 +1,6 @@
-// CGNS (cgns.github.io, "SIDS-to-HDF5 File Mapping Manual") in HDF5: one unstructured zone. It has a section
-// of elements for each region, each tag of patches and each tag of curves, with their names, one for each
-// kind of cells; the faces of a section on the boundary are also a boundary condition, whose family has the
-// name.
+// CGNS (cgns.github.io, "SIDS-to-HDF5 File Mapping Manual") in HDF5: one unstructured zone. Each region, each
+// tag of patches and each tag of curves has a section of elements for each kind of cells, with its name.
+// Faces of a section that lie on the boundary are also a boundary condition, whose family has the name.
 #include <fmt/format.h>
 #include <hdf5.h>
 
@@ -151,7 +150,7 @@ void name_families(std::vector<Section>& sections) {
   }
 }
 
-/// Returns a section for each kind of cells of a group: the cells of a region, patch or curve.
+/// Returns a section for each kind of cells in each group: a region, or a tag of patches or curves.
 std::vector<Section> sections_of(const TetMesh& mesh) {
   std::map<std::pair<Index, CellKind>, std::vector<Index>> regions;
   std::array<std::map<std::pair<Tag, CellKind>, std::vector<Index>>, 3> tagged;  // by dimension

@@ -31,7 +31,7 @@ hid_t native_type() {
   }
 }
 
-/// Closes the HDF5 object that it holds.
+/// An owner of an HDF5 object, which it closes.
 class Handle {
  public:
   Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}

@@ -36,16 +36,16 @@ std::vector<T> read_dataset(const std::string& path, const fs::path& file, const
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // we report errors ourselves
   const Handle values(H5Fopen(file.string().c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (values < 0)
-    fail(path, fmt::format("its values in {} cannot be read; put that file beside it", file.string()));
+    fail(path, fmt::format("its values in {} cannot be read; put that file beside this one", file.string()));
   const Handle set(H5Dopen2(values, name.c_str(), H5P_DEFAULT), H5Dclose);
-  if (set < 0) fail(path, fmt::format("{} has no values {}", file.string(), name));
+  if (set < 0) fail(path, fmt::format("{} has no dataset {}", file.string(), name));
   const Handle space(H5Dget_space(set), H5Sclose);
   const hssize_t count = H5Sget_simple_extent_npoints(space);
   const hsize_t stored = H5Dget_storage_size(set);
   // A file may claim more values than it holds.
   if (count < 0 || static_cast<hsize_t>(count) > 2000 * (stored + 1))
-    fail(path,
-         fmt::format("{}:{} says that it has {} values in {} bytes", file.string(), name, count, stored));
+    fail(path, fmt::format("{}:{} claims to have {} values in {} bytes; the file is damaged", file.string(),
+                           name, count, stored));
   std::vector<T> result(static_cast<std::size_t>(count));
   if (!result.empty() && H5Dread(set, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, result.data()) < 0)
     fail(path, fmt::format("{}:{} cannot be read", file.string(), name));
@@ -59,9 +59,9 @@ class Grid {
     const pugi::xml_parse_result parsed = document_.load_file(path_.c_str());
     if (!parsed) fail(path_, fmt::format("the XML is malformed: {}", parsed.description()));
     grid_ = document_.child("Xdmf").child("Domain").child("Grid");
-    if (!grid_) fail(path_, "expected Xdmf, Domain and Grid");
+    if (!grid_) fail(path_, "expected the elements Xdmf, Domain and Grid");
     if (grid_.attribute("GridType").as_string("Uniform") != std::string_view("Uniform"))
-      fail(path_, "expected a uniform grid; name a file of one");
+      fail(path_, "expected a uniform grid; name a file that has one");
     find_topology();
   }
 
@@ -125,10 +125,9 @@ class Grid {
           order_ = order;
           return;
         }
-    fail(path_,
-         fmt::format("cells of the type '{}' are not supported, only tetrahedra, triangles and lines of "
-                     "first or second order, one type to a grid",
-                     type));
+    fail(path_, fmt::format("cells of the type '{}' are not supported, only tetrahedra, triangles and lines "
+                            "of first or second order, with one type in each grid",
+                            type));
   }
 
   void take(const pugi::xml_node& attribute, const std::string& name, std::size_t before, std::size_t count,

@@ -11,18 +11,18 @@
 
 namespace collarmesh::openmesh_io {
 
-/// Selects triangles of a tetrahedral mesh. Regions are TetMesh::tet_region, 0 is the outside.
+/// A selection of triangles of a tetrahedral mesh. Regions are TetMesh::tet_region, 0 is the outside.
 struct SurfaceSelection {
-  /// Selects triangles with region `back` behind them and `front` in front, or the other way round. `any`
-  /// stands for any region.
+  /// The regions behind and in front of the selected triangles, after a triangle is reversed if necessary.
+  /// `any` stands for any region.
   Index back = any, front = 0;
   static constexpr Index any = none;
 
-  /// Selects the triangles between the regions and the outside, seen from outside.
+  /// Selects the triangles between the regions and the outside, oriented outwards.
   static SurfaceSelection boundary() { return {any, 0}; }
-  /// Selects all triangles around a region, seen from outside it.
+  /// Selects all triangles around a region, oriented away from it.
   static SurfaceSelection region(Index region) { return {region, any}; }
-  /// Selects triangles between two regions, seen from the second one.
+  /// Selects triangles between two regions, oriented towards the second one.
   static SurfaceSelection interface(Index back, Index front) { return {back, front}; }
 };
 
