@@ -16,6 +16,7 @@
 #include "pipeline/certification.h"
 #include "pipeline/periodic_faces.h"
 #include "pipeline/reshaping.h"
+#include "pipeline/rods_in_blocks.h"
 #include "pipeline/vertex_bound.h"
 #include "predict/vertex_counts.h"
 #include "tolerance/thin_shells.h"
@@ -68,7 +69,7 @@ DisjointSets sides_of_walls(const Plc& plc) {
 
 void MeshMaker::make(const Plc& plc, std::uint64_t seed) {
   set_up(plc, seed);
-  if (take_rods()) return;
+  if (take_rods() || take_sheathed_rods()) return;
   if (may_be_better_constrained()) {
     if (!refines_with_few_vertices() &&
         take_constrained(
@@ -132,6 +133,45 @@ bool MeshMaker::take_rods() {
   }
   no_rods_ = job_.plc;
   job_.made = std::move(before);
+  return false;
+}
+
+/// Uses rings in and around thin rods inside other regions, and a refinement of the rest, if there are such
+/// rods and every guarantee holds. Otherwise leaves the job as it was.
+bool MeshMaker::take_sheathed_rods() {
+  if (no_sheaths_ == job_.plc || job_.start != Start::automatic || !may_have_rods(job_)) return false;
+  std::vector<SheathedRod> rods = find_sheathed_rods(job_);
+  if (rods.empty()) return false;
+  PipelineResult before = std::exchange(job_.made, {});
+  if (is_good_with_sheaths(rods)) {
+    is_constrained_ = false;
+    job_.made.check.notes.push_back(fmt::format(
+        "made of rings in and around rods that are far thinner than the elements: {}", rods.size()));
+    return true;
+  }
+  no_sheaths_ = job_.plc;
+  job_.made = std::move(before);
+  set_up(*job_.plc, job_.options.mesh.seed);
+  return false;
+}
+
+/// Makes a mesh with sheaths around rods. Removes the rods that have no sheath in it. Returns whether every
+/// guarantee holds.
+bool MeshMaker::is_good_with_sheaths(std::vector<SheathedRod>& rods) {
+  try {
+    std::vector<Index> fixed;
+    if (!refine_around_rods(job_, rods, fixed, fineness_)) return false;
+    reshape(job_, fixed);
+    mend_flat_tets(job_);
+    project(job_);
+    raise_order(job_);
+    certify(job_, tolerance(*job_.plc));
+    return job_.made.guarantees_hold();
+  } catch (const Ended&) {
+    if (!job_.budget.ended_at_vertices(job_.made.result, job_.control.out_of_time())) throw;
+  } catch (const FarTooFine&) {  // the refinement of the whole complex decides
+  } catch (const PlcError&) {    // vertices on axes are too near to other features
+  }
   return false;
 }
 
@@ -265,6 +305,7 @@ void MeshMaker::take_new_complex() {
   tolerance_.reset();
   nearer_.reset();
   no_rods_ = nullptr;
+  no_sheaths_ = nullptr;
   hopeless_ = nullptr;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "constrained/sheathed_rods.h"
 #include "pipeline/constrained_start.h"
 #include "pipeline/mesh_job.h"
 #include "pipeline/refinement.h"
@@ -71,6 +72,8 @@ class MeshMaker {
   void set_up(const Plc& plc, std::uint64_t seed);
   bool may_be_better_constrained() const;
   bool take_rods();
+  bool take_sheathed_rods();
+  bool is_good_with_sheaths(std::vector<SheathedRod>& rods);
   bool refines_with_few_vertices();
   bool may_take_constrained(const Plc& plc) const;
   bool is_far_too_fine() const;
@@ -87,6 +90,7 @@ class MeshMaker {
   bool was_far_too_fine_ = false;
   bool is_constrained_ = false;                // whether the kept mesh started from constrained tetrahedra
   const Plc* no_rods_ = nullptr;               // the complex whose rods had no good mesh
+  const Plc* no_sheaths_ = nullptr;            // the complex whose rods inside regions had no good mesh
   const Plc* hopeless_ = nullptr;              // the complex whose constrained tetrahedra are not tried
   std::optional<SurfaceTolerance> tolerance_;  // tolerance of the current complex
   std::optional<SurfaceTolerance> nearer_;     // smaller tolerance for another try, after regions lost volume

@@ -83,7 +83,7 @@ void insert_where_poor(MeshJob& job, remeshing::EditableMesh& edited) {
 }  // namespace
 
 // Uses one data structure for coarsening and improvement.
-void reshape(MeshJob& job) {
+void reshape(MeshJob& job, const std::vector<Index>& fixed) {
   if ((!job.options.coarsen && job.options.improve == 0) || job.made.result.status != MeshStatus::complete) {
     job.neighbours = KnownNeighbours();
     return;
@@ -103,6 +103,7 @@ void reshape(MeshJob& job) {
     const Bounds& bounds = job.refined_with.bounds;
     remeshing::EditableMesh edited(mesh, *job.plc, bounds,
                                    job.options.coarsen ? job.refined_with.edges_per_hole : 0, job.neighbours);
+    edited.fix(fixed);
     job.neighbours = KnownNeighbours();
     coarsen_elements(job, edited);
     improve_elements(job, edited, !is_settled_later(job));

@@ -7,8 +7,9 @@
 
 namespace collarmesh::pipeline {
 
-/// Coarsens and improves the mesh of the job and inserts interior nodes, as the options ask for.
-void reshape(MeshJob& job);
+/// Coarsens and improves the mesh of the job and inserts interior nodes, as the options ask for. Fixed
+/// vertices stay where they are.
+void reshape(MeshJob& job, const std::vector<Index>& fixed = {});
 
 /// Improves a mesh of the complex that is not coarsened yet, with the bounds of the job.
 void improve_before_coarsening(MeshJob& job, TetMesh& mesh);

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "collarmesh/plc.h"
+#include "collarmesh/surface_tolerance.h"
+#include "constrained/sheathed_rods.h"
+
+namespace collarmesh::pipeline {
+
+/// A complex in which the regions around rods fill these, with vertices along their axes. Features are
+/// numbered anew.
+struct ComplexWithoutRods {
+  Plc plc;
+  /// By feature of this complex: the feature of the whole one; none for the vertices on axes.
+  std::vector<Index> vertex_of, curve_of, patch_of, region_of;
+  std::vector<Index> triangle_of;  ///< by triangle, likewise
+
+  /// Returns a tolerance of the whole complex for this one.
+  SurfaceTolerance tolerance_from(const SurfaceTolerance& whole) const;
+};
+
+/// Returns the complex without these rods; nothing if their ends share vertices with other features.
+std::optional<ComplexWithoutRods> complex_without_rods(const Plc& whole,
+                                                       const std::vector<SheathedRod>& rods);
+
+}  // namespace collarmesh::pipeline

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+#include "constrained/sheathed_rods.h"
+#include "pipeline/mesh_job.h"
+#include "pipeline/refinement.h"
+
+namespace collarmesh::pipeline {
+
+/// Returns the thin rods and rings of the complex that lie inside other regions and have room for sheaths,
+/// with these. Throws Ended.
+std::vector<SheathedRod> find_sheathed_rods(MeshJob& job);
+
+/// Makes a mesh of a complex with such rods: refines the complex without them, and puts their tetrahedra and
+/// those of their sheaths in the place of the elements there. Removes the rods for which the refined mesh has
+/// no room, and refines once more with these. Sets the vertices of the other rods, which should stay when the
+/// mesh is coarsened. Returns whether there are others. Throws Ended, FarTooFine, and PlcError.
+bool refine_around_rods(MeshJob& job, std::vector<SheathedRod>& rods, std::vector<Index>& fixed,
+                        Fineness fineness);
+
+}  // namespace collarmesh::pipeline
