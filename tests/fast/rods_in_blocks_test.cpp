@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -13,6 +15,7 @@
 #include "collarmesh/repair.h"
 #include "pipeline/mesh_maker.h"
 #include "pipeline/rod_room.h"
+#include "remesh/thin_shape.h"
 #include "support/meshing.h"
 #include "support/shapes.h"
 
@@ -50,6 +53,39 @@ PolygonSoup double_loop(double apart) {
       soup.add_facet(std::vector<Index>{a + j, b + n, a + n});
     }
   return soup;
+}
+
+/// Returns a block with a wire that is straight, bends by a quarter of a turn, and is straight again.
+Plc bent_wire_in_block() {
+  constexpr double radius = 0.04, bend = 1.5, first_leg = 0.5, second_leg = 2;
+  constexpr Index around = 32, in_bend = 60;
+  PolygonSoup tube;
+  const auto add_section = [&](const Point& centre, double turned) {
+    for (Index j = 0; j < around; ++j) {
+      const double a = 2 * std::numbers::pi * j / around, away = radius * std::cos(a);
+      tube.points.push_back({centre.x - away * std::cos(turned), centre.y + radius * std::sin(a),
+                             centre.z + away * std::sin(turned)});
+    }
+  };
+  add_section({0, 0, 0}, 0);
+  for (Index i = 0; i <= in_bend; ++i) {
+    const double turned = std::numbers::pi / 2 * i / in_bend;
+    add_section({bend - bend * std::cos(turned), 0, first_leg + bend * std::sin(turned)}, turned);
+  }
+  add_section({bend + second_leg, 0, first_leg + bend}, std::numbers::pi / 2);
+  const auto sections = static_cast<Index>(tube.points.size() / around);
+  for (Index i = 0; i + 1 < sections; ++i)
+    for (Index j = 0; j < around; ++j) {
+      const Index a = i * around, b = a + around, n = (j + 1) % around;
+      tube.add_facet(std::vector<Index>{a + j, b + j, b + n});
+      tube.add_facet(std::vector<Index>{a + j, b + n, a + n});
+    }
+  for (const Index first : {Index{0}, (sections - 1) * around}) {
+    std::vector<Index> cap;
+    for (Index j = 0; j < around; ++j) cap.push_back(first + j);
+    tube.add_facet(cap);
+  }
+  return build_repaired_plc({tube, box({-1.5, -2, 0}, {bend + second_leg, 2, 4})}).plc;
 }
 
 /// Returns the number of rods that may have sheaths, and of those with room.
@@ -114,6 +150,35 @@ TEST(RodsInBlocks, LeaveNothingBehindIfTheRefinedMeshHasNoRoom) {
   prepared.maker.make(plc, options.mesh.seed);
   const Prepared wanted(plc, options);
   EXPECT_TRUE(prepared.mesh().points == wanted.mesh().points && prepared.mesh().tets == wanted.mesh().tets);
+}
+
+// Without improvement no mesh keeps the bounds on angles.
+TEST(RodsInBlocks, ChangeNothingIfAGuaranteeIsMissed) {
+  const Plc plc = wires_in_block({wire_at(0)});
+  PipelineOptions options = second_order();
+  options.improve = 0;
+  const Prepared tried(plc, options);
+  EXPECT_TRUE(std::ranges::none_of(tried.job.made.check.notes, [](const std::string& note) {
+    return note.find("in and around rods") != std::string::npos;
+  }));
+  options.start = Start::refinement;
+  const Prepared refined(plc, options);
+  EXPECT_TRUE(tried.mesh().points == refined.mesh().points && tried.mesh().tets == refined.mesh().tets);
+}
+
+// A refinement around them would be in vain.
+TEST(RodsInBlocks, KeepBoundsOnAnglesOrStayOut) {
+  const Plc plc = bent_wire_in_block();
+  ASSERT_EQ(count_rods(plc).first, 1U);
+  PipelineOptions options = second_order();
+  options.order = 1;
+  Prepared prepared(plc, options);
+  for (const SheathedRod& rod : find_sheathed_rods(prepared.job))
+    for (const auto& [a, b, c, d] : rod.mesh.tets) {
+      const auto& p = rod.mesh.points;
+      const remeshing::ExtremeAngles angles = remeshing::extreme_angles({p[a], p[b], p[c], p[d]});
+      EXPECT_TRUE(angles.smallest >= 8 && angles.largest <= 150);
+    }
 }
 
 TEST(RodsInBlocks, StayOutOneByOne) {

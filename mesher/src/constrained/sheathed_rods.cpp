@@ -24,7 +24,7 @@ struct Layer {
 };
 
 /// The layers around a rod: the ring itself, and two wider ones with fewer vertices. With these radii the
-/// angles of all tets lie between 9 and 145 degrees.
+/// angles of all tets lie between 8.2 and 148 degrees.
 std::array<Layer, 3> layers_around(std::size_t in_ring) {
   constexpr std::size_t fewest = 6;
   constexpr double widest = 2.3, less_by_vertex = 0.05, times = 1.9;

@@ -25,6 +25,9 @@ namespace collarmesh::pipeline {
 
 namespace {
 
+/// With thin shells, a refinement that needs more vertices takes longer than constrained tetrahedra.
+constexpr std::size_t few_vertices = 15'000;
+
 /// Returns whether all missed guarantees may hold with a smaller surface distance.
 bool misses_volumes_only(const CheckReport& check) {
   return !check.findings.empty() && std::ranges::all_of(check.findings, [](const Finding& f) {
@@ -160,7 +163,11 @@ bool MeshMaker::take_sheathed_rods() {
 bool MeshMaker::is_good_with_sheaths(std::vector<SheathedRod>& rods) {
   try {
     std::vector<Index> fixed;
+    const std::size_t most = job_.refined_with.max_vertices;
+    if (may_be_better_constrained() && (most == 0 || most > few_vertices))
+      job_.refined_with.max_vertices = few_vertices;
     if (!refine_around_rods(job_, rods, fixed, fineness_)) return false;
+    job_.refined_with.max_vertices = most;
     reshape(job_, fixed);
     mend_flat_tets(job_);
     project(job_);
@@ -188,10 +195,9 @@ bool MeshMaker::may_be_better_constrained() const {
 /// Refines with a limit on vertices, beyond which constrained tetrahedra would be faster. Returns whether the
 /// refinement ended within it. The mesh is not used, because the limit changes the order of insertions.
 bool MeshMaker::refines_with_few_vertices() {
-  constexpr std::size_t few = 15'000;
   const std::size_t most = job_.refined_with.max_vertices;
-  if (most > 0 && most <= few) return false;
-  job_.refined_with.max_vertices = few;
+  if (most > 0 && most <= few_vertices) return false;
+  job_.refined_with.max_vertices = few_vertices;
   try {
     refine(job_);
   } catch (const Ended&) {

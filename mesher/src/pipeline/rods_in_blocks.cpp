@@ -14,6 +14,7 @@
 #include "pipeline/rod_filling.h"
 #include "pipeline/rod_room.h"
 #include "pipeline/vertex_bound.h"
+#include "remesh/thin_shape.h"
 
 namespace collarmesh::pipeline {
 
@@ -268,6 +269,16 @@ void refine_without(MeshJob& job, const ComplexWithoutRods& without, const std::
   job.neighbours = KnownNeighbours();  // they know other features
 }
 
+/// Returns whether all tets of a rod and its sheath keep the bounds on the angles of thin tets. Those between
+/// rings that are near each other, as in a bend, and layers that are far apart miss them.
+bool keeps_angles(const TetMesh& mesh, double thin_angle) {
+  return std::ranges::all_of(mesh.tets, [&](const std::array<Index, 4>& tet) {
+    const auto& p = mesh.points;
+    const auto angles = remeshing::extreme_angles({p[tet[0]], p[tet[1]], p[tet[2]], p[tet[3]]});
+    return angles.smallest >= thin_angle && angles.largest <= remeshing::ThinShape::largest_angle;
+  });
+}
+
 }  // namespace
 
 std::vector<SheathedRod> find_sheathed_rods(MeshJob& job) {
@@ -277,6 +288,9 @@ std::vector<SheathedRod> find_sheathed_rods(MeshJob& job) {
     const RodLimits limits{.size = smallest_size(job.options.mesh, job.plc->bounds.diagonal()),
                            .most_vertices = job.given.mesh.max_vertices};
     rods = sheathed_rods(*job.plc, *job.options.mesh.bounds.tolerance, limits, job.execution());
+    std::erase_if(rods, [&](const SheathedRod& rod) {
+      return !keeps_angles(rod.mesh, job.refined_with.bounds.thin_angle);
+    });
     remove_rods_without_room(*job.plc, rods, job.execution());
   });
   job.control.stop_if_asked();
