@@ -2,6 +2,7 @@
 #include "collarmesh/curved_tet.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <vector>
 
@@ -118,6 +119,7 @@ Cubic jacobian(const CurvedTet& p, double& error) {
 }  // namespace
 
 CurvedTet curved_tet(const TetMesh& mesh, Index tet) {
+  assert(mesh.order() == 2);
   CurvedTet nodes;
   for (std::size_t k = 0; k < 4; ++k) nodes[k] = mesh.points[mesh.tets[tet][k]];
   for (std::size_t k = 0; k < 6; ++k) nodes[4 + k] = mesh.points[mesh.tet_mid_nodes[tet][k]];
@@ -125,6 +127,7 @@ CurvedTet curved_tet(const TetMesh& mesh, Index tet) {
 }
 
 bool jacobian_exceeds(const CurvedTet& nodes, double least) {
+  assert(least >= 0 && least < 1);
   if (is_straight(nodes)) return checks::exact_orientation(nodes[0], nodes[1], nodes[2], nodes[3]) > 0;
   double error = 0;
   std::vector<Part> open(1);

@@ -1,6 +1,7 @@
 #include "collarmesh/coarsen.h"
 
 #include <algorithm>
+#include <cassert>
 #include <chrono>
 #include <climits>
 #include <cmath>
@@ -544,6 +545,7 @@ CoarsenReport coarsen(remeshing::EditableMesh& edited, const MeshOptions& made_w
 
 CoarsenReport coarsen(TetMesh& mesh, const Plc& plc, const MeshOptions& made_with,
                       const Execution& execution) {
+  assert(mesh.order() == 1);
   const SurfaceTolerance tolerance = tolerance_of(plc, made_with.bounds, made_with.size);
   CoarsenReport report;
   ThreadLimit(made_with.threads).run([&] {

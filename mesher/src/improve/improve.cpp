@@ -1,6 +1,7 @@
 #include "collarmesh/improve.h"
 
 #include <algorithm>
+#include <cassert>
 #include <chrono>
 #include <cmath>
 #include <queue>
@@ -277,6 +278,7 @@ ImproveReport improve(remeshing::EditableMesh& edited, const ImproveOptions& opt
 
 ImproveReport improve(TetMesh& mesh, const Plc& plc, const ImproveOptions& options,
                       const Execution& execution) {
+  assert(mesh.order() == 1);
   ImproveReport report;
   ThreadLimit(options.threads).run([&] {
     remeshing::EditableMesh edited(mesh, plc, options.bounds, options.edges_per_hole);

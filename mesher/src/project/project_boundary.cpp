@@ -4,6 +4,7 @@
 #include "collarmesh/project_boundary.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <optional>
 #include <unordered_set>
@@ -333,6 +334,7 @@ class BoundaryProjection {
 
 ProjectReport project_boundary(TetMesh& mesh, const Plc& plc, const ExactGeometry& exact,
                                const ProjectOptions& options, const Execution& execution) {
+  assert(mesh.order() == 1);
   return BoundaryProjection(mesh, plc, exact, options, execution).run();
 }
 

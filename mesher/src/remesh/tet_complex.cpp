@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <string>
 
 #include <tbb/enumerable_thread_specific.h>
@@ -228,6 +229,24 @@ bool TetComplex::on_faces(Index a, Index b) const {
   return false;
 }
 
+// Returns whether a tet and its neighbours agree: each is the other's neighbour across the same triangle,
+// they lie on the same face of the mesh or on none there, and the corners are in use.
+[[maybe_unused]] static bool consistent(const TetComplex& complex, Index t) {
+  const TetComplex::Tet& tet = complex[t];
+  for (unsigned corner = 0; corner < 4; ++corner) {
+    if (!complex.in_use(tet.corners[corner])) return false;
+    const Index beyond = tet.neighbours[corner];
+    if (beyond == none) continue;
+    const TetComplex::Tet& other = complex[beyond];
+    const auto key = sorted(side_corners(tet.corners, corner));
+    unsigned back = 0;
+    while (back < 4 && !equal(sorted(side_corners(other.corners, back)), key)) ++back;
+    if (back == 4 || !other.alive || other.neighbours[back] != t || other.faces[back] != tet.faces[corner])
+      return false;
+  }
+  return tet.alive;
+}
+
 std::span<const Index> TetComplex::replace(const Replacement& replacement) {
   const auto& [old, created, old_faces, created_faces] = replacement;
   open_.clear();
@@ -294,6 +313,7 @@ std::span<const Index> TetComplex::replace(const Replacement& replacement) {
   for (const Index v : cavity_vertices_)
     if (vertex_tet_[v] == none) lost_vertices_.push_back(v);
   make_faces(replacement);
+  assert(std::ranges::all_of(created_, [&](Index t) { return consistent(*this, t); }));
   return created_;
 }
 

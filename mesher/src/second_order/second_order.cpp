@@ -3,6 +3,7 @@
 #include "collarmesh/second_order.h"
 
 #include <algorithm>
+#include <cassert>
 #include <chrono>
 #include <cmath>
 #include <optional>
@@ -391,6 +392,7 @@ bool replace_in_mesh(TetMesh& mesh, const Plc& plc, std::span<const UnwantedTet>
 
 SecondOrderReport make_second_order(TetMesh& mesh, const Plc& plc, const SecondOrderOptions& options,
                                     const Execution& execution) {
+  assert(mesh.order() == 1);
   if (!(options.least_jacobian >= 0 && options.least_jacobian < 1))
     throw OptionError("least-jacobian must be at least 0 and below 1");
   const auto start = std::chrono::steady_clock::now();
