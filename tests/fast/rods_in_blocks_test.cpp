@@ -85,7 +85,7 @@ Plc bent_wire_in_block() {
     for (Index j = 0; j < around; ++j) cap.push_back(first + j);
     tube.add_facet(cap);
   }
-  return build_repaired_plc({tube, box({-1.5, -2, 0}, {bend + second_leg, 2, 4})}).plc;
+  return build_repaired_plc(std::vector{tube, box({-1.5, -2, 0}, {bend + second_leg, 2, 4})}).plc;
 }
 
 /// Returns the number of rods that may have sheaths, and of those with room.
