@@ -85,11 +85,14 @@ def try_complex(folder, seed):
         made = change(made, random_)
     path = folder / "in.off"
     path.write_text(made.off())
-    size = random_.choice([[], [], ["--size", "1"], ["--coarsen", "off"], ["--order", "2"], ["--improve", "0"]])
+    constrained = ["--start", "constrained"]
+    size = random_.choice(
+        [[], [], ["--size", "1"], ["--coarsen", "off"], ["--order", "2"], ["--improve", "0"], constrained])
     exact = ["--feature-angle", "0"]  # otherwise flat edges are smooth, and volumes are right only within the distance
     run = mesh(folder, path, *size, *exact)
     valid = made.volumes is not None
-    fault = run.fault({0, 5} if valid else REFUSALS | {0})
+    allowed = ({0, 5} if valid else REFUSALS | {0}) | ({7} if size is constrained else set())
+    fault = run.fault(allowed)
     if fault is None and run.code == 0:
         fault = judge_volumes(folder, made.volumes, made.rounding, "is lost" in run.text)
     if fault is None and run.code == 0 and random_.random() < 0.1 and "repaired" not in run.text:
