@@ -221,8 +221,8 @@ def missing_files(sources):
 def build_site(sources):
     if missing := missing_files(sources):
         raise SystemExit(f"pages name files that are not there: {missing}")
-    if shutil.which("mkdocs") is None:
-        print("mkdocs-material is not installed")
+    if missing := [program for program in ("mkdocs", "doxygen") if shutil.which(program) is None]:
+        print(f"{missing} not installed")
         return 77
     with tempfile.TemporaryDirectory() as folder:
         run = subprocess.run(["mkdocs", "build", "--strict", "-f", sources / "mkdocs.yml", "-d", folder],
@@ -235,6 +235,13 @@ def build_site(sources):
         told = {page.relative_to(doc).with_suffix(".html") for page in doc.rglob("*.md")}
         if not told <= pages:
             raise SystemExit(f"pages are missing: {told - pages}")
+        for name, member in (("structcollarmesh_1_1MeshOptions", "size_field"), ("namespacecollarmesh", "run_pipeline"),
+                             ("namespacecollarmesh_1_1io", "read_soup"),
+                             ("classcollarmesh_1_1brep_1_1CadModel", "CadModel"),
+                             ("classcollarmesh_1_1openmesh__io_1_1Surfaces", "Surfaces")):
+            page = site / f"api/{name}.html"  # doxygen's warnings are mkdocs' warnings, which --strict refuses
+            if not page.exists() or member not in page.read_text():
+                raise SystemExit(f"the public headers have no page {name} with {member}")
         unread = {str(page.relative_to(site)) for page in site.rglob("*.html") if re.search("<p>```", page.read_text())}
         if unread:
             raise SystemExit(f"blocks of code that the site does not show as such: {unread}")
