@@ -7,7 +7,6 @@ import json
 import os
 import signal
 import subprocess
-import time
 import unittest
 
 from program import BOX_FACES, MODELS, PROGRAM, ProgramTest, box_points, off_text
@@ -65,9 +64,13 @@ class Batch(ProgramTest):
             self.assertRegex(run.stderr, says)
 
     def test_a_signal_ends_all_of_it(self):
-        run = subprocess.Popen([PROGRAM, MODELS / "box.off", MODELS / "sphere.off", "--batch", "made", "--size", "0.004"],
+        run = subprocess.Popen([PROGRAM, MODELS / "box.off", MODELS / "sphere.off", "--batch", "made", "--size", "0.004",
+                                "--progress", "json"],
                                cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        time.sleep(0.5)
+        self.addCleanup(run.kill)
+        for line in run.stderr:
+            if line.startswith("{") and json.loads(line).get("phase") == "refine":
+                break
         os.kill(run.pid, signal.SIGTERM)
         out, err = run.communicate(timeout=60)
         self.assertEqual(run.returncode, 6, err)

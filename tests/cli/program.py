@@ -1,5 +1,6 @@
 """The program for tests: its path, small inputs, expected messages and files."""
 
+import contextlib
 import math
 import os
 import pathlib
@@ -7,6 +8,7 @@ import re
 import shutil
 import subprocess
 import tempfile
+import time
 import unittest
 
 PROGRAM = os.environ["COLLARMESH_PROGRAM"]
@@ -35,6 +37,31 @@ def wedge_text(degrees):
     corners = [(0, 0), (1, 0), (math.cos(t), math.sin(t))]
     points = [(x, y, z) for z in (0, 1) for x, y in corners]
     return off_text(points, [(0, 2, 1), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)])
+
+
+def wait_for(event, what, seconds=60):
+    """Waits until `event()` returns something true, and returns that."""
+    end = time.monotonic() + seconds
+    while not (value := event()):
+        if time.monotonic() > end:
+            raise AssertionError(f"{what}: it has not come to this")
+        time.sleep(0.002)
+    return value
+
+
+def children_of(pid):
+    """Returns the numbers of the child processes of all threads of a process."""
+    found = []
+    for path in pathlib.Path(f"/proc/{pid}/task").glob("*/children"):
+        with contextlib.suppress(OSError):  # a thread that has ended
+            found += map(int, path.read_text().split())
+    return found
+
+
+def has_signal(pid, mask, number):
+    """Returns whether a signal is in a mask of the process: SigCgt (it has a handler), ShdPnd (it is still to come)."""
+    bits = re.search(rf"^{mask}:\s*(\w+)", pathlib.Path(f"/proc/{pid}/status").read_text(), re.MULTILINE)[1]
+    return bool(int(bits, 16) >> (number - 1) & 1)
 
 
 class ProgramTest(unittest.TestCase):

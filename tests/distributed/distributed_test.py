@@ -16,7 +16,6 @@ import shutil
 import signal
 import subprocess
 import tempfile
-import time
 import unittest
 
 import numpy
@@ -317,9 +316,7 @@ class Failures(DistributedTest):
     def test_interrupt(self):
         process = self.run_until_meshed()
         process.send_signal(signal.SIGINT)
-        start = time.monotonic()
         self.assertNotEqual(process.wait(timeout=120), 0)
-        self.assertLess(time.monotonic() - start, 60)
         self.assertEqual([p.name for p in self.folder.iterdir()], [])
 
 

@@ -1,6 +1,8 @@
 """The add-on without the GUI: FEM's own look-up agrees with the meshes; refinement; errors. Run by run.py."""
 
+import json
 import os
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -10,7 +12,7 @@ import FreeCAD
 import ObjectsFem
 import Part
 from freecad import collarmesh_workbench
-from freecad.collarmesh_workbench import mesh_object, mesh_properties, program, work_folder
+from freecad.collarmesh_workbench import mesh_object, mesh_properties, prediction, program, work_folder
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import run_in_freecad  # noqa: E402
@@ -38,6 +40,18 @@ def group(fem_mesh, name):
 
 def nodes_of(fem_mesh, elements):
     return {node for element in elements for node in fem_mesh.getElementNodes(element)}
+
+
+def table_of_options():
+    """Returns the program's own table of its options when it meshes, by key."""
+    text = subprocess.run([program.find_program(), "--generate", "options"],
+                          capture_output=True, text=True, check=True).stdout
+    return {option["key"]: option for option in json.loads(text) if "mesh" in option["takers"]}
+
+
+def options_in(arguments):
+    """Returns the keys of the options in a command line."""
+    return {word.removeprefix("--").replace("-", "_") for word in arguments if word.startswith("--")}
 
 
 def volume_in(fem_mesh, name):
@@ -240,6 +254,20 @@ class Headless(unittest.TestCase):
         for _, name, field, *_ in mesh_properties.PROPERTIES:
             if name not in of_their_own:
                 self.assertEqual(options[field], values[name], name)
+
+    def test_options_are_those_of_the_program(self):
+        table = table_of_options()
+        numbers = {field.name: field for field in program.Settings.numbers()}
+        self.assertLessEqual(set(numbers), set(table))
+        self.assertLessEqual(options_in(prediction.COUNTING), set(table))
+        for name, value in (("radius_edge", 2), ("crease_angle", 60), ("collar_angle", 150)):
+            self.assertEqual((numbers[name].default, table[name]["default"]), (value, value), name)
+        every = program.Settings(
+            **{name: 7 for name in numbers}, coarsen=False, dimension=2, repair="wrap", keep_apart=True, interior_node=True,
+            layers=["all"], layers_tets=True, split=["Face1"], periodic=["x"],
+            solid_sizes={1: 2}, face_sizes={3: 4}, edge_sizes={5: 6})
+        self.assertLessEqual(options_in(every.arguments()), set(table))
+        self.assertLessEqual(set(numbers), options_in(every.arguments()))
 
     def test_sides_of_a_sheet_have_their_own_nodes(self):
         sheet = Part.makePlane(4, 4, FreeCAD.Vector(3, 3, 5))

@@ -11,8 +11,8 @@ import xml.etree.ElementTree
 
 SLOWEST = 25
 
-# Programs and Python packages that Debian does not have, and tests that only run on a machine without Scotch.
-OTHERS = r"Partition\.WithoutScotch|(others_read_ours|curved_elements|solver|partitions|pages?)\b|python\.(install|types)$"
+# Tests that only run on a machine without Scotch, and those of the Python package, which need venv, pip and mypy.
+OTHERS = r"Partition\.WithoutScotch|python\.(install|types)$"
 # Tests with files beside the sources, by the variable that names the folder.
 WITH_FILES = {"COLLARMESH_CORPUS": r".*Corpus|corpus$|acute_families$", "COLLARMESH_REAL": r"real_parts$",
               "COLLARMESH_JUDGE": r"corpus$|acute_families$|real_parts$"}

@@ -18,6 +18,7 @@ SIZES = ("size", "size_min", "elements_across_gap", "gradation",
          "solid_sizes", "face_sizes", "edge_sizes", "size_field")
 OF_ADAPTING = ("elements_per_circle", "radius_edge", "distance", "planar_tolerance", "min_dihedral", "time_limit", "improve",
                "order")
+OF_THEIR_OWN = ("improve", "order", "dimension")  # numbers whose default is not the program's
 
 
 class MesherError(RuntimeError):
@@ -76,10 +77,15 @@ class Settings:
         kept = Settings(**{name: getattr(self, name) for name in OF_ADAPTING})
         return kept if kept == dataclasses.replace(without, dimension=0) else None
 
+    @classmethod
+    def numbers(cls):
+        """Returns the fields that are options with a number."""
+        return [field for field in dataclasses.fields(cls) if field.type in (int, float) and field.name not in OF_THEIR_OWN]
+
     def arguments(self):
         """Returns arguments for the command line."""
         arguments = []
-        for field in dataclasses.fields(self)[: list(self.__dataclass_fields__).index("improve")]:
+        for field in self.numbers():
             value = getattr(self, field.name)
             if value and value != field.default:
                 arguments += ["--" + field.name.replace("_", "-"), repr(field.type(value))]
