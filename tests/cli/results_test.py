@@ -186,7 +186,8 @@ class Reports(ProgramTest):
         facets = "".join(f"1 0 {i}\n4 {side}\n" for i, side in enumerate(sides, 1)) + "1 0 77\n2 9 10\n"
         wire = self.write("wire.poly", f"10 3 0 0\n{points}7 1\n{facets}0\n0\n")
         run = self.expect(0, wire, "-o", self.out, "--size", "0.5", writes=True)
-        self.assertRegex(run.stderr, r"warning: Curves outside .* 1 in all, of which the first is .* \(tag 77\) at \(2, 0.5, 0.5\)")
+        self.assertRegex(
+            run.stderr, r"warning: Curves outside .* 1 in all, of which the first is .* \(tag 77\) at \(2, 0.5, 0.5\)")
 
     def test_a_link_is_followed(self):
         named, link = self.folder / "named.json", self.folder / "link.json"

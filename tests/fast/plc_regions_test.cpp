@@ -320,7 +320,7 @@ TEST(PlcRegions, PointsWithoutEffectAreTold) {
 TEST(PlcRegions, PointsThatContradictEachOtherAreTold) {
   PolygonSoup soup = named_box({0, 0, 0}, {1, 1, 1}, "a");
   soup.region_points.push_back({{0.25, 0.5, 0.5}, 7, 0.125});
-  expect_warning(soup, {0.25, 0.5, 0.5}, {"(tag 7, size 0.125)", "(0.5, 0.5, 0.5) (tag 1)", "remove one"});
+  expect_warning(soup, {0.25, 0.5, 0.5}, {"(tag 7, size 0.125)", "(0.5, 0.5, 0.5) (tag 1)", "Remove one"});
   EXPECT_EQ(names(build({soup})), std::vector<std::string>{"a 7"});
   soup.region_points.pop_back();
   soup.hole_points.push_back({0.25, 0.5, 0.5});
