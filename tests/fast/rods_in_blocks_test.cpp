@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <cmath>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -16,6 +15,7 @@
 #include "remesh/thin_shape.h"
 #include "support/meshing.h"
 #include "support/shapes.h"
+#include "support/tubes.h"
 
 namespace collarmesh::testing::rods_in_blocks_test {
 namespace {
@@ -44,12 +44,7 @@ PolygonSoup double_loop(double apart) {
       soup.points.push_back(
           {r * std::cos(a), r * std::sin(a), apart * std::sin(a / 2) + radius * std::sin(b)});
     }
-  for (Index i = 0; i < along; ++i)
-    for (Index j = 0; j < around; ++j) {
-      const Index a = i * around, b = (i + 1) % along * around, n = (j + 1) % around;
-      soup.add_facet(std::vector<Index>{a + j, b + j, b + n});
-      soup.add_facet(std::vector<Index>{a + j, b + n, a + n});
-    }
+  add_tube(soup, around, true);
   return soup;
 }
 
@@ -72,14 +67,8 @@ Plc bent_wire_in_block() {
   }
   for (Index i = 1; i <= in_leg; ++i)
     add_section({bend + second_leg * i / in_leg, 0, first_leg + bend}, std::numbers::pi / 2);
-  const auto sections = static_cast<Index>(tube.points.size() / around);
-  for (Index i = 0; i + 1 < sections; ++i)
-    for (Index j = 0; j < around; ++j) {
-      const Index a = i * around, b = a + around, n = (j + 1) % around;
-      tube.add_facet(std::vector<Index>{a + j, b + j, b + n});
-      tube.add_facet(std::vector<Index>{a + j, b + n, a + n});
-    }
-  for (const Index first : {Index{0}, (sections - 1) * around}) {
+  add_tube(tube, around, false);
+  for (const Index first : {Index{0}, static_cast<Index>(tube.points.size()) - around}) {
     std::vector<Index> cap;
     for (Index j = 0; j < around; ++j) cap.push_back(first + j);
     tube.add_facet(cap);

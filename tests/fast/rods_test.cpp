@@ -4,8 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <cmath>
-#include <numbers>
 #include <set>
 #include <vector>
 
@@ -13,6 +11,7 @@
 #include "collarmesh/plc_builder.h"
 #include "remesh/cell_bounds.h"
 #include "support/shapes.h"
+#include "support/tubes.h"
 
 namespace collarmesh::rods_test {
 namespace {
@@ -40,24 +39,6 @@ void expect_good(const Plc& plc, const TetMesh& mesh, double off) {
   }
   for (Index r = 1; r < plc.regions.size(); ++r)
     EXPECT_NEAR(volumes[r], plc.regions[r].volume, off * plc.regions[r].volume);
-}
-
-/// Returns a ring of round section in the plane z = 0.
-PolygonSoup ring(double radius, double wire, Index around, Index along) {
-  PolygonSoup soup;
-  for (Index i = 0; i < along; ++i)
-    for (Index j = 0; j < around; ++j) {
-      const double a = 2 * std::numbers::pi * i / along, b = 2 * std::numbers::pi * j / around,
-                   r = radius + wire * std::cos(b);
-      soup.points.push_back({r * std::cos(a), r * std::sin(a), wire * std::sin(b)});
-    }
-  for (Index i = 0; i < along; ++i)
-    for (Index j = 0; j < around; ++j) {
-      const Index a = i * around, b = (i + 1) % along * around, n = (j + 1) % around;
-      soup.add_facet(std::vector<Index>{a + j, b + j, b + n});
-      soup.add_facet(std::vector<Index>{a + j, b + n, a + n});
-    }
-  return soup;
 }
 
 TEST(Rods, HaveRingsSomeRadiiApart) {
@@ -93,7 +74,7 @@ TEST(Rods, MayBeSeveralBodies) {
 }
 
 TEST(Rods, MayBeBentAndClosed) {
-  const Plc plc = build_plc(std::vector{ring(3, 0.2, 24, 120)});
+  const Plc plc = build_plc(std::vector{wire_ring(3, 0.2, 24, 120)});
   const auto mesh = rods_of(plc);
   ASSERT_TRUE(mesh);
   expect_good(plc, *mesh, 0.02);

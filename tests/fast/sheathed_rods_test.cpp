@@ -5,9 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
-#include <numbers>
 #include <string>
 #include <vector>
 
@@ -17,6 +15,7 @@
 #include "remesh/thin_shape.h"
 #include "support/meshing.h"
 #include "support/shapes.h"
+#include "support/tubes.h"
 
 namespace collarmesh::sheathed_rods_test {
 namespace {
@@ -25,25 +24,8 @@ using namespace testing;
 
 constexpr double size = 1, wire = 0.03;
 
-PolygonSoup ring(double radius, Index around, Index along) {
-  PolygonSoup soup;
-  for (Index i = 0; i < along; ++i)
-    for (Index j = 0; j < around; ++j) {
-      const double a = 2 * std::numbers::pi * i / along, b = 2 * std::numbers::pi * j / around,
-                   r = radius + wire * std::cos(b);
-      soup.points.push_back({r * std::cos(a), r * std::sin(a), wire * std::sin(b)});
-    }
-  for (Index i = 0; i < along; ++i)
-    for (Index j = 0; j < around; ++j) {
-      const Index a = i * around, b = (i + 1) % along * around, n = (j + 1) % around;
-      soup.add_facet(std::vector<Index>{a + j, b + j, b + n});
-      soup.add_facet(std::vector<Index>{a + j, b + n, a + n});
-    }
-  return soup;
-}
-
 Plc ring_in_block(Index around = 48, Index along = 240) {
-  return build_plc(std::vector{box({-2, -2, -2}, {2, 2, 2}), ring(1, around, along)});
+  return build_plc(std::vector{box({-2, -2, -2}, {2, 2, 2}), wire_ring(1, wire, around, along)});
 }
 Plc wire_in_block(double radius = wire, double height = 2) {
   return build_repaired_plc(std::vector{cylinder(radius, height, 48), box({-2, -2, 0}, {2, 2, 2})}).plc;
@@ -113,8 +95,8 @@ TEST(SheathedRods, AreWiresThroughBlocks) {
 TEST(SheathedRods, NeedRoomAndOneRegionAround) {
   const PolygonSoup block = box({-2, -2, -2}, {2, 2, 2});
   EXPECT_TRUE(rods_in(build_plc(std::vector{block})).empty());
-  EXPECT_TRUE(rods_in(build_plc(std::vector{ring(1, 24, 48)})).empty());  // stands free
-  EXPECT_TRUE(rods_in(wire_in_block(wire, 1.5)).empty());                 // an end lies inside
+  EXPECT_TRUE(rods_in(build_plc(std::vector{wire_ring(1, wire, 24, 48)})).empty());  // stands free
+  EXPECT_TRUE(rods_in(wire_in_block(wire, 1.5)).empty());                            // an end lies inside
   EXPECT_TRUE(rods_in(wire_in_block(0.15, 2)).empty());  // the sheath would be wider than the elements
 }
 
