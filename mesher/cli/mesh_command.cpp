@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <deque>
 #include <filesystem>
 #include <optional>
+#include <string_view>
 
+#include "check/guarantees.h"
 #include "collarmesh/error.h"
 #include "collarmesh/io/interfaces_io.h"
 #include "collarmesh/io/size_field_io.h"
@@ -284,6 +287,22 @@ MadeMesh make_mesh(const MeshArguments& arguments) {
   return made;
 }
 
+namespace {
+
+/// Throws Stopped if the certificate found an element that no solver can use.
+void require_usable(const CheckReport& check) {
+  constexpr std::array<std::string_view, 4> unusable{guarantee::valid_arrays, guarantee::positive_volume,
+                                                     guarantee::distinct_tets, guarantee::positive_jacobian};
+  for (const Finding& finding : check.findings)
+    if (std::ranges::find(unusable, finding.guarantee) != unusable.end())
+      throw process::Stopped(
+          ExitCode::guarantee_missed,
+          fmt::format("{} Nothing was written; --keep-invalid writes the mesh all the same",
+                      finding.message));
+}
+
+}  // namespace
+
 ExitCode make_and_write(const MeshArguments& arguments,
                         const std::function<void(Stages&, report::MeshRun&)>& make) {
   process::set_time_limit(arguments.mesh.time_limit);
@@ -300,6 +319,7 @@ ExitCode make_and_write(const MeshArguments& arguments,
     Stages stages(progress_of(arguments), run.times);
     stages.begin("read", 0, 0.02);
     make(stages, run);
+    if (!arguments.keep_invalid) require_usable(run.check);
     write_files(arguments, stages, run);
   }
   tell_of(arguments, run);

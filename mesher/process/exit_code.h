@@ -2,7 +2,8 @@
 
 namespace collarmesh::process {
 
-/// The program's exit codes. The mesh is written with codes 0 and 7 only.
+/// The program's exit codes. The mesh is written with codes 0 and 7 only, and with 7 only if its elements are
+/// usable (or with --keep-invalid).
 enum class ExitCode {
   success = 0,
   internal_error = 1,

@@ -12,21 +12,25 @@
 #include <vector>
 
 #include "arguments.h"
+#include "collarmesh/check.h"
 #include "collarmesh/error.h"
 #include "collarmesh/mesh_measures.h"
 #include "files/input_files.h"
+#include "mesh_command.h"
 #include "process/interrupt.h"
 #include "process/staged_file.h"
 #include "program.h"
 #include "progress_display.h"
 #include "report/report.h"
+#include "stages.h"
+#include "support/meshes.h"
 
 namespace collarmesh::cli::parts_test {
 namespace {
 
 namespace fs = std::filesystem;
 
-class FolderTest : public testing::Test {
+class FolderTest : public ::testing::Test {
  protected:
   void SetUp() override {
     std::string name = (fs::temp_directory_path() / "collarmesh-XXXXXX").string();
@@ -131,9 +135,9 @@ TEST(MeshMeasures, OfOneTet) {
 
 template <class Thrown>
 void expect_code(process::ExitCode code, const Thrown& thrown, const std::string& told) {
-  testing::internal::CaptureStderr();
+  ::testing::internal::CaptureStderr();
   EXPECT_EQ(guarded([&]() -> process::ExitCode { throw thrown; }), code);
-  const std::string said = testing::internal::GetCapturedStderr();
+  const std::string said = ::testing::internal::GetCapturedStderr();
   EXPECT_NE(said.find(told), std::string::npos) << said;
 }
 
@@ -217,19 +221,19 @@ TEST(RepairReports, QuietOnesLeaveOutWhatIsWithinTheTolerance) {
 
 // Includes a stage that never looks at the clock.
 TEST(TimeLimitDeathTest, EndsAnyStage) {
-  testing::FLAGS_gtest_death_test_style = "threadsafe";
+  ::testing::FLAGS_gtest_death_test_style = "threadsafe";
   EXPECT_EXIT(process::run_interruptible([] {
                 process::set_time_limit(0.05);
                 process::note_stage({"check", 0, 7});
                 std::this_thread::sleep_for(std::chrono::minutes(10));
                 return process::ExitCode::success;
               }),
-              testing::ExitedWithCode(5),
+              ::testing::ExitedWithCode(5),
               "time limit of 0.05 s is reached .stage: check, 7 tets.*--time-limit");
 }
 
 TEST(TimeLimitDeathTest, IsWatched) {
-  testing::FLAGS_gtest_death_test_style = "threadsafe";
+  ::testing::FLAGS_gtest_death_test_style = "threadsafe";
   const auto wait = [] {
     process::set_time_limit(0.05);
     while (!process::interrupt_flag()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -237,7 +241,31 @@ TEST(TimeLimitDeathTest, IsWatched) {
     return process::ExitCode::success;
   };
   EXPECT_EXIT(std::exit(static_cast<int>(guarded([&] { return process::run_interruptible(wait); }))),
-              testing::ExitedWithCode(5), "time limit of 0.05 s");
+              ::testing::ExitedWithCode(5), "time limit of 0.05 s");
+}
+
+TEST_F(FolderTest, MeshesThatNoSolverCanUseAreWrittenOnRequestOnly) {
+  MeshArguments arguments;
+  arguments.output = (folder / "mesh.vtu").string();
+  arguments.quiet = true;
+  const auto make = [](Stages&, report::MeshRun& run) {
+    TetMesh& mesh = run.result.mesh;
+    const auto [plc, box] = testing::meshed_box(2);
+    mesh = box;
+    std::swap(mesh.tets.front()[0], mesh.tets.front()[1]);
+    run.check = check(mesh, plc);
+  };
+  try {
+    make_and_write(arguments, make);
+    ADD_FAILURE() << "the mesh was written";
+  } catch (const process::Stopped& stopped) {
+    EXPECT_EQ(stopped.code, ExitCode::guarantee_missed);
+    EXPECT_NE(std::string(stopped.what()).find("inverted"), std::string::npos) << stopped.what();
+  }
+  EXPECT_EQ(entries(), 0U);
+  arguments.keep_invalid = true;
+  EXPECT_EQ(make_and_write(arguments, make), ExitCode::guarantee_missed);
+  EXPECT_EQ(entries(), 1U);
 }
 
 }  // namespace

@@ -38,6 +38,7 @@ struct RunOptions : PipelineOptions {
   std::vector<std::string> reports = {};
   std::string trace_folder = {};  ///< folder for the steps of the run
   ProgressStyle progress = ProgressStyle::automatic;
+  bool keep_invalid = false;  ///< write meshes with elements that no solver can use, too
   bool verbose = false, quiet = false;
   std::size_t findings = 20;  ///< findings that `check` lists for each guarantee
 };
