@@ -282,12 +282,15 @@ Plc ComplexInput::build_finer(const PlcOptions& options, const RepairOptions& re
 /// complex is valid without repair and its volumes are no worse. If only one side of a wall gets finer
 /// triangles, the wall becomes thinner; in that case all faces get finer triangles.
 Plc ComplexInput::resolved(Plc plc, const PlcOptions& options, const RepairOptions& repair) {
-  constexpr double finer = 4, little = 2e-3;
+  constexpr double margin = 1.5, finest = 4, little = 2e-3;
   if (!reading_.tolerance || built_.repaired.repaired) return plc;
   std::set<std::pair<Index, Tag>> faces;
-  for (const Index patch : coarse_patches(plc, reading_.tolerance(plc)))
-    if (cad_.measures(plc.patches[patch].file))  // the patch is of a CAD file
-      faces.emplace(plc.patches[patch].file, plc.patches[patch].tag);
+  double finer = 1;
+  for (const auto& [patch, by] : coarse_patches(plc, reading_.tolerance(plc))) {
+    if (!cad_.measures(plc.patches[patch].file)) continue;  // the patch is not of a CAD file
+    faces.emplace(plc.patches[patch].file, plc.patches[patch].tag);
+    finer = std::min(std::max(finer, margin * by), finest);
+  }
   if (faces.empty()) return plc;
   const double most_off = std::max(volume_off(plc), little);
   const bool noisy = has_noise(plc, repair);

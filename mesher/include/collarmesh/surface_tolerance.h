@@ -69,8 +69,15 @@ SurfaceTolerance default_tolerance(const Plc& plc, double size, int order = 1);
 /// Returns a tolerance by place: the largest one over all sizes and orders.
 SurfaceTolerance largest_default_tolerance(const Plc& plc);
 
+/// A patch whose triangles are too coarse.
+struct CoarsePatch {
+  Index patch;
+  double
+      by;  ///< largest distance of its triangles from its surface, relative to the distance allowed: above 1
+};
+
 /// Returns the smooth patches whose triangles are farther than a quarter of the tolerance from the surfaces
 /// that they approximate, as estimated from the angles between them. Cost: near linear in the triangles.
-std::vector<Index> coarse_patches(const Plc& plc, const SurfaceTolerance& tolerance);
+std::vector<CoarsePatch> coarse_patches(const Plc& plc, const SurfaceTolerance& tolerance);
 
 }  // namespace collarmesh

@@ -283,8 +283,9 @@ SurfaceTolerance::SurfaceTolerance(const Plc& plc, std::vector<double> triangles
 
 namespace {
 
-// Returns whether the triangles of a smooth patch are as near to its surface as `coarse_patches` requires.
-bool triangles_resolve(const Plc& plc, const Plc::Patch& patch, const SurfaceTolerance& tolerance) {
+// Returns the largest distance of a smooth patch's triangles from its surface, relative to the distance that
+// `coarse_patches` allows.
+double coarseness(const Plc& plc, const Plc::Patch& patch, const SurfaceTolerance& tolerance) {
   constexpr double share_of_triangles = 0.25;
   struct Side {
     std::array<Index, 2> edge;
@@ -293,8 +294,8 @@ bool triangles_resolve(const Plc& plc, const Plc::Patch& patch, const SurfaceTol
     double height;  // height of the triangle above the edge
   };
   // A chord of this length between two turns of this angle is off its arc by an eighth of their product.
-  const auto resolved = [&](const Side& side, double turn) {
-    return side.height * turn / 8 <= share_of_triangles * tolerance.at_triangle(side.triangle);
+  const auto relative_distance = [&](const Side& side, double turn) {
+    return side.height * turn / 8 / (share_of_triangles * tolerance.at_triangle(side.triangle));
   };
   std::vector<Side> sides;
   for (Index t = patch.first_triangle; t < patch.first_triangle + patch.triangle_count; ++t) {
@@ -309,20 +310,23 @@ bool triangles_resolve(const Plc& plc, const Plc::Patch& patch, const SurfaceTol
                          norm(n) / length});
   }
   std::ranges::sort(sides, [](const Side& a, const Side& b) { return a.edge < b.edge; });
+  double largest = 0;
   for (std::size_t i = 1; i < sides.size(); ++i) {
     if (sides[i - 1].edge != sides[i].edge) continue;
     const double turn = std::acos(std::clamp(dot(sides[i - 1].normal, sides[i].normal), -1.0, 1.0));
-    if (!resolved(sides[i - 1], turn) || !resolved(sides[i], turn)) return false;
+    largest = std::max({largest, relative_distance(sides[i - 1], turn), relative_distance(sides[i], turn)});
   }
-  return true;
+  return largest;
 }
 
 }  // namespace
 
-std::vector<Index> coarse_patches(const Plc& plc, const SurfaceTolerance& tolerance) {
-  std::vector<Index> coarse;
-  for (Index p = 0; p < plc.patches.size(); ++p)
-    if (!plc.patches[p].planar && !triangles_resolve(plc, plc.patches[p], tolerance)) coarse.push_back(p);
+std::vector<CoarsePatch> coarse_patches(const Plc& plc, const SurfaceTolerance& tolerance) {
+  std::vector<CoarsePatch> coarse;
+  for (Index p = 0; p < plc.patches.size(); ++p) {
+    if (plc.patches[p].planar) continue;
+    if (const double by = coarseness(plc, plc.patches[p], tolerance); by > 1) coarse.push_back({p, by});
+  }
   return coarse;
 }
 
