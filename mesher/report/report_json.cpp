@@ -370,6 +370,7 @@ Json repair_json(const RepairReport& r) {
           {"second_sides", r.second_sides},
           {"merged", places_json(r.merged, "area")},
           {"dropped", r.dropped.count},
+          {"dropped_share", r.dropped.size},
           {"thin_chambers", places_json(r.thin_chambers, "volume")},
           {"vanished", places_json(r.vanished, "volume")},
           {"united", places_json(r.united, nullptr)},

@@ -1,6 +1,7 @@
 // The distances between a repaired surface and its input.
 #include "repair/distances.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -123,6 +124,16 @@ TEST(RepairDistances, OfAFinThatVanishes) {
             std::string::npos)
       << lines.back();
   EXPECT_NEAR(std::fabs(distance_to(r.report.farthest_of_input, triangles_of(testing::box()))), 0.5, 0.02);
+}
+
+TEST(RepairReport, TellsTheShareOfSheetsThatWereRemoved) {
+  const PolygonSoup soup = box_with_wall(0.5, 0.5, 0.25);  // an area of 0.625 of the wall is outside
+  const RepairReport report = build_repaired_plc({&soup, 1}).report;
+  EXPECT_NEAR(report.dropped.size, 0.625 / 7.125, 1e-9);
+  ASSERT_FALSE(report.dropped.where.empty());
+  EXPECT_TRUE(std::ranges::any_of(describe(report), [](const std::string& line) {
+    return line.find("outside of all solids removed, 8.8% of the area, the first at") != std::string::npos;
+  })) << fmt::format("{}", fmt::join(describe(report), "\n"));
 }
 
 // kept_volume

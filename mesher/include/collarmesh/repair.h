@@ -86,7 +86,8 @@ struct RepairReport {
   RepairPlaces flakes;           ///< closed parts thinner than the tolerance, dropped; size: volume
   std::size_t second_sides = 0;  ///< opposite copies dropped where the surface was double everywhere
   RepairPlaces merged;           ///< triangles inside solids, which were removed; size: area
-  RepairPlaces dropped;          ///< triangles of open sheets outside of all solids, removed
+  RepairPlaces dropped;          ///< triangles of open sheets outside of all solids, removed; size:
+                                 ///< share of the area of all facets
   RepairPlaces thin_chambers;    ///< thin regions between facets that nearly coincide, now part of their
                                  ///< neighbours; size: volume
   RepairPlaces vanished;         ///< regions of valid input, as thin as the tolerance, that are gone; size:

@@ -72,11 +72,13 @@ class VertexCounter {
   bool will_exceed(std::size_t vertices) {
     constexpr std::size_t some_more = 5000;
     return fineness_ == Fineness::as_asked && vertices > few + some_more &&
-           is_above_most(0.5 * static_cast<double>(vertices - some_more)) && exceeds(vertices);
+           is_above_most(0.5 * static_cast<double>(vertices - some_more), 2) && exceeds(vertices);
   }
 
-  bool is_above_most(double vertices) {
-    if (!is_known_ && vertices >= most_) count_up_to(2 * vertices);  // twice, for later questions
+  // Counts no further than the answer needs, times `ahead` for later questions about more vertices.
+  bool is_above_most(double vertices, double ahead = 1) {
+    if (vertices <= few) return false;
+    if (!is_known_ && vertices >= most_) count_up_to(ahead * (vertices - static_cast<double>(few)));
     return vertices > most_;
   }
 

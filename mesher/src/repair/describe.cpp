@@ -100,8 +100,9 @@ std::vector<std::string> describe(const RepairReport& r) {
         fmt::format("{} triangle{} removed that lay inside solids or enclosed nothing, an area of {:.4g}{}",
                     r.merged.count, plural(r.merged.count), r.merged.size, first_place(r.merged)));
   if (r.dropped.count > 0)
-    lines.push_back(fmt::format("{} triangle{} of open sheets outside of all solids removed", r.dropped.count,
-                                plural(r.dropped.count)));
+    lines.push_back(fmt::format(
+        "{} triangle{} of sheets without thickness outside of all solids removed, {:.2g}% of the area{}",
+        r.dropped.count, plural(r.dropped.count), 100 * r.dropped.size, first_place(r.dropped)));
   if (r.collapsed.count > 0)
     lines.push_back(fmt::format(
         "{} feature{} below the tolerance of {:.3g} collapsed, over a distance of at most {:.3g}{}",

@@ -379,7 +379,7 @@ class BoundaryKeeper {
       } else {
         ++report_.dropped_sheets;
         report_.dropped_area += area_of(draft_, corners);
-        note(report_.places, centroid(draft_, corners));
+        note(report_.dropped_places, centroid(draft_, corners));
       }
     }
     draft_.triangles = std::move(triangles);

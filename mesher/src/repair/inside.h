@@ -42,7 +42,8 @@ struct InsideReport {
   std::size_t internal_facets = 0;  ///< triangles of open sheets inside a solid, which stay
   std::size_t dropped_sheets = 0;   ///< triangles of open sheets outside of all solids
   double dropped_area = 0;          ///< area of these sheets
-  std::vector<Point> places;
+  std::vector<Point> places;        ///< in removed triangles
+  std::vector<Point> dropped_places;
   double chamber_volume = 0;          ///< volume of thin chambers that became part of their neighbours
   std::vector<Point> chamber_places;  ///< a place in each of them
 };

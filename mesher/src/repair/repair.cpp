@@ -413,7 +413,8 @@ class Repairer {
     encloses_nothing_ = kept.dropped_area > most_in_open_sheets * area;
     report_.merged.count += kept.removed_triangles;
     report_.merged.size += kept.removed_area;
-    report_.dropped.count += kept.dropped_sheets;
+    add_places(report_.dropped, kept.dropped_sheets, area > 0 ? kept.dropped_area / area : 0,
+               kept.dropped_places);
     const double before = report_.thin_chambers.size;
     add_places(report_.thin_chambers, kept.chamber_places.size(), 0, kept.chamber_places);
     report_.thin_chambers.size = before + kept.chamber_volume;
