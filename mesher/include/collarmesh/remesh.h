@@ -11,7 +11,8 @@ struct RemeshReport {
   std::size_t tets_before = 0;
   double smallest_angle_before = 0, largest_angle_before = 0;  ///< dihedral angles, degrees
   std::size_t divided_edges = 0, contracted_edges = 0;
-  std::size_t rounds = 0;  ///< rounds of edge divisions
+  std::size_t rounds = 0;       ///< rounds of edge divisions
+  bool smooth_surface = false;  ///< nodes were moved onto a smooth surface made of the given mesh
 };
 
 struct RemeshResult : SoupPipelineResult {
