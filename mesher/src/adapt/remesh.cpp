@@ -112,6 +112,7 @@ class Remeshing {
       options_.mesh.bounds.tolerance =
           tolerance_of(made_.plc, options_.mesh.bounds, largest_size_, static_cast<int>(options_.order));
     promised_ = options_.mesh.bounds;
+    made_.remeshing.smooth_surface = options_.smooth_surface;
     if (options_.smooth_surface) options_.exact = smooth_geometry(made_.plc, *promised_.tolerance);
     if (complex_ != nullptr || options_.smooth_surface)
       options_.mesh.bounds.tolerance = promised_.tolerance->scaled(distance_left);
