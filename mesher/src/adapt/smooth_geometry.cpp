@@ -192,7 +192,7 @@ void SmoothPatch::number_points(const Plc& plc, const Plc::Patch& patch, const S
   for (Index t = 0; t < patch.triangle_count; ++t)
     for (const Index p : plc.triangles[patch.first_triangle + t].points) numbers.push_back(p);
   std::ranges::sort(numbers);
-  numbers.erase(std::ranges::unique(numbers).begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
   for (const Index p : numbers) {
     points_.push_back(plc.points[p]);
     tangents_.push_back(tangents[p]);
