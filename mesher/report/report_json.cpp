@@ -412,7 +412,8 @@ Json remeshing_json(const RemeshReport& r) {
           {"max_dihedral_before", number_json(r.largest_angle_before)},
           {"divided_edges", r.divided_edges},
           {"contracted_edges", r.contracted_edges},
-          {"rounds", r.rounds}};
+          {"rounds", r.rounds},
+          {"smooth_surface", r.smooth_surface}};
 }
 
 }  // namespace

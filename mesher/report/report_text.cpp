@@ -264,10 +264,10 @@ std::string check_text(const CheckReport& r) {
   return text;
 }
 
-std::string projection_text(const Plc& plc, const ProjectReport& r) {
+std::string projection_text(const Plc& plc, const ProjectReport& r, const char* onto) {
   std::string text;
-  fmt::format_to(Out(text), "  {} boundary vertices moved onto the exact shape, by at most {:.3g}",
-                 r.vertices, r.largest_move);
+  fmt::format_to(Out(text), "  {} boundary vertices moved onto the {}, by at most {:.3g}", r.vertices, onto,
+                 r.largest_move);
   if (r.exceptions.empty()) return text + "\n";
   fmt::format_to(Out(text), "; {} stay off it, by at most {:.3g}:\n", r.exceptions.size(),
                  r.largest_distance);
@@ -322,7 +322,9 @@ std::string run_text(const RequestedRun& arguments, const MeshRun& run) {
                    s.vertices_inserted, s.vertices_in_blocks, s.cells, s.exact_predicates, s.warps, s.yields,
                    static_cast<double>(s.peak_bytes) / 1e6);
   for (const std::string& note : run.notes) fmt::format_to(Out(text), "  {}\n", note);
-  if (run.projection) text += projection_text(run.plc, *run.projection);
+  const bool smooth = run.remeshing && run.remeshing->smooth_surface;
+  if (run.projection)
+    text += projection_text(run.plc, *run.projection, smooth ? "smooth surface" : "exact shape");
   if (run.coarsening && arguments.verbose)
     fmt::format_to(Out(text), "  {} tets coarsened to {}: {} edges collapsed, {} of them with repair\n",
                    run.coarsening->tets_before, run.coarsening->tets_after, run.coarsening->contracted_edges,

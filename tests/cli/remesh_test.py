@@ -44,6 +44,14 @@ class Remeshing(ProgramTest):
         self.assertIn("<html", (self.folder / "r.html").read_text())
         self.assertGreater(json.loads((self.folder / "r.json").read_text())["remeshing"]["divided_edges"], 100)
 
+    def test_a_smooth_surface(self):
+        report = self.report("first.vtu", "-o", "next.vtu", "--size", 0.2, "--smooth-surface")
+        self.assertTrue(report["guarantees_hold"] and report["remeshing"]["smooth_surface"])
+        run = self.run_program("remesh", "first.vtu", "-o", "next.vtu", "--size", 0.2, "--smooth-surface")
+        self.assertIn("moved onto the smooth surface", run.stdout + run.stderr)
+        self.expect(2, "remesh", "first.vtu", "-o", "last.vtu", "--smooth-surface", "--against", self.box,
+                    says=["smooth-surface", "leave one of them out"])
+
     def test_against_the_input(self):
         report = self.report("first.vtu", "-o", "next.vtu", "--size", 0.2, "--against", self.box)
         self.assertTrue(report["guarantees_hold"])

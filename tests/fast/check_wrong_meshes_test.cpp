@@ -550,6 +550,35 @@ TEST(CheckWrongMeshes, LostSpike) {
   EXPECT_EQ(broken(m, {.bounds = {.distance = 0.05}}), Names{patch_distance});
 }
 
+// Presses tets against one face of the box, and others, less, against an inner layer of vertices.
+TEST(CheckWrongMeshes, AnglesAreMissedAtFeaturesThatHaveNames) {
+  MeshedComplex m = meshed_box(8);
+  m.mesh.tet_thin.assign(m.mesh.tets.size(), 1);
+  const auto move = [&](const Point& from, const Point& to) {
+    m.mesh.points[first_index(m.mesh.points.size(), [&](Index p) { return m.mesh.points[p] == from; })] = to;
+  };
+  move({0.5, 0.5, 0.125}, {0.5, 0.5, 1e-3});
+  move({0.5, 0.5, 0.5}, {0.5, 0.5, 0.38});
+  const Index floor = first_index(m.plc.patches.size(), [&](Index p) {
+    return std::fabs(m.plc.patches[p].normal.z) > 0.9 && std::fabs(m.plc.patches[p].origin.z) < 0.1;
+  });
+  m.plc.names.set(2, m.plc.patches[floor].tag, "bed plate");
+  const CheckReport report = check(m.mesh, m.plc, {.bounds = {.radius_edge = 1}});
+  ASSERT_FALSE(report.findings.empty());
+  const auto is_said = [&](const Finding& finding, const std::string& text) {
+    return finding.message.find(text) != std::string::npos;
+  };
+  for (const Finding& finding : report.findings) {
+    EXPECT_EQ(finding.guarantee, thin_angles);
+    EXPECT_TRUE(is_said(finding, "in region 1 (tag 1), which touches ")) << finding.message;
+    const bool at_floor = finding.where.z < 0.1;
+    EXPECT_EQ(is_said(finding, "bed plate"), at_floor) << finding.message;
+    EXPECT_EQ(is_said(finding, "no feature"), !at_floor) << finding.message;
+  }
+  EXPECT_LT(report.findings.front().where.z, 0.1) << "the worst ones come first";
+  EXPECT_GT(report.findings.back().where.z, 0.1);
+}
+
 TEST(CheckWrongMeshes, FindingsAreCountedBeyondThoseListed) {
   const CheckReport report = check(meshed_box(3).mesh, meshed_box(3).plc,
                                    {.bounds = {.radius_edge = 0.5}, .findings_per_guarantee = 4});

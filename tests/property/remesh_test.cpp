@@ -230,6 +230,45 @@ TEST(Remesh, DividesEdgesFarFromTheComplex) {
   EXPECT_LT(made.check.max_surface_distance, 0.5 * coarse.check.max_surface_distance);
 }
 
+/// Returns the largest distance of the nodes on faces from the unit sphere.
+double off_sphere(const TetMesh& mesh) {
+  double off = 0;
+  for (const auto& face : mesh.faces)
+    for (const Index v : face) off = std::max(off, std::fabs(norm(mesh.points[v]) - 1));
+  return off;
+}
+
+TEST(Remesh, ReconstructsASmoothSurface) {
+  PipelineOptions options = of_size(0.5);
+  options.mesh.bounds.distance = 0.12;
+  const SoupPipelineResult coarse = run_pipeline(std::vector{icosphere(1, 16)}, options);
+  ASSERT_TRUE(coarse.guarantees_hold()) << coarse.missed();
+  options.complex.feature_angle = 60;
+  TetMesh smooth = without_features(coarse.result.mesh), straight = smooth;
+  const double volume = volumes(smooth).begin()->second;
+  for (const double size : {0.35, 0.25}) {
+    options.mesh.size = size;
+    options.smooth_surface = false;
+    straight = remesh(straight, options).result.mesh;
+    options.smooth_surface = true;
+    const RemeshResult made = remesh(smooth, options);
+    ASSERT_EQ(faults(made), "");
+    smooth = made.result.mesh;
+  }
+  EXPECT_GT(off_sphere(straight), 0.05);
+  EXPECT_LT(off_sphere(smooth), 0.01);
+  const double whole = 4 * std::acos(-1.0) / 3;
+  EXPECT_LT(whole - volumes(smooth).begin()->second, 0.4 * (whole - volume));
+  EXPECT_GT(whole - volumes(straight).begin()->second, 0.9 * (whole - volume));
+}
+
+TEST(Remesh, ReconstructsNoSurfaceThatIsGiven) {
+  const SoupPipelineResult made = run_pipeline(std::vector{icosphere(1, 4)}, of_size(0.5));
+  PipelineOptions options = of_size(0.4);
+  options.smooth_surface = true;
+  EXPECT_THROW(remesh(without_features(made.result.mesh), made.plc, options), OptionError);
+}
+
 TEST(Remesh, KeepsLengthsWithoutASize) {
   const TetMesh mesh = meshed({l_shape()}, 0.2);
   const RemeshResult made = remesh(mesh, of_size(0));

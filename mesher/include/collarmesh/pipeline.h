@@ -64,6 +64,9 @@ struct PipelineOptions {
   /// so that its vertices can move onto this geometry; may be empty.
   ExactGeometry exact = {};
   ShapeMeasures exact_measures = {};  ///< measures of that geometry, for the certificate; may be empty
+  /// For `remesh` without a complex: nodes on curved faces and curves go to a smooth surface through the
+  /// nodes of the given mesh, which stays within the surface distance of its triangles.
+  bool smooth_surface = false;
 };
 
 /// Returns the options with those that the profile of `mesh` sets.

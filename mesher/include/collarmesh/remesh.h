@@ -11,7 +11,8 @@ struct RemeshReport {
   std::size_t tets_before = 0;
   double smallest_angle_before = 0, largest_angle_before = 0;  ///< dihedral angles, degrees
   std::size_t divided_edges = 0, contracted_edges = 0;
-  std::size_t rounds = 0;  ///< rounds of edge divisions
+  std::size_t rounds = 0;       ///< rounds of edge divisions
+  bool smooth_surface = false;  ///< nodes were moved onto a smooth surface made of the given mesh
 };
 
 struct RemeshResult : SoupPipelineResult {
@@ -31,7 +32,9 @@ using AdaptOptions = std::function<void(const Plc&, PipelineOptions&)>;
 /// certificate tells where it could not. The result is certified against the complex. For a mesh of second
 /// order, its corners are remeshed, and mid-edge nodes are made anew if `options.order` is 2. Only the
 /// options of sizes, bounds, improvement, order, partitions and budgets count; exact geometry is ignored,
-/// because its features are those of another complex. Without a size and a field the lengths stay as they
+/// because its features are those of another complex. With `options.smooth_surface`, nodes on curved patches
+/// and curves go to a smooth surface through the nodes of the given mesh, within the tolerance of its
+/// triangles. Without a size and a field the lengths stay as they
 /// are. Same mesh and options: same result, with any number of threads. Throws PlcError for a mesh that is
 /// not conforming, OptionError for sizes of tags that the mesh does not have. Cost: near linear in the tets
 /// of the mesh and of the result.

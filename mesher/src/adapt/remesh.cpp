@@ -8,6 +8,7 @@
 
 #include "adapt/edge_division.h"
 #include "adapt/mesh_complex.h"
+#include "adapt/smooth_geometry.h"
 #include "adapt/smoothing.h"
 #include "check/labelled.h"
 #include "coarsen/coarsen_edited.h"
@@ -65,6 +66,11 @@ class Remeshing {
         adapt_(adapt),
         control_(options, execution, made_) {
     validate({options});
+    if (options.smooth_surface && complex != nullptr)
+      throw OptionError(
+          "smooth-surface reconstructs a surface from the mesh, but the mesh follows a given input; leave "
+          "one of "
+          "them out");
     if (options.partitions > 0) require_partitioner();
   }
 
@@ -106,7 +112,10 @@ class Remeshing {
       options_.mesh.bounds.tolerance =
           tolerance_of(made_.plc, options_.mesh.bounds, largest_size_, static_cast<int>(options_.order));
     promised_ = options_.mesh.bounds;
-    if (complex_ != nullptr) options_.mesh.bounds.tolerance = promised_.tolerance->scaled(distance_left);
+    made_.remeshing.smooth_surface = options_.smooth_surface;
+    if (options_.smooth_surface) options_.exact = smooth_geometry(made_.plc, *promised_.tolerance);
+    if (complex_ != nullptr || options_.smooth_surface)
+      options_.mesh.bounds.tolerance = promised_.tolerance->scaled(distance_left);
     if (options_.exact) options_.mesh.bounds.reserve = angle_reserve;
     choose_bounds();
   }

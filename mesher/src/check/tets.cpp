@@ -4,6 +4,7 @@
 
 #include "check/predicates.h"
 #include "check/subject.h"
+#include "check/touched_features.h"
 #include "common/parallel_for.h"
 
 namespace collarmesh::checks {
@@ -20,24 +21,62 @@ struct CornersOfTet {
   Point centre() const { return 0.25 * ((a + b) + (c + d)); }
 };
 
+CornersOfTet corners_of(const TetMesh& mesh, Index tet) {
+  const auto& t = mesh.tets[tet];
+  return {mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]};
+}
+
+/// Tets whose angles miss their bounds. The findings list the worst ones first, with the features there.
+class MissedAngles {
+ public:
+  /// `share`: by what factor the worst angle misses its bound; above 1.
+  void add(Index tet, double share) { missed_.push_back({tet, share}); }
+
+  /// Calls `add_finding(tet, features)`, with an empty text for findings that will not be listed.
+  template <class AddFinding>
+  void report(const Subject& subject, const AddFinding& add_finding) {
+    if (missed_.empty()) return;
+    std::stable_sort(missed_.begin(), missed_.end(),
+                     [](const Missed& a, const Missed& b) { return a.share > b.share; });
+    const TouchedFeatures touched(subject);
+    for (std::size_t i = 0; i < missed_.size(); ++i)
+      add_finding(missed_[i].tet,
+                  i < subject.options.findings_per_guarantee ? touched.of(missed_[i].tet) : "");
+  }
+
+ private:
+  struct Missed {
+    Index tet;
+    double share;
+  };
+  std::vector<Missed> missed_;
+};
+
+struct AllMissedAngles {
+  MissedAngles collars, thin;
+};
+
 /// Notes the angles of a tet beside layers, which `check_core_angles` judges.
 void note_angles(const TetQuality& quality, CheckReport& report) {
   report.min_dihedral = std::min(report.min_dihedral, quality.min_dihedral);
   report.max_dihedral = std::max(report.max_dihedral, quality.max_dihedral);
 }
 
+/// Returns by what factor the angles of a thin tet miss their bounds.
+double missed_share(const TetQuality& quality, double face_angle, double smallest) {
+  const double left = 180 - std::max(quality.max_dihedral, face_angle);
+  return std::max(smallest / std::max(quality.min_dihedral, 0.0),
+                  (180 - ThinCells::largest_angle) / std::max(left, 0.0));
+}
+
 void check_shape(Index tet, const CornersOfTet& p, const TetQuality& quality, const Subject& subject,
-                 const ThinCells& thin, CheckReport& report, Findings& findings) {
+                 const ThinCells& thin, CheckReport& report, AllMissedAngles& missed, Findings& findings) {
   const CheckOptions& options = subject.options;
   if (subject.collar[tet] != 0) {
     ++report.collar_tets;
     report.max_collar_dihedral = std::max(report.max_collar_dihedral, quality.max_dihedral);
     if (quality.max_dihedral > options.bounds.collar_angle * shape_slack)
-      findings.add(
-          guarantee::collar_dihedral, p.centre(), {tet},
-          "Tet {} of a collar at {} has a dihedral angle of {:.6g} degrees, allowed are {:.6g}; a smaller "
-          "size there resolves the crease better.",
-          tet, At{p.centre()}, quality.max_dihedral, options.bounds.collar_angle);
+      missed.collars.add(tet, quality.max_dihedral / options.bounds.collar_angle);
     report.min_collar_dihedral = std::min(report.min_collar_dihedral, quality.min_dihedral);
     if (!subject.coarsened) return;
   } else {
@@ -63,14 +102,7 @@ void check_shape(Index tet, const CornersOfTet& p, const TetQuality& quality, co
       report.min_forced_dihedral = std::min(report.min_forced_dihedral, quality.min_dihedral);
       return;
     }
-    findings.add(
-        guarantee::thin_angles, p.centre(), {tet},
-        "Tet {} at {} has circumradius / shortest edge {:.6g} and does not count as thin: its dihedral "
-        "angles are "
-        "from {:.6g} to {:.6g} degrees, those of its faces at most {:.6g}, allowed are {:.6g} to {:.6g}; "
-        "check with the angle that the mesh was made with.",
-        tet, At{p.centre()}, quality.radius_edge, quality.min_dihedral, quality.max_dihedral, face_angle,
-        thin.smallest_angle(tet), ThinCells::largest_angle);
+    missed.thin.add(tet, missed_share(quality, face_angle, thin.smallest_angle(tet)));
     return;
   }
   if (subject.collar[tet] == 0)
@@ -81,6 +113,30 @@ void check_shape(Index tet, const CornersOfTet& p, const TetQuality& quality, co
         "Tet {} at {} has circumradius / shortest edge {:.9g}, allowed is {:.9g}; refine with that bound, or "
         "check against the bound that the mesh was made with.",
         tet, At{p.centre()}, quality.radius_edge, options.bounds.radius_edge);
+}
+
+void report_missed_angles(const Subject& subject, const ThinCells& thin, AllMissedAngles& missed,
+                          Findings& findings) {
+  missed.collars.report(subject, [&](Index tet, const std::string& features) {
+    const Point centre = corners_of(subject.mesh, tet).centre();
+    findings.add(
+        guarantee::collar_dihedral, centre, {tet},
+        "Tet {} of a collar at {} {}, has a dihedral angle of {:.6g} degrees, allowed are {:.6g}; a smaller "
+        "size there resolves the crease better.",
+        tet, At{centre}, features, measure_tet(subject.mesh, tet).max_dihedral,
+        subject.options.bounds.collar_angle);
+  });
+  missed.thin.report(subject, [&](Index tet, const std::string& features) {
+    const CornersOfTet p = corners_of(subject.mesh, tet);
+    const TetQuality quality = measure_tet(subject.mesh, tet);
+    findings.add(
+        guarantee::thin_angles, p.centre(), {tet},
+        "Tet {} at {} {}, has circumradius / shortest edge {:.6g} and does not count as thin: its dihedral "
+        "angles are from {:.6g} to {:.6g} degrees, those of its faces at most {:.6g}, allowed are {:.6g} to "
+        "{:.6g}; check with the angle that the mesh was made with.",
+        tet, At{p.centre()}, features, quality.radius_edge, quality.min_dihedral, quality.max_dihedral,
+        largest_face_angle(p.a, p.b, p.c, p.d), thin.smallest_angle(tet), ThinCells::largest_angle);
+  });
 }
 
 void check_region_tag(Index tet, const CornersOfTet& p, const Subject& subject, Findings& findings) {
@@ -100,12 +156,9 @@ void check_tets(const Subject& subject, CheckReport& report, Findings& findings)
   const TetMesh& mesh = subject.mesh;
   std::vector<long double> volumes(subject.plc.regions.size(), 0);
   const ThinCells thin(subject);
-  const auto corners = [&mesh](std::size_t tet) -> CornersOfTet {
-    const auto& t = mesh.tets[tet];
-    return {mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]};
-  };
+  AllMissedAngles missed;
   const auto see = [&](Index tet, const TetQuality& quality) {
-    const CornersOfTet p = corners(tet);
+    const CornersOfTet p = corners_of(mesh, tet);
     const bool is_thin =
         thin.claimed(tet) && quality.radius_edge > subject.options.bounds.radius_edge * shape_slack;
     if (tet < subject.first_part) {
@@ -118,7 +171,7 @@ void check_tets(const Subject& subject, CheckReport& report, Findings& findings)
       report.measures.region_volumes[mesh.tet_region[tet]] += quality.volume;
     }
     if (!subject.has_layers())
-      check_shape(tet, p, quality, subject, thin, report, findings);
+      check_shape(tet, p, quality, subject, thin, report, missed, findings);
     else if (mesh.layers.tet_layer[tet] == 0)
       note_angles(quality, report);
     check_region_tag(tet, p, subject, findings);
@@ -135,6 +188,7 @@ void check_tets(const Subject& subject, CheckReport& report, Findings& findings)
     });
     for (std::size_t i = 0; i < count; ++i) see(static_cast<Index>(first + i), qualities[i]);
   }
+  report_missed_angles(subject, thin, missed, findings);
   report.region_volumes.assign(volumes.begin(), volumes.end());
 }
 

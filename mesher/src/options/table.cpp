@@ -225,6 +225,12 @@ std::vector<Option> quality_options() {
        .default_text = "1/200 of the diagonal, less where the part is thin",
        .help = "Largest distance from smooth surfaces and curves",
        .commands = Option::check | Option::programs},
+      {.name = "smooth-surface",
+       .place = at<&RunOptions::smooth_surface>,
+       .help = "Put nodes on curved faces and curves onto a smooth surface through the nodes of the mesh",
+       .details = "not farther from the triangles of the mesh than `--distance`; see [Adaptive "
+                  "meshing](adaptive.md#a-smooth-surface)",
+       .commands = Option::remesh | Option::programs},
       {.name = "seed N",
        .place = in_mesh<&MeshOptions::seed>,
        .help = "Seed of the pseudo-random offsets",

@@ -1,0 +1,91 @@
+#include "check/touched_features.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include "common/group_names.h"
+
+namespace collarmesh::checks {
+
+namespace {
+
+constexpr std::size_t named_per_kind = 4;
+constexpr std::array<std::string_view, 4> kind_names{"vertex", "curve", "patch", "region"};
+
+/// The features of one dimension, each with the number of corners on it.
+class Touched {
+ public:
+  void add(Index feature) {
+    const auto found = std::find_if(counts_.begin(), counts_.end(),
+                                    [&](const auto& count) { return count.first == feature; });
+    if (found == counts_.end())
+      counts_.emplace_back(feature, 1);
+    else
+      ++found->second;
+  }
+  void add(const std::vector<Index>& features) {
+    for (const Index feature : features) add(feature);
+  }
+  std::vector<Index> most_touched_first() {
+    std::sort(counts_.begin(), counts_.end(), [](const auto& a, const auto& b) {
+      return a.second != b.second ? a.second > b.second : a.first < b.first;
+    });
+    std::vector<Index> features;
+    for (const auto& [feature, count] : counts_) features.push_back(feature);
+    return features;
+  }
+
+ private:
+  std::vector<std::pair<Index, unsigned>> counts_;
+};
+
+Tag tag_of(const Plc& plc, std::size_t dimension, Index feature) {
+  switch (dimension) {
+    case 0: return plc.vertices[feature].tag;
+    case 1: return plc.curves[feature].tag;
+    case 2: return plc.patches[feature].tag;
+    default: return plc.regions[feature].tag;
+  }
+}
+
+std::string label(const Subject& subject, std::size_t dimension, Index feature) {
+  const Tag tag = tag_of(subject.plc, dimension, feature);
+  const std::string* given = subject.plc.names.find(dimension, tag);
+  const std::string name = given != nullptr ? *given : group_name(subject.mesh, dimension, tag);
+  const bool says_more = name != group_name(GroupNames::complex, dimension, tag);
+  return fmt::format("{} {} (tag {}{}{})", kind_names[dimension], feature, tag, says_more ? ", " : "",
+                     says_more ? name : "");
+}
+
+}  // namespace
+
+TouchedFeatures::TouchedFeatures(const Subject& subject)
+    : subject_(subject), features_(features_of(subject)) {}
+
+std::string TouchedFeatures::of(Index tet) const {
+  const Plc& plc = subject_.plc;
+  std::array<Touched, 3> touched;
+  for (const Index corner : subject_.mesh.tets[tet]) {
+    const auto [dimension, feature] = features_[corner];
+    if (dimension > 2) continue;
+    touched[dimension].add(feature);
+    if (dimension == 0) touched[1].add(plc.vertices[feature].curves);
+    if (dimension == 0) touched[2].add(plc.vertices[feature].patches);
+    if (dimension == 1) touched[2].add(plc.curves[feature].patches);
+  }
+  std::string names;
+  for (std::size_t dimension = 0; dimension < touched.size(); ++dimension) {
+    const std::vector<Index> features = touched[dimension].most_touched_first();
+    for (std::size_t i = 0; i < std::min(named_per_kind, features.size()); ++i)
+      names += fmt::format("{}{}", names.empty() ? "" : ", ", label(subject_, dimension, features[i]));
+    if (features.size() > named_per_kind) names += ", ...";
+  }
+  return fmt::format("in {}, which touches {}", label(subject_, 3, subject_.mesh.tet_region[tet]),
+                     names.empty() ? "no feature" : names);
+}
+
+}  // namespace collarmesh::checks
