@@ -4,7 +4,6 @@
 #include <sys/resource.h>
 #include <sys/time.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
@@ -18,6 +17,7 @@
 #include <thread>
 #include <utility>
 
+#include "common/deadline.h"
 #include "process/console.h"
 #include "process/failure.h"
 #include "process/staged_file.h"
@@ -27,8 +27,6 @@ namespace collarmesh::process {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 std::atomic<bool> interrupted{false};
 std::atomic<int> signals{0};  // signals from the user
 std::atomic<bool> out_of_processor_time{false};
@@ -37,7 +35,7 @@ static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_alw
 
 std::mutex deadline_mutex;  // guards the three variables below
 double time_limit = 0;
-Clock::time_point deadline = Clock::time_point::max();
+Deadline deadline;
 std::string stage_told = "stage: start";
 
 std::mutex stage_mutex;  // guards the variable below; a thread that holds it allocates nothing, except to
@@ -60,9 +58,8 @@ extern "C" void on_time(int) { interrupted.store(true, std::memory_order_relaxed
 
 /// Sets the flag at the time limit, if no thread can watch. Only stages that check the flag end then.
 void set_flag_at_the_deadline() {
-  if (deadline == Clock::time_point::max()) return;
-  const std::chrono::duration<double> left = deadline - Clock::now();
-  const double seconds = std::max(left.count(), 1e-3);
+  if (!deadline.exists()) return;
+  const double seconds = deadline.as_option();
   std::signal(SIGALRM, on_time);
   itimerval timer = {};
   timer.it_value.tv_sec = static_cast<time_t>(seconds);
@@ -74,7 +71,7 @@ bool watched = false;
 
 bool asked_to_stop() {
   const std::lock_guard lock(deadline_mutex);
-  if (Clock::now() > deadline) interrupted.store(true, std::memory_order_relaxed);
+  if (deadline.passed()) interrupted.store(true, std::memory_order_relaxed);
   return interrupted.load(std::memory_order_relaxed);
 }
 
@@ -133,22 +130,16 @@ void install_interrupt_handlers() {
 }
 
 void set_time_limit(double seconds) {
-  constexpr double a_year = 3e7;  // limit, because the clock's type may not hold more
   const std::lock_guard lock(deadline_mutex);
   time_limit = seconds;
-  deadline =
-      seconds > 0 && seconds < a_year
-          ? Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds))
-          : Clock::time_point::max();
-  supervise_time(seconds);
+  deadline = Deadline::in(seconds);
+  supervise_time(deadline);
   if (!watched) set_flag_at_the_deadline();
 }
 
 double time_left() {
-  constexpr double least = 1e-3;
   const std::lock_guard lock(deadline_mutex);
-  if (deadline == Clock::time_point::max()) return 0;
-  return std::max(std::chrono::duration<double>(deadline - Clock::now()).count(), least);
+  return deadline.as_option();
 }
 
 void note_stage(StageReached reached, std::string told) {

@@ -24,19 +24,15 @@ namespace collarmesh::process {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr std::array stop_signals{SIGINT, SIGTERM, SIGHUP, SIGQUIT};
 constexpr int running = -1;
-
-constexpr Clock::duration never = Clock::time_point::max().time_since_epoch();
 
 /// The data that child and supervisor share. Long texts are cut off.
 struct Shared {
   std::atomic<int> result{running};
   std::atomic<bool> in_cad{false};
-  std::atomic<Clock::rep> end{never.count()};      // time at which the process must end
-  std::atomic<Clock::rep> cad_end{never.count()};  // time at which OpenCASCADE's current work must end
+  std::atomic<Deadline> end{Deadline()};      // for the process
+  std::atomic<Deadline> cad_end{Deadline()};  // for OpenCASCADE's current work
   std::array<char, 128> doing{};
   std::array<char, 1024> file{};
   std::array<char, 16384> folders{};  // paths, each with its terminating zero
@@ -76,17 +72,6 @@ void pass_signals_on() {
   std::signal(SIGPIPE, SIG_IGN);
 }
 
-bool is_over(const std::atomic<Clock::rep>& end, Clock::duration grace) {
-  const Clock::duration time(end.load());
-  return time != never && Clock::now().time_since_epoch() > time + grace;
-}
-
-Clock::rep from_now(double seconds) {
-  return (Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds)))
-      .time_since_epoch()
-      .count();
-}
-
 /// A block of SIGCHLD during its lifetime, so that the supervisor can wait for the end of a child.
 class ChildSignal {
  public:
@@ -113,12 +98,12 @@ class ChildSignal {
 /// Waits for the child and returns how it ended; kills it when a limit is exceeded.
 int wait_for_child(const ChildSignal& ended_signal, bool& out_of_time) {
   using namespace std::chrono_literals;
-  constexpr Clock::duration grace = 3s;  // the child's own watcher ends it within a second
+  constexpr double grace = 3;  // seconds; the child's own watcher ends it within one
   for (int status = 0;;) {
     const pid_t ended = waitpid(child, &status, WNOHANG);
     if (ended == child) return status;
     if (ended < 0 && errno != EINTR) return 0;
-    if (is_over(shared->end, grace) || is_over(shared->cad_end, {})) {
+    if (shared->end.load().passed(grace) || shared->cad_end.load().passed()) {
       out_of_time = true;
       kill(child, SIGKILL);
     }
@@ -141,7 +126,7 @@ ExitCode reason_for(int status, bool out_of_time) {
   if (const int result = shared->result.load(); result != running) return static_cast<ExitCode>(result);
   for (std::size_t at = 0; at < shared->folders_end; at += std::strlen(&shared->folders[at]) + 1)
     remove_dead_folder(&shared->folders[at]);
-  if (out_of_time && shared->in_cad.load() && is_over(shared->cad_end, {}))
+  if (out_of_time && shared->in_cad.load() && shared->cad_end.load().passed())
     return told(ExitCode::unreadable,
                 fmt::format("{}: OpenCASCADE took too long while {}; the file is probably damaged; if it is "
                             "not, allow more time with --time-limit",
@@ -202,18 +187,18 @@ CadWork::CadWork(std::string_view doing, std::string_view file, double seconds) 
   if (shared == nullptr) return;
   copy(doing, shared->doing.data(), shared->doing.size());
   copy(file, shared->file.data(), shared->file.size());
-  if (seconds > 0 && Clock::duration(shared->end.load()) == never) shared->cad_end.store(from_now(seconds));
+  if (!shared->end.load().exists()) shared->cad_end.store(Deadline::in(seconds));
   shared->in_cad.store(true);
 }
 
 CadWork::~CadWork() {
   if (shared == nullptr) return;
   shared->in_cad.store(false);
-  shared->cad_end.store(never.count());
+  shared->cad_end.store({});
 }
 
-void supervise_time(double seconds) {
-  if (shared != nullptr && seconds > 0) shared->end.store(from_now(std::min(seconds, 1e9)));
+void supervise_time(Deadline deadline) {
+  if (shared != nullptr) shared->end.store(deadline);
 }
 
 void supervise_folder(std::string_view folder) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "common/deadline.h"
 #include "process/exit_code.h"
 
 namespace collarmesh::process {
@@ -26,8 +27,8 @@ class CadWork {
   CadWork& operator=(const CadWork&) = delete;
 };
 
-/// Tells the supervisor that the process must end within this many seconds; 0: any time.
-void supervise_time(double seconds);
+/// Tells the supervisor when the process must end.
+void supervise_time(Deadline deadline);
 
 /// Tells the supervisor to remove this folder if the process dies.
 void supervise_folder(std::string_view folder);
