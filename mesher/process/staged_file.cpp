@@ -57,11 +57,7 @@ std::vector<std::string> staged_folders;
 bool committed = false;
 bool keep_folders = false;  // keep the folders, because their files could not be moved back
 
-/// The completed moves of a commit, for undoing them.
-struct Done {
-  fs::path place, kept;
-};
-std::vector<Done> done;
+Replacement replacement;  // of the commit in progress
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
   for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
@@ -135,48 +131,8 @@ fs::path make_folder_beside(const fs::path& target) {
   return staged_folders.back();
 }
 
-/// Flushes a file. These error numbers mean that the file system cannot flush.
-bool flushed(int file) { return fsync(file) == 0 || errno == EINVAL || errno == ENOTSUP; }
-
-void flush(const fs::path& path, const fs::path& place) {
-  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  const bool good = file >= 0 && flushed(file);
-  const std::string why = reason();
-  if (file >= 0) close(file);
-  if (!good) throw WriteError(fmt::format("{}: cannot be written to the disk ({})", place.string(), why));
-}
-
-/// Flushes renamings, too. The files are in place by now, so errors do not matter.
-void flush_folder(const fs::path& folder) {
-  const int file = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (file < 0) return;
-  flushed(file);
-  close(file);
-}
-
-void keep_mode_and_owner(const fs::path& before, const fs::path& staged) {
-  struct stat status = {};
-  if (stat(before.c_str(), &status) != 0) return;
-  if (chown(staged.c_str(), status.st_uid, status.st_gid) != 0 &&
-      chown(staged.c_str(), -1, status.st_gid) != 0) {
-    // Only root may give files to another owner.
-  }
-  if (chmod(staged.c_str(), status.st_mode & 07777) != 0)
-    throw WriteError(fmt::format("{}: cannot keep its permissions ({})", before.string(), reason()));
-}
-
-/// Makes a second name for a file or, if links are not supported, a copy.
-bool keep(const fs::path& place, const fs::path& kept) {
-  return link(place.c_str(), kept.c_str()) == 0 || rename(place.c_str(), kept.c_str()) == 0;
-}
-
-void take_back() noexcept {
-  for (; !done.empty(); done.pop_back()) {
-    const Done& last = done.back();
-    if ((last.kept.empty() ? unlink(last.place.c_str()) : rename(last.kept.c_str(), last.place.c_str())) != 0)
-      keep_folders = true;
-  }
-}
+/// Undoes the commit in progress.
+void take_back() noexcept { keep_folders |= !replacement.undo(); }
 
 }  // namespace
 
@@ -210,13 +166,13 @@ void StagedFile::write(const std::function<void(const std::string&)>& write) {
   }
 }
 
-std::vector<StagedFile::Move> StagedFile::moves() const {
+std::vector<Replacement::Move> StagedFile::moves() const {
   std::set<fs::path> names;
   for (const auto& entry : fs::directory_iterator(folder_)) names.insert(entry.path().filename());
   names.erase(target_.filename());
   std::vector<fs::path> ordered(names.begin(), names.end());
   ordered.push_back(target_.filename());  // the target comes last, so that its readers find the other files
-  std::vector<Move> moves;
+  std::vector<Replacement::Move> moves;
   for (const fs::path& name : ordered) {
     const fs::path place = target_.parent_path() / name;
     std::error_code ignored;
@@ -244,42 +200,33 @@ void StagedFile::copy_to_standard_output() const {
 void StagedFile::commit(const std::vector<StagedFile*>& files) {
   const StagedLock lock;
   stop_if_interrupted();
-  std::vector<Move> all;
+  std::vector<Replacement::Move> all;
   for (const StagedFile* file : files)
     if (file != nullptr && file->target_ != standard_output)
-      for (Move& move : file->moves()) all.push_back(std::move(move));
+      for (Replacement::Move& move : file->moves()) all.push_back(std::move(move));
   std::set<fs::path> places;
-  for (const Move& move : all) {
+  for (const Replacement::Move& move : all) {
     std::error_code error;
     if (!places.insert(fs::weakly_canonical(folder_of(move.to), error) / move.to.filename()).second)
       throw WriteError(
           fmt::format("{}: two outputs have this name; choose another for one of them", move.to.string()));
     require_place(move.to);
-    if (!move.kept.empty()) keep_mode_and_owner(move.to, move.from);
-    flush(move.from, move.to);
   }
+  replacement = Replacement(std::move(all));
+  replacement.prepare();
   for (const StagedFile* file : files)
     if (file != nullptr && file->target_ == standard_output) file->copy_to_standard_output();
-  done.reserve(all.size());
-  for (const Move& move : all) {
-    Done next{move.to, move.kept};
-    if ((!move.kept.empty() && !keep(move.to, move.kept)) ||
-        (done.push_back(std::move(next)), rename(move.from.c_str(), move.to.c_str()) != 0)) {
-      const std::string why = reason();
-      if (move.kept.empty()) done.pop_back();  // a file with this name now belongs to another program
-      take_back();
-      throw WriteError(fmt::format(
-          "{}: cannot be replaced ({}); choose another name{}", move.to.string(), why,
-          keep_folders ? fmt::format("; the previous files could not be restored either; they are in {}",
-                                     move.from.parent_path().string())
-                       : ""));
-    }
+  if (const Replacement::Move* const failed = replacement.carry_out(); failed != nullptr) {
+    const std::string why = reason();
+    take_back();
+    throw WriteError(fmt::format(
+        "{}: cannot be replaced ({}); choose another name{}", failed->to.string(), why,
+        keep_folders ? fmt::format("; the previous files could not be restored either; they are in {}",
+                                   failed->from.parent_path().string())
+                     : ""));
   }
   committed = true;
-  done.clear();
-  std::set<fs::path> folders;
-  for (const Move& move : all) folders.insert(folder_of(move.to));
-  for (const fs::path& folder : folders) flush_folder(folder);
+  replacement.settle();
 }
 
 void require_writable(const fs::path& target, const std::vector<fs::path>& beside) {

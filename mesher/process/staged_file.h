@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "common/replacement.h"
+
 namespace collarmesh::process {
 
 /// A file that appears under its name only when it is complete. It is made in a temporary folder beside its
@@ -30,10 +32,7 @@ class StagedFile {
   static void commit(const std::vector<StagedFile*>& files);
 
  private:
-  struct Move {
-    std::filesystem::path from, to, kept;  // kept: the previous file
-  };
-  std::vector<Move> moves() const;
+  std::vector<Replacement::Move> moves() const;
   void copy_to_standard_output() const;
 
   std::filesystem::path target_;
