@@ -22,7 +22,6 @@
 #include "io/file_format.h"
 #include "man_page.h"
 #include "option_values.h"
-#include "process/console.h"
 #include "process/machine.h"
 #include "report/conversion_report.h"
 #include "report/html_report.h"
@@ -402,7 +401,7 @@ constexpr const char* footer =
 
 }  // namespace
 
-std::variant<Arguments, ExitCode> parse(int argc, const char* const* argv) {
+std::variant<Arguments, ExitCode> parse(const process::Console& console, int argc, const char* const* argv) {
   MeshArguments mesh;
   CheckArguments check;
   InfoArguments info;
@@ -453,15 +452,15 @@ std::variant<Arguments, ExitCode> parse(int argc, const char* const* argv) {
     if (error.get_exit_code() == 0) {  // for --help and --version
       std::ostringstream text, nothing;
       app.exit(error, text, nothing);
-      process::print_result(text.str());
+      console.print_result(text.str());
       return ExitCode::success;
     }
     const bool subcommand_last =
         !app.get_subcommands().empty() && (!mesh.inputs.empty() || !mesh.output.empty());
-    process::tell("collarmesh: {}\nRun with --help for more information.\n",
-                  subcommand_last ? "a subcommand comes first: collarmesh check MESH ..., info INPUT ..., "
-                                    "convert IN ..., repair IN ..., remesh MESH ..."
-                                  : usage_message(app, error));
+    console.tell("collarmesh: {}\nRun with --help for more information.\n",
+                 subcommand_last ? "a subcommand comes first: collarmesh check MESH ..., info INPUT ..., "
+                                   "convert IN ..., repair IN ..., remesh MESH ..."
+                                 : usage_message(app, error));
     return ExitCode::usage;
   }
   if (check_command->parsed()) return Arguments(check);

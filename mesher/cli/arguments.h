@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "collarmesh/options.h"
+#include "process/console.h"
 #include "process/exit_code.h"
 #include "report/report.h"
 
@@ -70,6 +71,6 @@ std::vector<std::string> all_formats();
 
 /// Parses a command line. If there is nothing to run (help, version, a mistake), prints the text and returns
 /// the exit code instead.
-std::variant<Arguments, ExitCode> parse(int argc, const char* const* argv);
+std::variant<Arguments, ExitCode> parse(const process::Console& console, int argc, const char* const* argv);
 
 }  // namespace collarmesh::cli

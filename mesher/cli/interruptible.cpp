@@ -1,8 +1,6 @@
 #include "interruptible.h"
 
 #include "common/recorded_costs.h"
-#include "process/interrupt.h"
-#include "process/supervisor.h"
 
 namespace collarmesh::cli {
 
@@ -11,8 +9,8 @@ namespace {
 /// Work of OpenCASCADE: it is supervised, and its costs are recorded apart.
 class CadPart {
  public:
-  CadPart(std::string_view doing, std::string_view file, double seconds)
-      : costs_(doing), work_(doing, file, seconds) {}
+  CadPart(process::Supervisor& supervisor, std::string_view doing, std::string_view file, double seconds)
+      : costs_(doing), work_(supervisor, doing, file, seconds) {}
 
  private:
   recorded_costs::StagePart costs_;
@@ -21,11 +19,11 @@ class CadPart {
 
 }  // namespace
 
-files::InputReading interruptible(files::InputReading reading) {
-  reading.cancel = &process::interrupt_flag();
-  reading.stop = [] { process::stop_if_interrupted(); };
-  reading.guard = [](std::string_view doing, std::string_view file, double seconds) {
-    return std::make_shared<CadPart>(doing, file, seconds);
+files::InputReading interruptible(process::Process& process, files::InputReading reading) {
+  reading.cancel = &process.interrupts.flag();
+  reading.stop = [&process] { process.interrupts.stop_if_asked(); };
+  reading.guard = [&process](std::string_view doing, std::string_view file, double seconds) {
+    return std::make_shared<CadPart>(process.supervisor, doing, file, seconds);
   };
   return reading;
 }

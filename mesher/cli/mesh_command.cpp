@@ -20,11 +20,7 @@
 #include "interruptible.h"
 #include "io/file_format.h"
 #include "option_warnings.h"
-#include "process/console.h"
-#include "process/interrupt.h"
-#include "process/out_of_memory.h"
-#include "process/staged_file.h"
-#include "process/supervisor.h"
+#include "process/machine.h"
 #include "progress_display.h"
 #include "report/conversion_report.h"
 #include "report/html_report.h"
@@ -36,19 +32,20 @@ namespace collarmesh::cli {
 
 namespace {
 
-PipelineOptions pipeline_options(const MeshArguments& a) {
+PipelineOptions pipeline_options(process::Process& process, const MeshArguments& a) {
   PipelineOptions options = a;
   options.mesh.count_work = !a.reports.empty();
   options.trace = !a.trace_folder.empty();
-  options.mesh.time_limit = process::time_left();  // the whole run is limited, from reading to writing
+  options.mesh.time_limit =
+      process.interrupts.time_left();  // the whole run is limited, from reading to writing
   return options;
 }
 
 /// Records the stage, for the message when the time is up.
-void note_where_it_stopped(const MeshResult& result) {
+void note_where_it_stopped(process::Process& process, const MeshResult& result) {
   const MeshStatistics& reached = result.statistics;
   const Point& p = result.where;
-  process::note_stage(
+  process.interrupts.note_stage(
       {"refine", reached.vertices_inserted, reached.cells},
       fmt::format(
           "stage: refine, {} vertices, {} cells, {:.1f} MB; the last vertex is ({:.9g}, {:.9g}, {:.9g})",
@@ -136,9 +133,11 @@ class InputSource : public ComplexSource {
 };
 
 /// Makes the files of a run's steps, if requested. They appear when they are committed.
-std::unique_ptr<process::StagedFile> staged_trace(const MeshArguments& arguments, const Trace& trace) {
+std::unique_ptr<process::StagedFile> staged_trace(process::Process& process, const MeshArguments& arguments,
+                                                  const Trace& trace) {
   if (arguments.trace_folder.empty() || trace.empty()) return nullptr;
-  auto staged = std::make_unique<process::StagedFile>(files::trace_file(arguments.trace_folder));
+  auto staged =
+      std::make_unique<process::StagedFile>(process.files, files::trace_file(arguments.trace_folder));
   staged->write([&](const std::string& path) {
     ThreadLimit(arguments.mesh.threads).run([&] { files::write_trace(path, trace); });
   });
@@ -146,28 +145,30 @@ std::unique_ptr<process::StagedFile> staged_trace(const MeshArguments& arguments
 }
 
 /// Makes the mesh. Returns the options with which the complex was repaired.
-RepairOptions mesh(const MeshArguments& arguments, files::ComplexInput& input, Stages& stages,
-                   report::MeshRun& run) {
+RepairOptions mesh(process::Process& process, const MeshArguments& arguments, files::ComplexInput& input,
+                   Stages& stages, report::MeshRun& run) {
   Execution execution;
-  execution.cancel = &process::interrupt_flag();
+  execution.cancel = &process.interrupts.flag();
   std::optional<process::CadWork> projecting;
   execution.progress = [&](const ProgressReport& report) {
     if (!input.has_cad() || (report.phase != "project" && report.phase != "second order"))
       projecting.reset();
     else if (!projecting)
-      projecting.emplace("finding the nearest points of its faces and edges", input.cad_names());
+      projecting.emplace(process.supervisor, "finding the nearest points of its faces and edges",
+                         input.cad_names());
     stages.update(report);
     return true;
   };
   InputSource source(arguments, input, stages);
-  static_cast<SoupPipelineResult&>(run) = run_pipeline(source, pipeline_options(arguments), execution);
+  static_cast<SoupPipelineResult&>(run) =
+      run_pipeline(source, pipeline_options(process, arguments), execution);
   if (run.result.status == MeshStatus::cancelled || run.result.status == MeshStatus::budget_hit) {
-    if (run.times.stages().back().first == "refine") note_where_it_stopped(run.result);
-    process::stop_if_interrupted();
+    if (run.times.stages().back().first == "refine") note_where_it_stopped(process, run.result);
+    process.interrupts.stop_if_asked();
   }
   if (run.result.status == MeshStatus::budget_hit) {
-    note_where_it_stopped(run.result);
-    process::StagedFile::commit({staged_trace(arguments, run.trace).get()});
+    note_where_it_stopped(process, run.result);
+    process.files.commit({staged_trace(process, arguments, run.trace).get()});
     throw process::Stopped(ExitCode::budget_hit, run.result.message + "; nothing was written");
   }
   if (input.has_cad()) run.result.mesh.group_names = GroupNames::cad;
@@ -200,7 +201,8 @@ void write_report(const std::string& path, const MeshArguments& arguments, const
                                                   : report::json_text(report, 1) + '\n');
 }
 
-void write_files(const MeshArguments& arguments, Stages& stages, report::MeshRun& run) {
+void write_files(process::Process& process, const MeshArguments& arguments, Stages& stages,
+                 report::MeshRun& run) {
   stages.begin("write", 0.93, 1, run.result.mesh.tets.size());
   if (!arguments.reports.empty()) run.worst = report::worst_tets(run.result.mesh, run.check.measures);
   std::optional<Shown> shown;
@@ -210,7 +212,7 @@ void write_files(const MeshArguments& arguments, Stages& stages, report::MeshRun
   }
   scale(run.result.mesh, arguments.scale);
   run.result.mesh.triangle_elements = arguments.triangle_elements;
-  process::StagedFile mesh(arguments.output);
+  process::StagedFile mesh(process.files, arguments.output);
   mesh.write([&](const std::string& path) {
     ThreadLimit(arguments.mesh.threads).run([&] {
       if (files::is_surface_format(arguments.output, arguments.output_format))
@@ -225,91 +227,92 @@ void write_files(const MeshArguments& arguments, Stages& stages, report::MeshRun
   std::vector<process::StagedFile*> files{&mesh};
   std::deque<process::StagedFile> reports;
   for (const std::string& target : arguments.reports) {
-    reports.emplace_back(target).write(
-        [&](const std::string& path) { write_report(path, arguments, run, shown); });
+    reports.emplace_back(process.files, target).write([&](const std::string& path) {
+      write_report(path, arguments, run, shown);
+    });
     files.push_back(&reports.back());
   }
   std::optional<process::StagedFile> decomposition;
   if (!arguments.cell_decomposition.empty()) {
-    decomposition.emplace(arguments.cell_decomposition);
+    decomposition.emplace(process.files, arguments.cell_decomposition);
     decomposition->write(
         [&](const std::string& path) { files::write_cell_decomposition(path, run.result.mesh); });
     files.push_back(&*decomposition);
   }
-  const auto trace = staged_trace(arguments, run.trace);
+  const auto trace = staged_trace(process, arguments, run.trace);
   files.push_back(trace.get());
-  process::StagedFile::commit(files);
+  process.files.commit(files);
 }
 
 /// Checks the trace folder before long work starts.
-void require_trace_folder(const std::string& folder) {
+void require_trace_folder(process::Process& process, const std::string& folder) {
   if (folder.empty()) return;
   std::error_code error;
   std::filesystem::create_directory(folder, error);
   if (error) throw WriteError(fmt::format("{}: cannot be made: {}", folder, error.message()));
-  process::require_writable(files::trace_file(folder));
+  process.files.require_writable(files::trace_file(folder));
 }
 
 }  // namespace
 
-void tell_of(const MeshArguments& arguments, const report::MeshRun& run) {
+void tell_of(const process::Console& console, const MeshArguments& arguments, const report::MeshRun& run) {
   if (run.result.status == MeshStatus::guarantee_missed)
-    process::tell("collarmesh: {}a guarantee is missed: {}\n", arguments.quiet ? arguments.output + ": " : "",
-                  run.result.message);
+    console.tell("collarmesh: {}a guarantee is missed: {}\n", arguments.quiet ? arguments.output + ": " : "",
+                 run.result.message);
   constexpr std::size_t most = 10;
   const std::size_t findings = arguments.verbose ? run.check.findings.size() : most,
                     straightened = arguments.verbose ? run.second_order.straightened.size() : most;
   const std::string wrong =
       report::findings_text(run.check, findings) + report::straightened_text(run.second_order, straightened);
-  process::tell("{}", arguments.quiet ? each_line_of(arguments.output, wrong) : wrong);
+  console.tell("{}", arguments.quiet ? each_line_of(arguments.output, wrong) : wrong);
   if (arguments.quiet) return;
-  for (const std::string& warning : run.check.warnings) process::tell("warning: {}\n", warning);
-  process::tell("{}", report::run_text(arguments, run));
+  for (const std::string& warning : run.check.warnings) console.tell("warning: {}\n", warning);
+  console.tell("{}", report::run_text(arguments, run));
   if (arguments.tell_losses)
-    process::tell("{}", report::losses_text(report::lost_by(
-                            io::format_of(arguments.output, arguments.output_format), run.result.mesh)));
+    console.tell("{}", report::losses_text(report::lost_by(
+                           io::format_of(arguments.output, arguments.output_format), run.result.mesh)));
 }
 
-std::unique_ptr<files::ComplexInput> read_inputs(const MeshArguments& arguments) {
+std::unique_ptr<files::ComplexInput> read_inputs(process::Process& process, const MeshArguments& arguments) {
   return std::make_unique<files::ComplexInput>(
-      arguments.inputs, interruptible(files::reading_for_mesh(arguments, arguments.input_format)));
+      arguments.inputs, interruptible(process, files::reading_for_mesh(arguments, arguments.input_format)));
 }
 
-MadeMesh make_mesh(const MeshArguments& arguments) {
+MadeMesh make_mesh(process::Process& process, const MeshArguments& arguments) {
   MadeMesh made;
-  Stages stages(progress_of(arguments), made.run.times);
+  Stages stages(process, progress_of(arguments), made.run.times);
   stages.begin("read", 0, 0.02);
-  made.input = read_inputs(arguments);
-  made.repair = mesh(arguments, *made.input, stages, made.run);
+  made.input = read_inputs(process, arguments);
+  made.repair = mesh(process, arguments, *made.input, stages, made.run);
   return made;
 }
 
-ExitCode make_and_write(const MeshArguments& arguments,
+ExitCode make_and_write(process::Process& process, const MeshArguments& arguments,
                         const std::function<void(Stages&, report::MeshRun&)>& make) {
-  process::set_time_limit(arguments.mesh.time_limit);
+  process.interrupts.set_time_limit(arguments.mesh.time_limit);
   process::limit_memory(arguments.mesh.max_memory);
-  process::require_writable(arguments.output,
-                            files::files_written(arguments.output, arguments.output_format));
+  process.files.require_writable(arguments.output,
+                                 files::files_written(arguments.output, arguments.output_format));
   io::require_place_for_interfaces(arguments.output, arguments.split, arguments.output_format);
-  for (const std::string& report : arguments.reports) process::require_writable(report);
-  if (!arguments.cell_decomposition.empty()) process::require_writable(arguments.cell_decomposition);
-  require_trace_folder(arguments.trace_folder);
+  for (const std::string& report : arguments.reports) process.files.require_writable(report);
+  if (!arguments.cell_decomposition.empty()) process.files.require_writable(arguments.cell_decomposition);
+  require_trace_folder(process, arguments.trace_folder);
   if (arguments.partitions > 0) require_partitioner();  // fail before long work, not after it
   report::MeshRun run;
   {
-    Stages stages(progress_of(arguments), run.times);
+    Stages stages(process, progress_of(arguments), run.times);
     stages.begin("read", 0, 0.02);
     make(stages, run);
-    write_files(arguments, stages, run);
+    write_files(process, arguments, stages, run);
   }
-  tell_of(arguments, run);
+  tell_of(process.console, arguments, run);
   return run.guarantees_hold() ? ExitCode::success : ExitCode::guarantee_missed;
 }
 
-ExitCode mesh_command(const MeshArguments& arguments) {
-  return make_and_write(arguments, [&](Stages& stages, report::MeshRun& run) {
-    const std::unique_ptr<files::ComplexInput> input = read_inputs(arguments);
-    mesh(arguments, *input, stages, run);
+ExitCode mesh_command(process::Process& process, const MeshArguments& arguments) {
+  return make_and_write(process, arguments, [&](Stages& stages, report::MeshRun& run) {
+    const std::unique_ptr<files::ComplexInput> input = read_inputs(process, arguments);
+    mesh(process, arguments, *input, stages, run);
   });
 }
 

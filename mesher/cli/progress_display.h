@@ -8,6 +8,7 @@
 
 #include "arguments.h"
 #include "collarmesh/progress.h"
+#include "process/console.h"
 
 namespace collarmesh::cli {
 
@@ -15,7 +16,7 @@ namespace collarmesh::cli {
 /// Stages have fixed shares of the total fraction, which never decreases.
 class ProgressDisplay {
  public:
-  explicit ProgressDisplay(ProgressStyle style);
+  ProgressDisplay(const process::Console& console, ProgressStyle style);
   ~ProgressDisplay();  ///< clears the bar
   ProgressDisplay(const ProgressDisplay&) = delete;
   ProgressDisplay& operator=(const ProgressDisplay&) = delete;
@@ -38,6 +39,7 @@ class ProgressDisplay {
   void print_json();
   void keep_drawing();
 
+  const process::Console& console_;
   Form form_;
   Clock::time_point start_ = Clock::now();
   std::mutex mutex_;

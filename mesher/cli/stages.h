@@ -3,6 +3,7 @@
 #include <string>
 
 #include "collarmesh/progress.h"
+#include "process/process.h"
 #include "progress_display.h"
 #include "report/stage_times.h"
 
@@ -11,7 +12,8 @@ namespace collarmesh::cli {
 /// The stages of a command, both in the display and in the timing.
 class Stages {
  public:
-  Stages(ProgressStyle style, report::StageTimes& times) : display_(style), times_(times) {}
+  Stages(process::Process& process, ProgressStyle style, report::StageTimes& times)
+      : interrupts_(process.interrupts), display_(process.console, style), times_(times) {}
 
   Stages(const Stages&) = delete;
   Stages& operator=(const Stages&) = delete;
@@ -23,6 +25,7 @@ class Stages {
   void print(const std::string& text) { display_.print(text); }
 
  private:
+  process::Interrupts& interrupts_;
   ProgressDisplay display_;
   report::StageTimes& times_;
   double begin_ = 0;

@@ -13,14 +13,12 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <mutex>
 #include <set>
 #include <string_view>
 #include <vector>
 
 #include "collarmesh/error.h"
-#include "process/interrupt.h"
-#include "process/supervisor.h"
+#include "process/process.h"
 
 namespace collarmesh::process {
 
@@ -31,33 +29,6 @@ namespace {
 constexpr const char* standard_output = "-";
 constexpr const char* folder_prefix = ".collarmesh-";
 constexpr std::string_view kept_prefix = "kept-";
-
-std::mutex staged_mutex;  // guards the following variables
-
-/// A lock on `staged_mutex`. The thread may hold the mutex already if memory runs out meanwhile.
-class StagedLock {
- public:
-  StagedLock() {
-    if (held_++ == 0) staged_mutex.lock();
-  }
-  ~StagedLock() {
-    if (--held_ == 0) staged_mutex.unlock();
-  }
-  StagedLock(const StagedLock&) = delete;
-  StagedLock& operator=(const StagedLock&) = delete;
-  /// Keeps the lock for good, because the program is about to end.
-  static void keep() { ++held_; }
-
- private:
-  static thread_local int held_;
-};
-thread_local int StagedLock::held_ = 0;
-
-std::vector<std::string> staged_folders;
-bool committed = false;
-bool keep_folders = false;  // keep the folders, because their files could not be moved back
-
-Replacement replacement;  // of the commit in progress
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
   for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
@@ -108,7 +79,9 @@ fs::path temporary_place() {
   return ".";
 }
 
-fs::path make_folder_beside(const fs::path& target) {
+}  // namespace
+
+fs::path StagedFiles::make_folder_beside(const fs::path& target) {
   const fs::path parent = target == standard_output ? temporary_place() : folder_of(target);
   std::error_code ignored;
   if (!fs::exists(parent, ignored))
@@ -120,40 +93,37 @@ fs::path make_folder_beside(const fs::path& target) {
   if (target != standard_output) require_place(target);
   remove_dead_folders(parent);
   // Lists the folder before creating it, because memory may run out at any time.
-  staged_folders.push_back((parent / fmt::format("{}XXXXXX", folder_prefix)).string());
-  if (mkdtemp(staged_folders.back().data()) == nullptr) {
+  folders_.push_back((parent / fmt::format("{}XXXXXX", folder_prefix)).string());
+  if (mkdtemp(folders_.back().data()) == nullptr) {
     const std::string why = reason();
-    staged_folders.pop_back();
+    folders_.pop_back();
     throw WriteError(
         fmt::format("{}: cannot write to the folder {} ({}); choose another or change its permissions",
                     target.string(), parent.string(), why));
   }
-  return staged_folders.back();
+  return folders_.back();
 }
 
-/// Undoes the commit in progress.
-void take_back() noexcept { keep_folders |= !replacement.undo(); }
-
-}  // namespace
+void StagedFiles::take_back() noexcept { keep_folders_ |= !replacement_.undo(); }
 
 // If the target is a symbolic link, replaces the file that it names, not the link.
-StagedFile::StagedFile(fs::path target) : target_(std::move(target)) {
+StagedFile::StagedFile(StagedFiles& files, fs::path target) : files_(files), target_(std::move(target)) {
   std::error_code error;
   if (fs::is_symlink(target_, error))
     if (fs::path named = fs::weakly_canonical(target_, error); !error) target_ = std::move(named);
-  const StagedLock lock;
-  folder_ = make_folder_beside(target_);
+  const std::lock_guard lock(files_.mutex_);
+  folder_ = files_.make_folder_beside(target_);
   lock_ = open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (lock_ >= 0) flock(lock_, LOCK_EX | LOCK_NB);
-  supervise_folder(folder_.string());
+  files_.process_.supervisor.add_folder(folder_.native());
 }
 
 StagedFile::~StagedFile() {
-  const StagedLock lock;
+  const std::lock_guard lock(files_.mutex_);
   std::error_code ignored;
-  if (!keep_folders) fs::remove_all(folder_, ignored);
+  if (!files_.keep_folders_) fs::remove_all(folder_, ignored);
   if (lock_ >= 0) close(lock_);
-  std::erase(staged_folders, folder_.native());
+  std::erase(files_.folders_, folder_.native());
 }
 
 void StagedFile::write(const std::function<void(const std::string&)>& write) {
@@ -197,9 +167,9 @@ void StagedFile::copy_to_standard_output() const {
   if (std::fflush(stdout) != 0) fail();
 }
 
-void StagedFile::commit(const std::vector<StagedFile*>& files) {
-  const StagedLock lock;
-  stop_if_interrupted();
+void StagedFiles::commit(const std::vector<StagedFile*>& files) {
+  const std::lock_guard lock(mutex_);
+  process_.interrupts.stop_if_asked();
   std::vector<Replacement::Move> all;
   for (const StagedFile* file : files)
     if (file != nullptr && file->target_ != standard_output)
@@ -212,25 +182,25 @@ void StagedFile::commit(const std::vector<StagedFile*>& files) {
           fmt::format("{}: two outputs have this name; choose another for one of them", move.to.string()));
     require_place(move.to);
   }
-  replacement = Replacement(std::move(all));
-  replacement.prepare();
+  replacement_ = Replacement(std::move(all));
+  replacement_.prepare();
   for (const StagedFile* file : files)
     if (file != nullptr && file->target_ == standard_output) file->copy_to_standard_output();
-  if (const Replacement::Move* const failed = replacement.carry_out(); failed != nullptr) {
+  if (const Replacement::Move* const failed = replacement_.carry_out(); failed != nullptr) {
     const std::string why = reason();
     take_back();
     throw WriteError(fmt::format(
         "{}: cannot be replaced ({}); choose another name{}", failed->to.string(), why,
-        keep_folders ? fmt::format("; the previous files could not be restored either; they are in {}",
-                                   failed->from.parent_path().string())
-                     : ""));
+        keep_folders_ ? fmt::format("; the previous files could not be restored either; they are in {}",
+                                    failed->from.parent_path().string())
+                      : ""));
   }
-  committed = true;
-  replacement.settle();
+  committed_ = true;
+  replacement_.settle();
 }
 
-void require_writable(const fs::path& target, const std::vector<fs::path>& beside) {
-  const StagedFile probe(target);
+void StagedFiles::require_writable(const fs::path& target, const std::vector<fs::path>& beside) {
+  const StagedFile probe(*this, target);
   for (const fs::path& file : beside) require_place(file);
 }
 
@@ -253,16 +223,16 @@ void remove_dead_folder(const fs::path& folder) {
   fs::remove_all(folder, error);
 }
 
-bool abandon_staged_files() {
-  const StagedLock lock;
-  if (!committed) {
-    StagedLock::keep();
+bool StagedFiles::abandon() {
+  const std::lock_guard lock(mutex_);
+  if (!committed_) {
+    mutex_.lock();  // for good, because the program is about to end
     take_back();
   }
   std::error_code ignored;
-  if (!keep_folders)
-    for (const std::string& folder : staged_folders) fs::remove_all(folder, ignored);
-  return !committed;
+  if (!keep_folders_)
+    for (const std::string& folder : folders_) fs::remove_all(folder, ignored);
+  return !committed_;
 }
 
 }  // namespace collarmesh::process

@@ -281,7 +281,8 @@ TEST(CadMeasures, ReachTheCertificate) {
   cli::MeshArguments arguments;
   arguments.inputs = {path};
   arguments.mesh.size = 3;
-  const ShapeMeasures exact = cli::make_mesh(arguments).run.check.of_input;
+  process::Process process;
+  const ShapeMeasures exact = cli::make_mesh(process, arguments).run.check.of_input;
   ASSERT_EQ(exact.volumes.size(), 2U);
   EXPECT_NEAR(exact.volumes[1], 63 * pi, 1e-9);
   EXPECT_EQ(exact.areas.size(), 3U);

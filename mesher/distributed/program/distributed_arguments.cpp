@@ -7,7 +7,6 @@
 #include <sstream>
 
 #include "option_values.h"
-#include "process/console.h"
 #include "report/html_report.h"
 #include "usage_error.h"
 
@@ -44,7 +43,8 @@ bool writes_pieces(const DistributedArguments& arguments) {
   return extension_of(arguments.mesh.output) == ".pvtu";
 }
 
-std::variant<DistributedArguments, process::ExitCode> parse(int argc, const char* const* argv) {
+std::variant<DistributedArguments, process::ExitCode> parse(const process::Console& console, int argc,
+                                                            const char* const* argv) {
   DistributedArguments arguments;
   CLI::App app(
       "collarmesh-mpi: a certified coarse mesh, distributed, refined and projected onto its shape on all "
@@ -77,11 +77,11 @@ std::variant<DistributedArguments, process::ExitCode> parse(int argc, const char
     if (error.get_exit_code() == 0) {  // for --help and --version
       std::ostringstream text, nothing;
       app.exit(error, text, nothing);
-      process::print_result(text.str());
+      console.print_result(text.str());
       return process::ExitCode::success;
     }
-    process::tell("collarmesh-mpi: {}\nRun with --help for more information.\n",
-                  cli::usage_message(app, error));
+    console.tell("collarmesh-mpi: {}\nRun with --help for more information.\n",
+                 cli::usage_message(app, error));
     return process::ExitCode::usage;
   }
   return arguments;

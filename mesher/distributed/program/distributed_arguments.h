@@ -15,7 +15,8 @@ struct DistributedArguments {
 
 /// Parses a command line. If there is nothing to run (help, version, a mistake), prints the text and returns
 /// the exit code instead.
-std::variant<DistributedArguments, process::ExitCode> parse(int argc, const char* const* argv);
+std::variant<DistributedArguments, process::ExitCode> parse(const process::Console& console, int argc,
+                                                            const char* const* argv);
 
 /// Returns whether to write a .pvtu with pieces; otherwise an .h5 is written.
 bool writes_pieces(const DistributedArguments& arguments);
