@@ -4,9 +4,9 @@
 
 #include <utility>
 
+#include "command/interruptible.h"
 #include "files/check_against.h"
 #include "files/input_files.h"
-#include "interruptible.h"
 #include "process/machine.h"
 #include "report/json_text.h"
 #include "report/report.h"

@@ -6,9 +6,9 @@
 #include "collarmesh/error.h"
 #include "collarmesh/io/size_field_io.h"
 #include "collarmesh/remesh.h"
+#include "command/interruptible.h"
 #include "files/complex_input.h"
 #include "files/input_files.h"
-#include "interruptible.h"
 #include "mesh_command.h"
 
 namespace collarmesh::cli {

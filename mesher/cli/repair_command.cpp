@@ -5,10 +5,10 @@
 #include <optional>
 
 #include "collarmesh/error.h"
+#include "command/interruptible.h"
 #include "files/complex_input.h"
 #include "files/file_groups.h"
 #include "files/surface_files.h"
-#include "interruptible.h"
 #include "process/machine.h"
 #include "report/json_text.h"
 #include "report/report.h"

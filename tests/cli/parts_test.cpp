@@ -14,10 +14,11 @@
 #include "arguments.h"
 #include "collarmesh/error.h"
 #include "collarmesh/mesh_measures.h"
+#include "command/guarded.h"
+#include "command/progress_display.h"
 #include "files/input_files.h"
 #include "process/process.h"
 #include "program.h"
-#include "progress_display.h"
 #include "report/report.h"
 
 namespace collarmesh::cli::parts_test {

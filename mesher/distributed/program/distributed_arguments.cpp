@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <sstream>
 
-#include "option_values.h"
+#include "command/option_values.h"
+#include "command/usage_error.h"
 #include "report/html_report.h"
-#include "usage_error.h"
 
 namespace collarmesh::distributed {
 
@@ -34,7 +34,7 @@ void check(const DistributedArguments& a) {
   if (a.mesh.reports.size() > 1) throw CLI::ValidationError("--report", "is given twice; use it once");
   if (a.mesh.partitions > 0 || !a.mesh.cell_decomposition.empty())
     throw CLI::ValidationError("--partitions", "is for collarmesh; here each rank has a part of its own");
-  cli::check_run_arguments(a.mesh);
+  command::check_run_arguments(a.mesh);
 }
 
 }  // namespace
@@ -60,16 +60,16 @@ std::variant<DistributedArguments, process::ExitCode> parse(const process::Conso
          "The mesh to write: .h5 (PETSc's DMPlex, with .xdmf beside it) or .pvtu (with a piece of each rank)")
       ->type_name("FILE");
   app.add_option("--levels", arguments.levels, "Number of times that every tetrahedron is cut into eight")
-      ->check(cli::number_in(0, 12, "a number of levels from 0 to 12"))
-      ->check(cli::whole_number())
+      ->check(command::number_in(0, 12, "a number of levels from 0 to 12"))
+      ->check(command::whole_number())
       ->capture_default_str()
       ->type_name("N");
   app.add_option("--slack", arguments.slack,
                  "Degrees by which dihedral angles may go beyond those of the coarse mesh")
-      ->check(cli::number_in(0, 180, "an angle from 0 to 180 degrees"))
+      ->check(command::number_in(0, 180, "an angle from 0 to 180 degrees"))
       ->capture_default_str()
       ->type_name("DEGREES");
-  cli::add_run_options(app, arguments.mesh);
+  command::add_options(app, Option::mesh, arguments.mesh);
   try {
     app.parse(argc, argv);
     check(arguments);
@@ -81,7 +81,7 @@ std::variant<DistributedArguments, process::ExitCode> parse(const process::Conso
       return process::ExitCode::success;
     }
     console.tell("collarmesh-mpi: {}\nRun with --help for more information.\n",
-                 cli::usage_message(app, error));
+                 command::usage_message(app, error));
     return process::ExitCode::usage;
   }
   return arguments;

@@ -2,13 +2,15 @@
 
 #include <variant>
 
-#include "arguments.h"
+#include "command/mesh_arguments.h"
+#include "process/console.h"
+#include "process/exit_code.h"
 
 namespace collarmesh::distributed {
 
 struct DistributedArguments {
-  cli::MeshArguments mesh;  ///< options of the coarse mesh, with the files; the order is that of the finest
-                            ///< mesh
+  command::MeshArguments mesh;  ///< options of the coarse mesh, with the files; the order is that of the
+                                ///< finest mesh
   unsigned levels = 1;
   double slack = 10;  ///< degrees by which angles may be worse than those of the coarse mesh
 };

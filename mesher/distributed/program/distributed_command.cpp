@@ -19,13 +19,13 @@
 
 #include "calls.h"
 #include "collarmesh/distributed.h"
+#include "command/guarded.h"
+#include "command/make_mesh.h"
 #include "distributed_arguments.h"
 #include "files/complex_input.h"
 #include "files/file_groups.h"
 #include "files/input_files.h"
-#include "mesh_command.h"
 #include "process/machine.h"
-#include "program.h"
 #include "report/json_text.h"
 
 namespace collarmesh::distributed {
@@ -165,7 +165,7 @@ std::uint64_t fingerprint(const Plc& plc) {
 
 /// The data of the input on every rank, and the mesh that rank 0 made of it.
 struct Coarse {
-  cli::MadeMesh made;  ///< ranks other than 0 only have the input and the complex
+  command::MadeMesh made;  ///< ranks other than 0 only have the input and the complex
   Shape shape() const {
     const Plc& plc = made.run.plc;
     return {plc, made.input->has_cad() ? made.input->exact_geometry(plc) : ExactGeometry{},
@@ -206,16 +206,16 @@ void share(RepairOptions& repair, bool is_first) {
 Coarse make_coarse(process::Process& process, const DistributedArguments& arguments) {
   const Ranks ranks(MPI_COMM_WORLD);
   Coarse coarse;
-  cli::MeshArguments first_order = arguments.mesh;
+  command::MeshArguments first_order = arguments.mesh;
   first_order.order = 1;
   coarse.options = first_order;
   together([&] {
-    if (ranks.rank == 0) coarse.made = cli::make_mesh(process, first_order);
+    if (ranks.rank == 0) coarse.made = command::make_mesh(process, first_order);
   });
   share(coarse.made.repair, ranks.rank == 0);
   together([&] {
     if (ranks.rank == 0) return;
-    coarse.made.input = cli::read_inputs(process, first_order);
+    coarse.made.input = command::read_inputs(process, first_order);
     coarse.made.run.plc = coarse.made.input->build(first_order.complex, coarse.made.repair);
   });
   if (const int other = first_that_differs(fingerprint(coarse.made.run.plc)); other >= 0)
@@ -460,7 +460,7 @@ process::ExitCode run(process::Process& process, int argc, char** argv) {
   // Watch only until the result is known. After a rank has ended with an error (which has been reported by
   // then), mpirun asks ranks that are still in MPI_Finalize to stop.
   const process::ExitCode result = process.run_interruptible([&] {
-    return cli::guarded(process, [&]() -> process::ExitCode {
+    return command::guarded(process, [&]() -> process::ExitCode {
       try {
         require_equal_command_lines(argc, argv);
         const std::variant<DistributedArguments, process::ExitCode> parsed =

@@ -1,8 +1,8 @@
-#include "interruptible.h"
+#include "command/interruptible.h"
 
 #include "common/recorded_costs.h"
 
-namespace collarmesh::cli {
+namespace collarmesh::command {
 
 namespace {
 
@@ -28,4 +28,4 @@ files::InputReading interruptible(process::Process& process, files::InputReading
   return reading;
 }
 
-}  // namespace collarmesh::cli
+}  // namespace collarmesh::command

@@ -3,17 +3,19 @@
 #include <string>
 
 #include "collarmesh/progress.h"
+#include "command/progress_display.h"
 #include "process/process.h"
-#include "progress_display.h"
 #include "report/stage_times.h"
 
-namespace collarmesh::cli {
+namespace collarmesh::command {
 
 /// The stages of a command, both in the display and in the timing.
 class Stages {
  public:
-  Stages(process::Process& process, ProgressStyle style, report::StageTimes& times)
-      : interrupts_(process.interrupts), display_(process.console, style), times_(times) {}
+  Stages(process::Process& process, const RunOptions& options, report::StageTimes& times)
+      : interrupts_(process.interrupts),
+        display_(process.console, options.quiet ? ProgressStyle::off : options.progress),
+        times_(times) {}
 
   Stages(const Stages&) = delete;
   Stages& operator=(const Stages&) = delete;
@@ -31,4 +33,4 @@ class Stages {
   double begin_ = 0;
 };
 
-}  // namespace collarmesh::cli
+}  // namespace collarmesh::command

@@ -6,11 +6,11 @@
 #include <string>
 #include <thread>
 
-#include "arguments.h"
 #include "collarmesh/progress.h"
+#include "command/mesh_arguments.h"
 #include "process/console.h"
 
-namespace collarmesh::cli {
+namespace collarmesh::command {
 
 /// A display of a command's progress on standard error: a bar on a terminal, or one JSON object per line.
 /// Stages have fixed shares of the total fraction, which never decreases.
@@ -55,4 +55,4 @@ class ProgressDisplay {
 std::string progress_line(const std::string& phase, double fraction, std::size_t tets, double seconds,
                           std::size_t width);
 
-}  // namespace collarmesh::cli
+}  // namespace collarmesh::command

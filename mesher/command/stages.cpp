@@ -1,8 +1,8 @@
-#include "stages.h"
+#include "command/stages.h"
 
 #include "common/recorded_costs.h"
 
-namespace collarmesh::cli {
+namespace collarmesh::command {
 
 Stages::~Stages() { recorded_costs::write(); }
 
@@ -26,4 +26,4 @@ void Stages::update(ProgressReport report) {
   display_.update(report);
 }
 
-}  // namespace collarmesh::cli
+}  // namespace collarmesh::command

@@ -1,4 +1,4 @@
-#include "progress_display.h"
+#include "command/progress_display.h"
 #include "report/json_text.h"
 
 #include <fmt/format.h>
@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
-namespace collarmesh::cli {
+namespace collarmesh::command {
 
 namespace {
 
@@ -116,4 +116,4 @@ void ProgressDisplay::keep_drawing() {
   console_.tell("\r\033[K");
 }
 
-}  // namespace collarmesh::cli
+}  // namespace collarmesh::command
