@@ -1,4 +1,4 @@
-#include "check_command.h"
+#include "commands.h"
 
 #include <fmt/format.h>
 
@@ -7,15 +7,12 @@
 #include "command/interruptible.h"
 #include "files/check_against.h"
 #include "files/input_files.h"
-#include "process/machine.h"
 #include "report/json_text.h"
 #include "report/report.h"
 
 namespace collarmesh::cli {
 
 ExitCode check_command(process::Process& process, const CheckArguments& arguments) {
-  process.interrupts.set_time_limit(arguments.mesh.time_limit);
-  process::limit_memory(process::memory_of_the_machine() / 2);
   TetMesh mesh = files::read_mesh_or_triangles(arguments.mesh_path);
   for (Point& p : mesh.points) p = p / arguments.scale;
   for (TetMesh::PeriodicFaces& faces : mesh.periodic)

@@ -1,4 +1,4 @@
-#include "convert_command.h"
+#include "commands.h"
 
 #include <fmt/format.h>
 
@@ -17,8 +17,6 @@
 #include "files/input_files.h"
 #include "files/surface_files.h"
 #include "io/file_format.h"
-#include "mesh_command.h"
-#include "process/machine.h"
 #include "report/conversion_report.h"
 #include "report/report.h"
 #include "report/soup_output.h"
@@ -101,8 +99,6 @@ void repair(process::Process& process, const MeshArguments& a, files::ComplexInp
 }  // namespace
 
 ExitCode convert_command(process::Process& process, const ConvertArguments& a) {
-  process.interrupts.set_time_limit(a.mesh.time_limit);
-  process::limit_memory(a.mesh.max_memory);
   process.files.require_writable(a.output, files::files_written(a.output, a.output_format));
   if (!a.cell_decomposition.empty()) process.files.require_writable(a.cell_decomposition);
   const bool to_surface = files::is_surface_format(a.output, a.output_format);

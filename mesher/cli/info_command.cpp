@@ -1,4 +1,4 @@
-#include "info_command.h"
+#include "commands.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,6 @@
 #include "command/interruptible.h"
 #include "files/complex_input.h"
 #include "files/input_files.h"
-#include "process/machine.h"
 #include "report/json_text.h"
 #include "report/mesh_groups.h"
 #include "report/report.h"
@@ -90,8 +89,6 @@ void print_complex(process::Process& process, const InfoArguments& arguments) {
 }  // namespace
 
 ExitCode info_command(process::Process& process, const InfoArguments& arguments) {
-  process.interrupts.set_time_limit(arguments.mesh.time_limit);
-  process::limit_memory(process::memory_of_the_machine() / 2);
   const std::string& first = arguments.inputs.front();
   const std::optional<TetMesh> mesh = files::read_mesh_if_there(first);
   if (!mesh)

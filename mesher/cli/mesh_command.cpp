@@ -1,4 +1,4 @@
-#include "mesh_command.h"
+#include "commands.h"
 
 #include <fmt/format.h>
 
@@ -17,7 +17,6 @@
 #include "files/surface_files.h"
 #include "files/trace_files.h"
 #include "io/file_format.h"
-#include "process/machine.h"
 #include "report/conversion_report.h"
 #include "report/html_report.h"
 #include "report/json_text.h"
@@ -94,8 +93,7 @@ void require_trace_folder(process::Process& process, const std::string& folder) 
   process.files.require_writable(files::trace_file(folder));
 }
 
-}  // namespace
-
+/// Prints the problems of a mesh to standard error and, unless quiet, its summary.
 void tell_of(const process::Console& console, const MeshArguments& arguments, const report::MeshRun& run) {
   if (run.result.status == MeshStatus::guarantee_missed)
     console.tell("collarmesh: {}a guarantee is missed: {}\n", arguments.quiet ? arguments.output + ": " : "",
@@ -114,10 +112,10 @@ void tell_of(const process::Console& console, const MeshArguments& arguments, co
                            io::format_of(arguments.output, arguments.output_format), run.result.mesh)));
 }
 
+}  // namespace
+
 ExitCode make_and_write(process::Process& process, const MeshArguments& arguments,
                         const std::function<void(Stages&, report::MeshRun&)>& make) {
-  process.interrupts.set_time_limit(arguments.mesh.time_limit);
-  process::limit_memory(arguments.mesh.max_memory);
   process.files.require_writable(arguments.output,
                                  files::files_written(arguments.output, arguments.output_format));
   io::require_place_for_interfaces(arguments.output, arguments.split, arguments.output_format);

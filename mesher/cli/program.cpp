@@ -7,15 +7,11 @@
 
 #include "arguments.h"
 #include "batch_command.h"
-#include "check_command.h"
 #include "command/guarded.h"
-#include "convert_command.h"
+#include "commands.h"
 #include "failure_report.h"
 #include "files/cad_files.h"
-#include "info_command.h"
-#include "mesh_command.h"
-#include "remesh_command.h"
-#include "repair_command.h"
+#include "process/machine.h"
 
 namespace collarmesh::cli {
 
@@ -30,6 +26,10 @@ struct Execute {
   ExitCode operator()(const RepairArguments& arguments) const { return repair_command(process, arguments); }
   ExitCode operator()(const RemeshArguments& arguments) const { return remesh_command(process, arguments); }
 };
+
+const RunOptions& options_of(const Arguments& arguments) {
+  return std::visit([](const RunOptions& options) -> const RunOptions& { return options; }, arguments);
+}
 
 bool reads_cad(const Arguments& arguments) {
   return std::visit(
@@ -49,8 +49,7 @@ bool reads_cad(const Arguments& arguments) {
 // Limits the number of threads of everything that uses TBB, including OpenCASCADE and code outside the
 // stages' arenas. The limit is never lifted: TBB would then create all threads that were requested before.
 void limit_threads(const Arguments& arguments) {
-  const unsigned threads =
-      std::visit([](const RunOptions& options) { return options.mesh.threads; }, arguments);
+  const unsigned threads = options_of(arguments).mesh.threads;
   if (threads == 0) return;
   static const auto* const limit =
       new tbb::global_control(tbb::global_control::max_allowed_parallelism, threads);
@@ -63,8 +62,13 @@ ExitCode execute(process::Process& process, const Arguments& arguments) {
   const auto command = [&] {
     limit_threads(arguments);
     process.catch_signals();
-    return process.run_interruptible(
-        [&] { return guarded(process, [&] { return std::visit(Execute{process}, arguments); }); });
+    return process.run_interruptible([&] {
+      return guarded(process, [&] {
+        process.interrupts.set_time_limit(options_of(arguments).mesh.time_limit);
+        process::limit_memory(options_of(arguments).mesh.max_memory);
+        return std::visit(Execute{process}, arguments);
+      });
+    });
   };
   return reads_cad(arguments) ? process.supervisor.run(command) : command();
 }

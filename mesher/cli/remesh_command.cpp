@@ -1,4 +1,4 @@
-#include "remesh_command.h"
+#include "commands.h"
 
 #include <optional>
 #include <utility>
@@ -9,7 +9,6 @@
 #include "command/interruptible.h"
 #include "files/complex_input.h"
 #include "files/input_files.h"
-#include "mesh_command.h"
 
 namespace collarmesh::cli {
 

@@ -1,4 +1,4 @@
-#include "repair_command.h"
+#include "commands.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,6 @@
 #include "files/complex_input.h"
 #include "files/file_groups.h"
 #include "files/surface_files.h"
-#include "process/machine.h"
 #include "report/json_text.h"
 #include "report/report.h"
 #include "report/soup_output.h"
@@ -42,8 +41,6 @@ std::string repairs_text(const RepairReport& report, const RepairArguments& a) {
 }  // namespace
 
 ExitCode repair_command(process::Process& process, const RepairArguments& a) {
-  process.interrupts.set_time_limit(a.mesh.time_limit);
-  process::limit_memory(process::memory_of_the_machine() / 2);
   process.files.require_writable(a.output, files::files_written(a.output, a.output_format));
   for (const std::string& report : a.reports) process.files.require_writable(report);
   process.interrupts.note_stage({.stage = "read"});

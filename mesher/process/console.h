@@ -13,8 +13,6 @@ class Console {
   /// Opens a device for every standard stream that is closed. Otherwise a file opened later would get its
   /// number, and with it the program's messages. Reading from and writing to the stream still fail.
   Console();
-  Console(const Console&) = delete;
-  Console& operator=(const Console&) = delete;
 
   /// Silences this process. When several ranks do the same work, only one prints.
   void be_silent() { silent_ = true; }

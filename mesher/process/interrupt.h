@@ -34,8 +34,6 @@ class Process;
 class Interrupts {
  public:
   explicit Interrupts(Process& process) : process_(process) {}
-  Interrupts(const Interrupts&) = delete;
-  Interrupts& operator=(const Interrupts&) = delete;
 
   /// Returns the flag that is set by the first SIGINT (Ctrl-C), SIGTERM, SIGHUP or SIGQUIT, and when the
   /// command's time or its CPU time is up. The second signal ends the program at once and removes unfinished

@@ -30,12 +30,6 @@ constexpr const char* standard_output = "-";
 constexpr const char* folder_prefix = ".collarmesh-";
 constexpr std::string_view kept_prefix = "kept-";
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
-    text.replace(at, from.size(), to);
-  return text;
-}
-
 fs::path folder_of(const fs::path& target) {
   return target.has_parent_path() ? target.parent_path() : fs::path(".");
 }
@@ -130,9 +124,7 @@ void StagedFile::write(const std::function<void(const std::string&)>& write) {
   try {
     write((folder_ / target_.filename()).string());
   } catch (const WriteError& error) {
-    const fs::path parent = target_.parent_path();
-    throw WriteError(
-        replaced(error.what(), folder_.string() + "/", parent.empty() ? "" : parent.string() + "/"));
+    throw WriteError(with_folder(error.what(), folder_, target_.parent_path()));
   }
 }
 
@@ -202,6 +194,14 @@ void StagedFiles::commit(const std::vector<StagedFile*>& files) {
 void StagedFiles::require_writable(const fs::path& target, const std::vector<fs::path>& beside) {
   const StagedFile probe(*this, target);
   for (const fs::path& file : beside) require_place(file);
+}
+
+std::string with_folder(std::string message, const fs::path& from, const fs::path& to) {
+  const std::string folder = from.string() + "/", target = to.empty() ? "" : to.string() + "/";
+  for (std::size_t at = message.find(folder); at != std::string::npos;
+       at = message.find(folder, at + target.size()))
+    message.replace(at, folder.size(), target);
+  return message;
 }
 
 void write_text(const std::string& path, const std::string& text) {

@@ -46,8 +46,6 @@ class StagedFile {
 class StagedFiles {
  public:
   explicit StagedFiles(Process& process) : process_(process) {}
-  StagedFiles(const StagedFiles&) = delete;
-  StagedFiles& operator=(const StagedFiles&) = delete;
 
   /// Checks that `target`, and the files written `beside` it, can be made there. Throws WriteError with the
   /// reason. Call it before long work.
@@ -78,6 +76,10 @@ class StagedFiles {
   bool committed_ = false;
   bool keep_folders_ = false;  // keep the folders, because their files could not be moved back
 };
+
+/// Replaces one folder by another in a message that names files.
+std::string with_folder(std::string message, const std::filesystem::path& from,
+                        const std::filesystem::path& to);
 
 /// Writes a file of text. Throws WriteError.
 void write_text(const std::string& path, const std::string& text);

@@ -18,8 +18,6 @@ class Process;
 class Supervisor {
  public:
   explicit Supervisor(Process& process) : process_(process) {}
-  Supervisor(const Supervisor&) = delete;
-  Supervisor& operator=(const Supervisor&) = delete;
 
   /// Runs a command in a child process, which this process only watches. CAD files can make OpenCASCADE crash
   /// or run forever. In that case the child dies; this process then reports the file and the operation,

@@ -70,6 +70,15 @@ TEST_F(StagedFileTest, AppearsOnCommitOnly) {
   EXPECT_EQ(entries(), 1U);
 }
 
+TEST_F(StagedFileTest, StaysWhenTheProgramEndsAfterTheCommit) {
+  process::StagedFile file(process.files, folder / "a.txt");
+  file.write([](const std::string& path) { write(path, "text"); });
+  process.files.commit({&file});
+  EXPECT_FALSE(process.files.abandon());
+  EXPECT_TRUE(fs::exists(folder / "a.txt"));
+  EXPECT_EQ(entries(), 1U);
+}
+
 TEST_F(StagedFileTest, DisappearsWithoutCommit) {
   {
     process::StagedFile file(process.files, folder / "a.txt");

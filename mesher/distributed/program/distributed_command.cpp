@@ -340,16 +340,6 @@ class Timer {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Replaces one folder by another in a message that names files.
-std::string with_name(std::string message, const std::filesystem::path& from,
-                      const std::filesystem::path& to) {
-  const std::string folder = from.string() + "/", target = to.empty() ? "" : to.string() + "/";
-  for (std::size_t at = message.find(folder); at != std::string::npos;
-       at = message.find(folder, at + target.size()))
-    message.replace(at, folder.size(), target);
-  return message;
-}
-
 /// Writes files under temporary names into a folder of rank 0. Rank 0 moves them to their places when all
 /// ranks are done.
 void write_files(process::Process& process, const DistributedArguments& arguments, const ParallelMesh& mesh,
@@ -373,9 +363,8 @@ void write_files(process::Process& process, const DistributedArguments& argument
         process, process::ExitCode::cannot_write,
         fmt::format("{}: cannot be written ({}); is the disk full?", arguments.mesh.output, failure.what()));
   } catch (const WriteError& error) {  // all ranks throw it; the message has the temporary name
-    const std::filesystem::path target = arguments.mesh.output;
-    throw WriteError(
-        with_name(error.what(), std::filesystem::path(place).parent_path(), target.parent_path()));
+    const std::filesystem::path target = arguments.mesh.output, staged_at = place;
+    throw WriteError(process::with_folder(error.what(), staged_at.parent_path(), target.parent_path()));
   }
   report.write_seconds = timer.seconds();
   report.peak_bytes = gathered(MPI_COMM_WORLD, std::vector{peak_bytes()});
