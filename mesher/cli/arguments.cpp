@@ -13,32 +13,23 @@
 #include "batch_command.h"
 #include "collarmesh/error.h"
 #include "collarmesh/io/tet_mesh_io.h"
+#include "command/option_values.h"
+#include "command/usage_error.h"
 #include "completions.h"
 #include "files/cad_files.h"
 #include "files/file_groups.h"
 #include "files/surface_files.h"
-#include "files/trace_files.h"
 #include "help_text.h"
 #include "io/file_format.h"
 #include "man_page.h"
-#include "option_values.h"
-#include "process/console.h"
-#include "process/machine.h"
 #include "report/conversion_report.h"
 #include "report/html_report.h"
 #include "report/json_text.h"
 #include "report/options_json.h"
-#include "usage_error.h"
 
 namespace collarmesh::cli {
 
 namespace {
-
-template <class... Values>
-[[noreturn]] void reject(const std::string& option, fmt::format_string<Values...> message,
-                         Values&&... values) {
-  throw CLI::ValidationError(option, fmt::format(message, std::forward<Values>(values)...));
-}
 
 std::string known_formats() {
   return list(files::surface_formats()) + " or " + list(io::written_tet_mesh_formats());
@@ -61,36 +52,6 @@ std::string known_inputs() {
   std::vector<std::string> formats = files::surface_formats();
   for (const std::string& format : files::CadFiles::formats()) formats.push_back(format);
   return list(formats);
-}
-
-/// Adds an option of the table.
-CLI::Option* add(CLI::App& app, const Option& option, RunOptions& options) {
-  const std::string name = "--" + option.name;
-  const std::string names = option.letter == 0 ? name : fmt::format("-{},{}", option.letter, name);
-  if (option.kind() == Option::Kind::flag)
-    return app
-        .add_flag_callback(
-            names, [&] { option.set(options, true); }, option.help)
-        ->group(option.group);
-  const auto read = [&option, &options, name](const std::string& text) {
-    if (!option.read(text, options)) reject(name, "'{}' is not {}", text, option.fitting());
-  };
-  const auto read_all = [read](const std::vector<std::string>& texts) {
-    for (const std::string& text : texts) read(text);
-  };
-  CLI::Option* const added =
-      option.is_repeatable()
-          ? app.add_option_function<std::vector<std::string>>(names, read_all, option.help + "; repeatable")
-                ->allow_extra_args(false)
-          : app.add_option_function<std::string>(names, read, option.help);
-  return added->type_name(option.value_name)->default_str(option.default_value())->group(option.group);
-}
-
-/// Adds the options of the table that a command takes.
-void add_options(CLI::App& app, Option::Command command, RunOptions& options) {
-  options.mesh.max_memory = process::memory_of_the_machine() / 2;
-  for (const Option& option : option_table())
-    if (option.is_for(command)) add(app, option, options);
 }
 
 bool is_meshing_group(const std::string& group) {
@@ -214,41 +175,6 @@ std::string extension_list(const std::string& path) {
   return extension.empty() ? "has no extension" : fmt::format("ends in '{}'", extension);
 }
 
-std::vector<std::string> all_inputs(const MeshArguments& a) {
-  std::vector<std::string> inputs = a.inputs;
-  for (const std::string& path : {a.names, a.size_field_file})
-    if (!path.empty()) inputs.push_back(path);
-  return inputs;
-}
-
-/// Checks an output file other than the mesh: it must replace no file of the mesh or of the input.
-void check_second_output(const char* option, const std::string& file, const MeshArguments& a) {
-  if (file.empty()) return;
-  if (files::may_write(a.output, a.output_format, file))
-    reject(option, "names a file of --output; choose another");
-  const std::string lost = files::overwritten({file}, all_inputs(a), a.input_format);
-  if (!lost.empty()) reject(option, "would overwrite {}; choose another", lost);
-}
-
-/// Rejects an output that would replace an input or another output.
-void check_outputs(const MeshArguments& a) {
-  const std::string in_the_way =
-      files::overwritten(files::files_written(a.output, a.output_format), all_inputs(a), a.input_format);
-  if (!in_the_way.empty())
-    reject("--output", "'{}' would overwrite {}; choose another name or folder", a.output, in_the_way);
-  std::vector<std::string> others;
-  for (const std::string& report : a.reports) {
-    check_second_output("--report", report, a);
-    if (!files::overwritten({report}, others, {}).empty())
-      reject("--report", "names {} twice; choose another", report);
-    others.push_back(report);
-  }
-  check_second_output("--cell-decomposition", a.cell_decomposition, a);
-  if (!a.cell_decomposition.empty() && !files::overwritten({a.cell_decomposition}, others, {}).empty())
-    reject("--cell-decomposition", "names the file of --report; choose another");
-  check_second_output("--trace", files::trace_file(a.trace_folder), a);
-}
-
 std::string format_of_output(const MeshArguments& a) { return io::format_of(a.output, a.output_format); }
 
 bool output_is_among(const std::vector<std::string>& formats, const MeshArguments& a) {
@@ -272,22 +198,6 @@ void check_partitions(const MeshArguments& a, bool from_mesh) {
   if (a.partitions == 0 && !from_mesh)
     reject("--ghost-cells", "needs partitions; say how many with --partitions");
 }
-
-}  // namespace
-
-void add_run_options(CLI::App& app, MeshArguments& a) { add_options(app, Option::mesh, a); }
-
-void check_run_arguments(const MeshArguments& a) {
-  if (a.verbose && a.quiet) reject("--quiet", "contradicts --verbose; use one of them");
-  check_outputs(a);
-  try {
-    validate(a);
-  } catch (const OptionError& error) {
-    throw CLI::ValidationError(fmt::format("--{}", error.what()));
-  }
-}
-
-namespace {
 
 /// Checks each part of a batch as if it were alone.
 void check_mesh_arguments(const MeshArguments& a);
@@ -402,7 +312,7 @@ constexpr const char* footer =
 
 }  // namespace
 
-std::variant<Arguments, ExitCode> parse(int argc, const char* const* argv) {
+std::variant<Arguments, ExitCode> parse(const process::Console& console, int argc, const char* const* argv) {
   MeshArguments mesh;
   CheckArguments check;
   InfoArguments info;
@@ -453,15 +363,15 @@ std::variant<Arguments, ExitCode> parse(int argc, const char* const* argv) {
     if (error.get_exit_code() == 0) {  // for --help and --version
       std::ostringstream text, nothing;
       app.exit(error, text, nothing);
-      process::print_result(text.str());
+      console.print_result(text.str());
       return ExitCode::success;
     }
     const bool subcommand_last =
         !app.get_subcommands().empty() && (!mesh.inputs.empty() || !mesh.output.empty());
-    process::tell("collarmesh: {}\nRun with --help for more information.\n",
-                  subcommand_last ? "a subcommand comes first: collarmesh check MESH ..., info INPUT ..., "
-                                    "convert IN ..., repair IN ..., remesh MESH ..."
-                                  : usage_message(app, error));
+    console.tell("collarmesh: {}\nRun with --help for more information.\n",
+                 subcommand_last ? "a subcommand comes first: collarmesh check MESH ..., info INPUT ..., "
+                                   "convert IN ..., repair IN ..., remesh MESH ..."
+                                 : usage_message(app, error));
     return ExitCode::usage;
   }
   if (check_command->parsed()) return Arguments(check);

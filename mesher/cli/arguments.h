@@ -5,23 +5,14 @@
 #include <vector>
 
 #include "collarmesh/options.h"
+#include "command/mesh_arguments.h"
+#include "process/console.h"
 #include "process/exit_code.h"
-#include "report/report.h"
-
-namespace CLI {
-class App;
-}
 
 namespace collarmesh::cli {
 
+using namespace command;  // the code that other programs share
 using process::ExitCode;
-
-/// The arguments of `collarmesh INPUT... -o OUT`.
-struct MeshArguments : report::RequestedRun {
-  std::string batch;  ///< a folder for meshes: each input is meshed as a separate part; empty: no batch
-  std::string input_format, output_format;  ///< extensions with their dot; empty: the files' own
-  bool tell_losses = false;                 ///< report data that the output's format cannot store
-};
 
 /// The arguments of `collarmesh check MESH --against INPUT...`.
 struct CheckArguments : RunOptions {
@@ -60,16 +51,11 @@ struct RemeshArguments : MeshArguments {
 using Arguments = std::variant<MeshArguments, CheckArguments, InfoArguments, ConvertArguments,
                                RepairArguments, RemeshArguments>;
 
-/// Adds the options of meshing, without the files, for another program that meshes. `check_run_arguments`
-/// checks combinations of options; it throws CLI::ValidationError.
-void add_run_options(CLI::App& app, MeshArguments& arguments);
-void check_run_arguments(const MeshArguments& arguments);
-
 /// Returns the extensions of all formats that are read or written.
 std::vector<std::string> all_formats();
 
 /// Parses a command line. If there is nothing to run (help, version, a mistake), prints the text and returns
 /// the exit code instead.
-std::variant<Arguments, ExitCode> parse(int argc, const char* const* argv);
+std::variant<Arguments, ExitCode> parse(const process::Console& console, int argc, const char* const* argv);
 
 }  // namespace collarmesh::cli

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -15,7 +14,6 @@
 #include <system_error>
 
 #include "collarmesh/error.h"
-#include "process/console.h"
 
 namespace collarmesh::cli {
 
@@ -24,24 +22,6 @@ namespace fs = std::filesystem;
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-volatile std::sig_atomic_t asked_to_stop = 0;
-volatile pid_t running = 0;
-
-/// Passes a signal on to the running part. A terminal sends its signals to that part as well.
-extern "C" void stop_batch(int number, siginfo_t* information, void*) {
-  asked_to_stop = 1;
-  if (information->si_code != SI_KERNEL && running > 0) kill(running, number);
-}
-
-void catch_signals() {
-  struct sigaction action = {}, before = {};
-  action.sa_sigaction = stop_batch;
-  action.sa_flags = static_cast<int>(SA_SIGINFO | SA_RESTART);
-  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT})
-    if (sigaction(number, nullptr, &before) == 0 && before.sa_handler != SIG_IGN)
-      sigaction(number, &action, nullptr);
-}
 
 /// A folder that is removed when the batch ends, for reports that the user did not ask for.
 class TemporaryFolder {
@@ -69,18 +49,19 @@ struct Result {
   Json report;
 };
 
-ExitCode run_apart(const MeshArguments& part, const std::function<ExitCode(const MeshArguments&)>& run) {
+ExitCode run_apart(process::Supervisor& supervisor, const MeshArguments& part,
+                   const std::function<ExitCode(const MeshArguments&)>& run) {
   std::fflush(nullptr);  // if not flushed, both processes would write the buffered text
   const pid_t made = fork();
   if (made == 0) std::exit(static_cast<int>(run(part)));
   if (made < 0) return run(part);
-  running = made;
+  supervisor.child = made;
   int status = 0;
   while (waitpid(made, &status, 0) < 0 && errno == EINTR) {
   }
-  running = 0;
+  supervisor.child = 0;
   if (WIFEXITED(status)) return static_cast<ExitCode>(WEXITSTATUS(status));
-  return asked_to_stop != 0 ? ExitCode::cancelled : ExitCode::internal_error;
+  return supervisor.asked_to_stop ? ExitCode::cancelled : ExitCode::internal_error;
 }
 
 Json read_report(const fs::path& path) {
@@ -131,7 +112,6 @@ std::string table_of(const std::vector<Result>& results) {
 }
 
 ExitCode code_of(const std::vector<Result>& results) {
-  if (asked_to_stop != 0) return ExitCode::cancelled;
   const auto failed =
       std::find_if(results.begin(), results.end(), [](const Result& r) { return !is_meshed(r.code); });
   if (failed != results.end()) return failed->code;
@@ -160,29 +140,29 @@ std::string parts_of_one_name(const MeshArguments& batch) {
   return {};
 }
 
-ExitCode batch_command(const MeshArguments& batch,
+ExitCode batch_command(process::Process& process, const MeshArguments& batch,
                        const std::function<ExitCode(const MeshArguments& part)>& run) {
   std::error_code error;
   fs::create_directories(batch.batch, error);
   if (error)
     throw WriteError(
         fmt::format("{}: cannot be made ({}); choose another folder", batch.batch, error.message()));
-  catch_signals();
+  process.pass_signals_on();
   const TemporaryFolder folder;
   std::vector<Result> results;
   for (const std::string& input : batch.inputs) {
     results.push_back({input, ExitCode::cancelled, {}});
-    if (asked_to_stop != 0) continue;
-    if (!batch.quiet) process::tell("{}:\n", input);
+    if (process.supervisor.asked_to_stop) continue;
+    if (!batch.quiet) process.console.tell("{}:\n", input);
     MeshArguments part = part_of_batch(batch, input);
     const fs::path report = folder.file("report.json");
     part.reports.push_back(report.string());
-    results.back().code = run_apart(part, run);
+    results.back().code = run_apart(process.supervisor, part, run);
     results.back().report = read_report(report);
     fs::remove(report, error);
   }
-  process::print_result(table_of(results));
-  return code_of(results);
+  process.console.print_result(table_of(results));
+  return process.supervisor.asked_to_stop ? ExitCode::cancelled : code_of(results);
 }
 
 }  // namespace collarmesh::cli

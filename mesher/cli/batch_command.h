@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "arguments.h"
+#include "process/process.h"
 
 namespace collarmesh::cli {
 
@@ -18,7 +19,7 @@ std::string parts_of_one_name(const MeshArguments& batch);
 /// Meshes each input separately, in a process of its own, and prints a table of the results. Returns
 /// ExitCode::cancelled if the user asked to stop; else the code of the first part without a mesh; else
 /// ExitCode::guarantee_missed if a part returned that. `run` meshes one part as the program does.
-ExitCode batch_command(const MeshArguments& batch,
+ExitCode batch_command(process::Process& process, const MeshArguments& batch,
                        const std::function<ExitCode(const MeshArguments& part)>& run);
 
 }  // namespace collarmesh::cli

@@ -1,24 +1,18 @@
-#include "check_command.h"
+#include "commands.h"
 
 #include <fmt/format.h>
 
 #include <utility>
 
+#include "command/interruptible.h"
 #include "files/check_against.h"
 #include "files/input_files.h"
-#include "interruptible.h"
-#include "process/console.h"
-#include "process/interrupt.h"
-#include "process/machine.h"
-#include "process/out_of_memory.h"
 #include "report/json_text.h"
 #include "report/report.h"
 
 namespace collarmesh::cli {
 
-ExitCode check_command(const CheckArguments& arguments) {
-  process::set_time_limit(arguments.mesh.time_limit);
-  process::limit_memory(process::memory_of_the_machine() / 2);
+ExitCode check_command(process::Process& process, const CheckArguments& arguments) {
   TetMesh mesh = files::read_mesh_or_triangles(arguments.mesh_path);
   for (Point& p : mesh.points) p = p / arguments.scale;
   for (TetMesh::PeriodicFaces& faces : mesh.periodic)
@@ -32,15 +26,15 @@ ExitCode check_command(const CheckArguments& arguments) {
     reading.tolerance = [&](const Plc& plc) {
       return tolerance_of(plc, arguments.mesh.bounds, 0, mesh.order());
     };
-  files::ComplexInput input(arguments.inputs, interruptible(std::move(reading)));
+  files::ComplexInput input(arguments.inputs, interruptible(process, std::move(reading)));
   Execution execution;
-  execution.cancel = &process::interrupt_flag();
+  execution.cancel = &process.interrupts.flag();
   const CheckReport report = files::check_against(mesh, input, arguments, execution);
-  process::stop_if_interrupted();
+  process.interrupts.stop_if_asked();
   if (arguments.json)
-    process::print_result(report::json_text(report::check_json(report), 1) + "\n");
+    process.console.print_result(report::json_text(report::check_json(report), 1) + "\n");
   else
-    process::print_result(report::check_text(report));
+    process.console.print_result(report::check_text(report));
   return report.passed() ? ExitCode::success : ExitCode::guarantee_missed;
 }
 

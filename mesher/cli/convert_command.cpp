@@ -1,4 +1,4 @@
-#include "convert_command.h"
+#include "commands.h"
 
 #include <fmt/format.h>
 
@@ -9,19 +9,14 @@
 #include "collarmesh/error.h"
 #include "collarmesh/io/tet_mesh_io.h"
 #include "collarmesh/partition.h"
+#include "command/interruptible.h"
 #include "common/thread_limit.h"
 #include "files/cell_decomposition.h"
 #include "files/complex_input.h"
 #include "files/file_groups.h"
 #include "files/input_files.h"
 #include "files/surface_files.h"
-#include "interruptible.h"
 #include "io/file_format.h"
-#include "mesh_command.h"
-#include "process/console.h"
-#include "process/interrupt.h"
-#include "process/out_of_memory.h"
-#include "process/staged_file.h"
 #include "report/conversion_report.h"
 #include "report/report.h"
 #include "report/soup_output.h"
@@ -31,8 +26,8 @@ namespace collarmesh::cli {
 
 namespace {
 
-void tell_unless_quiet(const MeshArguments& a, const std::string& text) {
-  if (!a.quiet) process::tell_text(text);
+void tell_unless_quiet(const process::Console& console, const MeshArguments& a, const std::string& text) {
+  if (!a.quiet) console.tell_text(text);
 }
 
 void scale_soup(PolygonSoup& soup, double factor) {
@@ -46,14 +41,14 @@ void scale_soup(PolygonSoup& soup, double factor) {
     hole.point = {factor * hole.point.x, factor * hole.point.y, factor * hole.point.z};
 }
 
-void write_soup(const MeshArguments& a, const std::vector<PolygonSoup>& soups) {
+void write_soup(process::Process& process, const MeshArguments& a, const std::vector<PolygonSoup>& soups) {
   report::MergedSoup merged = report::merge_for_output(soups, a.output, a.output_format, a.complex);
   scale_soup(merged.soup, a.scale);
-  process::stop_if_interrupted();
-  process::StagedFile file(a.output);
+  process.interrupts.stop_if_asked();
+  process::StagedFile file(process.files, a.output);
   file.write([&](const std::string& path) { files::write_surface(path, merged.soup, a.output_format); });
-  process::StagedFile::commit({&file});
-  tell_unless_quiet(a, merged.told);
+  process.files.commit({&file});
+  tell_unless_quiet(process.console, a, merged.told);
 }
 
 /// Divides the mesh as the option says or, without it, as the input was divided.
@@ -67,59 +62,59 @@ void divide(const MeshArguments& a, TetMesh& mesh) {
                                   option, a.inputs.front()));
 }
 
-void convert_mesh(const MeshArguments& a, TetMesh& mesh) {
+void convert_mesh(process::Process& process, const MeshArguments& a, TetMesh& mesh) {
   if (a.inputs.size() > 1)
     throw OptionError(fmt::format("{} is a mesh; convert takes a mesh as its only input", a.inputs.front()));
   if (files::is_surface_format(a.output, a.output_format)) {
-    write_soup(a, {files::surface_of(mesh, a.inputs.front())});
+    write_soup(process, a, {files::surface_of(mesh, a.inputs.front())});
     return;
   }
   scale(mesh, a.scale);
   divide(a, mesh);
-  process::stop_if_interrupted();
-  process::StagedFile file(a.output);
+  process.interrupts.stop_if_asked();
+  process::StagedFile file(process.files, a.output);
   file.write([&](const std::string& path) {
     ThreadLimit(a.mesh.threads).run([&] { io::write_tet_mesh(path, mesh, a.output_format, a.ghost_cells); });
   });
   std::optional<process::StagedFile> decomposition;
   if (!a.cell_decomposition.empty()) {
-    decomposition.emplace(a.cell_decomposition);
+    decomposition.emplace(process.files, a.cell_decomposition);
     decomposition->write([&](const std::string& path) { files::write_cell_decomposition(path, mesh); });
   }
-  process::StagedFile::commit({&file, decomposition ? &*decomposition : nullptr});
+  process.files.commit({&file, decomposition ? &*decomposition : nullptr});
   tell_unless_quiet(
-      a, report::tet_mesh_text(a.output, mesh) + report::partitions_text(measure_partitions(mesh)));
-  tell_unless_quiet(a, report::losses_text(report::lost_by(io::format_of(a.output, a.output_format), mesh)));
+      process.console, a,
+      report::tet_mesh_text(a.output, mesh) + report::partitions_text(measure_partitions(mesh)));
+  tell_unless_quiet(process.console, a,
+                    report::losses_text(report::lost_by(io::format_of(a.output, a.output_format), mesh)));
 }
 
 /// Repairs the soups so that they form a complex that encloses something; throws PlcError if that is
 /// impossible.
-void repair(const MeshArguments& a, files::ComplexInput& input) {
+void repair(process::Process& process, const MeshArguments& a, files::ComplexInput& input) {
   const Plc plc = input.build(a.complex, a.repair);
-  process::tell("{}{}", report::warnings_text(plc), report::repair_text(input.repaired(), a.quiet));
+  process.console.tell("{}{}", report::warnings_text(plc), report::repair_text(input.repaired(), a.quiet));
 }
 
 }  // namespace
 
-ExitCode convert_command(const ConvertArguments& a) {
-  process::set_time_limit(a.mesh.time_limit);
-  process::limit_memory(a.mesh.max_memory);
-  process::require_writable(a.output, files::files_written(a.output, a.output_format));
-  if (!a.cell_decomposition.empty()) process::require_writable(a.cell_decomposition);
+ExitCode convert_command(process::Process& process, const ConvertArguments& a) {
+  process.files.require_writable(a.output, files::files_written(a.output, a.output_format));
+  if (!a.cell_decomposition.empty()) process.files.require_writable(a.cell_decomposition);
   const bool to_surface = files::is_surface_format(a.output, a.output_format);
   std::optional<TetMesh> mesh = files::read_mesh_if_there(a.inputs.front(), a.input_format);
   const bool from_mesh = mesh.has_value();
   if ((to_surface || from_mesh) && !a.meshing_options.empty())
-    process::tell("warning: {}: no effect, since nothing is meshed here.\n",
-                  fmt::join(a.meshing_options, " "));
+    process.console.tell("warning: {}: no effect, since nothing is meshed here.\n",
+                         fmt::join(a.meshing_options, " "));
   if (from_mesh) {
-    convert_mesh(a, *mesh);
+    convert_mesh(process, a, *mesh);
     return ExitCode::success;
   }
-  if (!to_surface) return mesh_command(a);
-  files::ComplexInput input(a.inputs, interruptible(files::reading_of(a, a.input_format)));
-  if (a.repairs) repair(a, input);
-  write_soup(a, input.soups());
+  if (!to_surface) return mesh_command(process, a);
+  files::ComplexInput input(a.inputs, interruptible(process, files::reading_of(a, a.input_format)));
+  if (a.repairs) repair(process, a, input);
+  write_soup(process, a, input.soups());
   return ExitCode::success;
 }
 

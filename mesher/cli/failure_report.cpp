@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -15,8 +14,6 @@
 
 #include "common/xml_text.h"
 #include "io/file_writer.h"
-#include "process/failure.h"
-#include "process/interrupt.h"
 #include "report/html_report.h"
 #include "report/json_text.h"
 #include "report/options_json.h"
@@ -34,11 +31,6 @@ struct Command {
   Json json;
   Clock::time_point begin;
 };
-// Never destroyed: destructors of JSON need memory, and a lack of it could not be reported at the end of the
-// program.
-Command& command = *new Command;
-std::atomic<bool> reported{true};
-
 const char* status_of(ExitCode code) {
   switch (code) {
     case ExitCode::success: return "complete";
@@ -54,8 +46,8 @@ const char* status_of(ExitCode code) {
   return "unknown";
 }
 
-Json failure_json(ExitCode code, std::string_view message, const PlcError* error) {
-  const process::StageReached reached = process::stage_reached();
+Json failure_json(const Command& command, const process::StageReached& reached, ExitCode code,
+                  std::string_view message, const PlcError* error) {
   Json json = command.json;
   json["status"] = status_of(code);
   json["exit_code"] = static_cast<int>(code);
@@ -99,31 +91,25 @@ void write(const std::string& path, const Json& json) {
 
 }  // namespace
 
-void report_failures_of(const Arguments& arguments) {
-  std::visit(
-      []<class A>(const A& a) {
-        if constexpr (std::is_base_of_v<MeshArguments, A>)
-          command = {a.reports,
-                     {{"program", "collarmesh"},
-                      {"version", COLLARMESH_VERSION},
-                      {"inputs", a.inputs},
-                      {"output", a.output},
-                      {"options", report::options_json(a)}},
-                     Clock::now()};
+void report_failures_of(process::Process& process, const Arguments& arguments) {
+  const MeshArguments* const a = std::visit(
+      []<class A>(const A& given) -> const MeshArguments* {
+        if constexpr (std::is_base_of_v<MeshArguments, A>) return &given;
+        return nullptr;
       },
       arguments);
-  reported.store(command.reports.empty());
-  process::on_failure([](ExitCode code, std::string_view message) { report_failure(code, message); });
-}
-
-void report_failure(ExitCode code, std::string_view message, const PlcError* faults) noexcept {
-  if (reported.exchange(true)) return;
-  try {
-    const Json json = failure_json(code, message, faults);
+  if (a == nullptr || a->reports.empty()) return process.reports.on_failure({});
+  process.reports.on_failure([&process, command = Command{a->reports,
+                                                          {{"program", "collarmesh"},
+                                                           {"version", COLLARMESH_VERSION},
+                                                           {"inputs", a->inputs},
+                                                           {"output", a->output},
+                                                           {"options", report::options_json(*a)}},
+                                                          Clock::now()}](
+                                 ExitCode code, std::string_view message, const PlcError* faults) {
+    const Json json = failure_json(command, process.interrupts.stage_reached(), code, message, faults);
     for (const std::string& path : command.reports) write(path, json);
-  } catch (...) {
-    // The message has been printed, and the exit code tells the rest.
-  }
+  });
 }
 
 }  // namespace collarmesh::cli

@@ -1,18 +1,12 @@
 #pragma once
 
-#include <string_view>
-
 #include "arguments.h"
-#include "collarmesh/error.h"
-#include "process/exit_code.h"
+#include "process/process.h"
 
 namespace collarmesh::cli {
 
-/// Makes a later failure of this command write the requested reports.
-void report_failures_of(const Arguments& arguments);
-
-/// Writes the reports: the error, its stage, and the progress so far. Only the first call writes. Does
-/// nothing if no reports are requested, or if they cannot be written.
-void report_failure(ExitCode code, std::string_view message, const PlcError* faults = nullptr) noexcept;
+/// Makes a later failure of this command write the requested reports, if it makes a mesh: the error, its
+/// stage, and the progress so far.
+void report_failures_of(process::Process& process, const Arguments& arguments);
 
 }  // namespace collarmesh::cli

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <string_view>
 
-#include "usage_error.h"
+#include "command/usage_error.h"
 
 namespace collarmesh::cli {
 

@@ -1,4 +1,4 @@
-#include "info_command.h"
+#include "commands.h"
 
 #include <fmt/format.h>
 
@@ -7,13 +7,9 @@
 #include "collarmesh/error.h"
 #include "collarmesh/io/size_field_io.h"
 #include "collarmesh/predict.h"
+#include "command/interruptible.h"
 #include "files/complex_input.h"
 #include "files/input_files.h"
-#include "interruptible.h"
-#include "process/console.h"
-#include "process/interrupt.h"
-#include "process/machine.h"
-#include "process/out_of_memory.h"
 #include "report/json_text.h"
 #include "report/mesh_groups.h"
 #include "report/report.h"
@@ -22,20 +18,20 @@ namespace collarmesh::cli {
 
 namespace {
 
-void print_mesh(const TetMesh& mesh, bool as_json) {
-  process::stop_if_interrupted();
+void print_mesh(process::Process& process, const TetMesh& mesh, bool as_json) {
+  process.interrupts.stop_if_asked();
   const MeshMeasures measures = measure_mesh(mesh);
   const double median = median_edge(mesh);
   if (!as_json) {
-    process::print_result(fmt::format("{}  median edge {:.6g}\n{}", report::mesh_text(mesh, measures), median,
-                                      report::groups_text(mesh)));
+    process.console.print_result(fmt::format("{}  median edge {:.6g}\n{}", report::mesh_text(mesh, measures),
+                                             median, report::groups_text(mesh)));
     return;
   }
   nlohmann::ordered_json json{{"mesh", report::measures_json(mesh, measures)}};
   json["mesh"]["median_edge"] = median;
   json["mesh"]["patch_list"] = report::groups_json(report::patches_of(mesh), "triangles", "area");
   json["mesh"]["curve_list"] = report::groups_json(report::curves_of(mesh), "edges", "length");
-  process::print_result(report::json_text(json, 1) + "\n");
+  process.console.print_result(report::json_text(json, 1) + "\n");
 }
 
 /// Builds the complex that would be meshed. Also accepts facets that bound no region and that repair cannot
@@ -52,56 +48,56 @@ Plc build_any(files::ComplexInput& input, const RunOptions& options) {
 
 /// Predicts meshes. `read` is the time in seconds that reading and building the complex took: the run itself
 /// needs it again.
-std::vector<Prediction> predictions(const InfoArguments& arguments, const Plc& plc, double read) {
+std::vector<Prediction> predictions(process::Process& process, const InfoArguments& arguments, const Plc& plc,
+                                    double read) {
   if (arguments.predicted_sizes.empty()) return {};
   PipelineOptions options = arguments;
   if (!arguments.size_field_file.empty())
     options.mesh.size_field = io::read_size_field(arguments.size_field_file, plc);
-  process::stop_if_interrupted();
+  process.interrupts.stop_if_asked();
   const auto told = [&](Prediction prediction) {
     prediction.seconds += read;
     const nlohmann::ordered_json line{{"prediction", report::prediction_json(prediction)}};
-    if (arguments.progress == ProgressStyle::json) process::tell("{}\n", report::json_text(line));
+    if (arguments.progress == ProgressStyle::json) process.console.tell("{}\n", report::json_text(line));
   };
   std::vector<Prediction> result = predict(plc, options, arguments.predicted_sizes, told);
   for (Prediction& prediction : result) prediction.seconds += read;
   return result;
 }
 
-void print_complex(const InfoArguments& arguments) {
+void print_complex(process::Process& process, const InfoArguments& arguments) {
   const auto begin = std::chrono::steady_clock::now();
-  files::ComplexInput input(arguments.inputs, interruptible(files::reading_of(arguments)));
+  files::ComplexInput input(arguments.inputs, interruptible(process, files::reading_of(arguments)));
   const Plc plc = build_any(input, arguments);
-  process::stop_if_interrupted();
+  process.interrupts.stop_if_asked();
   const double read = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  const std::vector<Prediction> predicted = predictions(arguments, plc, read);
+  const std::vector<Prediction> predicted = predictions(process, arguments, plc, read);
   const PlcSummary summary = summarize(plc, arguments.mesh.bounds.crease_angle);
   const GroupNames names = input.has_cad() ? GroupNames::cad : GroupNames::complex;
   if (arguments.json) {
     nlohmann::ordered_json json{{"complex", report::complex_json(plc, summary, names, input.colours())},
                                 {"repair", report::repair_json(input.repaired())}};
     if (!predicted.empty()) json["predictions"] = report::predictions_json(predicted);
-    process::print_result(report::json_text(json, 1) + "\n");
+    process.console.print_result(report::json_text(json, 1) + "\n");
   } else {
-    process::print_result(report::repair_text(input.repaired()) + report::complex_text(plc, summary, names) +
-                          report::predictions_text(predicted) + report::warnings_text(plc));
+    process.console.print_result(report::repair_text(input.repaired()) +
+                                 report::complex_text(plc, summary, names) +
+                                 report::predictions_text(predicted) + report::warnings_text(plc));
   }
 }
 
 }  // namespace
 
-ExitCode info_command(const InfoArguments& arguments) {
-  process::set_time_limit(arguments.mesh.time_limit);
-  process::limit_memory(process::memory_of_the_machine() / 2);
+ExitCode info_command(process::Process& process, const InfoArguments& arguments) {
   const std::string& first = arguments.inputs.front();
   const std::optional<TetMesh> mesh = files::read_mesh_if_there(first);
   if (!mesh)
-    print_complex(arguments);
+    print_complex(process, arguments);
   else if (!arguments.predicted_sizes.empty())
     throw OptionError(
         fmt::format("--predict: {} is a mesh already; name the surface or CAD file to be meshed", first));
   else if (arguments.inputs.size() == 1)
-    print_mesh(*mesh, arguments.json);
+    print_mesh(process, *mesh, arguments.json);
   else
     throw OptionError(fmt::format("{} is a mesh; info takes a mesh as its only input", first));
   return ExitCode::success;

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "command/usage_error.h"
 #include "help_text.h"
-#include "usage_error.h"
 
 namespace collarmesh::cli {
 

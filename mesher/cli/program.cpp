@@ -1,45 +1,35 @@
 #include "program.h"
 
-#include <fmt/format.h>
 #include <tbb/global_control.h>
 
 #include <algorithm>
-#include <exception>
-#include <new>
-#include <system_error>
 #include <variant>
 
 #include "arguments.h"
 #include "batch_command.h"
-#include "check_command.h"
-#include "collarmesh/error.h"
-#include "convert_command.h"
+#include "command/guarded.h"
+#include "commands.h"
 #include "failure_report.h"
 #include "files/cad_files.h"
-#include "info_command.h"
-#include "mesh_command.h"
-#include "process/console.h"
-#include "process/interrupt.h"
-#include "process/out_of_memory.h"
-#include "process/supervisor.h"
-#include "remesh_command.h"
-#include "repair_command.h"
+#include "process/machine.h"
 
 namespace collarmesh::cli {
 
 namespace {
 
 struct Execute {
-  ExitCode operator()(const MeshArguments& arguments) const { return mesh_command(arguments); }
-  ExitCode operator()(const CheckArguments& arguments) const { return check_command(arguments); }
-  ExitCode operator()(const InfoArguments& arguments) const { return info_command(arguments); }
-  ExitCode operator()(const ConvertArguments& arguments) const { return convert_command(arguments); }
-  ExitCode operator()(const RepairArguments& arguments) const { return repair_command(arguments); }
-  ExitCode operator()(const RemeshArguments& arguments) const { return remesh_command(arguments); }
+  process::Process& process;
+  ExitCode operator()(const MeshArguments& arguments) const { return mesh_command(process, arguments); }
+  ExitCode operator()(const CheckArguments& arguments) const { return check_command(process, arguments); }
+  ExitCode operator()(const InfoArguments& arguments) const { return info_command(process, arguments); }
+  ExitCode operator()(const ConvertArguments& arguments) const { return convert_command(process, arguments); }
+  ExitCode operator()(const RepairArguments& arguments) const { return repair_command(process, arguments); }
+  ExitCode operator()(const RemeshArguments& arguments) const { return remesh_command(process, arguments); }
 };
 
-/// Runs a command, in a separate process if it reads CAD files, which may crash.
-ExitCode execute(const Arguments& arguments);
+const RunOptions& options_of(const Arguments& arguments) {
+  return std::visit([](const RunOptions& options) -> const RunOptions& { return options; }, arguments);
+}
 
 bool reads_cad(const Arguments& arguments) {
   return std::visit(
@@ -56,96 +46,44 @@ bool reads_cad(const Arguments& arguments) {
       arguments);
 }
 
-ExitCode fail(ExitCode code, const std::string& message, const PlcError* faults = nullptr) {
-  process::tell("collarmesh: {}\n", message);
-  report_failure(code, message, faults);
-  return code;
-}
-
-ExitCode fail(const PlcError& error) {
-  constexpr std::size_t listed = 10;
-  fail(ExitCode::invalid_complex, error.what(), &error);
-  const std::string_view said = error.what();
-  for (std::size_t k = 0; k < std::min(error.faults.size(), listed); ++k)
-    if (said.find(error.faults[k].message) == std::string_view::npos)
-      process::tell("  {}\n", error.faults[k].message);
-  if (error.faults.size() > listed) process::tell("  ... and {} more\n", error.faults.size() - listed);
-  return ExitCode::invalid_complex;
-}
-
-ExitCode fail_without_threads() {
-  return fail(ExitCode::budget_hit,
-              "no thread can be made; nothing was written; raise the limit on threads or memory");
-}
-
-// Returns whether TBB failed to create a thread, which shows only in the message.
-bool is_of_threads(const std::exception& error) {
-  return std::string_view(error.what()).find("pthread_create") != std::string_view::npos;
-}
-
 // Limits the number of threads of everything that uses TBB, including OpenCASCADE and code outside the
 // stages' arenas. The limit is never lifted: TBB would then create all threads that were requested before.
 void limit_threads(const Arguments& arguments) {
-  const unsigned threads =
-      std::visit([](const RunOptions& options) { return options.mesh.threads; }, arguments);
+  const unsigned threads = options_of(arguments).mesh.threads;
   if (threads == 0) return;
   static const auto* const limit =
       new tbb::global_control(tbb::global_control::max_allowed_parallelism, threads);
   static_cast<void>(limit);
 }
 
-ExitCode execute(const Arguments& arguments) {
-  report_failures_of(arguments);
+/// Runs a command, in a separate process if it reads CAD files, which may crash.
+ExitCode execute(process::Process& process, const Arguments& arguments) {
+  report_failures_of(process, arguments);
   const auto command = [&] {
     limit_threads(arguments);
-    process::install_interrupt_handlers();
-    return process::run_interruptible(
-        [&] { return guarded([&] { return std::visit(Execute(), arguments); }); });
+    process.catch_signals();
+    return process.run_interruptible([&] {
+      return guarded(process, [&] {
+        process.interrupts.set_time_limit(options_of(arguments).mesh.time_limit);
+        process::limit_memory(options_of(arguments).mesh.max_memory);
+        return std::visit(Execute{process}, arguments);
+      });
+    });
   };
-  return reads_cad(arguments) ? process::run_supervised(command) : command();
+  return reads_cad(arguments) ? process.supervisor.run(command) : command();
 }
 
 }  // namespace
 
-ExitCode guarded(const std::function<ExitCode()>& command) {
-  try {
-    return command();
-  } catch (const OptionError& error) {
-    return fail(ExitCode::usage, error.what());
-  } catch (const ReadError& error) {
-    return fail(ExitCode::unreadable, error.what());
-  } catch (const PlcError& error) {
-    return fail(error);
-  } catch (const WriteError& error) {
-    return fail(ExitCode::cannot_write, error.what());
-  } catch (const process::Stopped& stopped) {
-    return fail(stopped.code, stopped.what());
-  } catch (const std::bad_alloc&) {
-    return fail(
-        ExitCode::budget_hit,
-        "the memory is used up; nothing was written; raise --max-memory, or --size for a coarser mesh");
-  } catch (const std::system_error& error) {
-    return error.code() == std::errc::resource_unavailable_try_again
-               ? fail_without_threads()
-               : fail(ExitCode::cannot_write, error.what());
-  } catch (const std::exception& error) {
-    if (is_of_threads(error)) return fail_without_threads();
-    return fail(
-        ExitCode::internal_error,
-        fmt::format("internal error: {}; please report it with the input and the options", error.what()));
-  }
-}
-
-int run(int argc, const char* const* argv) {
-  process::replace_closed_streams();
-  process::end_when_memory_is_used_up();
-  return static_cast<int>(guarded([&] {
-    const std::variant<Arguments, ExitCode> parsed = parse(argc, argv);
+int run(process::Process& process, int argc, const char* const* argv) {
+  return static_cast<int>(guarded(process, [&] {
+    const std::variant<Arguments, ExitCode> parsed = parse(process.console, argc, argv);
     if (const ExitCode* code = std::get_if<ExitCode>(&parsed)) return *code;
     const Arguments& arguments = std::get<Arguments>(parsed);
     const auto* mesh = std::get_if<MeshArguments>(&arguments);
-    if (mesh == nullptr || mesh->batch.empty()) return execute(arguments);
-    return batch_command(*mesh, [](const MeshArguments& part) { return execute(Arguments(part)); });
+    if (mesh == nullptr || mesh->batch.empty()) return execute(process, arguments);
+    return batch_command(process, *mesh,
+                         [&](const MeshArguments& part) { return execute(process, Arguments(part)); });
   }));
 }
 

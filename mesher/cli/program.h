@@ -1,17 +1,10 @@
 #pragma once
 
-#include <functional>
-
-#include "process/exit_code.h"
+#include "process/process.h"
 
 namespace collarmesh::cli {
 
-using process::ExitCode;
-
 /// Runs the whole program; returns its exit code (exit_code.h).
-int run(int argc, const char* const* argv);
-
-/// Runs a command; turns exceptions into a message on standard error and an exit code.
-ExitCode guarded(const std::function<ExitCode()>& command);
+int run(process::Process& process, int argc, const char* const* argv);
 
 }  // namespace collarmesh::cli

@@ -1,19 +1,14 @@
-#include "repair_command.h"
+#include "commands.h"
 
 #include <fmt/format.h>
 
 #include <optional>
 
 #include "collarmesh/error.h"
+#include "command/interruptible.h"
 #include "files/complex_input.h"
 #include "files/file_groups.h"
 #include "files/surface_files.h"
-#include "interruptible.h"
-#include "process/console.h"
-#include "process/interrupt.h"
-#include "process/machine.h"
-#include "process/out_of_memory.h"
-#include "process/staged_file.h"
 #include "report/json_text.h"
 #include "report/report.h"
 #include "report/soup_output.h"
@@ -45,36 +40,34 @@ std::string repairs_text(const RepairReport& report, const RepairArguments& a) {
 
 }  // namespace
 
-ExitCode repair_command(const RepairArguments& a) {
-  process::set_time_limit(a.mesh.time_limit);
-  process::limit_memory(process::memory_of_the_machine() / 2);
-  process::require_writable(a.output, files::files_written(a.output, a.output_format));
-  for (const std::string& report : a.reports) process::require_writable(report);
-  process::note_stage({.stage = "read"});
-  files::ComplexInput input(a.inputs, interruptible(files::reading_of(a, a.input_format)));
-  process::note_stage({.stage = "complex"});
+ExitCode repair_command(process::Process& process, const RepairArguments& a) {
+  process.files.require_writable(a.output, files::files_written(a.output, a.output_format));
+  for (const std::string& report : a.reports) process.files.require_writable(report);
+  process.interrupts.note_stage({.stage = "read"});
+  files::ComplexInput input(a.inputs, interruptible(process, files::reading_of(a, a.input_format)));
+  process.interrupts.note_stage({.stage = "complex"});
   const Plc plc = input.build(a.complex, a.repair);
-  process::stop_if_interrupted();
+  process.interrupts.stop_if_asked();
   const nlohmann::ordered_json told =
       report::repair_run_json(a, plc, summarize(plc, a.mesh.bounds.crease_angle), input.repaired());
   const report::MergedSoup merged =
       report::merge_for_output(input.soups(), a.output, a.output_format, a.complex);
   std::string warning;
-  process::StagedFile surface(a.output);
+  process::StagedFile surface(process.files, a.output);
   surface.write([&](const std::string& path) {
     files::write_surface(path, merged.soup, a.output_format);
     warning = read_again(path, a);
   });
   std::optional<process::StagedFile> report;
   if (!a.reports.empty()) {
-    report.emplace(a.reports.front());
+    report.emplace(process.files, a.reports.front());
     report->write(
         [&](const std::string& path) { process::write_text(path, report::json_text(told, 1) + "\n"); });
   }
-  process::StagedFile::commit({&surface, report ? &*report : nullptr});
-  process::tell("{}{}{}{}", report::warnings_text(plc), repairs_text(input.repaired(), a),
-                a.quiet ? "" : merged.told, warning);
-  if (a.json) process::print_result(report::json_text(told, 1) + "\n");
+  process.files.commit({&surface, report ? &*report : nullptr});
+  process.console.tell("{}{}{}{}", report::warnings_text(plc), repairs_text(input.repaired(), a),
+                       a.quiet ? "" : merged.told, warning);
+  if (a.json) process.console.print_result(report::json_text(told, 1) + "\n");
   return ExitCode::success;
 }
 

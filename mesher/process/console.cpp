@@ -11,7 +11,7 @@
 
 namespace collarmesh::process {
 
-void replace_closed_streams() {
+Console::Console() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(stream, F_GETFD) != -1 || errno != EBADF) continue;
     // A closed stream's number is the lowest free one, so the device gets it. It is opened in the wrong
@@ -21,20 +21,14 @@ void replace_closed_streams() {
   }
 }
 
-namespace {
-bool silent = false;
-}
-
-void be_silent() { silent = true; }
-
-void tell_text(const std::string& text) noexcept {
-  if (silent) return;
+void Console::tell_text(const std::string& text) const noexcept {
+  if (silent_) return;
   std::fwrite(text.data(), 1, text.size(), stderr);
   std::fflush(stderr);
 }
 
-void print_result(const std::string& text) {
-  if (silent) return;
+void Console::print_result(const std::string& text) const {
+  if (silent_) return;
   errno = 0;
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
     throw WriteError(fmt::format("standard output: cannot be written ({})",

@@ -5,24 +5,30 @@
 #include <string>
 #include <utility>
 
-/// Output to standard output and standard error, which may be full, closed, or pipes that nobody reads.
 namespace collarmesh::process {
 
-/// Opens a device for every standard stream that is closed. Otherwise a file opened later would get its
-/// number, and with it the program's messages. Reading from and writing to the stream still fail.
-void replace_closed_streams();
+/// Standard output and standard error, which may be full, closed, or pipes that nobody reads.
+class Console {
+ public:
+  /// Opens a device for every standard stream that is closed. Otherwise a file opened later would get its
+  /// number, and with it the program's messages. Reading from and writing to the stream still fail.
+  Console();
 
-/// Silences this process. When several ranks do the same work, only one prints.
-void be_silent();
+  /// Silences this process. When several ranks do the same work, only one prints.
+  void be_silent() { silent_ = true; }
 
-/// Prints a message to standard error. Ignores errors, because a run must not fail for its messages.
-void tell_text(const std::string& text) noexcept;
-template <class... Values>
-void tell(fmt::format_string<Values...> format, Values&&... values) {
-  tell_text(fmt::format(format, std::forward<Values>(values)...));
-}
+  /// Prints a message to standard error. Ignores errors, because a run must not fail for its messages.
+  void tell_text(const std::string& text) const noexcept;
+  template <class... Values>
+  void tell(fmt::format_string<Values...> format, Values&&... values) const {
+    tell_text(fmt::format(format, std::forward<Values>(values)...));
+  }
 
-/// Prints results to standard output, flushed on return. Throws WriteError.
-void print_result(const std::string& text);
+  /// Prints results to standard output, flushed on return. Throws WriteError.
+  void print_result(const std::string& text) const;
+
+ private:
+  bool silent_ = false;
+};
 
 }  // namespace collarmesh::process

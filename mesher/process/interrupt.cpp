@@ -1,85 +1,36 @@
 #include "process/interrupt.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 #include <sys/time.h>
 
-#include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <condition_variable>
-#include <csignal>
-#include <cstdlib>
-#include <mutex>
-#include <optional>
-#include <stop_token>
-#include <string>
-#include <system_error>
-#include <thread>
 #include <utility>
 
-#include "process/console.h"
-#include "process/failure.h"
-#include "process/staged_file.h"
-#include "process/supervisor.h"
+#include "process/process.h"
 
 namespace collarmesh::process {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-std::atomic<bool> interrupted{false};
-std::atomic<int> signals{0};  // signals from the user
-std::atomic<bool> out_of_processor_time{false};
-static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free,
-              "signal handlers need it");
-
-std::mutex deadline_mutex;  // guards the three variables below
-double time_limit = 0;
-Clock::time_point deadline = Clock::time_point::max();
-std::string stage_told = "stage: start";
-
-std::mutex stage_mutex;  // guards the variable below; a thread that holds it allocates nothing, except to
-                         // report a failure
-StageReached stage_now;
-
-extern "C" void on_interrupt(int number) {
-  interrupted.store(true, std::memory_order_relaxed);
-  if (signals.fetch_add(1, std::memory_order_relaxed) < 2) return;
-  std::signal(number, SIG_DFL);  // the signal raised next kills the program
-  std::raise(number);
-}
-
-extern "C" void on_processor_time(int) {
-  out_of_processor_time.store(true, std::memory_order_relaxed);
-  interrupted.store(true, std::memory_order_relaxed);
-}
-
-extern "C" void on_time(int) { interrupted.store(true, std::memory_order_relaxed); }
-
-/// Sets the flag at the time limit, if no thread can watch. Only stages that check the flag end then.
-void set_flag_at_the_deadline() {
-  if (deadline == Clock::time_point::max()) return;
-  const std::chrono::duration<double> left = deadline - Clock::now();
-  const double seconds = std::max(left.count(), 1e-3);
-  std::signal(SIGALRM, on_time);
+/// Raises SIGALRM at the deadline.
+void start_timer(const Deadline& deadline) {
+  const double seconds = deadline.as_option();
   itimerval timer = {};
   timer.it_value.tv_sec = static_cast<time_t>(seconds);
   timer.it_value.tv_usec = static_cast<suseconds_t>(1e6 * (seconds - std::floor(seconds)));
   setitimer(ITIMER_REAL, &timer, nullptr);
 }
 
-bool watched = false;
+}  // namespace
 
-bool asked_to_stop() {
-  const std::lock_guard lock(deadline_mutex);
-  if (Clock::now() > deadline) interrupted.store(true, std::memory_order_relaxed);
-  return interrupted.load(std::memory_order_relaxed);
+bool Interrupts::is_asked() {
+  const std::lock_guard lock(deadline_mutex_);
+  if (deadline_.passed()) flag_.store(true, std::memory_order_relaxed);
+  return flag_.load(std::memory_order_relaxed);
 }
 
 /// Returns advice that depends on the stage in which the time ran out.
-std::string coarser_text() {
+std::string Interrupts::advice() const {
   const std::string stage = stage_reached().stage;
   if (stage == "start" || stage == "read")
     return "or read less at once: save the solids of a large assembly as separate files";
@@ -90,134 +41,54 @@ std::string coarser_text() {
          "much finer than the size";
 }
 
-Stopped reason_to_stop() {
-  if (signals.load(std::memory_order_relaxed) > 0) return Cancelled();
-  const std::lock_guard lock(deadline_mutex);
-  if (out_of_processor_time.load(std::memory_order_relaxed))
+Stopped Interrupts::reason() const {
+  if (signals_.load(std::memory_order_relaxed) > 0) return Cancelled();
+  const std::lock_guard lock(deadline_mutex_);
+  if (out_of_processor_time_.load(std::memory_order_relaxed))
     return {
         ExitCode::budget_hit,
         fmt::format(
             "the system's limit of CPU time is reached ({}); nothing was written; raise it (ulimit -t), {}",
-            stage_told, coarser_text())};
+            stage_told_, advice())};
   return {ExitCode::budget_hit,
           fmt::format("the time limit of {} s is reached ({}); nothing was written; raise --time-limit, {}",
-                      time_limit, stage_told, coarser_text())};
+                      time_limit_, stage_told_, advice())};
 }
 
-}  // namespace
-
-const std::atomic<bool>& interrupt_flag() { return interrupted; }
-
-void install_interrupt_handlers() {
-  struct sigaction action = {}, before = {};
-  action.sa_handler = on_interrupt;
-  action.sa_flags = static_cast<int>(SA_RESTART);
-  sigemptyset(&action.sa_mask);
-  for (const int number : {SIGINT, SIGTERM}) sigaction(number, &action, nullptr);
-  for (const int number : {SIGHUP, SIGQUIT})  // if nohup has set them to be ignored, keep that
-    if (sigaction(number, nullptr, &before) == 0 && before.sa_handler != SIG_IGN)
-      sigaction(number, &action, nullptr);
-  std::signal(SIGXCPU, on_processor_time);
-  // The CPU seconds, of all threads, that remain to end after the soft limit. `ulimit -t` sets both limits,
-  // and the signal of the hard limit cannot be caught.
-  constexpr rlim_t to_end_within = 2;  // CPU seconds of all threads
-  rlimit limit = {};
-  if (getrlimit(RLIMIT_CPU, &limit) == 0 && limit.rlim_max != RLIM_INFINITY &&
-      limit.rlim_max > to_end_within && limit.rlim_cur > limit.rlim_max - to_end_within) {
-    limit.rlim_cur = limit.rlim_max - to_end_within;
-    setrlimit(RLIMIT_CPU, &limit);
-  }
-  // Turns the signals for a file that grows too large and for a pipe that nobody reads into ordinary write
-  // errors.
-  for (const int number : {SIGXFSZ, SIGPIPE}) std::signal(number, SIG_IGN);
+void Interrupts::stop_if_asked() {
+  if (is_asked()) throw reason();
 }
 
-void set_time_limit(double seconds) {
-  constexpr double a_year = 3e7;  // limit, because the clock's type may not hold more
-  const std::lock_guard lock(deadline_mutex);
-  time_limit = seconds;
-  deadline =
-      seconds > 0 && seconds < a_year
-          ? Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds))
-          : Clock::time_point::max();
-  supervise_time(seconds);
-  if (!watched) set_flag_at_the_deadline();
+void Interrupts::set_time_limit(double seconds) {
+  const std::lock_guard lock(deadline_mutex_);
+  time_limit_ = seconds;
+  deadline_ = Deadline::in(seconds);
+  process_.supervisor.limit_time(deadline_);
+  if (unwatched_ && deadline_.exists()) start_timer(deadline_);
 }
 
-double time_left() {
-  constexpr double least = 1e-3;
-  const std::lock_guard lock(deadline_mutex);
-  if (deadline == Clock::time_point::max()) return 0;
-  return std::max(std::chrono::duration<double>(deadline - Clock::now()).count(), least);
+double Interrupts::time_left() const {
+  const std::lock_guard lock(deadline_mutex_);
+  return deadline_.as_option();
 }
 
-void note_stage(StageReached reached, std::string told) {
+void Interrupts::note_stage(StageReached reached, std::string told) {
   if (told.empty()) {
     told = "stage: " + reached.stage;
     if (reached.vertices > 0) told += fmt::format(", {} vertices", reached.vertices);
     if (reached.tets > 0) told += fmt::format(", {} tets", reached.tets);
   }
   {
-    const std::lock_guard lock(stage_mutex);
-    std::swap(stage_now, reached);
+    const std::lock_guard lock(stage_mutex_);
+    std::swap(stage_, reached);
   }
-  const std::lock_guard lock(deadline_mutex);
-  stage_told = std::move(told);
+  const std::lock_guard lock(deadline_mutex_);
+  stage_told_ = std::move(told);
 }
 
-StageReached stage_reached() {
-  const std::lock_guard lock(stage_mutex);
-  return stage_now;
-}
-
-void stop_if_interrupted() {
-  if (asked_to_stop()) throw reason_to_stop();
-}
-
-namespace {
-
-/// A thread that watches a command. If the command does not end in time, ends the program.
-class Watcher {
- public:
-  /// Starts the thread. Throws std::system_error if the system can create none.
-  Watcher() : thread_([this](const std::stop_token& end) { watch(end); }) {}
-
- private:
-  bool command_ends_within(const std::stop_token& end, std::chrono::milliseconds time) {
-    std::unique_lock lock(mutex_);
-    return ended_.wait_for(lock, end, time, [&end] { return end.stop_requested(); });
-  }
-
-  void watch(const std::stop_token& end) {
-    using namespace std::chrono_literals;
-    while (!command_ends_within(end, 50ms)) {
-      if (!asked_to_stop()) continue;
-      for (int waited = 0; waited < 14 && signals.load(std::memory_order_relaxed) < 2; ++waited)
-        if (command_ends_within(end, 50ms)) return;
-      if (!abandon_staged_files()) return;
-      const Stopped reason = reason_to_stop();
-      tell("\ncollarmesh: {}\n", reason.what());
-      failed(reason.code, reason.what());
-      std::_Exit(static_cast<int>(reason.code));
-    }
-  }
-
-  std::mutex mutex_;
-  std::condition_variable_any ended_;
-  std::jthread thread_;
-};
-
-}  // namespace
-
-ExitCode run_interruptible(const std::function<ExitCode()>& command) {
-  std::optional<Watcher> watcher;
-  try {
-    watcher.emplace();
-    watched = true;
-  } catch (const std::system_error&) {
-    watched = false;
-  }
-  return command();
+StageReached Interrupts::stage_reached() const {
+  const std::lock_guard lock(stage_mutex_);
+  return stage_;
 }
 
 }  // namespace collarmesh::process

@@ -13,14 +13,12 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <mutex>
 #include <set>
 #include <string_view>
 #include <vector>
 
 #include "collarmesh/error.h"
-#include "process/interrupt.h"
-#include "process/supervisor.h"
+#include "process/process.h"
 
 namespace collarmesh::process {
 
@@ -31,43 +29,6 @@ namespace {
 constexpr const char* standard_output = "-";
 constexpr const char* folder_prefix = ".collarmesh-";
 constexpr std::string_view kept_prefix = "kept-";
-
-std::mutex staged_mutex;  // guards the following variables
-
-/// A lock on `staged_mutex`. The thread may hold the mutex already if memory runs out meanwhile.
-class StagedLock {
- public:
-  StagedLock() {
-    if (held_++ == 0) staged_mutex.lock();
-  }
-  ~StagedLock() {
-    if (--held_ == 0) staged_mutex.unlock();
-  }
-  StagedLock(const StagedLock&) = delete;
-  StagedLock& operator=(const StagedLock&) = delete;
-  /// Keeps the lock for good, because the program is about to end.
-  static void keep() { ++held_; }
-
- private:
-  static thread_local int held_;
-};
-thread_local int StagedLock::held_ = 0;
-
-std::vector<std::string> staged_folders;
-bool committed = false;
-bool keep_folders = false;  // keep the folders, because their files could not be moved back
-
-/// The completed moves of a commit, for undoing them.
-struct Done {
-  fs::path place, kept;
-};
-std::vector<Done> done;
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
-    text.replace(at, from.size(), to);
-  return text;
-}
 
 fs::path folder_of(const fs::path& target) {
   return target.has_parent_path() ? target.parent_path() : fs::path(".");
@@ -112,7 +73,9 @@ fs::path temporary_place() {
   return ".";
 }
 
-fs::path make_folder_beside(const fs::path& target) {
+}  // namespace
+
+fs::path StagedFiles::make_folder_beside(const fs::path& target) {
   const fs::path parent = target == standard_output ? temporary_place() : folder_of(target);
   std::error_code ignored;
   if (!fs::exists(parent, ignored))
@@ -124,99 +87,54 @@ fs::path make_folder_beside(const fs::path& target) {
   if (target != standard_output) require_place(target);
   remove_dead_folders(parent);
   // Lists the folder before creating it, because memory may run out at any time.
-  staged_folders.push_back((parent / fmt::format("{}XXXXXX", folder_prefix)).string());
-  if (mkdtemp(staged_folders.back().data()) == nullptr) {
+  folders_.push_back((parent / fmt::format("{}XXXXXX", folder_prefix)).string());
+  if (mkdtemp(folders_.back().data()) == nullptr) {
     const std::string why = reason();
-    staged_folders.pop_back();
+    folders_.pop_back();
     throw WriteError(
         fmt::format("{}: cannot write to the folder {} ({}); choose another or change its permissions",
                     target.string(), parent.string(), why));
   }
-  return staged_folders.back();
+  return folders_.back();
 }
 
-/// Flushes a file. These error numbers mean that the file system cannot flush.
-bool flushed(int file) { return fsync(file) == 0 || errno == EINVAL || errno == ENOTSUP; }
-
-void flush(const fs::path& path, const fs::path& place) {
-  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  const bool good = file >= 0 && flushed(file);
-  const std::string why = reason();
-  if (file >= 0) close(file);
-  if (!good) throw WriteError(fmt::format("{}: cannot be written to the disk ({})", place.string(), why));
-}
-
-/// Flushes renamings, too. The files are in place by now, so errors do not matter.
-void flush_folder(const fs::path& folder) {
-  const int file = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (file < 0) return;
-  flushed(file);
-  close(file);
-}
-
-void keep_mode_and_owner(const fs::path& before, const fs::path& staged) {
-  struct stat status = {};
-  if (stat(before.c_str(), &status) != 0) return;
-  if (chown(staged.c_str(), status.st_uid, status.st_gid) != 0 &&
-      chown(staged.c_str(), -1, status.st_gid) != 0) {
-    // Only root may give files to another owner.
-  }
-  if (chmod(staged.c_str(), status.st_mode & 07777) != 0)
-    throw WriteError(fmt::format("{}: cannot keep its permissions ({})", before.string(), reason()));
-}
-
-/// Makes a second name for a file or, if links are not supported, a copy.
-bool keep(const fs::path& place, const fs::path& kept) {
-  return link(place.c_str(), kept.c_str()) == 0 || rename(place.c_str(), kept.c_str()) == 0;
-}
-
-void take_back() noexcept {
-  for (; !done.empty(); done.pop_back()) {
-    const Done& last = done.back();
-    if ((last.kept.empty() ? unlink(last.place.c_str()) : rename(last.kept.c_str(), last.place.c_str())) != 0)
-      keep_folders = true;
-  }
-}
-
-}  // namespace
+void StagedFiles::take_back() noexcept { keep_folders_ |= !replacement_.undo(); }
 
 // If the target is a symbolic link, replaces the file that it names, not the link.
-StagedFile::StagedFile(fs::path target) : target_(std::move(target)) {
+StagedFile::StagedFile(StagedFiles& files, fs::path target) : files_(files), target_(std::move(target)) {
   std::error_code error;
   if (fs::is_symlink(target_, error))
     if (fs::path named = fs::weakly_canonical(target_, error); !error) target_ = std::move(named);
-  const StagedLock lock;
-  folder_ = make_folder_beside(target_);
+  const std::lock_guard lock(files_.mutex_);
+  folder_ = files_.make_folder_beside(target_);
   lock_ = open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (lock_ >= 0) flock(lock_, LOCK_EX | LOCK_NB);
-  supervise_folder(folder_.string());
+  files_.process_.supervisor.add_folder(folder_.native());
 }
 
 StagedFile::~StagedFile() {
-  const StagedLock lock;
+  const std::lock_guard lock(files_.mutex_);
   std::error_code ignored;
-  if (!keep_folders) fs::remove_all(folder_, ignored);
+  if (!files_.keep_folders_) fs::remove_all(folder_, ignored);
   if (lock_ >= 0) close(lock_);
-  std::erase(staged_folders, folder_.native());
+  std::erase(files_.folders_, folder_.native());
 }
 
 void StagedFile::write(const std::function<void(const std::string&)>& write) {
   try {
     write((folder_ / target_.filename()).string());
   } catch (const WriteError& error) {
-    const fs::path parent = target_.parent_path();
-    throw WriteError(
-        replaced(error.what(), folder_.string() + "/", parent.empty() ? "" : parent.string() + "/"));
+    throw WriteError(with_folder(error.what(), folder_, target_.parent_path()));
   }
 }
 
-std::vector<StagedFile::Move> StagedFile::moves() const {
+std::vector<Replacement::Move> StagedFile::moves() const {
   std::set<fs::path> names;
   for (const auto& entry : fs::directory_iterator(folder_)) names.insert(entry.path().filename());
   names.erase(target_.filename());
   std::vector<fs::path> ordered(names.begin(), names.end());
   ordered.push_back(target_.filename());  // the target comes last, so that its readers find the other files
-  std::vector<Move> moves;
+  std::vector<Replacement::Move> moves;
   for (const fs::path& name : ordered) {
     const fs::path place = target_.parent_path() / name;
     std::error_code ignored;
@@ -241,50 +159,49 @@ void StagedFile::copy_to_standard_output() const {
   if (std::fflush(stdout) != 0) fail();
 }
 
-void StagedFile::commit(const std::vector<StagedFile*>& files) {
-  const StagedLock lock;
-  stop_if_interrupted();
-  std::vector<Move> all;
+void StagedFiles::commit(const std::vector<StagedFile*>& files) {
+  const std::lock_guard lock(mutex_);
+  process_.interrupts.stop_if_asked();
+  std::vector<Replacement::Move> all;
   for (const StagedFile* file : files)
     if (file != nullptr && file->target_ != standard_output)
-      for (Move& move : file->moves()) all.push_back(std::move(move));
+      for (Replacement::Move& move : file->moves()) all.push_back(std::move(move));
   std::set<fs::path> places;
-  for (const Move& move : all) {
+  for (const Replacement::Move& move : all) {
     std::error_code error;
     if (!places.insert(fs::weakly_canonical(folder_of(move.to), error) / move.to.filename()).second)
       throw WriteError(
           fmt::format("{}: two outputs have this name; choose another for one of them", move.to.string()));
     require_place(move.to);
-    if (!move.kept.empty()) keep_mode_and_owner(move.to, move.from);
-    flush(move.from, move.to);
   }
+  replacement_ = Replacement(std::move(all));
+  replacement_.prepare();
   for (const StagedFile* file : files)
     if (file != nullptr && file->target_ == standard_output) file->copy_to_standard_output();
-  done.reserve(all.size());
-  for (const Move& move : all) {
-    Done next{move.to, move.kept};
-    if ((!move.kept.empty() && !keep(move.to, move.kept)) ||
-        (done.push_back(std::move(next)), rename(move.from.c_str(), move.to.c_str()) != 0)) {
-      const std::string why = reason();
-      if (move.kept.empty()) done.pop_back();  // a file with this name now belongs to another program
-      take_back();
-      throw WriteError(fmt::format(
-          "{}: cannot be replaced ({}); choose another name{}", move.to.string(), why,
-          keep_folders ? fmt::format("; the previous files could not be restored either; they are in {}",
-                                     move.from.parent_path().string())
-                       : ""));
-    }
+  if (const Replacement::Move* const failed = replacement_.carry_out(); failed != nullptr) {
+    const std::string why = reason();
+    take_back();
+    throw WriteError(fmt::format(
+        "{}: cannot be replaced ({}); choose another name{}", failed->to.string(), why,
+        keep_folders_ ? fmt::format("; the previous files could not be restored either; they are in {}",
+                                    failed->from.parent_path().string())
+                      : ""));
   }
-  committed = true;
-  done.clear();
-  std::set<fs::path> folders;
-  for (const Move& move : all) folders.insert(folder_of(move.to));
-  for (const fs::path& folder : folders) flush_folder(folder);
+  committed_ = true;
+  replacement_.settle();
 }
 
-void require_writable(const fs::path& target, const std::vector<fs::path>& beside) {
-  const StagedFile probe(target);
+void StagedFiles::require_writable(const fs::path& target, const std::vector<fs::path>& beside) {
+  const StagedFile probe(*this, target);
   for (const fs::path& file : beside) require_place(file);
+}
+
+std::string with_folder(std::string message, const fs::path& from, const fs::path& to) {
+  const std::string folder = from.string() + "/", target = to.empty() ? "" : to.string() + "/";
+  for (std::size_t at = message.find(folder); at != std::string::npos;
+       at = message.find(folder, at + target.size()))
+    message.replace(at, folder.size(), target);
+  return message;
 }
 
 void write_text(const std::string& path, const std::string& text) {
@@ -306,16 +223,16 @@ void remove_dead_folder(const fs::path& folder) {
   fs::remove_all(folder, error);
 }
 
-bool abandon_staged_files() {
-  const StagedLock lock;
-  if (!committed) {
-    StagedLock::keep();
+bool StagedFiles::abandon() {
+  const std::lock_guard lock(mutex_);
+  if (!committed_) {
+    mutex_.lock();  // for good, because the program is about to end
     take_back();
   }
   std::error_code ignored;
-  if (!keep_folders)
-    for (const std::string& folder : staged_folders) fs::remove_all(folder, ignored);
-  return !committed;
+  if (!keep_folders_)
+    for (const std::string& folder : folders_) fs::remove_all(folder, ignored);
+  return !committed_;
 }
 
 }  // namespace collarmesh::process

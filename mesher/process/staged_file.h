@@ -2,10 +2,16 @@
 
 #include <filesystem>
 #include <functional>
+#include <mutex>
 #include <string>
 #include <vector>
 
+#include "common/replacement.h"
+
 namespace collarmesh::process {
+
+class Process;
+class StagedFiles;
 
 /// A file that appears under its name only when it is complete. It is made in a temporary folder beside its
 /// place, and `commit` moves it to its place, together with further files that its writer makes. A replaced
@@ -15,7 +21,7 @@ namespace collarmesh::process {
 class StagedFile {
  public:
   /// Makes the temporary folder. Throws WriteError if the folder of `target` cannot be written to.
-  explicit StagedFile(std::filesystem::path target);
+  StagedFile(StagedFiles& files, std::filesystem::path target);
   ~StagedFile();
   StagedFile(const StagedFile&) = delete;
   StagedFile& operator=(const StagedFile&) = delete;
@@ -24,38 +30,62 @@ class StagedFile {
   /// path.
   void write(const std::function<void(const std::string& path)>& write);
 
-  /// Flushes files to the disk and moves them to their places: either all of them, or none, which leaves the
-  /// previous files as they were. Throws WriteError, also if two files have the same place. Throws Cancelled
-  /// if the user has asked to stop.
-  static void commit(const std::vector<StagedFile*>& files);
-
  private:
-  struct Move {
-    std::filesystem::path from, to, kept;  // kept: the previous file
-  };
-  std::vector<Move> moves() const;
+  friend class StagedFiles;
+
+  std::vector<Replacement::Move> moves() const;
   void copy_to_standard_output() const;
 
+  StagedFiles& files_;
   std::filesystem::path target_;
   std::filesystem::path folder_;
   int lock_;
 };
 
+/// The staged files of the program.
+class StagedFiles {
+ public:
+  explicit StagedFiles(Process& process) : process_(process) {}
+
+  /// Checks that `target`, and the files written `beside` it, can be made there. Throws WriteError with the
+  /// reason. Call it before long work.
+  void require_writable(const std::filesystem::path& target,
+                        const std::vector<std::filesystem::path>& beside = {});
+
+  /// Flushes files to the disk and moves them to their places: either all of them, or none, which leaves the
+  /// previous files as they were. Throws WriteError, also if two files have the same place. Throws Cancelled
+  /// if the user has asked to stop.
+  void commit(const std::vector<StagedFile*>& files);
+
+  /// Removes files that are not committed and blocks later commits, because the program is about to end while
+  /// another thread writes. Undoes a commit of this thread that is in progress; waits for one of another
+  /// thread. Returns false if a commit has been completed: the command is about to succeed.
+  bool abandon();
+
+ private:
+  friend class StagedFile;
+
+  std::filesystem::path make_folder_beside(const std::filesystem::path& target);
+  void take_back() noexcept;
+
+  Process& process_;
+  std::recursive_mutex mutex_;  // guards the following variables; if memory runs out, the thread that holds
+                                // it locks it again
+  std::vector<std::string> folders_;
+  Replacement replacement_;  // of the commit in progress
+  bool committed_ = false;
+  bool keep_folders_ = false;  // keep the folders, because their files could not be moved back
+};
+
+/// Replaces one folder by another in a message that names files.
+std::string with_folder(std::string message, const std::filesystem::path& from,
+                        const std::filesystem::path& to);
+
 /// Writes a file of text. Throws WriteError.
 void write_text(const std::string& path, const std::string& text);
-
-/// Checks that `target`, and the files written `beside` it, can be made there. Throws WriteError with the
-/// reason. Call it before long work.
-void require_writable(const std::filesystem::path& target,
-                      const std::vector<std::filesystem::path>& beside = {});
 
 /// Removes the temporary folder of a process that has ended. If it ended in a commit, between removing a file
 /// and putting another one in its place, the removed file is restored.
 void remove_dead_folder(const std::filesystem::path& folder);
-
-/// Removes files that are not committed and blocks later commits, because the program is about to end while
-/// another thread writes. Undoes a commit of this thread that is in progress; waits for one of another
-/// thread. Returns false if a commit has been completed: the command is about to succeed.
-bool abandon_staged_files();
 
 }  // namespace collarmesh::process

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -16,34 +15,13 @@
 #include <ctime>
 #include <new>
 
-#include "process/console.h"
-#include "process/failure.h"
-#include "process/staged_file.h"
+#include "process/process.h"
 
 namespace collarmesh::process {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-constexpr std::array stop_signals{SIGINT, SIGTERM, SIGHUP, SIGQUIT};
 constexpr int running = -1;
-
-constexpr Clock::duration never = Clock::time_point::max().time_since_epoch();
-
-/// The data that child and supervisor share. Long texts are cut off.
-struct Shared {
-  std::atomic<int> result{running};
-  std::atomic<bool> in_cad{false};
-  std::atomic<Clock::rep> end{never.count()};      // time at which the process must end
-  std::atomic<Clock::rep> cad_end{never.count()};  // time at which OpenCASCADE's current work must end
-  std::array<char, 128> doing{};
-  std::array<char, 1024> file{};
-  std::array<char, 16384> folders{};  // paths, each with its terminating zero
-  std::size_t folders_end = 0;
-};
-
-Shared* shared = nullptr;  // null without a supervisor
 
 void copy(std::string_view text, char* place, std::size_t size) {
   const std::size_t length = std::min(text.size(), size - 1);
@@ -51,44 +29,27 @@ void copy(std::string_view text, char* place, std::size_t size) {
   place[length] = '\0';
 }
 
-volatile std::sig_atomic_t asked_to_stop = 0;
-volatile pid_t child = 0;
-
-/// Passes a signal on to the child. A terminal sends its signals to the child as well.
-extern "C" void pass_on(int number, siginfo_t* information, void*) {
-  asked_to_stop = 1;
-  if (information->si_code != SI_KERNEL && child > 0) kill(child, number);
+std::string name_of(int number) {
+  const char* const name = sigabbrev_np(number);
+  return name == nullptr ? fmt::format("signal {}", number) : fmt::format("SIG{}", name);
 }
 
-Shared* share() {
-  void* const memory =
-      mmap(nullptr, sizeof(Shared), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-  return memory == MAP_FAILED ? nullptr : new (memory) Shared;
-}
+}  // namespace
 
-void pass_signals_on() {
-  struct sigaction action = {}, before = {};
-  action.sa_sigaction = pass_on;
-  action.sa_flags = static_cast<int>(SA_SIGINFO | SA_RESTART);
-  for (const int number : stop_signals)
-    if (sigaction(number, nullptr, &before) == 0 && before.sa_handler != SIG_IGN)
-      sigaction(number, &action, nullptr);
-  std::signal(SIGPIPE, SIG_IGN);
-}
-
-bool is_over(const std::atomic<Clock::rep>& end, Clock::duration grace) {
-  const Clock::duration time(end.load());
-  return time != never && Clock::now().time_since_epoch() > time + grace;
-}
-
-Clock::rep from_now(double seconds) {
-  return (Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds)))
-      .time_since_epoch()
-      .count();
-}
+/// The data that child and supervisor share. Long texts are cut off.
+struct Supervisor::Shared {
+  std::atomic<int> result{running};
+  std::atomic<bool> in_cad{false};
+  std::atomic<Deadline> end{Deadline()};      // for the process
+  std::atomic<Deadline> cad_end{Deadline()};  // for OpenCASCADE's current work
+  std::array<char, 128> doing{};
+  std::array<char, 1024> file{};
+  std::array<char, 16384> folders{};  // paths, each with its terminating zero
+  std::size_t folders_end = 0;
+};
 
 /// A block of SIGCHLD during its lifetime, so that the supervisor can wait for the end of a child.
-class ChildSignal {
+class Supervisor::ChildSignal {
  public:
   ChildSignal() {
     sigemptyset(&signal_);
@@ -111,14 +72,14 @@ class ChildSignal {
 };
 
 /// Waits for the child and returns how it ended; kills it when a limit is exceeded.
-int wait_for_child(const ChildSignal& ended_signal, bool& out_of_time) {
+int Supervisor::wait_for_child(const ChildSignal& ended_signal, bool& out_of_time) const {
   using namespace std::chrono_literals;
-  constexpr Clock::duration grace = 3s;  // the child's own watcher ends it within a second
+  constexpr double grace = 3;  // seconds; the child's own watcher ends it within one
   for (int status = 0;;) {
     const pid_t ended = waitpid(child, &status, WNOHANG);
     if (ended == child) return status;
     if (ended < 0 && errno != EINTR) return 0;
-    if (is_over(shared->end, grace) || is_over(shared->cad_end, {})) {
+    if (shared_->end.load().passed(grace) || shared_->cad_end.load().passed()) {
       out_of_time = true;
       kill(child, SIGKILL);
     }
@@ -126,59 +87,54 @@ int wait_for_child(const ChildSignal& ended_signal, bool& out_of_time) {
   }
 }
 
-ExitCode told(ExitCode code, const std::string& message) {
-  tell("collarmesh: {}\n", message);
-  failed(code, message);
+ExitCode Supervisor::told(ExitCode code, const std::string& message) const {
+  process_.console.tell("collarmesh: {}\n", message);
+  process_.reports.failed(code, message);
   return code;
 }
 
-std::string name_of(int number) {
-  const char* const name = sigabbrev_np(number);
-  return name == nullptr ? fmt::format("signal {}", number) : fmt::format("SIG{}", name);
-}
-
-ExitCode reason_for(int status, bool out_of_time) {
-  if (const int result = shared->result.load(); result != running) return static_cast<ExitCode>(result);
-  for (std::size_t at = 0; at < shared->folders_end; at += std::strlen(&shared->folders[at]) + 1)
-    remove_dead_folder(&shared->folders[at]);
-  if (out_of_time && shared->in_cad.load() && is_over(shared->cad_end, {}))
+ExitCode Supervisor::reason_for(int status, bool out_of_time) const {
+  if (const int result = shared_->result.load(); result != running) return static_cast<ExitCode>(result);
+  for (std::size_t at = 0; at < shared_->folders_end; at += std::strlen(&shared_->folders[at]) + 1)
+    remove_dead_folder(&shared_->folders[at]);
+  if (out_of_time && shared_->in_cad.load() && shared_->cad_end.load().passed())
     return told(ExitCode::unreadable,
                 fmt::format("{}: OpenCASCADE took too long while {}; the file is probably damaged; if it is "
                             "not, allow more time with --time-limit",
-                            shared->file.data(), shared->doing.data()));
+                            shared_->file.data(), shared_->doing.data()));
   if (out_of_time) return told(ExitCode::budget_hit, "the time limit is reached; nothing was written");
   if (!WIFSIGNALED(status)) return static_cast<ExitCode>(WEXITSTATUS(status));
   const int number = WTERMSIG(status);
-  if (asked_to_stop != 0) return told(ExitCode::cancelled, "cancelled; nothing was written");
+  if (asked_to_stop) return told(ExitCode::cancelled, "cancelled; nothing was written");
   if (number == SIGKILL)
     return told(
         ExitCode::budget_hit,
         "the program was killed, probably because the machine's memory is used up; nothing was written");
   if (number == SIGXCPU)
     return told(ExitCode::budget_hit, "the system's limit of CPU time is reached; nothing was written");
-  if (shared->in_cad.load())
+  if (shared_->in_cad.load())
     return told(ExitCode::unreadable,
                 fmt::format("{}: OpenCASCADE crashed while {} ({}); the file is damaged, or its shape is too "
                             "difficult for OpenCASCADE; check and repair it in the program that made it",
-                            shared->file.data(), shared->doing.data(), name_of(number)));
+                            shared_->file.data(), shared_->doing.data(), name_of(number)));
   return told(
       ExitCode::internal_error,
       fmt::format("internal error: {}; please report it with the input and the options", name_of(number)));
 }
 
-[[noreturn]] void be_the_child(pid_t parent, const std::function<ExitCode()>& command) {
+void Supervisor::be_the_child(pid_t parent, const std::function<ExitCode()>& command) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) std::_Exit(static_cast<int>(ExitCode::cancelled));
   const ExitCode code = command();
-  shared->result.store(static_cast<int>(code));  // keep the exit code even if unloading libraries fails
+  shared_->result.store(static_cast<int>(code));  // keep the exit code even if unloading libraries fails
   std::exit(static_cast<int>(code));
 }
 
-}  // namespace
-
-ExitCode run_supervised(const std::function<ExitCode()>& command) {
-  shared = share();
-  if (shared == nullptr) return command();
+ExitCode Supervisor::run(const std::function<ExitCode()>& command) {
+  void* const memory =
+      mmap(nullptr, sizeof(Shared), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  shared_ = memory == MAP_FAILED ? nullptr : new (memory) Shared;
+  if (shared_ == nullptr) return command();
   const pid_t parent = getpid();
   const ChildSignal child_signal;
   const pid_t made = fork();
@@ -188,38 +144,42 @@ ExitCode run_supervised(const std::function<ExitCode()>& command) {
   }
   if (made < 0) {
     child_signal.unblock();
-    shared = nullptr;
+    shared_ = nullptr;
     return command();
   }
   child = made;
-  pass_signals_on();
+  process_.pass_signals_on();
+  std::signal(SIGPIPE, SIG_IGN);
   bool out_of_time = false;
   const int status = wait_for_child(child_signal, out_of_time);
   return reason_for(status, out_of_time);
 }
 
-CadWork::CadWork(std::string_view doing, std::string_view file, double seconds) {
+CadWork::CadWork(Supervisor& supervisor, std::string_view doing, std::string_view file, double seconds)
+    : supervisor_(supervisor) {
+  Supervisor::Shared* const shared = supervisor.shared_;
   if (shared == nullptr) return;
   copy(doing, shared->doing.data(), shared->doing.size());
   copy(file, shared->file.data(), shared->file.size());
-  if (seconds > 0 && Clock::duration(shared->end.load()) == never) shared->cad_end.store(from_now(seconds));
+  if (!shared->end.load().exists()) shared->cad_end.store(Deadline::in(seconds));
   shared->in_cad.store(true);
 }
 
 CadWork::~CadWork() {
+  Supervisor::Shared* const shared = supervisor_.shared_;
   if (shared == nullptr) return;
   shared->in_cad.store(false);
-  shared->cad_end.store(never.count());
+  shared->cad_end.store({});
 }
 
-void supervise_time(double seconds) {
-  if (shared != nullptr && seconds > 0) shared->end.store(from_now(std::min(seconds, 1e9)));
+void Supervisor::limit_time(Deadline deadline) {
+  if (shared_ != nullptr) shared_->end.store(deadline);
 }
 
-void supervise_folder(std::string_view folder) {
-  if (shared == nullptr || folder.size() >= shared->folders.size() - shared->folders_end) return;
-  copy(folder, &shared->folders[shared->folders_end], folder.size() + 1);
-  shared->folders_end += folder.size() + 1;
+void Supervisor::add_folder(std::string_view folder) {
+  if (shared_ == nullptr || folder.size() >= shared_->folders.size() - shared_->folders_end) return;
+  copy(folder, &shared_->folders[shared_->folders_end], folder.size() + 1);
+  shared_->folders_end += folder.size() + 1;
 }
 
 }  // namespace collarmesh::process

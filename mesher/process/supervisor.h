@@ -1,35 +1,68 @@
 #pragma once
 
+#include <sys/types.h>
+
+#include <atomic>
 #include <functional>
 #include <string>
 #include <string_view>
 
+#include "common/deadline.h"
 #include "process/exit_code.h"
 
 namespace collarmesh::process {
 
-/// Runs a command in a child process, which this process only watches. CAD files can make OpenCASCADE crash
-/// or run forever. In that case the child dies; this process then reports the file and the operation, removes
-/// unfinished files and returns the exit code of the failure. Passes signals that ask to stop on to the
-/// child; the child dies with this process. Runs the command here if no child can be created. Precondition:
-/// there is only one thread. Cost: about a millisecond.
-ExitCode run_supervised(const std::function<ExitCode()>& command);
+class Process;
+
+/// The work in child processes, and what a child tells the process that watches it.
+class Supervisor {
+ public:
+  explicit Supervisor(Process& process) : process_(process) {}
+
+  /// Runs a command in a child process, which this process only watches. CAD files can make OpenCASCADE crash
+  /// or run forever. In that case the child dies; this process then reports the file and the operation,
+  /// removes unfinished files and returns the exit code of the failure. Passes signals that ask to stop on to
+  /// the child; the child dies with this process. Runs the command here if no child can be created.
+  /// Precondition: there is only one thread. Cost: about a millisecond.
+  ExitCode run(const std::function<ExitCode()>& command);
+
+  /// Tells the supervisor, if there is one, when the process must end.
+  void limit_time(Deadline deadline);
+  /// Tells the supervisor, if there is one, to remove this folder if the process dies.
+  void add_folder(std::string_view folder);
+
+  /// The child to which signals are passed on; 0: none.
+  std::atomic<pid_t> child{0};
+  /// Whether a signal has asked this process to stop since it passes signals on.
+  std::atomic<bool> asked_to_stop{false};
+  static_assert(std::atomic<pid_t>::is_always_lock_free, "signal handlers need it");
+
+ private:
+  friend class CadWork;
+  struct Shared;
+  class ChildSignal;
+
+  [[noreturn]] void be_the_child(pid_t parent, const std::function<ExitCode()>& command);
+  int wait_for_child(const ChildSignal& ended_signal, bool& out_of_time) const;
+  ExitCode reason_for(int status, bool out_of_time) const;
+  ExitCode told(ExitCode code, const std::string& message) const;
+
+  Process& process_;
+  Shared* shared_ = nullptr;  // memory that child and supervisor share; null without a supervisor
+};
 
 /// A report of work of OpenCASCADE on a file, such as "cutting faces into triangles", during its lifetime.
 /// The inner one of two nested objects counts; all must be made by one thread.
 class CadWork {
  public:
   /// Begins the work. It may take `seconds`, unless the process has its own limit; 0: any time.
-  CadWork(std::string_view doing, std::string_view file, double seconds = 0);
+  CadWork(Supervisor& supervisor, std::string_view doing, std::string_view file, double seconds = 0);
   ~CadWork();
   CadWork(const CadWork&) = delete;
   CadWork& operator=(const CadWork&) = delete;
+
+ private:
+  Supervisor& supervisor_;
 };
-
-/// Tells the supervisor that the process must end within this many seconds; 0: any time.
-void supervise_time(double seconds);
-
-/// Tells the supervisor to remove this folder if the process dies.
-void supervise_folder(std::string_view folder);
 
 }  // namespace collarmesh::process

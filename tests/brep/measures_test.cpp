@@ -30,8 +30,8 @@
 #include <vector>
 
 #include "collarmesh/brep/cad_model.h"
+#include "command/make_mesh.h"
 #include "files/complex_input.h"
-#include "mesh_command.h"
 #include "shapes.h"
 #include "support/temporary_file.h"
 
@@ -278,10 +278,11 @@ TEST(CadMeasures, ReachTheCertificate) {
   const TemporaryFolder folder;
   const std::string path = folder.file("rod.brep");
   BRepTools::Write(BRepPrimAPI_MakeCylinder(3, 7).Shape(), path.c_str());
-  cli::MeshArguments arguments;
+  command::MeshArguments arguments;
   arguments.inputs = {path};
   arguments.mesh.size = 3;
-  const ShapeMeasures exact = cli::make_mesh(arguments).run.check.of_input;
+  process::Process process;
+  const ShapeMeasures exact = command::make_mesh(process, arguments).run.check.of_input;
   ASSERT_EQ(exact.volumes.size(), 2U);
   EXPECT_NEAR(exact.volumes[1], 63 * pi, 1e-9);
   EXPECT_EQ(exact.areas.size(), 3U);

@@ -176,10 +176,11 @@ TEST(CadOverlaps, OptionOfTheProgram) {
   const TemporaryFolder folder;
   const std::string path = folder.file("boxes.brep");
   BRepTools::Write(compound({box(0, 0, 0, 10, 20, 30), box(5, 5, 5, 10, 20, 30)}), path.c_str());
+  const process::Console console;
   const auto volumes = [&](const std::vector<const char*>& options) {
     std::vector<const char*> words{"collarmesh", "info", path.c_str()};
     words.insert(words.end(), options.begin(), options.end());
-    const auto parsed = cli::parse(static_cast<int>(words.size()), words.data());
+    const auto parsed = cli::parse(console, static_cast<int>(words.size()), words.data());
     const auto& info = std::get<cli::InfoArguments>(std::get<cli::Arguments>(parsed));
     files::ComplexInput input(info.inputs, {.format = {}, .overlap = info.overlap});
     return volumes_of(input.soups());
@@ -193,7 +194,7 @@ TEST(CadOverlaps, OptionOfTheProgram) {
   expect_near(volumes({"--overlap", "first"}), first);
   expect_near(volumes({"--overlap", "region"}), region);
   const std::array wrong{"collarmesh", "info", path.c_str(), "--overlap", "both"};
-  EXPECT_EQ(std::get<process::ExitCode>(cli::parse(static_cast<int>(wrong.size()), wrong.data())),
+  EXPECT_EQ(std::get<process::ExitCode>(cli::parse(console, static_cast<int>(wrong.size()), wrong.data())),
             process::ExitCode::usage);
 }
 

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -15,14 +16,14 @@
 #include "collarmesh/check.h"
 #include "collarmesh/error.h"
 #include "collarmesh/mesh_measures.h"
+#include "command/guarded.h"
+#include "command/progress_display.h"
+#include "command/stages.h"
+#include "commands.h"
 #include "files/input_files.h"
-#include "mesh_command.h"
-#include "process/interrupt.h"
-#include "process/staged_file.h"
+#include "process/process.h"
 #include "program.h"
-#include "progress_display.h"
 #include "report/report.h"
-#include "stages.h"
 #include "support/meshes.h"
 
 namespace collarmesh::cli::parts_test {
@@ -46,7 +47,11 @@ class FolderTest : public ::testing::Test {
   fs::path folder;
 };
 
-using StagedFileTest = FolderTest;
+class StagedFileTest : public FolderTest {
+ protected:
+  process::Process process;
+};
+
 using SimilarFileTest = FolderTest;
 
 TEST(ProgressLine, TellsPhasePercentAndTimeLeft) {
@@ -61,25 +66,34 @@ TEST(ProgressLine, FitsTheTerminal) { EXPECT_EQ(progress_line("refine", 1, 10, 3
 TEST_F(StagedFileTest, AppearsOnCommitOnly) {
   const fs::path target = folder / "a.txt";
   {
-    process::StagedFile file(target);
+    process::StagedFile file(process.files, target);
     file.write([](const std::string& path) { write(path, "text"); });
     EXPECT_FALSE(fs::exists(target));
-    process::StagedFile::commit({&file, nullptr});
+    process.files.commit({&file, nullptr});
     EXPECT_TRUE(fs::exists(target));
   }
   EXPECT_EQ(entries(), 1U);
 }
 
+TEST_F(StagedFileTest, StaysWhenTheProgramEndsAfterTheCommit) {
+  process::StagedFile file(process.files, folder / "a.txt");
+  file.write([](const std::string& path) { write(path, "text"); });
+  process.files.commit({&file});
+  EXPECT_FALSE(process.files.abandon());
+  EXPECT_TRUE(fs::exists(folder / "a.txt"));
+  EXPECT_EQ(entries(), 1U);
+}
+
 TEST_F(StagedFileTest, DisappearsWithoutCommit) {
   {
-    process::StagedFile file(folder / "a.txt");
+    process::StagedFile file(process.files, folder / "a.txt");
     file.write([](const std::string& path) { write(path, "text"); });
   }
   EXPECT_EQ(entries(), 0U);
 }
 
 TEST_F(StagedFileTest, ErrorsNameTheTarget) {
-  process::StagedFile file(folder / "a.txt");
+  process::StagedFile file(process.files, folder / "a.txt");
   try {
     file.write([](const std::string& path) { throw WriteError(path + ": disk full"); });
     FAIL();
@@ -90,13 +104,13 @@ TEST_F(StagedFileTest, ErrorsNameTheTarget) {
 
 TEST_F(StagedFileTest, TwoOutputsOfOnePlaceAreAnError) {
   write(folder / "a.txt", "before");
-  process::StagedFile first(folder / "a.txt"), second(folder / "." / "b.txt");
+  process::StagedFile first(process.files, folder / "a.txt"), second(process.files, folder / "." / "b.txt");
   first.write([](const std::string& path) { write(path, "first"); });
   second.write([](const std::string& path) {
     write(path, "second");
     write(fs::path(path).replace_filename("a.txt"), "beside it");
   });
-  EXPECT_THROW(process::StagedFile::commit({&first, &second}), WriteError);
+  EXPECT_THROW(process.files.commit({&first, &second}), WriteError);
   EXPECT_FALSE(fs::exists(folder / "b.txt"));
   std::string text;
   std::ifstream(folder / "a.txt") >> text;
@@ -104,9 +118,9 @@ TEST_F(StagedFileTest, TwoOutputsOfOnePlaceAreAnError) {
 }
 
 TEST_F(StagedFileTest, MissingFolderIsAnError) {
-  EXPECT_THROW(process::require_writable(folder / "no" / "a.txt"), WriteError);
-  EXPECT_THROW(process::require_writable(folder), WriteError);
-  EXPECT_NO_THROW(process::require_writable(folder / "a.txt"));
+  EXPECT_THROW(process.files.require_writable(folder / "no" / "a.txt"), WriteError);
+  EXPECT_THROW(process.files.require_writable(folder), WriteError);
+  EXPECT_NO_THROW(process.files.require_writable(folder / "a.txt"));
 }
 
 TEST_F(SimilarFileTest, FindsTypos) {
@@ -135,14 +149,17 @@ TEST(MeshMeasures, OfOneTet) {
 
 template <class Thrown>
 void expect_code(process::ExitCode code, const Thrown& thrown, const std::string& told) {
+  process::Process process;
   ::testing::internal::CaptureStderr();
-  EXPECT_EQ(guarded([&]() -> process::ExitCode { throw thrown; }), code);
+  EXPECT_EQ(guarded(process, [&]() -> process::ExitCode { throw thrown; }), code);
   const std::string said = ::testing::internal::GetCapturedStderr();
   EXPECT_NE(said.find(told), std::string::npos) << said;
 }
 
 TEST(Guarded, EveryErrorHasItsCode) {
-  EXPECT_EQ(guarded([] { return process::ExitCode::guarantee_missed; }), process::ExitCode::guarantee_missed);
+  process::Process process;
+  EXPECT_EQ(guarded(process, [] { return process::ExitCode::guarantee_missed; }),
+            process::ExitCode::guarantee_missed);
   expect_code(process::ExitCode::internal_error, std::logic_error("a bug"),
               "internal error: a bug; please report it");
   expect_code(process::ExitCode::usage, OptionError("bad option"), "collarmesh: bad option");
@@ -155,7 +172,8 @@ TEST(Guarded, EveryErrorHasItsCode) {
 
 template <class Kind, std::size_t n>
 Kind parsed(const std::array<const char*, n>& words) {
-  const auto result = parse(static_cast<int>(n), words.data());
+  const process::Process process;
+  const auto result = parse(process.console, static_cast<int>(n), words.data());
   EXPECT_TRUE(std::holds_alternative<Arguments>(result));
   return std::get<Kind>(std::get<Arguments>(result));
 }
@@ -222,25 +240,27 @@ TEST(RepairReports, QuietOnesLeaveOutWhatIsWithinTheTolerance) {
 // Includes a stage that never looks at the clock.
 TEST(TimeLimitDeathTest, EndsAnyStage) {
   ::testing::FLAGS_gtest_death_test_style = "threadsafe";
-  EXPECT_EXIT(process::run_interruptible([] {
-                process::set_time_limit(0.05);
-                process::note_stage({"check", 0, 7});
-                std::this_thread::sleep_for(std::chrono::minutes(10));
-                return process::ExitCode::success;
-              }),
+  process::Process process;
+  EXPECT_EXIT(process.run_interruptible([&] {
+    process.interrupts.set_time_limit(0.05);
+    process.interrupts.note_stage({"check", 0, 7});
+    std::this_thread::sleep_for(std::chrono::minutes(10));
+    return process::ExitCode::success;
+  }),
               ::testing::ExitedWithCode(5),
               "time limit of 0.05 s is reached .stage: check, 7 tets.*--time-limit");
 }
 
 TEST(TimeLimitDeathTest, IsWatched) {
   ::testing::FLAGS_gtest_death_test_style = "threadsafe";
-  const auto wait = [] {
-    process::set_time_limit(0.05);
-    while (!process::interrupt_flag()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    process::stop_if_interrupted();
+  process::Process process;
+  const auto wait = [&] {
+    process.interrupts.set_time_limit(0.05);
+    while (!process.interrupts.flag()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    process.interrupts.stop_if_asked();
     return process::ExitCode::success;
   };
-  EXPECT_EXIT(std::exit(static_cast<int>(guarded([&] { return process::run_interruptible(wait); }))),
+  EXPECT_EXIT(std::exit(static_cast<int>(guarded(process, [&] { return process.run_interruptible(wait); }))),
               ::testing::ExitedWithCode(5), "time limit of 0.05 s");
 }
 
@@ -255,8 +275,9 @@ TEST_F(FolderTest, MeshesThatNoSolverCanUseAreWrittenOnRequestOnly) {
     std::swap(mesh.tets.front()[0], mesh.tets.front()[1]);
     run.check = check(mesh, plc);
   };
+  process::Process process;
   try {
-    make_and_write(arguments, make);
+    make_and_write(process, arguments, make);
     ADD_FAILURE() << "the mesh was written";
   } catch (const process::Stopped& stopped) {
     EXPECT_EQ(stopped.code, ExitCode::guarantee_missed);
@@ -264,7 +285,7 @@ TEST_F(FolderTest, MeshesThatNoSolverCanUseAreWrittenOnRequestOnly) {
   }
   EXPECT_EQ(entries(), 0U);
   arguments.keep_invalid = true;
-  EXPECT_EQ(make_and_write(arguments, make), ExitCode::guarantee_missed);
+  EXPECT_EQ(make_and_write(process, arguments, make), ExitCode::guarantee_missed);
   EXPECT_EQ(entries(), 1U);
 }
 

@@ -8,7 +8,7 @@ import pathlib
 import re
 import sys
 
-PARTS = ("mesher/cli", "mesher/files", "mesher/process", "mesher/report", "mesher/python", "mesher/distributed/program",
+PARTS = ("mesher/cli", "mesher/command", "mesher/files", "mesher/process", "mesher/report", "mesher/python", "mesher/distributed/program",
          "mesher/distributed", "mesher/include", "openmesh_io", "freecad_workbench/brep")
 
 
@@ -38,7 +38,7 @@ def target_of(root, source, name):
         return "io"
     if name.startswith("collarmesh/"):
         return "mesher/include"
-    for folder in (root / source.parent, root / "mesher" / "src", root / "mesher", root / "mesher" / "cli",
+    for folder in (root / source.parent, root / "mesher" / "src", root / "mesher",
                    root / "mesher" / "distributed" / "src"):
         if (folder / name).exists():
             return folder_of((folder / name).resolve().relative_to(root.resolve()))

@@ -59,9 +59,8 @@ TopoDS_Shape read_brep(const std::string& path) {
   }
   if (shape.IsNull())
     throw ReadError(
-        fmt::format("{}: this is not a BREP text file, or it is cut off; write it with FreeCAD or "
-                    "OpenCASCADE{}",
-                    path, said.text().empty() ? "" : fmt::format(" (OpenCASCADE: {})", said.text())));
+        fmt::format("{}: this is not a BREP text file, or it is cut off; export the shape again{}", path,
+                    said.text().empty() ? "" : fmt::format(" (OpenCASCADE: {})", said.text())));
   return shape;
 }
 

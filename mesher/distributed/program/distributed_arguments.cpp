@@ -6,10 +6,9 @@
 #include <filesystem>
 #include <sstream>
 
-#include "option_values.h"
-#include "process/console.h"
+#include "command/option_values.h"
+#include "command/usage_error.h"
 #include "report/html_report.h"
-#include "usage_error.h"
 
 namespace collarmesh::distributed {
 
@@ -35,7 +34,7 @@ void check(const DistributedArguments& a) {
   if (a.mesh.reports.size() > 1) throw CLI::ValidationError("--report", "is given twice; use it once");
   if (a.mesh.partitions > 0 || !a.mesh.cell_decomposition.empty())
     throw CLI::ValidationError("--partitions", "is for collarmesh; here each rank has a part of its own");
-  cli::check_run_arguments(a.mesh);
+  command::check_run_arguments(a.mesh);
 }
 
 }  // namespace
@@ -44,7 +43,8 @@ bool writes_pieces(const DistributedArguments& arguments) {
   return extension_of(arguments.mesh.output) == ".pvtu";
 }
 
-std::variant<DistributedArguments, process::ExitCode> parse(int argc, const char* const* argv) {
+std::variant<DistributedArguments, process::ExitCode> parse(const process::Console& console, int argc,
+                                                            const char* const* argv) {
   DistributedArguments arguments;
   CLI::App app(
       "collarmesh-mpi: a certified coarse mesh, distributed, refined and projected onto its shape on all "
@@ -60,16 +60,16 @@ std::variant<DistributedArguments, process::ExitCode> parse(int argc, const char
          "The mesh to write: .h5 (PETSc's DMPlex, with .xdmf beside it) or .pvtu (with a piece of each rank)")
       ->type_name("FILE");
   app.add_option("--levels", arguments.levels, "Number of times that every tetrahedron is cut into eight")
-      ->check(cli::number_in(0, 12, "a number of levels from 0 to 12"))
-      ->check(cli::whole_number())
+      ->check(command::number_in(0, 12, "a number of levels from 0 to 12"))
+      ->check(command::whole_number())
       ->capture_default_str()
       ->type_name("N");
   app.add_option("--slack", arguments.slack,
                  "Degrees by which dihedral angles may go beyond those of the coarse mesh")
-      ->check(cli::number_in(0, 180, "an angle from 0 to 180 degrees"))
+      ->check(command::number_in(0, 180, "an angle from 0 to 180 degrees"))
       ->capture_default_str()
       ->type_name("DEGREES");
-  cli::add_run_options(app, arguments.mesh);
+  command::add_options(app, Option::mesh, arguments.mesh);
   try {
     app.parse(argc, argv);
     check(arguments);
@@ -77,11 +77,11 @@ std::variant<DistributedArguments, process::ExitCode> parse(int argc, const char
     if (error.get_exit_code() == 0) {  // for --help and --version
       std::ostringstream text, nothing;
       app.exit(error, text, nothing);
-      process::print_result(text.str());
+      console.print_result(text.str());
       return process::ExitCode::success;
     }
-    process::tell("collarmesh-mpi: {}\nRun with --help for more information.\n",
-                  cli::usage_message(app, error));
+    console.tell("collarmesh-mpi: {}\nRun with --help for more information.\n",
+                 command::usage_message(app, error));
     return process::ExitCode::usage;
   }
   return arguments;

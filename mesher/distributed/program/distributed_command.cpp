@@ -19,16 +19,13 @@
 
 #include "calls.h"
 #include "collarmesh/distributed.h"
+#include "command/guarded.h"
+#include "command/make_mesh.h"
 #include "distributed_arguments.h"
 #include "files/complex_input.h"
 #include "files/file_groups.h"
 #include "files/input_files.h"
-#include "mesh_command.h"
-#include "process/console.h"
-#include "process/interrupt.h"
-#include "process/out_of_memory.h"
-#include "process/staged_file.h"
-#include "program.h"
+#include "process/machine.h"
 #include "report/json_text.h"
 
 namespace collarmesh::distributed {
@@ -48,11 +45,11 @@ class Session {
 };
 
 /// Ends all ranks because they no longer do the same; one of them prints the reason.
-[[noreturn]] void end_all(process::ExitCode code, const std::string& message) {
+[[noreturn]] void end_all(process::Process& process, process::ExitCode code, const std::string& message) {
   const Ranks ranks(MPI_COMM_WORLD);
   // If several ranks fail at once, the first one reports and ends the others before they do.
   std::this_thread::sleep_for(std::chrono::milliseconds(200) * ranks.rank);
-  process::abandon_staged_files();
+  process.files.abandon();
   const std::string text = fmt::format("collarmesh: {}\n", message);
   if (write(STDERR_FILENO, text.data(), text.size()) < 0) {
     // Nobody is left to report to.
@@ -61,25 +58,9 @@ class Session {
   std::_Exit(static_cast<int>(code));
 }
 
-/// Ends the program after a crash: HDF5 and MPI may crash if they get no memory. mpirun ends the other ranks.
-[[noreturn]] void end_after_crash(int) {
-  const bool short_of_memory = process::memory_is_short();
-  process::abandon_staged_files();
-  const std::string_view text =
-      short_of_memory
-          ? "collarmesh: a library has crashed, as some do when memory is used up; raise --max-memory, or "
-            "use more ranks\n"
-          : "collarmesh: a library has crashed; please report it with the input and the options\n";
-  if (write(STDERR_FILENO, text.data(), text.size()) < 0) {
-    // Nobody is left to report to.
-  }
-  std::_Exit(
-      static_cast<int>(short_of_memory ? process::ExitCode::budget_hit : process::ExitCode::internal_error));
-}
-
-[[noreturn]] void end_without_memory(const PetscOutOfMemory& failure) {
+[[noreturn]] void end_without_memory(process::Process& process, const PetscOutOfMemory& failure) {
   end_all(
-      process::ExitCode::budget_hit,
+      process, process::ExitCode::budget_hit,
       fmt::format("there is not enough memory ({}); raise --max-memory, use more ranks, or make fewer levels",
                   failure.what()));
 }
@@ -184,7 +165,7 @@ std::uint64_t fingerprint(const Plc& plc) {
 
 /// The data of the input on every rank, and the mesh that rank 0 made of it.
 struct Coarse {
-  cli::MadeMesh made;  ///< ranks other than 0 only have the input and the complex
+  command::MadeMesh made;  ///< ranks other than 0 only have the input and the complex
   Shape shape() const {
     const Plc& plc = made.run.plc;
     return {plc, made.input->has_cad() ? made.input->exact_geometry(plc) : ExactGeometry{},
@@ -222,19 +203,19 @@ void share(RepairOptions& repair, bool is_first) {
 }
 
 /// Makes the mesh on rank 0, and its complex on the other ranks.
-Coarse make_coarse(const DistributedArguments& arguments) {
+Coarse make_coarse(process::Process& process, const DistributedArguments& arguments) {
   const Ranks ranks(MPI_COMM_WORLD);
   Coarse coarse;
-  cli::MeshArguments first_order = arguments.mesh;
+  command::MeshArguments first_order = arguments.mesh;
   first_order.order = 1;
   coarse.options = first_order;
   together([&] {
-    if (ranks.rank == 0) coarse.made = cli::make_mesh(first_order);
+    if (ranks.rank == 0) coarse.made = command::make_mesh(process, first_order);
   });
   share(coarse.made.repair, ranks.rank == 0);
   together([&] {
     if (ranks.rank == 0) return;
-    coarse.made.input = cli::read_inputs(first_order);
+    coarse.made.input = command::read_inputs(process, first_order);
     coarse.made.run.plc = coarse.made.input->build(first_order.complex, coarse.made.repair);
   });
   if (const int other = first_that_differs(fingerprint(coarse.made.run.plc)); other >= 0)
@@ -359,73 +340,65 @@ class Timer {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Replaces one folder by another in a message that names files.
-std::string with_name(std::string message, const std::filesystem::path& from,
-                      const std::filesystem::path& to) {
-  const std::string folder = from.string() + "/", target = to.empty() ? "" : to.string() + "/";
-  for (std::size_t at = message.find(folder); at != std::string::npos;
-       at = message.find(folder, at + target.size()))
-    message.replace(at, folder.size(), target);
-  return message;
-}
-
 /// Writes files under temporary names into a folder of rank 0. Rank 0 moves them to their places when all
 /// ranks are done.
-void write_files(const DistributedArguments& arguments, const ParallelMesh& mesh, Report& report) {
+void write_files(process::Process& process, const DistributedArguments& arguments, const ParallelMesh& mesh,
+                 Report& report) {
   const bool first = Ranks(MPI_COMM_WORLD).rank == 0;
   const Timer timer;
   std::optional<process::StagedFile> staged, staged_report;
   std::string place;
   together([&] {
     if (!first) return;
-    staged.emplace(arguments.mesh.output);
+    staged.emplace(process.files, arguments.mesh.output);
     staged->write([&](const std::string& path) { place = path; });
   });
   place = broadcast(MPI_COMM_WORLD, place);
   try {
     writes_pieces(arguments) ? mesh.write_pvtu(place) : mesh.write_h5(place);
   } catch (const PetscOutOfMemory& failure) {
-    end_without_memory(failure);
+    end_without_memory(process, failure);
   } catch (const PetscFailure& failure) {
-    end_all(process::ExitCode::cannot_write, fmt::format("{}: cannot be written ({}); is the disk full?",
-                                                         arguments.mesh.output, failure.what()));
+    end_all(
+        process, process::ExitCode::cannot_write,
+        fmt::format("{}: cannot be written ({}); is the disk full?", arguments.mesh.output, failure.what()));
   } catch (const WriteError& error) {  // all ranks throw it; the message has the temporary name
-    const std::filesystem::path target = arguments.mesh.output;
-    throw WriteError(
-        with_name(error.what(), std::filesystem::path(place).parent_path(), target.parent_path()));
+    const std::filesystem::path target = arguments.mesh.output, staged_at = place;
+    throw WriteError(process::with_folder(error.what(), staged_at.parent_path(), target.parent_path()));
   }
   report.write_seconds = timer.seconds();
   report.peak_bytes = gathered(MPI_COMM_WORLD, std::vector{peak_bytes()});
   together([&] {
     if (!first) return;
     if (!arguments.mesh.reports.empty()) {
-      staged_report.emplace(arguments.mesh.reports.front());
+      staged_report.emplace(process.files, arguments.mesh.reports.front());
       staged_report->write([&](const std::string& path) {
         process::write_text(path, report::json_text(report.json(), 1) + "\n");
       });
     }
-    process::StagedFile::commit({&*staged, staged_report ? &*staged_report : nullptr});
+    process.files.commit({&*staged, staged_report ? &*staged_report : nullptr});
   });
 }
 
-void require_places(const DistributedArguments& arguments) {
-  process::require_writable(arguments.mesh.output, files::files_written(arguments.mesh.output));
-  for (const std::string& report : arguments.mesh.reports) process::require_writable(report);
+void require_places(process::Process& process, const DistributedArguments& arguments) {
+  process.files.require_writable(arguments.mesh.output, files::files_written(arguments.mesh.output));
+  for (const std::string& report : arguments.mesh.reports) process.files.require_writable(report);
 }
 
-process::ExitCode mesh_distributed(const DistributedArguments& arguments) {
+process::ExitCode mesh_distributed(process::Process& process, const DistributedArguments& arguments) {
   const Ranks ranks(MPI_COMM_WORLD);
-  process::set_time_limit(arguments.mesh.mesh.time_limit);
+  process.interrupts.set_time_limit(arguments.mesh.mesh.time_limit);
   process::limit_memory(arguments.mesh.mesh.max_memory);
   together([&] {
-    if (ranks.rank == 0) require_places(arguments);
+    if (ranks.rank == 0) require_places(process, arguments);
   });
   require_equal_files(arguments);
-  Coarse coarse = make_coarse(arguments);
-  const auto stop = [] { together([] { process::stop_if_interrupted(); }); };
+  Coarse coarse = make_coarse(process, arguments);
+  const auto stop = [&] { together([&] { process.interrupts.stop_if_asked(); }); };
   if (!arguments.mesh.quiet && ranks.rank == 0)
-    process::tell("coarse mesh: {} tets; {}\n", coarse.made.run.result.mesh.tets.size(),
-                  coarse.made.run.guarantees_hold() ? "every guarantee holds" : coarse.made.run.missed());
+    process.console.tell(
+        "coarse mesh: {} tets; {}\n", coarse.made.run.result.mesh.tets.size(),
+        coarse.made.run.guarantees_hold() ? "every guarantee holds" : coarse.made.run.missed());
   int holds = coarse.made.run.guarantees_hold() ? 1 : 0;
   MPI_Bcast(&holds, 1, MPI_INT, 0, MPI_COMM_WORLD);
   const Shape shape = coarse.shape();
@@ -438,12 +411,12 @@ process::ExitCode mesh_distributed(const DistributedArguments& arguments) {
   for (unsigned level = 0; level < arguments.levels; ++level) {
     stop();
     report.levels.push_back(mesh.refine(shape));
-    if (!arguments.mesh.quiet) process::tell("{}", text_of(report.levels.back(), level + 1));
+    if (!arguments.mesh.quiet) process.console.tell("{}", text_of(report.levels.back(), level + 1));
   }
   stop();
   if (arguments.mesh.order == 2) report.order = mesh.raise_order(shape);
   if (report.order && !arguments.mesh.quiet)
-    process::tell(
+    process.console.tell(
         "second order: {} nodes, {} of them not at the middles of their edges; {} straightened, off their "
         "places by at most {:.3g}\n",
         report.order->nodes, report.order->curved, report.order->straightened, report.order->farthest_off);
@@ -453,36 +426,40 @@ process::ExitCode mesh_distributed(const DistributedArguments& arguments) {
   report.certify_seconds = timer.seconds();
   mesh.scale(arguments.mesh.scale);
   stop();
-  write_files(arguments, mesh, report);
+  write_files(process, arguments, mesh, report);
   for (const Finding& finding : report.certificate.findings)
-    process::tell("{}: {}\n", finding.guarantee, finding.message);
-  if (!arguments.mesh.quiet) process::tell("{}", text_of(report.certificate, report.coarse));
+    process.console.tell("{}: {}\n", finding.guarantee, finding.message);
+  if (!arguments.mesh.quiet) process.console.tell("{}", text_of(report.certificate, report.coarse));
   return report.certificate.passed() && holds != 0 ? process::ExitCode::success
                                                    : process::ExitCode::guarantee_missed;
 }
 
 }  // namespace
 
-process::ExitCode run(int argc, char** argv) {
+process::ExitCode run(process::Process& process, int argc, char** argv) {
   // Install the handlers before MPI is initialized: MPI writes files of its own, and one that grows too large
   // must not end the program.
-  process::install_interrupt_handlers();
+  process.catch_signals();
   const Session session;
-  if (Ranks(MPI_COMM_WORLD).rank != 0) process::be_silent();
-  std::signal(SIGSEGV, end_after_crash);  // replaces PETSc's handler
+  if (Ranks(MPI_COMM_WORLD).rank != 0) process.console.be_silent();
+  process.catch_crashes(  // replaces PETSc's handler
+      "collarmesh: a library has crashed, as some do when memory is used up; raise --max-memory, or use more "
+      "ranks\n",
+      "collarmesh: a library has crashed; please report it with the input and the options\n");
   // Watch only until the result is known. After a rank has ended with an error (which has been reported by
   // then), mpirun asks ranks that are still in MPI_Finalize to stop.
-  const process::ExitCode result = process::run_interruptible([&] {
-    return cli::guarded([&]() -> process::ExitCode {
+  const process::ExitCode result = process.run_interruptible([&] {
+    return command::guarded(process, [&]() -> process::ExitCode {
       try {
         require_equal_command_lines(argc, argv);
-        const std::variant<DistributedArguments, process::ExitCode> parsed = parse(argc, argv);
+        const std::variant<DistributedArguments, process::ExitCode> parsed =
+            parse(process.console, argc, argv);
         if (const process::ExitCode* code = std::get_if<process::ExitCode>(&parsed)) return *code;
-        return mesh_distributed(std::get<DistributedArguments>(parsed));
+        return mesh_distributed(process, std::get<DistributedArguments>(parsed));
       } catch (const PetscOutOfMemory& failure) {
-        end_without_memory(failure);
+        end_without_memory(process, failure);
       } catch (const PetscFailure& failure) {
-        end_all(process::ExitCode::internal_error, failure.what());
+        end_all(process, process::ExitCode::internal_error, failure.what());
       }
     });
   });

@@ -1,10 +1,7 @@
 #include "distributed_command.h"
-#include "process/console.h"
-#include "process/out_of_memory.h"
 
 int main(int argc, char** argv) {
   using namespace collarmesh;
-  process::replace_closed_streams();
-  process::end_when_memory_is_used_up();
-  return static_cast<int>(distributed::run(argc, argv));
+  auto* const process = new process::Process;  // never destroyed
+  return static_cast<int>(distributed::run(*process, argc, argv));
 }

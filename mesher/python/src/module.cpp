@@ -4,7 +4,6 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
-#include <chrono>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -21,6 +20,7 @@
 #include "collarmesh/pipeline.h"
 #include "collarmesh/predict.h"
 #include "collarmesh/remesh.h"
+#include "common/deadline.h"
 #include "files/check_against.h"
 #include "files/complex_input.h"
 #include "files/input_files.h"
@@ -76,22 +76,15 @@ struct Call {
   Options options;
   std::optional<files::ComplexInput> input = {};
   Plc plc = {};  // refers to the input
-  const std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
+  Deadline deadline = {};
 };
-
-/// Returns the seconds until the time limit, more than 0; 0: there is no limit.
-double time_left(const Call& call) {
-  constexpr double least = 1e-3;
-  const double limit = call.options.mesh.time_limit;
-  const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - call.start;
-  return limit > 0 ? std::max(limit - passed.count(), least) : 0;
-}
 
 template <class Kind>
 std::shared_ptr<Kind> new_call(const py::list& inputs, const py::dict& options) {
   const auto call = std::make_shared<Kind>();
   call->inputs = inputs_of(inputs);
   call->options = options_of(options);
+  call->deadline = Deadline::in(call->options.mesh.time_limit);
   return call;
 }
 
@@ -154,7 +147,7 @@ class InputSource : public ComplexSource {
 void mesh(MeshCall& call, Watch& watch) {
   read(call, watch);
   PipelineOptions options = call.options;
-  options.mesh.time_limit = time_left(call);  // run_watched limits the time of the whole call
+  options.mesh.time_limit = call.deadline.as_option();  // run_watched limits the time of the whole call
   InputSource source(call.options, *call.input);
   call.run = run_pipeline(source, options, watch.execution());
   require_complete(call.run.result);

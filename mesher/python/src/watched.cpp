@@ -6,6 +6,8 @@
 #include <thread>
 #include <utility>
 
+#include "common/deadline.h"
+
 namespace py = pybind11;
 
 namespace collarmesh::python {
@@ -13,11 +15,10 @@ namespace collarmesh::python {
 namespace {
 
 using namespace std::chrono_literals;
-using Clock = std::chrono::steady_clock;
 
 constexpr auto between_looks = 30ms;     // interval at which signals are checked
-constexpr auto until_abandoned = 700ms;  // time to wait after a request to stop
-constexpr auto until_interpreter_ends = 10s;
+constexpr double until_abandoned = 0.7;  // seconds to wait after a request to stop
+constexpr double until_interpreter_ends = 10;
 
 std::atomic<int> abandoned{0};
 
@@ -76,14 +77,13 @@ void run_watched(std::function<void(Watch&)> work, const py::object& progress, d
   enum class Reason { none, time, callback, python } reason = Reason::none;
   std::exception_ptr raised;
   std::string stage;
-  const Clock::time_point start = Clock::now();
-  Clock::time_point stopped{};
-  const bool limited = time_limit > 0 && time_limit < 3e7;
+  const Deadline limit = Deadline::in(time_limit);
+  Deadline until_left;
   const py::gil_scoped_release release;
   const auto stop = [&](Reason why) {
     reason = why;
     watch->cancel_ = true;
-    stopped = Clock::now();
+    until_left = Deadline::in(until_abandoned);
   };
   std::unique_lock lock(watch->mutex_);
   double told = 0;
@@ -109,10 +109,8 @@ void run_watched(std::function<void(Watch&)> work, const py::object& progress, d
         raised = std::current_exception();
         stop(Reason::python);
       }
-      if (reason == Reason::none && !done && limited &&
-          std::chrono::duration<double>(Clock::now() - start).count() > time_limit)
-        stop(Reason::time);
-    } else if (!done && Clock::now() - stopped > until_abandoned) {
+      if (reason == Reason::none && !done && limit.passed()) stop(Reason::time);
+    } else if (!done && until_left.passed()) {
       lock.lock();
       break;
     }
@@ -131,9 +129,7 @@ void run_watched(std::function<void(Watch&)> work, const py::object& progress, d
     }).detach();
   }
   // The work knows the time limit, too, and may end first.
-  if (reason == Reason::none && failure && limited &&
-      std::chrono::duration<double>(Clock::now() - start).count() > time_limit)
-    reason = Reason::time;
+  if (reason == Reason::none && failure && limit.passed()) reason = Reason::time;
   if (reason == Reason::python) std::rethrow_exception(raised);
   if (reason == Reason::time)
     throw BudgetSpent(
@@ -149,9 +145,8 @@ void run_watched(std::function<void(Watch&)> work, const py::object& progress, d
 
 void wait_for_abandoned() {
   const py::gil_scoped_release release;
-  const Clock::time_point start = Clock::now();
-  while (abandoned > 0 && Clock::now() - start < until_interpreter_ends)
-    std::this_thread::sleep_for(between_looks);
+  const Deadline end = Deadline::in(until_interpreter_ends);
+  while (abandoned > 0 && !end.passed()) std::this_thread::sleep_for(between_looks);
 }
 
 }  // namespace collarmesh::python

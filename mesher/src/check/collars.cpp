@@ -6,12 +6,12 @@
 #include "common/box_tree.h"
 #include "common/distances.h"
 #include "common/segments.h"
+#include "common/shared_bounds.h"
 
 namespace collarmesh::checks {
 
 namespace {
 
-constexpr double gap_per_radius = 3;         // paper, Procedure 4
 constexpr double distance_slack = 1 - 1e-9;  // relative tolerance of distances
 
 double to_triangle(const Point& p, const std::array<Point, 3>& t) {

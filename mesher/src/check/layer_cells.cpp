@@ -16,6 +16,7 @@
 #include "collarmesh/plc_builder.h"
 #include "common/cell_shapes.h"
 #include "common/layer_jacobians.h"
+#include "common/shared_bounds.h"
 #include "common/sort_uniquely.h"
 #include "common/tet_sides.h"
 #include "tolerance/forced_edges.h"
@@ -324,7 +325,7 @@ class CoreAngles {
       if (v < walls.size() && walls[v] != none) features_[v] = mesh.features[walls[v]];
     find_surface();
     if (bounds.lower_where_forced)
-      forced_.emplace(plc, features_, mesh.points, faces_, patches_, least_cosine_of_sides);
+      forced_.emplace(plc, features_, mesh.points, faces_, patches_, ForcedEdges::least_cosine_of_sides);
     find_creases_at_points(plc);
   }
 
@@ -341,8 +342,6 @@ class CoreAngles {
   }
 
  private:
-  static constexpr double least_cosine_of_sides = -0.9;  // as for other thin tets
-
   Index wall_of(Index v) const { return v < walls_.size() && walls_[v] != none ? walls_[v] : v; }
 
   /// Finds the sides of the core, with the patches of their walls.
@@ -411,7 +410,7 @@ class CoreAngles {
 void check_core_angles(const TetMesh& mesh, const std::vector<Index>& walls, const Plc& plc,
                        const Bounds& bounds, CheckReport& report) {
   constexpr std::size_t listed = 20;
-  constexpr double largest = 150, slack = 1e-9;
+  constexpr double largest = largest_angle_of_thin_tets, slack = 1e-9;
   Findings findings(report, listed);
   const CoreAngles angles(mesh, walls, plc, bounds);
   report.tets = mesh.tets.size(), report.points = mesh.points.size();

@@ -12,6 +12,7 @@
 #include "check/guarantees.h"
 #include "check/region_locator.h"
 #include "collarmesh/check.h"
+#include "common/shared_bounds.h"
 #include "common/sorted.h"
 #include "tolerance/forced_edges.h"
 #include "tolerance/narrow_places.h"
@@ -64,7 +65,7 @@ struct Subject {
 /// is enough.
 class ThinCells {
  public:
-  static constexpr double largest_angle = 150;  ///< degrees
+  static constexpr double largest_angle = largest_angle_of_thin_tets;
 
   /// Precondition: subject.match is filled in.
   explicit ThinCells(const Subject& subject);

@@ -10,9 +10,6 @@ namespace collarmesh::checks {
 namespace {
 
 constexpr double thin_slack = 1e-9;  // relative tolerance
-// Two sides of a patch face opposite ways if the cosine between the mesh's normals is below this: within some
-// 25 degrees of opposite.
-constexpr double least_cosine_of_sides = -0.9;
 
 }  // namespace
 
@@ -38,7 +35,7 @@ ThinCells::ThinCells(const Subject& subject)
   if (!(smallest_ > 0) || (marks_.empty() && !all_ && !subject.coarsened)) return;
   const Plc& plc = subject.plc;
   forced_.emplace(plc, features_of(subject), mesh_.points, mesh_.faces, subject.match.face_patch,
-                  least_cosine_of_sides);
+                  ForcedEdges::least_cosine_of_sides);
   const Bounds& bounds = subject.options.bounds;
   if (bounds.thin_in_narrow_places_only)
     narrow_.emplace(plc, features_of(subject), *forced_, bounds.crease_angle, 1 / bounds.radius_edge);

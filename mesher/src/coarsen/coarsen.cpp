@@ -1,5 +1,7 @@
 #include "collarmesh/coarsen.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
 #include <chrono>
@@ -15,6 +17,7 @@
 #include "common/cell_shapes.h"
 #include "common/found_in_ranges.h"
 #include "common/parallel_for.h"
+#include "common/shared_bounds.h"
 #include "common/sort_uniquely.h"
 #include "common/tet_sides.h"
 #include "common/thread_limit.h"
@@ -536,10 +539,11 @@ class Coarsening {
 
 CoarsenReport coarsen(remeshing::EditableMesh& edited, const MeshOptions& made_with,
                       const Execution& execution) {
-  if (!(made_with.bounds.thin_angle > 0 && made_with.bounds.thin_angle <= 30))
-    throw OptionError("Bounds::thin_angle must be above 0 and at most 30 degrees");
-  if (!(made_with.bounds.reserve >= 0 && made_with.bounds.reserve <= 0.5))
-    throw OptionError("Bounds::reserve must be from 0 to 0.5");
+  if (!(made_with.bounds.thin_angle > 0 && made_with.bounds.thin_angle <= largest_thin_angle))
+    throw OptionError(
+        fmt::format("Bounds::thin_angle must be above 0 and at most {} degrees", largest_thin_angle));
+  if (!(made_with.bounds.reserve >= 0 && made_with.bounds.reserve <= largest_reserve))
+    throw OptionError(fmt::format("Bounds::reserve must be from 0 to {}", largest_reserve));
   return remeshing::coarsening::Coarsening(edited, made_with, execution).run();
 }
 

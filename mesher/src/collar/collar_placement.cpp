@@ -9,6 +9,7 @@
 
 #include "collarmesh/error.h"
 #include "common/edge_key.h"
+#include "common/shared_bounds.h"
 #include "common/split_mix.h"
 #include "facets/faults.h"
 
@@ -16,7 +17,7 @@ namespace collarmesh {
 
 namespace {
 
-constexpr double radius_per_gap = 1.0 / 3;
+constexpr double radius_per_gap = 1 / gap_per_radius;
 // Features farther away than this many sizes do not affect the gap size.
 constexpr double gap_per_size = 4;
 // Radii are shrunk by a random share, at most this one, so that spheres are in general position.

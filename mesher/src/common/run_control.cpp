@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <condition_variable>
 #include <mutex>
 #include <stop_token>
@@ -12,19 +11,17 @@
 
 namespace collarmesh {
 
-/// A flag that becomes true when another flag is set or the time is up.
-class RunControl::Deadline {
+/// A flag that becomes true when another flag is set or the deadline has passed.
+class RunControl::Watch {
  public:
-  Deadline(double seconds, const Execution& execution)
-      : watcher_([this, seconds, &execution](const std::stop_token& end) {
+  Watch(Deadline deadline, const Execution& execution)
+      : watcher_([this, deadline, &execution](const std::stop_token& end) {
           using namespace std::chrono_literals;
-          using Clock = std::chrono::steady_clock;
-          const Clock::time_point start = Clock::now();
           std::mutex mutex;
           std::unique_lock lock(mutex);
           std::condition_variable_any ended;
           while (!ended.wait_for(lock, end, 10ms, [&end] { return end.stop_requested(); })) {
-            if (std::chrono::duration<double>(Clock::now() - start).count() > seconds) passed_ = true;
+            if (deadline.passed()) passed_ = true;
             if (passed_ || execution.cancelled()) flag_ = true;
           }
         }) {}
@@ -38,9 +35,12 @@ class RunControl::Deadline {
 };
 
 RunControl::RunControl(const PipelineOptions& options, const Execution& execution, PipelineResult& made)
-    : made_(made), time_limit_(options.mesh.time_limit), outer_(execution) {
-  if (time_limit_ > 0) deadline_ = std::make_unique<Deadline>(time_limit_, execution);
-  inner_.cancel = deadline_ ? &deadline_->flag() : execution.cancel;
+    : made_(made),
+      time_limit_(options.mesh.time_limit),
+      deadline_(Deadline::in(time_limit_)),
+      outer_(execution) {
+  if (deadline_.exists()) watch_ = std::make_unique<Watch>(deadline_, execution);
+  inner_.cancel = watch_ ? &watch_->flag() : execution.cancel;
   if (execution.progress) inner_.progress = [this](const ProgressReport& report) { return go_on(report); };
 }
 
@@ -88,16 +88,14 @@ void RunControl::stop() {
 }
 
 bool RunControl::out_of_time() const {
-  return (deadline_ && deadline_->passed()) || (of_attempt_ && of_attempt_->passed());
+  return (watch_ && watch_->passed()) || (of_attempt_ && of_attempt_->passed());
 }
 
 void RunControl::attempt(double share_of_time, const std::function<void()>& work) {
-  if (!(time_limit_ > 0)) return work();
-  using Clock = std::chrono::steady_clock;
-  const double left = time_limit_ - std::chrono::duration<double>(Clock::now() - start_).count();
-  if (left <= 0) return;
+  if (!deadline_.exists()) return work();
+  if (deadline_.passed()) return;
   const Execution outside = inner_;
-  of_attempt_ = std::make_unique<Deadline>(share_of_time * left, outside);
+  of_attempt_ = std::make_unique<Watch>(Deadline::in(share_of_time * deadline_.remaining()), outside);
   inner_.cancel = &of_attempt_->flag();
   const auto restore = [&] {
     inner_.cancel = outside.cancel;

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <chrono>
 #include <functional>
 #include <memory>
 #include <string_view>
 
 #include "collarmesh/pipeline.h"
 #include "collarmesh/progress.h"
+#include "common/deadline.h"
 
 namespace collarmesh {
 
@@ -45,15 +45,15 @@ class RunControl {
   void attempt(double share_of_time, const std::function<void()>& work);
 
  private:
-  class Deadline;
+  class Watch;
   bool go_on(ProgressReport report);
 
   PipelineResult& made_;
   const double time_limit_;  // seconds; 0: none
+  const Deadline deadline_;
   const Execution& outer_;
   Execution inner_;
-  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-  std::unique_ptr<Deadline> deadline_, of_attempt_;
+  std::unique_ptr<Watch> watch_, of_attempt_;
   std::string_view stage_;
   double from_ = 0, to_ = 0, fraction_ = 0;  // fractions of the whole run: begin and end of the stage, and
                                              // the last one reported

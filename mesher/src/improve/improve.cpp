@@ -1,5 +1,7 @@
 #include "collarmesh/improve.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
 #include <chrono>
@@ -10,6 +12,7 @@
 #include "collarmesh/mesher.h"
 #include "common/found_in_ranges.h"
 #include "common/parallel_for.h"
+#include "common/shared_bounds.h"
 #include "common/thread_limit.h"
 #include "improve/detours.h"
 #include "improve/improve_edited.h"
@@ -266,7 +269,8 @@ ImproveOptions improve_options(unsigned level) {
     case 1: options.min_dihedral = 15, options.move_vertices = false, options.passes = 1; break;
     case 2: break;
     case 3: options.min_dihedral = 30, options.passes = 6; break;
-    default: throw OptionError("the level of improvement must be 1, 2 or 3");
+    default:
+      throw OptionError(fmt::format("the level of improvement must be from 1 to {}", highest_improve_level));
   }
   return options;
 }

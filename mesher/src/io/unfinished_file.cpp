@@ -1,36 +1,20 @@
 #include "io/unfinished_file.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
-#include <system_error>
 #include <utility>
 
 #include "collarmesh/error.h"
+#include "common/replacement.h"
 
 namespace collarmesh::io {
 
 namespace {
 
 constexpr int names_to_try = 100;
-
-/// Gives a temporary file the mode of the file at `path`, if there is one, and flushes it to the disk.
-/// Returns the system's error number, 0: none. EINVAL and ENOTSUP mean that the file system cannot flush.
-int settle(const std::string& temporary, const std::string& path) {
-  struct stat before = {};
-  if (stat(path.c_str(), &before) == 0 && chmod(temporary.c_str(), before.st_mode & 07777) != 0) return errno;
-  const int file = open(temporary.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) return errno;
-  const int reason = fsync(file) == 0 || errno == EINVAL || errno == ENOTSUP ? 0 : errno;
-  close(file);
-  return reason;
-}
 
 }  // namespace
 
@@ -53,10 +37,9 @@ UnfinishedFile::~UnfinishedFile() {
 }
 
 void UnfinishedFile::commit() {
-  if (const int reason = settle(temporary_, path_); reason != 0) fail(reason);
-  std::error_code error;
-  std::filesystem::rename(temporary_, path_, error);
-  if (error) fail(error.value());
+  Replacement replacement({{temporary_, path_, {}}});
+  replacement.prepare();
+  if (replacement.carry_out() != nullptr) fail(errno);
   temporary_.clear();
 }
 

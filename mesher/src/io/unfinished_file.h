@@ -17,7 +17,7 @@ class UnfinishedFile {
 
   /// Returns the path to write to.
   const std::string& temporary() const { return temporary_; }
-  /// Flushes the file to the disk, gives it the mode of the file that it replaces, and renames it.
+  /// Flushes the file to the disk, gives it the mode and owner of the file that it replaces, and renames it.
   /// Precondition: the temporary file is closed.
   void commit();
   /// Throws WriteError. `reason` is the system's error number, 0: unknown.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "collarmesh/options.h"
+#include "common/shared_bounds.h"
 
 namespace collarmesh {
 
@@ -246,7 +247,7 @@ std::vector<Option> quality_options() {
        .place = in_bounds<&Bounds::thin_angle>,
        .unit = Unit::degrees,
        .low = 0.1,
-       .high = 30,
+       .high = largest_thin_angle,
        .zero = true,
        .help = "Smallest dihedral angle of thin tetrahedra, at sharper creases half of the crease's angle; "
                "0: none may be thin",
@@ -254,7 +255,7 @@ std::vector<Option> quality_options() {
        .commands = judging},
       {.name = "improve LEVEL",
        .place = at<&RunOptions::improve>,
-       .high = 3,
+       .high = highest_improve_level,
        .help = "Removal of slivers: 0 none; 1 quick: angles below 15 degrees, vertices stay; 2 good: below "
                "20; 3 best: below 30"},
       {.name = "min-dihedral DEGREES",

@@ -17,8 +17,7 @@
 namespace collarmesh::projection {
 
 struct Bounds {
-  double radius_edge = 2;                        ///< bound for tets that are neither thin nor in collars
-  double collar_angle = 150;                     ///< largest dihedral angle in collars, degrees
+  double radius_edge, collar_angle;              ///< as in collarmesh::Bounds
   const remeshing::ThinShape* thin = nullptr;    ///< null: no tet is thin
   const remeshing::CellBounds* cells = nullptr;  ///< set if tets may be thin
   /// Largest distance of faces and edges from the exact geometry, by patch and by curve, absolute.

@@ -2,6 +2,7 @@
 
 #include <chrono>
 
+#include "common/deadline.h"
 #include "refine/domain.h"
 #include "refine/outcome.h"
 
@@ -25,12 +26,13 @@ class Budget {
       : options_(options),
         execution_(execution),
         outcome_(outcome),
-        started_(std::chrono::steady_clock::now()) {}
+        started_(std::chrono::steady_clock::now()),
+        deadline_(Deadline::in(options.time_limit)) {}
 
   /// Returns whether a budget is spent or the caller has cancelled; then sets the outcome.
   bool spent(const Usage& now);
 
-  bool is_out_of_time() const { return options_.time_limit > 0 && elapsed() > options_.time_limit; }
+  bool is_out_of_time() const { return deadline_.passed(); }
   /// Returns the seconds since the start.
   double elapsed() const;
   std::size_t peak_bytes() const { return peak_bytes_; }
@@ -43,6 +45,7 @@ class Budget {
   const Execution& execution_;
   Outcome& outcome_;
   std::chrono::steady_clock::time_point started_;
+  Deadline deadline_;
   std::size_t peak_bytes_ = 0;
   double reported_ = -1, fraction_ = 0;  // reported_: seconds at the last progress report; fraction_: the
                                          // largest fraction so far

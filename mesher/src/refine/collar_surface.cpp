@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/shared_bounds.h"
 #include "delaunay/predicates.h"
+#include "refine/sagitta.h"
 
 namespace collarmesh {
 
@@ -21,8 +23,6 @@ constexpr double bent_clearance = 0.1;
 constexpr double clearance_in_radii = 1e-3;
 // Edges to the centre that are longer than this, in radii of the ball, are divided where they leave a patch.
 constexpr double divisible_spoke = 1.05;
-// The radius of a ball is at most a third of the gap size.
-constexpr double gap_per_radius = 3;
 
 double radians(double degrees) { return degrees * 3.14159265358979323846 / 180; }
 
@@ -183,7 +183,6 @@ bool CollarSurface::bends(CollarTriangle& t) const {
 }
 
 bool CollarSurface::spans_sheets(const CollarBall& ball, Index a, Index b) const {
-  constexpr double largest_sagitta = 0.15;  // 0.13 for a turn of 30 degrees
   const Point middle = 0.5 * (mesh_.point(a) + mesh_.point(b));
   const double most = largest_sagitta * distance(mesh_.point(a), mesh_.point(b));
   if (most >= domain_.tolerance.largest()) return false;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/distances.h"
+#include "refine/sagitta.h"
 
 namespace collarmesh {
 
@@ -19,8 +20,6 @@ constexpr double subsegment_offset = 0.1;
 // Least length of the rest of a subsegment beyond the ball at its end, relative to the ball's radius, unless
 // a vertex is there already.
 constexpr double least_clipped_length = 0.3;
-// Largest deviation of an arc from its chord, relative to the chord: about 60 degrees of turning.
-constexpr double largest_sagitta_per_chord = 0.15;
 
 }  // namespace
 
@@ -256,7 +255,7 @@ double CurveChains::tolerance_of(const Subsegment& s) const {
 // Returns whether the curve turns so far that the subsegment's ball may not contain all of it.
 bool CurveChains::turns_too_far(const Chained& s) const {
   if (collars_.is_crease_curve(s.piece.curve)) return false;
-  return leaves_chord(s, largest_sagitta_per_chord * distance(place(s, 0), place(s, 1)));
+  return leaves_chord(s, largest_sagitta * distance(place(s, 0), place(s, 1)));
 }
 
 // Returns whether the curve deviates from its chord by more than `sagitta`.

@@ -4,14 +4,11 @@
 #include <iterator>
 
 #include "common/sorted.h"
+#include "refine/sagitta.h"
 
 namespace collarmesh {
 
 namespace {
-
-// Largest distance of the middle of an edge between points of a smooth patch from the patch, relative to the
-// edge: 0.13 for a turn of 30 degrees. An edge across a fold is farther off.
-constexpr double largest_sagitta = 0.15;
 
 struct FaceUse {
   std::array<Index, 3> key;   // sorted mesh vertices

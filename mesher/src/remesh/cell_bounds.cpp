@@ -11,8 +11,6 @@ namespace collarmesh::remeshing {
 
 namespace {
 
-// The same value as `least_cosine_of_sides` in `thin_shape.cpp`.
-constexpr double least_cosine_of_forced = -0.92;
 // Narrow places must be narrower than the certificate's by this factor, because vertices move afterwards. If
 // they will move onto exact geometry, the reserve is subtracted, too.
 constexpr double narrower = 0.98;
@@ -24,10 +22,8 @@ double signed_square_of_cosine(double degrees) {
 
 std::optional<NarrowPlaces> narrow_places(const Plc& plc, const TetMesh& mesh, const Bounds& bounds) {
   if (!bounds.thin_in_narrow_places_only || mesh.features.size() != mesh.points.size()) return std::nullopt;
-  return NarrowPlaces(
-      plc, mesh.features,
-      ForcedEdges(plc, mesh.features, mesh.points, mesh.faces, mesh.face_patch, least_cosine_of_forced),
-      bounds.crease_angle, narrower / (bounds.radius_edge * (1 + bounds.reserve)));
+  return NarrowPlaces(plc, mesh.features, *forced_edges_of(plc, mesh, true), bounds.crease_angle,
+                      narrower / (bounds.radius_edge * (1 + bounds.reserve)));
 }
 
 Tag tag_of(const Plc& plc, const TetMesh::VertexFeature& feature) {

@@ -10,7 +10,7 @@ namespace {
 constexpr double radians = std::numbers::pi / 180;
 
 // A little below the value of the certificate, because normals turn when vertices move.
-constexpr double least_cosine_of_sides = -0.92;
+constexpr double least_cosine = ForcedEdges::least_cosine_of_sides - 0.02;
 
 double sine_above(double degrees) { return std::sin((degrees + 2 * ThinShape::rounding) * radians); }
 
@@ -30,7 +30,7 @@ bool well_within(const Corners& p, double radius_edge) {
 std::shared_ptr<const ForcedEdges> forced_edges_of(const Plc& plc, const TetMesh& mesh, bool lower_bounds) {
   if (!lower_bounds || mesh.features.size() != mesh.points.size()) return nullptr;
   return std::make_shared<const ForcedEdges>(plc, mesh.features, mesh.points, mesh.faces, mesh.face_patch,
-                                             least_cosine_of_sides);
+                                             least_cosine);
 }
 
 ThinShape::ThinShape(const Plc& plc, const TetMesh& mesh, double smallest_angle, double reserve,

@@ -9,6 +9,7 @@
 
 #include "collarmesh/plc.h"
 #include "collarmesh/tet_mesh.h"
+#include "common/shared_bounds.h"
 #include "remesh/shape.h"
 #include "tolerance/forced_edges.h"
 
@@ -141,8 +142,8 @@ inline ExtremeAngles extreme_angles(const Corners& p) {
 /// is half the angle that the edge leaves.
 class ThinShape {
  public:
-  static constexpr double largest_angle = 150;  ///< degrees
-  static constexpr double rounding = 1e-6;      ///< degrees, a margin for other ways to compute an angle
+  static constexpr double largest_angle = largest_angle_of_thin_tets;
+  static constexpr double rounding = 1e-6;  ///< degrees, a margin for other ways to compute an angle
 
   /// `smallest_angle` is in degrees; 0: no tet is thin. Vertices have their current numbers. `reserve` is the
   /// share of the bounds, counted from 0 and from 180 degrees, that is kept in reserve. `forced`: see

@@ -32,6 +32,9 @@ double narrowness_of(const std::array<Point, 4>& p, const Forces& forces) {
 /// wall, at a step or at a strip, no tet can have both long edges and large angles.
 class ForcedEdges {
  public:
+  /// The certificate's bound on the cosine between normals: sides are within some 25 degrees of opposite.
+  static constexpr double least_cosine_of_sides = -0.9;
+
   /// Finds the edges between the current vertices. Keeps a reference to the complex. `features`: by point,
   /// the feature of lowest dimension; other arguments as in a TetMesh. `least_cosine`: two sides of a patch
   /// face opposite ways if the cosine between their normals is below this.

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "collarmesh/bounds.h"
 #include "collarmesh/exact_geometry.h"
 #include "collarmesh/plc.h"
 #include "collarmesh/tet_mesh.h"
@@ -92,7 +93,8 @@ class ParallelMesh {
  public:
   /// Distributes a mesh that rank 0 has; others pass an empty one. Tags must fit PETSc's integers. PTScotch
   /// partitions if PETSc has it. `collar_angle` is the bound that angles in collars have kept, degrees.
-  ParallelMesh(MPI_Comm communicator, const TetMesh& mesh, const Plc& plc, double collar_angle = 150);
+  ParallelMesh(MPI_Comm communicator, const TetMesh& mesh, const Plc& plc,
+               double collar_angle = Bounds().collar_angle);
   ~ParallelMesh();
   ParallelMesh(const ParallelMesh&) = delete;
   ParallelMesh& operator=(const ParallelMesh&) = delete;

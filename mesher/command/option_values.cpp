@@ -1,4 +1,4 @@
-#include "option_values.h"
+#include "command/option_values.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include "collarmesh/io/tet_mesh_io.h"
 #include "common/lower_case.h"
 
-namespace collarmesh::cli {
+namespace collarmesh::command {
 
 namespace {
 
@@ -60,4 +60,4 @@ std::string list(const std::vector<std::string>& extensions) {
   return fmt::format("{}", fmt::join(extensions, " "));
 }
 
-}  // namespace collarmesh::cli
+}  // namespace collarmesh::command

@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-namespace collarmesh::cli {
+namespace collarmesh::command {
 
 /// Returns a message for a mistake on the command line, with a correction: a single line, without a line end.
 /// CLI11's own messages mention its types and patterns.
@@ -16,4 +16,4 @@ std::string mistaken_command(const std::string& word);
 /// Returns the usage line of a command; the one that meshes has an empty name.
 std::string usage_of(const std::string& command);
 
-}  // namespace collarmesh::cli
+}  // namespace collarmesh::command

@@ -1,4 +1,4 @@
-#include "option_warnings.h"
+#include "command/option_warnings.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include "io/file_format.h"
 #include "report/conversion_report.h"
 
-namespace collarmesh::cli {
+namespace collarmesh::command {
 
 namespace {
 
@@ -76,4 +76,4 @@ std::vector<std::string> option_warnings(const MeshArguments& a, const Plc& plc)
   return warnings;
 }
 
-}  // namespace collarmesh::cli
+}  // namespace collarmesh::command

@@ -3,15 +3,19 @@
 #include <string>
 
 #include "collarmesh/progress.h"
-#include "progress_display.h"
+#include "command/progress_display.h"
+#include "process/process.h"
 #include "report/stage_times.h"
 
-namespace collarmesh::cli {
+namespace collarmesh::command {
 
 /// The stages of a command, both in the display and in the timing.
 class Stages {
  public:
-  Stages(ProgressStyle style, report::StageTimes& times) : display_(style), times_(times) {}
+  Stages(process::Process& process, const RunOptions& options, report::StageTimes& times)
+      : interrupts_(process.interrupts),
+        display_(process.console, options.quiet ? ProgressStyle::off : options.progress),
+        times_(times) {}
 
   Stages(const Stages&) = delete;
   Stages& operator=(const Stages&) = delete;
@@ -23,9 +27,10 @@ class Stages {
   void print(const std::string& text) { display_.print(text); }
 
  private:
+  process::Interrupts& interrupts_;
   ProgressDisplay display_;
   report::StageTimes& times_;
   double begin_ = 0;
 };
 
-}  // namespace collarmesh::cli
+}  // namespace collarmesh::command

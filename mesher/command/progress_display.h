@@ -6,16 +6,17 @@
 #include <string>
 #include <thread>
 
-#include "arguments.h"
 #include "collarmesh/progress.h"
+#include "command/mesh_arguments.h"
+#include "process/console.h"
 
-namespace collarmesh::cli {
+namespace collarmesh::command {
 
 /// A display of a command's progress on standard error: a bar on a terminal, or one JSON object per line.
 /// Stages have fixed shares of the total fraction, which never decreases.
 class ProgressDisplay {
  public:
-  explicit ProgressDisplay(ProgressStyle style);
+  ProgressDisplay(const process::Console& console, ProgressStyle style);
   ~ProgressDisplay();  ///< clears the bar
   ProgressDisplay(const ProgressDisplay&) = delete;
   ProgressDisplay& operator=(const ProgressDisplay&) = delete;
@@ -38,6 +39,7 @@ class ProgressDisplay {
   void print_json();
   void keep_drawing();
 
+  const process::Console& console_;
   Form form_;
   Clock::time_point start_ = Clock::now();
   std::mutex mutex_;
@@ -53,4 +55,4 @@ class ProgressDisplay {
 std::string progress_line(const std::string& phase, double fraction, std::size_t tets, double seconds,
                           std::size_t width);
 
-}  // namespace collarmesh::cli
+}  // namespace collarmesh::command

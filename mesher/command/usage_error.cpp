@@ -1,4 +1,4 @@
-#include "usage_error.h"
+#include "command/usage_error.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 
 #include "files/edit_distance.h"
 
-namespace collarmesh::cli {
+namespace collarmesh::command {
 
 namespace {
 
@@ -97,4 +97,4 @@ std::string usage_message(const CLI::App& app, const CLI::Error& error) {
   return said;
 }
 
-}  // namespace collarmesh::cli
+}  // namespace collarmesh::command

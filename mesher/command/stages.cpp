@@ -1,15 +1,14 @@
-#include "stages.h"
+#include "command/stages.h"
 
 #include "common/recorded_costs.h"
-#include "process/interrupt.h"
 
-namespace collarmesh::cli {
+namespace collarmesh::command {
 
 Stages::~Stages() { recorded_costs::write(); }
 
 void Stages::begin(const std::string& phase, double begin, double end, std::size_t tets) {
-  process::stop_if_interrupted();
-  process::note_stage({phase, 0, tets});
+  interrupts_.stop_if_asked();
+  interrupts_.note_stage({phase, 0, tets});
   times_.begin(phase);
   recorded_costs::begin_stage(phase);
   display_.begin_stage(phase, begin, end);
@@ -22,9 +21,9 @@ void Stages::update(ProgressReport report) {
     begin(std::string(report.phase), begin_, begin_ + 1, report.tets);
     return;
   }
-  process::note_stage({std::string(report.phase), report.vertices, report.tets});
+  interrupts_.note_stage({std::string(report.phase), report.vertices, report.tets});
   report.fraction = fraction - begin_;
   display_.update(report);
 }
 
-}  // namespace collarmesh::cli
+}  // namespace collarmesh::command

@@ -1,5 +1,4 @@
-#include "progress_display.h"
-#include "process/console.h"
+#include "command/progress_display.h"
 #include "report/json_text.h"
 
 #include <fmt/format.h>
@@ -12,7 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
-namespace collarmesh::cli {
+namespace collarmesh::command {
 
 namespace {
 
@@ -47,8 +46,9 @@ std::string progress_line(const std::string& phase, double fraction, std::size_t
   return line.substr(0, width);
 }
 
-ProgressDisplay::ProgressDisplay(ProgressStyle style)
-    : form_(style == ProgressStyle::json                                 ? Form::json
+ProgressDisplay::ProgressDisplay(const process::Console& console, ProgressStyle style)
+    : console_(console),
+      form_(style == ProgressStyle::json                                 ? Form::json
             : style == ProgressStyle::automatic && isatty(STDERR_FILENO) ? Form::bar
                                                                          : Form::nothing) {
   if (form_ != Form::bar) return;
@@ -81,7 +81,7 @@ void ProgressDisplay::begin_stage(std::string phase, double begin, double end) {
 void ProgressDisplay::print(const std::string& text) {
   if (text.empty()) return;
   const std::lock_guard lock(mutex_);
-  process::tell("{}{}", form_ == Form::bar ? "\r\033[K" : "", text);
+  console_.tell("{}{}", form_ == Form::bar ? "\r\033[K" : "", text);
 }
 
 void ProgressDisplay::update(const ProgressReport& report) {
@@ -102,18 +102,18 @@ void ProgressDisplay::print_json() {
                                     {"vertices", vertices_},
                                     {"tets", tets_},
                                     {"seconds", json_printed_}};
-  process::tell("{}\n", report::json_text(line));
+  console_.tell("{}\n", report::json_text(line));
 }
 
 void ProgressDisplay::redraw() {
   if (phase_.empty()) return;
-  process::tell("\r{}\033[K", progress_line(phase_, fraction_, tets_, seconds(), terminal_width() - 1));
+  console_.tell("\r{}\033[K", progress_line(phase_, fraction_, tets_, seconds(), terminal_width() - 1));
 }
 
 void ProgressDisplay::keep_drawing() {
   std::unique_lock lock(mutex_);
   while (!wake_.wait_for(lock, std::chrono::milliseconds(150), [this] { return finished_; })) redraw();
-  process::tell("\r\033[K");
+  console_.tell("\r\033[K");
 }
 
-}  // namespace collarmesh::cli
+}  // namespace collarmesh::command

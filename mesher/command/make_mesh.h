@@ -1,0 +1,39 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "command/mesh_arguments.h"
+#include "command/stages.h"
+#include "files/complex_input.h"
+#include "process/process.h"
+#include "report/report.h"
+
+namespace collarmesh::command {
+
+/// A mesh in memory, for programs that process it further.
+struct MadeMesh {
+  std::unique_ptr<files::ComplexInput> input;  ///< has the complex of the run, and its exact geometry
+  report::MeshRun run;
+  RepairOptions repair;  ///< the repair options with which that complex was built
+};
+
+/// Reads the input, builds the complex, meshes it and certifies the mesh. Throws the library's exceptions,
+/// and Stopped.
+MadeMesh make_mesh(process::Process& process, const MeshArguments& arguments);
+
+/// Reads the input files.
+std::unique_ptr<files::ComplexInput> read_inputs(process::Process& process, const MeshArguments& arguments);
+
+/// Makes the mesh of the input in `run`. Returns the options with which the complex was repaired.
+RepairOptions make_mesh(process::Process& process, const MeshArguments& arguments, files::ComplexInput& input,
+                        Stages& stages, report::MeshRun& run);
+
+/// Makes the files of a run's steps, if requested. They appear when they are committed.
+std::unique_ptr<process::StagedFile> staged_trace(process::Process& process, const MeshArguments& arguments,
+                                                  const Trace& trace);
+
+/// Puts the file's name before each line that has none, because a quiet run does not print it elsewhere.
+std::string each_line_of(const std::string& file, const std::string& text);
+
+}  // namespace collarmesh::command

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <filesystem>
+#include <utility>
+#include <vector>
+
+namespace collarmesh {
+
+/// The replacement of files by complete ones from temporary places on the same disk: either all are replaced,
+/// or none. Whoever uses it removes the temporary files, also those that remain after a failure.
+class Replacement {
+ public:
+  struct Move {
+    std::filesystem::path from, to;
+    std::filesystem::path kept;  ///< where the file that is replaced stays meanwhile; empty: nowhere, because
+                                 ///< there is none or because this is the only move
+  };
+
+  Replacement() = default;
+  explicit Replacement(std::vector<Move> moves) : moves_(std::move(moves)) {}
+
+  /// Gives each file the mode and, where permitted, the owner of the file that it replaces, and flushes it to
+  /// the disk. Throws WriteError.
+  void prepare() const;
+  /// Moves the files to their places; returns null. If a move fails, returns it, with the reason in `errno`;
+  /// then the moves before it have to be undone. Allocates nothing.
+  const Move* carry_out();
+  /// Undoes the completed moves, also those of a `carry_out` that has not returned. Returns whether all
+  /// previous files are back in their places. Allocates nothing.
+  bool undo() noexcept;
+  /// Makes completed moves final: they are not undone any more. Flushes their folders, too.
+  void settle();
+
+ private:
+  std::vector<Move> moves_;
+  std::size_t done_ = 0;  // number of moves that are completed
+};
+
+}  // namespace collarmesh
