@@ -4,20 +4,12 @@
   <context>
     <name>App::Property</name>
     <message>
-      <source>Another number gives another mesh of the same quality</source>
-      <translation>Eine andere Zahl ergibt ein anderes Netz gleicher Güte</translation>
+      <source>Bound on circumradius / shortest edge of a tetrahedron that is not thin</source>
+      <translation>Schranke für Umkugelradius / kürzeste Kante eines Tetraeders, das nicht dünn ist</translation>
     </message>
     <message>
-      <source>As few elements as the sizes ask for, thin ones in thin places; else the bound on circumradius / shortest edge holds everywhere outside collars</source>
-      <translation>So wenige Elemente, wie die Größen verlangen, dünne an dünnen Stellen; sonst gilt die Schranke für Umkugelradius / kürzeste Kante überall außerhalb der Kragen</translation>
-    </message>
-    <message>
-      <source>Bound on circumradius / shortest edge</source>
-      <translation>Schranke für Umkugelradius / kürzeste Kante</translation>
-    </message>
-    <message>
-      <source>Bound on dihedral angles in collars</source>
-      <translation>Schranke für Diederwinkel in Kragen</translation>
+      <source>Bound on dihedral angles in collars, the tetrahedra that touch a crease</source>
+      <translation>Schranke für Diederwinkel in Kragen, den Tetraedern, die einen Falz berühren</translation>
     </message>
     <message>
       <source>Boundary layers along faces</source>
@@ -28,20 +20,8 @@
       <translation>Dimension der Elemente. 3D: Tetraeder in Volumenkörpern; 2D: Dreiecke auf Flächen, für Schalen; 1D: Linien auf Kanten, für Balken; From Shape: danach, was die Form umschließt</translation>
     </message>
     <message>
-      <source>Each element has a node that is on no face</source>
-      <translation>Jedes Element hat einen Knoten, der auf keiner Fläche liegt</translation>
-    </message>
-    <message>
-      <source>Edges and faces that meet below it get a collar</source>
-      <translation>Kanten und Flächen, die sich unter einem kleineren Winkel treffen, bekommen einen Kragen</translation>
-    </message>
-    <message>
-      <source>Elements across thin parts; 0: any</source>
-      <translation>Elemente quer durch dünne Teile; 0: beliebig viele</translation>
-    </message>
-    <message>
-      <source>Elements on a full circle; 0: any</source>
-      <translation>Elemente auf einem vollen Kreis; 0: beliebig viele</translation>
+      <source>Divide the prisms and pyramids of layers into tetrahedra</source>
+      <translation>Die Prismen und Pyramiden von Schichten in Tetraeder teilen</translation>
     </message>
     <message>
       <source>Faces and edges near which the size holds</source>
@@ -52,8 +32,8 @@
       <translation>Flächen, die Schichten bekommen; keine: alle äußeren Flächen. Mit einem Körper unter ihnen nur in diesem Körper</translation>
     </message>
     <message>
-      <source>Faces this near to a plane are planar, relative to the diagonal; 0: 1e-6</source>
-      <translation>So nah an einer Ebene gilt eine Fläche als eben, relativ zur Diagonale; 0: 1e-6</translation>
+      <source>Features that meet below this angle form a crease and get a collar</source>
+      <translation>Merkmale, die sich unter einem kleineren Winkel treffen, bilden einen Falz und bekommen einen Kragen</translation>
     </message>
     <message>
       <source>Finer parts of the mesh</source>
@@ -64,16 +44,12 @@
       <translation>Jedem Körper eigene Knoten geben, wo Körper sich berühren, für Kontakt; sonst sind sie verklebt</translation>
     </message>
     <message>
-      <source>Give up after this many seconds; 0: never</source>
-      <translation>Nach so vielen Sekunden aufgeben; 0: nie</translation>
-    </message>
-    <message>
       <source>Groups of the mesh</source>
       <translation>Gruppen des Netzes</translation>
     </message>
     <message>
-      <source>Growth of size per unit length away from finer ones; 0: any</source>
-      <translation>Wachstum der Größe je Längeneinheit, von feineren Stellen weg; 0: beliebig</translation>
+      <source>Growth of size per unit length away from finer features; 0: unlimited</source>
+      <translation>Wachstum der Größe je Längeneinheit, von feineren Merkmalen weg; 0: unbegrenzt</translation>
     </message>
     <message>
       <source>Growth of size per unit length away from there</source>
@@ -96,16 +72,20 @@
       <translation>Höhe der ersten Schicht; 0: ein Zehntel der Kanten dort</translation>
     </message>
     <message>
-      <source>Improve elements with smaller dihedral angles; 0: 15, 20 or 30 degrees by the level of improvement</source>
-      <translation>Elemente mit kleineren Diederwinkeln verbessern; 0: 15, 20 oder 30 Grad je nach Stufe der Verbesserung</translation>
+      <source>Improve tetrahedra with smaller dihedral angles; 0: 15, 20, 30 by level</source>
+      <translation>Tetraeder mit kleineren Diederwinkeln verbessern; 0: 15, 20, 30 je nach Stufe</translation>
     </message>
     <message>
       <source>Inner faces whose nodes are made twice, one for each side, as for cracks: Face7</source>
       <translation>Flächen im Innern, deren beide Seiten eigene Knoten bekommen, wie bei Rissen: Face7</translation>
     </message>
     <message>
-      <source>Largest distance of faces and edges of the mesh from the shape; 0: 1/10 of the size, at most 1/200 of the diagonal (2nd order: 1/550)</source>
-      <translation>Größter Abstand der Flächen und Kanten des Netzes von der Form; 0: 1/10 der Größe, höchstens 1/200 der Diagonale (2. Ordnung: 1/550)</translation>
+      <source>Insert nodes so that no tetrahedron has all corners on boundaries, interfaces or internal patches</source>
+      <translation>Knoten einfügen, sodass kein Tetraeder alle Ecken auf Rändern, Grenzflächen oder inneren Flächen hat</translation>
+    </message>
+    <message>
+      <source>Largest distance from smooth surfaces and curves; 0: 1/10 of the size, less where the part is thin</source>
+      <translation>Größter Abstand von glatten Flächen und Kurven; 0: 1/10 der Größe, weniger, wo das Teil dünn ist</translation>
     </message>
     <message>
       <source>Length of the box along its x axis</source>
@@ -116,8 +96,12 @@
       <translation>Aus einer offenen Fläche ein Volumen machen, indem ihre Löcher gefüllt werden</translation>
     </message>
     <message>
-      <source>Never ask for less than this; 0: none</source>
-      <translation>Nie weniger als dies verlangen; 0: keine Grenze</translation>
+      <source>Maximum wall time in seconds, from reading to writing; 0: none</source>
+      <translation>Längste Dauer in Sekunden, vom Lesen bis zum Schreiben; 0: unbegrenzt</translation>
+    </message>
+    <message>
+      <source>Neighbouring facets that lie within this of one plane form one patch, relative to the diagonal; 0: 1e-06</source>
+      <translation>Benachbarte Facetten, die einer Ebene so nahe liegen, bilden eine Fläche, relativ zur Diagonale; 0: 1e-06</translation>
     </message>
     <message>
       <source>Number of layers</source>
@@ -136,8 +120,8 @@
       <translation>Paare von Seiten, die dieselben Knoten und Dreiecke bekommen: x, y, z, Face1=Face2, Face1=Face2:rotation,z,60</translation>
     </message>
     <message>
-      <source>Points closer than this are one, relative to the diagonal; 0: 1e-9</source>
-      <translation>Punkte, die näher beieinander liegen, sind einer, relativ zur Diagonale; 0: 1e-9</translation>
+      <source>Points closer than this are merged, relative to the diagonal; 0: 1e-09</source>
+      <translation>Punkte, die näher beieinander liegen, werden einer, relativ zur Diagonale; 0: 1e-09</translation>
     </message>
     <message>
       <source>Radius of the cylinder</source>
@@ -152,8 +136,24 @@
       <translation>Verhältnis der Höhen einer Schicht und der darunter, 1 bis 10</translation>
     </message>
     <message>
-      <source>Removal of slivers: 0 none, 1 quick, 2 good, 3 best</source>
-      <translation>Entfernen flacher Elemente: 0 keines, 1 schnell, 2 gut, 3 am besten</translation>
+      <source>Refine where smooth surfaces and edges curve: N elements per full circle; 0: none</source>
+      <translation>Verfeinern, wo glatte Flächen und Kanten sich krümmen: N Elemente je vollem Kreis; 0: nicht</translation>
+    </message>
+    <message>
+      <source>Refine where surfaces face each other across a thin part: N elements between them; 0: none</source>
+      <translation>Verfeinern, wo Flächen einander quer durch einen dünnen Teil gegenüberliegen: N Elemente dazwischen; 0: nicht</translation>
+    </message>
+    <message>
+      <source>Removal of slivers: 0 none; 1 quick: angles below 15 degrees, vertices stay; 2 good: below 20; 3 best: below 30</source>
+      <translation>Entfernen flacher Elemente: 0 keines; 1 schnell: Winkel unter 15 Grad, Knoten bleiben; 2 gut: unter 20; 3 am besten: unter 30</translation>
+    </message>
+    <message>
+      <source>Repair treats features smaller than this as noise, relative to the diagonal; 0: 1e-05</source>
+      <translation>Die Reparatur behandelt kleinere Merkmale als Rauschen, relativ zur Diagonale; 0: 1e-05</translation>
+    </message>
+    <message>
+      <source>Seed of the pseudo-random offsets</source>
+      <translation>Startwert der Pseudozufallszahlen</translation>
     </message>
     <message>
       <source>Sizes and layers of collarmesh</source>
@@ -164,16 +164,16 @@
       <translation>Größen in Kugeln, Quadern und Zylindern und nahe Flächen und Kanten</translation>
     </message>
     <message>
+      <source>Smallest target edge length, whatever else asks for less; 0: none</source>
+      <translation>Kleinste angestrebte Kantenlänge, was auch immer weniger verlangt; 0: keine</translation>
+    </message>
+    <message>
+      <source>Target edge length everywhere; 0: 1/20 of the diagonal</source>
+      <translation>Angestrebte Kantenlänge überall; 0: 1/20 der Diagonale</translation>
+    </message>
+    <message>
       <source>Target edge length inside</source>
       <translation>Angestrebte Kantenlänge darin</translation>
-    </message>
-    <message>
-      <source>Target edge length; 0: 1/20 of the diagonal</source>
-      <translation>Angestrebte Kantenlänge; 0: 1/20 der Diagonale</translation>
-    </message>
-    <message>
-      <source>Tetrahedra in place of prisms in boundary layers</source>
-      <translation>Tetraeder anstelle von Prismen in Randschichten</translation>
     </message>
     <message>
       <source>The group of each face</source>
@@ -204,12 +204,12 @@
       <translation>Was mit Dreiecken der Form geschieht, die sich schneiden oder Löcher lassen. Automatic: reparieren; None: ablehnen; Wrap: wo die Reparatur scheitert, eine geschlossene Hülle um alles vernetzen</translation>
     </message>
     <message>
-      <source>Where the shape has to be repaired, features below this are noise, relative to the diagonal; 0: 1e-5</source>
-      <translation>Wo die Form repariert werden muss, sind kleinere Merkmale Rauschen, relativ zur Diagonale; 0: 1e-5</translation>
-    </message>
-    <message>
       <source>Width of the box along its y axis</source>
       <translation>Breite des Quaders entlang seiner y-Achse</translation>
+    </message>
+    <message>
+      <source>on: as few tetrahedra as the sizes ask for, thin ones in thin places; off: the bound on circumradius / shortest edge holds everywhere outside collars</source>
+      <translation>an: so wenige Tetraeder, wie die Größen verlangen, dünne an dünnen Stellen; aus: die Schranke für Umkugelradius / kürzeste Kante gilt überall außerhalb der Kragen</translation>
     </message>
   </context>
   <context>
@@ -295,10 +295,6 @@
       <translation>Alle Schichten zusammen sind {height} mm hoch.</translation>
     </message>
     <message>
-      <source>Another number gives another mesh of the same quality</source>
-      <translation>Eine andere Zahl ergibt ein anderes Netz gleicher Güte</translation>
-    </message>
-    <message>
       <source>Another panel is open; close it first.</source>
       <translation>Ein anderes Aufgabenfenster ist offen; schließen Sie es zuerst.</translation>
     </message>
@@ -329,10 +325,6 @@
     <message>
       <source>Ask for thin layers of prisms along the selected faces, for flow, heat and currents at walls</source>
       <translation>Dünne Schichten aus Prismen an den gewählten Flächen verlangen, für Strömung, Wärme und Ströme an Wänden</translation>
-    </message>
-    <message>
-      <source>Bound on dihedral angles in collars</source>
-      <translation>Schranke für Diederwinkel in Kragen</translation>
     </message>
     <message>
       <source>Boundary layers</source>
@@ -403,10 +395,6 @@
       <translation>Jeder Körper hat sein Volumen, kein Element ist umgestülpt</translation>
     </message>
     <message>
-      <source>Edges and faces that meet at less than this get a collar</source>
-      <translation>Kanten und Flächen, die sich unter einem kleineren Winkel treffen, bekommen einen Kragen</translation>
-    </message>
-    <message>
       <source>Edit mesh</source>
       <translation>Netz bearbeiten</translation>
     </message>
@@ -443,10 +431,6 @@
       <translation>Elemente auf einem vollen Kreis</translation>
     </message>
     <message>
-      <source>Elements with smaller dihedral angles are improved; 0: 15, 20 or 30 degrees by the level of improvement</source>
-      <translation>Elemente mit kleineren Diederwinkeln werden verbessert; 0: 15, 20 oder 30 Grad je nach Stufe der Verbesserung</translation>
-    </message>
-    <message>
       <source>End the run; the mesh stays as it is</source>
       <translation>Den Lauf beenden; das Netz bleibt, wie es ist</translation>
     </message>
@@ -481,10 +465,6 @@
     <message>
       <source>Faces of {part}</source>
       <translation>Flächen von {part}</translation>
-    </message>
-    <message>
-      <source>Faces this near to a plane are planar, relative to the diagonal; 0: 1e-6</source>
-      <translation>So nah an einer Ebene gilt eine Fläche als eben, relativ zur Diagonale; 0: 1e-6</translation>
     </message>
     <message>
       <source>Faces to split</source>
@@ -539,10 +519,6 @@
       <translation>Entweder eine Zahl von Elementen oder einen Fehler angeben, größer als 0.</translation>
     </message>
     <message>
-      <source>Give up after this many seconds; 0: never</source>
-      <translation>Nach so vielen Sekunden aufgeben; 0: nie</translation>
-    </message>
-    <message>
       <source>Gmsh ignores these sizes and layers: {names}</source>
       <translation>Gmsh beachtet diese Größen und Schichten nicht: {names}</translation>
     </message>
@@ -563,10 +539,6 @@
       <translation>Wachstum der Größe</translation>
     </message>
     <message>
-      <source>Growth of the size by unit of length away from finer places; 0: any</source>
-      <translation>Wachstum der Größe je Längeneinheit, von feineren Stellen weg; 0: beliebig</translation>
-    </message>
-    <message>
       <source>Hand over to Gmsh</source>
       <translation>An Gmsh übergeben</translation>
     </message>
@@ -577,10 +549,6 @@
     <message>
       <source>Holds within</source>
       <translation>Gilt bis zum Abstand</translation>
-    </message>
-    <message>
-      <source>How far faces and edges of elements may be from curved faces; 0: a tenth of the size, at most 1/200 of the diagonal (second order: 1/550)</source>
-      <translation>Wie weit Flächen und Kanten der Elemente von gekrümmten Flächen abweichen dürfen; 0: ein Zehntel der Größe, höchstens 1/200 der Diagonale (zweite Ordnung: 1/550)</translation>
     </message>
     <message>
       <source>How much time goes into removing flat elements</source>
@@ -651,10 +619,6 @@
       <translation>Aus dem gewählten Volumenkörper, der Fläche oder dem Drahtzug ein geprüftes Netz mit Gruppen für die Flächen machen, oder das vorhandene öffnen</translation>
     </message>
     <message>
-      <source>Make a volume of a surface that is open, by filling its holes</source>
-      <translation>Aus einer offenen Fläche ein Volumen machen, indem ihre Löcher gefüllt werden</translation>
-    </message>
-    <message>
       <source>Make the mesh finer where the error of the stresses in a result is large, and coarser where it is small</source>
       <translation>Das Netz verfeinern, wo der Fehler der Spannungen in einem Ergebnis groß ist, und vergröbern, wo er klein ist</translation>
     </message>
@@ -695,14 +659,6 @@
       <translation>Die Elemente auf Flächen, Kanten oder in Körpern im ausgewählten Netz von collarmesh benennen</translation>
     </message>
     <message>
-      <source>Never ask for smaller elements than this; 0: no limit</source>
-      <translation>Nie kleinere Elemente verlangen; 0: keine Grenze</translation>
-    </message>
-    <message>
-      <source>No element has all its corners on faces</source>
-      <translation>Kein Element hat alle Ecken auf Flächen</translation>
-    </message>
-    <message>
       <source>No mesh is made; the list says why.</source>
       <translation>Es ist kein Netz entstanden; die Liste sagt, warum.</translation>
     </message>
@@ -717,14 +673,6 @@
     <message>
       <source>Nodes off their face ({count})</source>
       <translation>Knoten neben ihrer Fläche ({count})</translation>
-    </message>
-    <message>
-      <source>Number of elements across thin places of the shape; 0: any number</source>
-      <translation>Dünne Stellen der Form bekommen so viele Elemente quer hindurch; 0: beliebig viele</translation>
-    </message>
-    <message>
-      <source>Number of elements on a full circle of curved faces; 0: any number</source>
-      <translation>Gekrümmte Flächen bekommen so viele Elemente auf einem vollen Kreis; 0: beliebig viele</translation>
     </message>
     <message>
       <source>Number of elements to aim for</source>
@@ -757,10 +705,6 @@
     <message>
       <source>Periodic faces have the same nodes, edges and triangles</source>
       <translation>Periodische Flächen haben dieselben Knoten, Kanten und Dreiecke</translation>
-    </message>
-    <message>
-      <source>Points closer than this are one, relative to the diagonal; 0: 1e-9</source>
-      <translation>Punkte, die näher beieinander liegen, sind einer, relativ zur Diagonale; 0: 1e-9</translation>
     </message>
     <message>
       <source>Poisson's ratio {text} of the material is no number: correct it.</source>
@@ -953,10 +897,6 @@
     <message>
       <source>The analysis of {label} has no result with displacements: solve it first.</source>
       <translation>Die Analyse von {label} hat kein Ergebnis mit Verschiebungen: erst lösen.</translation>
-    </message>
-    <message>
-      <source>The bound that the elements keep; with 2 or more, meshing always ends</source>
-      <translation>Die Schranke, die die Elemente einhalten; ab 2 endet der Lauf immer</translation>
     </message>
     <message>
       <source>The first layer is {height} mm high.</source>

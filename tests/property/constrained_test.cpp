@@ -2,6 +2,7 @@
 // that begin with them.
 #include "constrained/constrained_tetrahedra.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,6 +22,7 @@
 #include "collarmesh/plc_builder.h"
 #include "delaunay/predicates.h"
 #include "support/acute_shapes.h"
+#include "support/expected_counts.h"
 #include "support/shapes.h"
 
 namespace collarmesh::constrained_test {
@@ -216,7 +218,7 @@ TEST(ConstrainedStart, MeshesWhatIsFarThinnerThanTheSize) {
   for (const double height : {0.01, 0.001}) {
     const SoupPipelineResult made = begun_constrained({thin_wave(height)}, 0.1);
     ASSERT_FALSE(made.result.mesh.tets.empty()) << height;
-    EXPECT_LT(made.result.mesh.tets.size(), 10'000U) << height;
+    expect_count(fmt::format("constrained/wave {} high", height), made.result.mesh.tets.size());
     for (const Finding& finding : made.check.findings)  // angles may miss their bounds, nothing else
       EXPECT_TRUE(finding.guarantee == "thin_angles" || finding.guarantee == "collar_dihedral")
           << finding.message;
@@ -230,7 +232,7 @@ TEST(ConstrainedStart, IsChosenForThinShells) {
     const SoupPipelineResult made = run_pipeline(std::vector{ball}, PipelineOptions());
     EXPECT_TRUE(made.guarantees_hold()) << made.missed();
     EXPECT_EQ(made.result.statistics.vertices_inserted, 0U) << thickness;
-    EXPECT_LT(made.result.mesh.tets.size(), 6'000U) << thickness;
+    expect_count(fmt::format("constrained/shell {} thick", thickness), made.result.mesh.tets.size());
   }
 }
 
@@ -242,7 +244,7 @@ TEST(ConstrainedStart, IsNotForCylindersThatNearlyTouch) {
   const SoupPipelineResult made = run_pipeline(std::vector{joined(one, other)}, options);
   EXPECT_TRUE(made.guarantees_hold()) << made.missed();
   EXPECT_GT(made.result.statistics.vertices_inserted, 0U);
-  EXPECT_LT(made.result.mesh.tets.size(), 8'000U);
+  expect_count("constrained/nearly touching cylinders", made.result.mesh.tets.size());
 }
 
 TEST(ConstrainedStart, StopsWhenProgressSaysSo) {
@@ -347,7 +349,7 @@ TEST(ThinFeatures, AreKeptWhereTheyAreBodies) {
     EXPECT_TRUE(made.guarantees_hold()) << h << " " << made.missed();
     ASSERT_EQ(made.check.region_volumes.size(), 3U) << h;
     EXPECT_NEAR(std::min(made.check.region_volumes[1], made.check.region_volumes[2]), 2 * h / 3, 0.05 * h);
-    EXPECT_LT(made.result.mesh.tets.size(), 7'000U) << h;
+    expect_count(fmt::format("thin features/flake of {}", h), made.result.mesh.tets.size());
   }
 }
 

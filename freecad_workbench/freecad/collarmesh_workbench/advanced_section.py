@@ -22,7 +22,7 @@ class Row:
     unit: str = ""  # "mm" or "deg"
     zero: str = ""  # text shown for 0
     choices: tuple = ()  # texts by value: numbers from 0, or the property's own words
-    tip: str = ""  # tool tip; empty: the property's text
+    tip: str = ""  # tool tip; empty: the property's text, translated
 
 
 def sections():
@@ -38,32 +38,20 @@ def sections():
     }
     return (
         (translate("collarmesh", "Sizes"), (
-            Row("CharacteristicLengthMin", translate("collarmesh", "Smallest size"), "mm", no_limit,
-                tip=translate("collarmesh", "Never ask for smaller elements than this; 0: no limit")),
-            Row("MeshSizeFromCurvature", translate("collarmesh", "Elements on a full circle"), zero=any_number,
-                tip=translate("collarmesh", "Number of elements on a full circle of curved faces; 0: any number")),
-            Row("ElementsAcrossGap", translate("collarmesh", "Elements across gaps"), zero=any_number,
-                tip=translate("collarmesh", "Number of elements across thin places of the shape; 0: any number")),
-            Row("Gradation", translate("collarmesh", "Growth of the size"), zero=any_growth,
-                tip=translate("collarmesh", "Growth of the size by unit of length away from finer places; 0: any")),
+            Row("CharacteristicLengthMin", translate("collarmesh", "Smallest size"), "mm", no_limit),
+            Row("MeshSizeFromCurvature", translate("collarmesh", "Elements on a full circle"), zero=any_number),
+            Row("ElementsAcrossGap", translate("collarmesh", "Elements across gaps"), zero=any_number),
+            Row("Gradation", translate("collarmesh", "Growth of the size"), zero=any_growth),
         )),
         (translate("collarmesh", "Shape"), (
-            Row("SurfaceDistance", translate("collarmesh", "Largest distance from the shape"), "mm", default,
-                tip=translate("collarmesh", "How far faces and edges of elements may be from curved faces; 0: a tenth "
-                                            "of the size, at most 1/200 of the diagonal (second order: 1/550)")),
-            Row("CreaseAngle", translate("collarmesh", "Sharp below this angle"), "deg", default,
-                tip=translate("collarmesh", "Edges and faces that meet at less than this get a collar")),
-            Row("CollarAngle", translate("collarmesh", "Largest angle in collars"), "deg", default,
-                tip=translate("collarmesh", "Bound on dihedral angles in collars")),
-            Row("PlanarTolerance", translate("collarmesh", "Tolerance of planes"), zero=default,
-                tip=translate("collarmesh", "Faces this near to a plane are planar, "
-                                            "relative to the diagonal; 0: 1e-6")),
-            Row("WeldTolerance", translate("collarmesh", "Tolerance of points"), zero=default,
-                tip=translate("collarmesh", "Points closer than this are one, relative to the diagonal; 0: 1e-9")),
+            Row("SurfaceDistance", translate("collarmesh", "Largest distance from the shape"), "mm", default),
+            Row("CreaseAngle", translate("collarmesh", "Sharp below this angle"), "deg", default),
+            Row("CollarAngle", translate("collarmesh", "Largest angle in collars"), "deg", default),
+            Row("PlanarTolerance", translate("collarmesh", "Tolerance of planes"), zero=default),
+            Row("WeldTolerance", translate("collarmesh", "Tolerance of points"), zero=default),
             Row("Repair", translate("collarmesh", "Repair of the shape"), choices=repair),
             Row("RepairTolerance", translate("collarmesh", "Tolerance of repair"), zero=default),
-            Row("FillHoles", translate("collarmesh", "Fill holes of open surfaces"),
-                tip=translate("collarmesh", "Make a volume of a surface that is open, by filling its holes")),
+            Row("FillHoles", translate("collarmesh", "Fill holes of open surfaces")),
             Row("SplitFaces", translate("collarmesh", "Faces to split"), zero=none,
                 tip=translate("collarmesh", "Inner faces whose nodes are made twice, one for each side, as for cracks; "
                                             "their names, with spaces between them")),
@@ -74,20 +62,14 @@ def sections():
         (translate("collarmesh", "Quality"), (
             Row("ImproveLevel", translate("collarmesh", "Improvement"), choices=preferences.improve_levels(),
                 tip=translate("collarmesh", "How much time goes into removing flat elements")),
-            Row("MinDihedralAngle", translate("collarmesh", "Improve below this angle"), "deg", default,
-                tip=translate("collarmesh", "Elements with smaller dihedral angles are improved; 0: 15, 20 or 30 "
-                                            "degrees by the level of improvement")),
+            Row("MinDihedralAngle", translate("collarmesh", "Improve below this angle"), "deg", default),
             Row("Coarsen", translate("collarmesh", "As few elements as the sizes ask for")),
-            Row("InteriorNode", translate("collarmesh", "A node inside of each element"),
-                tip=translate("collarmesh", "No element has all its corners on faces")),
-            Row("RadiusEdgeRatio", translate("collarmesh", "Circumradius / shortest edge"),
-                tip=translate("collarmesh", "The bound that the elements keep; with 2 or more, meshing always ends")),
+            Row("InteriorNode", translate("collarmesh", "A node inside of each element")),
+            Row("RadiusEdgeRatio", translate("collarmesh", "Circumradius / shortest edge")),
         )),
         (translate("collarmesh", "Run"), (
-            Row("Seed", translate("collarmesh", "Seed"),
-                tip=translate("collarmesh", "Another number gives another mesh of the same quality")),
-            Row("TimeLimit", translate("collarmesh", "Time limit in seconds"), zero=none,
-                tip=translate("collarmesh", "Give up after this many seconds; 0: never")),
+            Row("Seed", translate("collarmesh", "Seed")),
+            Row("TimeLimit", translate("collarmesh", "Time limit in seconds"), zero=none),
         )),
     )
 
@@ -142,7 +124,7 @@ class AdvancedSection(QtGui.QWidget):
     def _add(self, rows, row):
         widget, read = self._widget(row)
         widget.setObjectName("collarmesh_" + row.name)
-        widget.setToolTip(row.tip or self.object.getDocumentationOfProperty(row.name))
+        widget.setToolTip(row.tip or self._text_of(row.name))
         self._readers[row.name] = row.text, read
         if isinstance(widget, QtGui.QCheckBox):
             widget.setText(row.text)
@@ -150,6 +132,11 @@ class AdvancedSection(QtGui.QWidget):
             return
         rows.addRow(row.text, widget)
         rows.labelForField(widget).setToolTip(widget.toolTip())
+
+    def _text_of(self, name):
+        """Returns the text of a property, translated."""
+        texts = (text for _, other, _, _, text in mesh_properties.PROPERTIES if other == name)
+        return translate("App::Property", next(texts, self.object.getDocumentationOfProperty(name)))
 
     def _widget(self, row):
         """Returns the widget, and a function that reads its value."""

@@ -1,54 +1,60 @@
 """The properties of mesh objects, and the Settings that they represent. Works without the GUI."""
 
+import dataclasses
 import re
 
 from . import compatibility, layer_objects, preferences, size_objects
 from .objects import type_of, value_of
+from .option_table import OPTIONS
 from .program import MesherError, Settings
 from .translations import doc, translate
 
 TYPE = "Fem::FemMeshCollarmesh"  # the type that FEM's tools check
 
-# First come the names that FreeCAD's Gmsh object has, too, and that macros use. Rows: type, name, field of
-# Settings, group in the property editor, text.
+# First come the names that FreeCAD's Gmsh object has, too, and that macros use. Rows: name, field of Settings, group in
+# the property editor, and the text if it is not that of the option.
 SIZES, FEATURES, QUALITY, RUN = "Sizes", "Features", "Quality", "Run"
-PROPERTIES = (
-    ("Length", "CharacteristicLengthMax", "size", SIZES, doc("Target edge length; 0: 1/20 of the diagonal")),
-    ("Length", "CharacteristicLengthMin", "size_min", SIZES, doc("Never ask for less than this; 0: none")),
-    ("Integer", "MeshSizeFromCurvature", "elements_per_circle", SIZES, doc("Elements on a full circle; 0: any")),
-    ("Integer", "ElementsAcrossGap", "elements_across_gap", SIZES, doc("Elements across thin parts; 0: any")),
-    ("Float", "Gradation", "gradation", SIZES, doc("Growth of size per unit length away from finer ones; 0: any")),
-    ("Length", "SurfaceDistance", "distance", FEATURES,
-     doc("Largest distance of faces and edges of the mesh from the shape; 0: 1/10 of the size, at most 1/200 "
-         "of the diagonal (2nd order: 1/550)")),
-    ("Angle", "CreaseAngle", "crease_angle", FEATURES, doc("Edges and faces that meet below it get a collar")),
-    ("Angle", "CollarAngle", "collar_angle", FEATURES, doc("Bound on dihedral angles in collars")),
-    ("Float", "PlanarTolerance", "planar_tolerance", FEATURES,
-     doc("Faces this near to a plane are planar, relative to the diagonal; 0: 1e-6")),
-    ("Float", "WeldTolerance", "weld", FEATURES,
-     doc("Points closer than this are one, relative to the diagonal; 0: 1e-9")),
-    ("Float", "RepairTolerance", "repair_tolerance", FEATURES,
-     doc("Where the shape has to be repaired, features below this are noise, relative to the diagonal; 0: 1e-5")),
-    ("Bool", "FillHoles", "fill_holes", FEATURES,
-     doc("Make a volume of a surface that is open, by filling its holes")),
-    ("Bool", "KeepApart", "keep_apart", FEATURES,
+ROWS = (
+    ("CharacteristicLengthMax", "size", SIZES),
+    ("CharacteristicLengthMin", "size_min", SIZES),
+    ("MeshSizeFromCurvature", "elements_per_circle", SIZES),
+    ("ElementsAcrossGap", "elements_across_gap", SIZES),
+    ("Gradation", "gradation", SIZES),
+    ("SurfaceDistance", "distance", FEATURES),
+    ("CreaseAngle", "crease_angle", FEATURES),
+    ("CollarAngle", "collar_angle", FEATURES),
+    ("PlanarTolerance", "planar_tolerance", FEATURES),
+    ("WeldTolerance", "weld", FEATURES),
+    ("RepairTolerance", "repair_tolerance", FEATURES),
+    ("FillHoles", "fill_holes", FEATURES, doc("Make a volume of a surface that is open, by filling its holes")),
+    ("KeepApart", "keep_apart", FEATURES,
      doc("Give each solid nodes of its own where solids touch, for contact; otherwise they are glued")),
-    ("StringList", "SplitFaces", "split", FEATURES,
+    ("SplitFaces", "split", FEATURES,
      doc("Inner faces whose nodes are made twice, one for each side, as for cracks: Face7")),
-    ("StringList", "PeriodicFaces", "periodic", FEATURES,
+    ("PeriodicFaces", "periodic", FEATURES,
      doc("Pairs of sides that get the same nodes and triangles: x, y, z, Face1=Face2, Face1=Face2:rotation,z,60")),
-    ("Bool", "LayersAsTetrahedra", "layers_tets", QUALITY, doc("Tetrahedra in place of prisms in boundary layers")),
-    ("Bool", "InteriorNode", "interior_node", QUALITY, doc("Each element has a node that is on no face")),
-    ("Bool", "Coarsen", "coarsen", QUALITY,
-     doc("As few elements as the sizes ask for, thin ones in thin places; else the bound on circumradius / "
-         "shortest edge holds everywhere outside collars")),
-    ("Float", "RadiusEdgeRatio", "radius_edge", QUALITY, doc("Bound on circumradius / shortest edge")),
-    ("Integer", "ImproveLevel", "improve", QUALITY, doc("Removal of slivers: 0 none, 1 quick, 2 good, 3 best")),
-    ("Angle", "MinDihedralAngle", "min_dihedral", QUALITY,
-     doc("Improve elements with smaller dihedral angles; 0: 15, 20 or 30 degrees by the level of improvement")),
-    ("Integer", "Seed", "seed", RUN, doc("Another number gives another mesh of the same quality")),
-    ("Float", "TimeLimit", "time_limit", RUN, doc("Give up after this many seconds; 0: never")),
+    ("LayersAsTetrahedra", "layers_tets", QUALITY),
+    ("InteriorNode", "interior_node", QUALITY),
+    ("Coarsen", "coarsen", QUALITY),
+    ("RadiusEdgeRatio", "radius_edge", QUALITY),
+    ("ImproveLevel", "improve", QUALITY),
+    ("MinDihedralAngle", "min_dihedral", QUALITY),
+    ("Seed", "seed", RUN),
+    ("TimeLimit", "time_limit", RUN),
 )
+KIND_OF_UNIT = {"length": "Length", "degrees": "Angle"}
+KIND_OF_TYPE = {int: "Integer", float: "Float", bool: "Bool", list: "StringList"}
+TYPE_OF_FIELD = {field.name: field.type for field in dataclasses.fields(Settings)}
+
+
+def _property(name, field, group, text=""):
+    """Returns a row of PROPERTIES."""
+    option = OPTIONS.get(field)
+    kind = KIND_OF_UNIT.get(option.unit if option else "") or KIND_OF_TYPE[TYPE_OF_FIELD[field]]
+    return kind, name, field, group, text or option.text
+
+
+PROPERTIES = tuple(_property(*row) for row in ROWS)  # rows: type, name, field of Settings, group, text
 
 ORDERS = ["1st", "2nd"]
 DIMENSIONS = ["From Shape", "1D", "2D", "3D"]  # the same as in Gmsh's object

@@ -10,13 +10,13 @@ import pathlib
 from PySide import QtCore
 
 from . import compatibility, contacts, inputs, mesh_properties, preferences, processes, up_to_date
+from .option_table import OPTIONS
 from .program import find_program
 from .work_folder import WorkFolder
 
 WAIT = 400  # milliseconds after the last change
-COUNTING = {"--size-min", "--elements-per-circle", "--elements-across-gap", "--gradation", "--region-size",
-            "--patch-size", "--curve-size", "--distance", "--order", "--planar-tolerance", "--weld", "--repair",
-            "--repair-tolerance", "--crease-angle"}
+COUNTING = {"--region-size", "--patch-size", "--curve-size",
+            *("--" + name.replace("_", "-") for name, option in OPTIONS.items() if option.counts)}
 SHAPES = 50  # number of shapes whose answers are kept
 
 _answers = collections.deque(maxlen=SHAPES)  # (numbers of a shape, {(arguments, size field, size): answer})

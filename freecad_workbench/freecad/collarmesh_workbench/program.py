@@ -9,6 +9,7 @@ import shutil
 import subprocess
 
 from . import size_file, subshape_words
+from .option_table import OPTIONS
 from .translations import translate
 from .work_folder import WorkFolder
 
@@ -18,7 +19,8 @@ SIZES = ("size", "size_min", "elements_across_gap", "gradation",
          "solid_sizes", "face_sizes", "edge_sizes", "size_field")
 OF_ADAPTING = ("elements_per_circle", "radius_edge", "distance", "planar_tolerance", "min_dihedral", "time_limit", "improve",
                "order")
-OF_THEIR_OWN = ("improve", "order", "dimension")  # numbers whose default is not the program's
+OF_THEIR_OWN = ("improve", "order", "dimension")  # numbers that are not given to the program like others
+DEFAULTS = {"order": 2, "dimension": 0}  # where they are not the program's
 
 
 class MesherError(RuntimeError):
@@ -33,38 +35,21 @@ class Cancelled(MesherError):
     """Raised if the caller cancelled the run."""
 
 
-@dataclasses.dataclass
-class Settings:
-    """The options for the program. Lengths are millimetres and are target edge lengths; 0 leaves a value to the
-    program. Sizes by sub-shape have FreeCAD's numbers as keys: {7: 0.5} in `face_sizes` is Face7."""
+def _field(name, option):
+    """Returns the field of Settings for an option."""
+    default = DEFAULTS.get(name, option.default)
+    field = dataclasses.field(default_factory=list) if option.type is list else dataclasses.field(default=default)
+    return name, option.type, field
 
-    size: float = 0
-    size_min: float = 0
-    elements_per_circle: int = 0
-    elements_across_gap: int = 0
-    gradation: float = 0
-    radius_edge: float = 2
-    crease_angle: float = 60
-    collar_angle: float = 150
-    distance: float = 0
-    planar_tolerance: float = 0
-    weld: float = 0
-    repair_tolerance: float = 0
-    min_dihedral: float = 0
-    seed: int = 0
-    time_limit: float = 0
-    improve: int = 2
-    coarsen: bool = True
-    order: int = 2
-    dimension: int = 0  # dimension of the elements: 3 tetrahedra, 2 triangles, 1 lines; 0: from the shape
-    repair: str = "auto"  # or "none", or "wrap"
+
+@dataclasses.dataclass
+class Settings(dataclasses.make_dataclass("OfProgram", [_field(*item) for item in OPTIONS.items()])):
+    """The options for the program (option_table), and what the add-on makes of FreeCAD's own. Lengths are millimetres
+    and are target edge lengths; 0 leaves a value to the program. Dimension 0 is that of the shape. `split` and
+    `periodic` name faces as "Face7" and "Face1=Face2". Sizes by sub-shape have FreeCAD's numbers as keys: {7: 0.5} in
+    `face_sizes` is Face7."""
+
     fill_holes: bool = False  # fill holes of open surfaces; otherwise such surfaces are rejected
-    keep_apart: bool = False  # give touching solids separate nodes, for contact; if false, they share nodes
-    split: list = dataclasses.field(default_factory=list)  # faces whose sides get separate nodes: "Face7"
-    periodic: list = dataclasses.field(default_factory=list)  # pairs of periodic faces: "x", "Face1=Face2", ...
-    interior_node: bool = False  # require that each tetrahedron has a corner on no face
-    layers: list = dataclasses.field(default_factory=list)  # boundary layers: "all", "1,5:first=0.1,growth=1.2,count=3"
-    layers_tets: bool = False  # tetrahedra in place of prisms in layers
     solid_sizes: dict = dataclasses.field(default_factory=dict)
     face_sizes: dict = dataclasses.field(default_factory=dict)
     edge_sizes: dict = dataclasses.field(default_factory=dict)

@@ -1,0 +1,54 @@
+#include "support/expected_counts.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <string>
+
+namespace collarmesh::testing {
+namespace {
+
+struct ExpectedCount {
+  double count = 0, least_ratio = 0, most_ratio = 0;
+  std::string counted;  ///< a text for people
+};
+
+std::map<std::string, ExpectedCount> read_expected_counts() {
+  std::map<std::string, ExpectedCount> table;
+  std::ifstream file(COLLARMESH_CHECKOUT "/tests/expected_counts.tsv");
+  for (std::string line, key; std::getline(file, line);) {
+    if (line.empty() || line[0] == '#') continue;
+    std::istringstream row(line);
+    ExpectedCount expected;
+    std::getline(row, key, '\t');
+    row >> expected.count >> expected.least_ratio >> expected.most_ratio >> std::ws;
+    std::getline(row, expected.counted);
+    table[key] = expected;
+  }
+  return table;
+}
+
+void append_counted(const std::string& key, double count) {
+  if (const char* path = std::getenv("COLLARMESH_COUNTED"))
+    std::ofstream(path, std::ios::app) << key << '\t' << count << '\n';
+}
+
+}  // namespace
+
+void expect_count(const std::string& key, double count) {
+  static const std::map<std::string, ExpectedCount> table = read_expected_counts();
+  append_counted(key, count);
+  const auto found = table.find(key);
+  ASSERT_TRUE(found != table.end()) << "tests/expected_counts.tsv has no row " << key << "; the count is "
+                                    << count;
+  const auto& [expected, least, most, counted] = found->second;
+  EXPECT_TRUE(count >= least * expected && count <= most * expected)
+      << key << " (" << counted << "): counted " << count << ", expected " << expected << " times " << least
+      << " to " << most
+      << ". If the change is meant, put the new number in this row of tests/expected_counts.tsv";
+}
+
+}  // namespace collarmesh::testing
