@@ -86,9 +86,14 @@ std::string words_of(ExitCode code) {
   return "unknown";
 }
 
+/// Returns whether a mesh was written: meshes that no solver can use are not.
+bool has_mesh(const Result& result) {
+  return is_meshed(result.code) && result.report.is_object() && result.report.contains("mesh");
+}
+
 std::string row_of(const Result& result, std::size_t width) {
   std::string text = fmt::format("{:{}}  ", result.input, width);
-  if (is_meshed(result.code) && result.report.is_object()) {
+  if (has_mesh(result)) {
     const Json &mesh = result.report["mesh"], &seconds = result.report["seconds"];
     text += fmt::format("{:>9}  {:>8.2f}  {:>8.2f}  {:>8.2f}  ", mesh["tets"].get<std::size_t>(),
                         mesh["min_dihedral"].get<double>(), mesh["max_dihedral"].get<double>(),
@@ -96,7 +101,8 @@ std::string row_of(const Result& result, std::size_t width) {
   } else {
     text += fmt::format("{:>9}  {:>8}  {:>8}  {:>8}  ", "-", "-", "-", "-");
   }
-  return text + words_of(result.code) + "\n";
+  const bool unusable = is_meshed(result.code) && !has_mesh(result);
+  return text + (unusable ? "has no usable mesh" : words_of(result.code)) + "\n";
 }
 
 std::string table_of(const std::vector<Result>& results) {
@@ -105,8 +111,7 @@ std::string table_of(const std::vector<Result>& results) {
   std::string text = fmt::format("{:{}}  {:>9}  {:>8}  {:>8}  {:>8}  {}\n", "part", width, "tets", "smallest",
                                  "largest", "seconds", "result");
   for (const Result& result : results) text += row_of(result, width);
-  const auto meshed =
-      std::count_if(results.begin(), results.end(), [](const Result& r) { return is_meshed(r.code); });
+  const auto meshed = std::ranges::count_if(results, has_mesh);
   return text +
          fmt::format("{} of {} parts have a mesh; angles are dihedral, in degrees\n", meshed, results.size());
 }

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "check/guarantees.h"
+#include "check/layer_cells.h"
 #include "collarmesh/error.h"
 #include "collarmesh/io/interfaces_io.h"
 #include "collarmesh/partition.h"
@@ -115,20 +116,22 @@ void tell_of(const process::Console& console, const MeshArguments& arguments, co
                            io::format_of(arguments.output, arguments.output_format), run.result.mesh)));
 }
 
-}  // namespace
-
-namespace {
-
-/// Throws Stopped if the certificate found an element that no solver can use.
-void require_usable(const CheckReport& check) {
-  constexpr std::array<std::string_view, 4> unusable{guarantee::valid_arrays, guarantee::positive_volume,
-                                                     guarantee::distinct_tets, guarantee::positive_jacobian};
-  for (const Finding& finding : check.findings)
-    if (std::ranges::find(unusable, finding.guarantee) != unusable.end())
-      throw process::Stopped(
-          ExitCode::guarantee_missed,
-          fmt::format("{} Nothing was written; --keep-invalid writes the mesh all the same",
-                      finding.message));
+/// Throws Stopped if the certificate found an element that no solver can use. Prints the findings and writes
+/// the trace before.
+void require_usable(process::Process& process, const MeshArguments& arguments, const report::MeshRun& run) {
+  constexpr std::array<std::string_view, 7> unusable{guarantee::valid_arrays,  guarantee::finite_points,
+                                                     guarantee::layer_arrays,  guarantee::positive_volume,
+                                                     guarantee::distinct_tets, guarantee::positive_jacobian,
+                                                     guarantee::layer_jacobian};
+  const auto found = std::ranges::find_if(run.check.findings, [&](const Finding& finding) {
+    return std::ranges::find(unusable, finding.guarantee) != unusable.end();
+  });
+  if (found == run.check.findings.end()) return;
+  tell_of(process.console, arguments, run);
+  if (const auto trace = staged_trace(process, arguments, run.trace)) process.files.commit({trace.get()});
+  throw process::Stopped(
+      ExitCode::guarantee_missed,
+      fmt::format("{} Nothing was written; --keep-invalid writes the mesh all the same", found->message));
 }
 
 }  // namespace
@@ -147,7 +150,7 @@ ExitCode make_and_write(process::Process& process, const MeshArguments& argument
     Stages stages(process, arguments, run.times);
     stages.begin("read", 0, 0.02);
     make(stages, run);
-    if (!arguments.keep_invalid) require_usable(run.check);
+    if (!arguments.keep_invalid) require_usable(process, arguments, run);
     write_files(process, arguments, stages, run);
   }
   tell_of(process.console, arguments, run);

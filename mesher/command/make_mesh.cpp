@@ -151,7 +151,7 @@ RepairOptions make_mesh(process::Process& process, const MeshArguments& argument
   }
   if (run.result.status == MeshStatus::budget_hit) {
     note_where_it_stopped(process, run.result);
-    process.files.commit({staged_trace(process, arguments, run.trace).get()});
+    if (const auto trace = staged_trace(process, arguments, run.trace)) process.files.commit({trace.get()});
     throw process::Stopped(process::ExitCode::budget_hit, run.result.message + "; nothing was written");
   }
   if (input.has_cad()) run.result.mesh.group_names = GroupNames::cad;

@@ -167,7 +167,7 @@ void Process::catch_signals() {
   for (const int number : {SIGXFSZ, SIGPIPE}) std::signal(number, SIG_IGN);
 }
 
-/// A thread that watches a command. If the command does not end in time, ends the program.
+/// A thread that ends the program if the command does not return soon after a request to stop.
 class Process::Watcher {
  public:
   /// Starts the thread. Throws std::system_error if the system can create none.

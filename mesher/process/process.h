@@ -24,7 +24,10 @@ class Process {
   /// nothing, because destructors and libraries may need memory, too. Removes unfinished files. Makes an
   /// uncaught exception end the program in the same way, with exit code 1.
   Process();
-  ~Process() { current_ = nullptr; }
+  ~Process() {
+    Process* current = this;
+    current_.compare_exchange_strong(current, nullptr);
+  }
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
 
@@ -44,7 +47,7 @@ class Process {
 
   /// Runs a command so that an interrupt ends the program within a second, whatever the command is doing.
   /// Stages that check the flag return by themselves; other stages are abandoned, and their unfinished files
-  /// are removed.
+  /// are removed. If no thread can be created, only stages that check the flag end.
   ExitCode run_interruptible(const std::function<ExitCode()>& command);
 
  private:
@@ -61,7 +64,8 @@ class Process {
   [[gnu::constructor(101)]] static void before_all();
   [[noreturn]] static void end(ExitCode code, std::string_view message) noexcept;
 
-  /// The only static variable: handlers get no argument, so they find the object here. They use its lock-free
+  /// The only static variable: the system passes no pointer to a handler, so handlers find the object here.
+  /// They use its lock-free
   /// atomic variables and, if they end the program, its files.
   static inline std::atomic<Process*> current_{nullptr};
   static_assert(std::atomic<Process*>::is_always_lock_free);

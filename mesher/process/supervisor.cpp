@@ -38,6 +38,8 @@ std::string name_of(int number) {
 
 /// The data that child and supervisor share. Long texts are cut off.
 struct Supervisor::Shared {
+  static_assert(std::atomic<Deadline>::is_always_lock_free);  // processes share it
+
   std::atomic<int> result{running};
   std::atomic<bool> in_cad{false};
   std::atomic<Deadline> end{Deadline()};      // for the process
@@ -161,7 +163,7 @@ CadWork::CadWork(Supervisor& supervisor, std::string_view doing, std::string_vie
   if (shared == nullptr) return;
   copy(doing, shared->doing.data(), shared->doing.size());
   copy(file, shared->file.data(), shared->file.size());
-  if (!shared->end.load().exists()) shared->cad_end.store(Deadline::in(seconds));
+  if (seconds > 0 && !shared->end.load().exists()) shared->cad_end.store(Deadline::in(seconds));
   shared->in_cad.store(true);
 }
 

@@ -8,6 +8,7 @@
 
 #include "collarmesh/plc_builder.h"
 #include "support/shapes.h"
+#include "tolerance/thickness.h"
 #include "tolerance/thin_places.h"
 
 namespace collarmesh::thin_shells_test {
@@ -76,6 +77,40 @@ TEST(ThinPlaces, AreGapsAndWedges) {
   EXPECT_EQ(squares_in_thin_places(wedge, 0.05), 0);
   const PolygonSoup one = cylinder(3, 10, 72);
   EXPECT_EQ(squares_in_thin_places(build_plc(std::vector{one, translated(one, {6.01, 0, 0})}), 0.1), 0);
+}
+
+void expect_same_within(double reach, const Thickness::Opposite& any, const Thickness::Opposite& within) {
+  if (any.distance < reach) {
+    EXPECT_EQ(within.triangle, any.triangle);
+    EXPECT_EQ(within.side, any.side);
+    EXPECT_DOUBLE_EQ(within.distance, any.distance);
+  } else {
+    EXPECT_EQ(within.triangle, none);
+  }
+}
+
+TEST(Thickness, WithinAReachIsThatOfUnlimitedRays) {
+  const PolygonSoup tube =
+      joined(cylinder(1, 4, 31), inverted(translated(cylinder(0.83, 3.7, 23), {0, 0, 0.15})));
+  for (const PolygonSoup& soup : {hollow_ball(2, 0.3), tube, cone(3, 0.5, 29)}) {
+    const Plc plc = build_plc(std::vector{soup});
+    const Thickness thickness(plc);
+    Thickness::Crossings crossings;
+    std::size_t within = 0, beyond = 0;
+    for (Index t = 0; t < plc.triangles.size(); ++t)
+      for (unsigned side = 0; side < 2; ++side) {
+        const auto any = thickness.at(t, side, crossings);
+        for (const double share : {0.05, 0.3, 0.7}) {
+          const double reach = share * plc.bounds.diagonal();
+          const auto near = thickness.at(t, side, crossings, reach);
+          expect_same_within(reach, any.first, near.first);
+          expect_same_within(reach, any.apart, near.apart);
+          if (any.first.triangle != none) ++(any.first.distance < reach ? within : beyond);
+        }
+      }
+    EXPECT_GT(within, 0U);
+    EXPECT_GT(beyond, 0U);
+  }
 }
 
 }  // namespace

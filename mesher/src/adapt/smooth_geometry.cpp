@@ -88,7 +88,7 @@ class SmoothCurve {
  private:
   std::size_t end_of(Index segment) const { return (segment + 1) % points_.size(); }
 
-  /// Gives the end of an open curve the tangent with which a circle goes on.
+  /// Gives the end of an open curve the tangent of the circle through it with the next point's tangent.
   void end_like(std::size_t end, std::size_t next) {
     const Vector along = unit(points_[std::max(end, next)] - points_[std::min(end, next)]);
     bends_[end] = bends_[next];
@@ -116,6 +116,7 @@ class SmoothCurve {
       u -= change;
       if (std::fabs(change) < rounding) break;
     }
+    if (!std::isfinite(u)) return parameter_on_segment(p, a, points_[end_of(segment)]);
     return std::clamp(u, -1.0, 2.0);
   }
 
@@ -359,7 +360,8 @@ Point SmoothPatch::at(Index triangle, const Shares& s) const {
     height += 3 * mine * next * (mine * h[2 * i] + next * h[2 * i + 1]);
     sum += h[2 * i] + h[2 * i + 1];
   }
-  height += 6 * s[0] * s[1] * s[2] * sum / 4;  // the middle that makes squares exact
+  height +=
+      6 * s[0] * s[1] * s[2] * sum / 4;  // the middle coefficient with which quadratic heights are exact
   return p + std::clamp(height, -most, most) * unit(normal);
 }
 

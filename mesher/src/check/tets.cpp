@@ -65,8 +65,9 @@ void note_angles(const TetQuality& quality, CheckReport& report) {
 /// Returns by what factor the angles of a thin tet miss their bounds.
 double missed_share(const TetQuality& quality, double face_angle, double smallest) {
   const double left = 180 - std::max(quality.max_dihedral, face_angle);
-  return std::max(smallest / std::max(quality.min_dihedral, 0.0),
-                  (180 - ThinCells::largest_angle) / std::max(left, 0.0));
+  const double share = std::max(smallest / std::max(quality.min_dihedral, 0.0),
+                                (180 - ThinCells::largest_angle) / std::max(left, 0.0));
+  return std::isnan(share) ? INFINITY : share;
 }
 
 void check_shape(Index tet, const CornersOfTet& p, const TetQuality& quality, const Subject& subject,

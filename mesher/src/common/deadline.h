@@ -6,13 +6,14 @@
 
 namespace collarmesh {
 
-/// A time on the steady clock at which something must have ended; all limits of time are of this type. It
-/// fits into a lock-free atomic variable, also in memory that processes share.
+/// A time of the steady clock by which work must end; the type of all time limits. Fits into a lock-free
+/// atomic variable, also one in shared memory.
 class Deadline {
  public:
   /// Makes a deadline that never passes.
   constexpr Deadline() = default;
-  /// Returns the deadline that is this many seconds from now, at most a year; for 0, one that never passes.
+  /// Returns the deadline that is this many seconds from now, at most a year; for 0 or less, one that
+  /// never passes.
   static Deadline in(double seconds) {
     constexpr double a_year = 3e7;  // the clock's type may not hold much more
     Deadline deadline;

@@ -61,7 +61,7 @@ const Replacement::Move* Replacement::carry_out() {
     const bool kept = move.kept.empty() || keep(move.to, move.kept);
     if (kept) ++done_;
     if (kept && rename(move.from.c_str(), move.to.c_str()) == 0) continue;
-    if (kept && move.kept.empty()) --done_;  // a file with this name now belongs to another program
+    if (kept && move.kept.empty()) --done_;  // nothing of ours is there, so undo() must not remove what is
     return &move;
   }
   return nullptr;

@@ -93,9 +93,10 @@ bool RunControl::out_of_time() const {
 
 void RunControl::attempt(double share_of_time, const std::function<void()>& work) {
   if (!deadline_.exists()) return work();
-  if (deadline_.passed()) return;
+  const double remaining = deadline_.remaining();
+  if (remaining <= 0) return;
   const Execution outside = inner_;
-  of_attempt_ = std::make_unique<Watch>(Deadline::in(share_of_time * deadline_.remaining()), outside);
+  of_attempt_ = std::make_unique<Watch>(Deadline::in(share_of_time * remaining), outside);
   inner_.cancel = &of_attempt_->flag();
   const auto restore = [&] {
     inner_.cancel = outside.cancel;

@@ -75,7 +75,7 @@ class VertexCounter {
            is_above_most(0.5 * static_cast<double>(vertices - some_more), 2) && exceeds(vertices);
   }
 
-  // Counts no further than the answer needs, times `ahead` for later questions about more vertices.
+  // Counts `ahead` times as far as this answer needs, so that calls with more vertices need no new count.
   bool is_above_most(double vertices, double ahead = 1) {
     if (vertices <= few) return false;
     if (!is_known_ && vertices >= most_) count_up_to(ahead * (vertices - static_cast<double>(few)));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <queue>
+#include <span>
 #include <utility>
 
 #include "collarmesh/bounds.h"
@@ -52,6 +53,7 @@ class LocalTolerance {
       : plc_(plc),
         size_(size > 0 ? size : plc.bounds.diagonal() / sizes_per_diagonal),
         largest_(default_distance(size, plc.bounds.diagonal())),
+        reach_(1.01 * largest_ / share_of_rod),
         thickness_(plc),
         curvature_(plc.triangles.size()),
         of_material_(plc.triangles.size(), largest_),
@@ -69,6 +71,7 @@ class LocalTolerance {
       for (auto t = static_cast<Index>(first); t < last; ++t)
         if (!patch_of(t).planar) look_around(t, crossings);
     });
+    find_thick_ends_of_wedges();
     keep_wedges();
     std::vector<double> factors(plc_.patches.size(), volumes == Volumes::any ? largest_factor : 1);
     if (volumes == Volumes::kept) factors = factors_by_volumes();
@@ -83,7 +86,7 @@ class LocalTolerance {
 
   void look_around(Index triangle, Thickness::Crossings& crossings) {
     for (unsigned side = 0; side < 2; ++side) {
-      const auto [opposite, first, is_wedge] = thickness_.at(triangle, side, crossings);
+      const auto [opposite, first, is_wedge] = thickness_.at(triangle, side, crossings, reach_);
       if (is_wedge) of_wedge_[triangle] = std::min(of_wedge_[triangle], first.distance);
       if (opposite.triangle == none) continue;
       const bool empty = patch_of(triangle).regions[side] == 0;
@@ -92,6 +95,26 @@ class LocalTolerance {
                                  : lost * share_of_rod + (1 - lost) * share_of_shell;
       double& tolerance = (empty ? of_gap_ : of_material_)[triangle];
       tolerance = std::min(tolerance, share * opposite.distance);
+    }
+  }
+
+  // Finds the parts of wedges that are thicker than the reach. Only patches that are in a wedge within the
+  // reach need them: where a wedge is thicker throughout, chords remove too little of it to matter.
+  void find_thick_ends_of_wedges() {
+    for (const Plc::Patch& patch : plc_.patches) {
+      const auto of_patch = std::span(of_wedge_).subspan(patch.first_triangle, patch.triangle_count);
+      if (std::ranges::all_of(of_patch, [](double thickness) { return std::isinf(thickness); })) continue;
+      parallel_for_ranges(of_patch.size(), 256, [&](std::size_t first, std::size_t last) {
+        Thickness::Crossings crossings;
+        for (std::size_t i = first; i < last; ++i) {
+          if (!std::isinf(of_patch[i])) continue;
+          for (unsigned side = 0; side < 2; ++side)
+            if (const auto found =
+                    thickness_.at(patch.first_triangle + static_cast<Index>(i), side, crossings);
+                found.is_wedge)
+              of_patch[i] = std::min(of_patch[i], found.first.distance);
+        }
+      });
     }
   }
 
@@ -247,6 +270,7 @@ class LocalTolerance {
 
   const Plc& plc_;
   double size_, largest_;
+  double reach_;  // a greater thickness does not lower the tolerance, except in wedges
   Thickness thickness_;
   std::vector<Curvature> curvature_;
   std::vector<double> of_material_, of_gap_;  // by triangle: tolerances by thickness and gaps

@@ -55,15 +55,16 @@ Thickness::Ray Thickness::ray(Index triangle, unsigned side) const {
   return {(a + b + c) / 3, side == 0 ? -1 * normals_[triangle] : normals_[triangle]};
 }
 
-Thickness::Opposites Thickness::at(Index triangle, unsigned side, Crossings& crossings) const {
+Thickness::Opposites Thickness::at(Index triangle, unsigned side, Crossings& crossings, double reach) const {
   Opposites opposites;
   const auto [centre, way] = ray(triangle, side);
   if (way == Vector{}) return opposites;
   const Index patch = plc_.triangles[triangle].patch, region = plc_.patches[patch].regions[side];
-  const double reach = plc_.bounds.diagonal();
+  const double diagonal = plc_.bounds.diagonal();
   const Index root = triangles_.root();
   // The ray starts at a small distance from the triangle, because a start in its plane would cause ties.
-  triangles_.crossings(centre + 1e-9 * reach * way, centre + reach * way, {&root, 1}, crossings);
+  triangles_.crossings(centre + 1e-9 * diagonal * way, centre + std::min(reach, diagonal) * way, {&root, 1},
+                       crossings);
   for (const auto& [other, direction] : crossings) {
     const Index opposite_patch = plc_.triangles[other].patch;
     const double towards = dot(normals_[other], way);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <set>
 #include <utility>
 #include <vector>
@@ -37,7 +38,8 @@ class Thickness {
 
   /// Casts a ray to the triangle's side 0 (behind) or 1 (in front).
   Ray ray(Index triangle, unsigned side) const;
-  Opposites at(Index triangle, unsigned side, Crossings& crossings) const;
+  /// Returns what this ray meets within a distance (`reach`).
+  Opposites at(Index triangle, unsigned side, Crossings& crossings, double reach = INFINITY) const;
 
  private:
   const Plc& plc_;

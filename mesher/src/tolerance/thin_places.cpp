@@ -12,6 +12,7 @@ namespace collarmesh {
 
 double squares_in_thin_places(const Plc& plc, double thinner_than) {
   constexpr double least_facing = 0.9;  // walls whose sides meet at a larger angle are no thin places
+  const double reach = 1.01 * thinner_than;
   const Thickness thickness(plc);
   std::vector<double> squares(plc.triangles.size(), 0);
   parallel_for_ranges(squares.size(), 256, [&](std::size_t begin, std::size_t end) {
@@ -20,7 +21,7 @@ double squares_in_thin_places(const Plc& plc, double thinner_than) {
       if (!plc.patches[plc.triangles[t].patch].planar) continue;
       double thin = INFINITY;
       for (unsigned side = 0; side < 2; ++side) {
-        const Thickness::Opposite first = thickness.at(t, side, crossings).first;
+        const Thickness::Opposite first = thickness.at(t, side, crossings, reach).first;
         if (first.triangle != none && first.facing >= least_facing) thin = std::min(thin, first.distance);
       }
       if (!(thin < thinner_than)) continue;

@@ -17,11 +17,12 @@ namespace {
 // is thick, and more than `least_ratio` times as many squares as rectangles whose sides are chords.
 constexpr double least_squares = 20'000, least_ratio = 30;
 
-/// Returns the distance to the opposite side of the wall or gap; infinite if there is none.
-double thickness_at(const Thickness& thickness, Index triangle, Thickness::Crossings& crossings) {
+/// Returns the distance to the opposite side of the wall or gap; infinite if there is none within the reach.
+double thickness_at(const Thickness& thickness, Index triangle, double reach,
+                    Thickness::Crossings& crossings) {
   double thin = INFINITY;
   for (unsigned side = 0; side < 2; ++side) {
-    const auto apart = thickness.at(triangle, side, crossings).apart;
+    const auto apart = thickness.at(triangle, side, crossings, reach).apart;
     if (apart.triangle != none) thin = std::min(thin, apart.distance);
   }
   return thin;
@@ -55,7 +56,7 @@ bool has_thin_shells(const Plc& plc, const SurfaceTolerance& tolerance, double s
     Thickness::Crossings crossings;
     for (auto t = static_cast<Index>(first); t < last; ++t) {
       if (chords[t].shorter == 0) continue;
-      const double thin = thickness_at(thickness, t, crossings);
+      const double thin = thickness_at(thickness, t, 1.01 * chords[t].shorter, crossings);
       if (!(thin < chords[t].shorter)) continue;
       const auto& [a, b, c] = plc.triangles[t].points;
       const double area = 0.5 * norm(cross(plc.points[b] - plc.points[a], plc.points[c] - plc.points[a]));
