@@ -266,7 +266,8 @@ class Signatures(unittest.TestCase):
             self.skipTest("the program was not built")
         said = subprocess.run([program, "--help"], check=True, capture_output=True, text=True).stdout
         others = {"help", "version", "against", "output", "format", "scale", "report", "verbose", "quiet", "ghost_cells",
-                  "cell_decomposition", "help_all", "name", "batch", "interaction", "cohesive", "trace", "triangle_elements"}
+                  "cell_decomposition", "help_all", "name", "batch", "interaction", "cohesive", "trace", "triangle_elements",
+                  "keep_invalid"}
         options = {name.replace("-", "_") for name in re.findall(r"--([a-z][a-z-]+)", said)} - others
         self.assertGreater(len(options), 30)
         self.assertLessEqual(options - set(inspect.signature(collarmesh.mesh).parameters), set())
