@@ -260,7 +260,8 @@ class Signals(HostileTest):
             run = subprocess.Popen([PROGRAM, self.box, "-o", self.out, "--size", "0.04", "-q"],
                                    stderr=subprocess.DEVNULL)
             self.addCleanup(run.kill)
-            wait_for(lambda: list(self.folder.glob(".collarmesh-*/*"))
+            # os.walk leaves out folders that go away meanwhile
+            wait_for(lambda: any(files for folder, _, files in os.walk(self.folder) if ".collarmesh-" in folder)
                      or run.poll() is not None, "it writes", seconds=300)
             time.sleep(delay)
             run.send_signal(signal.SIGHUP)
