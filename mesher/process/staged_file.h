@@ -68,9 +68,24 @@ class StagedFiles {
   std::filesystem::path make_folder_beside(const std::filesystem::path& target);
   void take_back() noexcept;
 
+  // A mutex that its thread may lock again, because memory may run out while it is locked. A forked child can
+  // do so, too, which std::recursive_mutex does not allow: the child's thread has another number.
+  class Mutex {
+   public:
+    void lock() {
+      if (held_++ == 0) mutex_.lock();
+    }
+    void unlock() {
+      if (--held_ == 0) mutex_.unlock();
+    }
+
+   private:
+    static inline thread_local int held_ = 0;
+    std::mutex mutex_;
+  };
+
   Process& process_;
-  std::recursive_mutex mutex_;  // guards the following variables; if memory runs out, the thread that holds
-                                // it locks it again
+  Mutex mutex_;  // guards the following variables
   std::vector<std::string> folders_;
   Replacement replacement_;  // of the commit in progress
   bool committed_ = false;
