@@ -118,7 +118,8 @@ void tell_of(const process::Console& console, const MeshArguments& arguments, co
 
 /// Throws Stopped if the certificate found an element that no solver can use. Prints the findings and writes
 /// the trace before.
-void require_usable(process::Process& process, const MeshArguments& arguments, const report::MeshRun& run) {
+void require_usable(process::Process& process, const MeshArguments& arguments, Stages& stages,
+                    const report::MeshRun& run) {
   constexpr std::array<std::string_view, 7> unusable{guarantee::valid_arrays,  guarantee::finite_points,
                                                      guarantee::layer_arrays,  guarantee::positive_volume,
                                                      guarantee::distinct_tets, guarantee::positive_jacobian,
@@ -127,7 +128,10 @@ void require_usable(process::Process& process, const MeshArguments& arguments, c
     return std::ranges::find(unusable, finding.guarantee) != unusable.end();
   });
   if (found == run.check.findings.end()) return;
-  tell_of(process.console, arguments, run);
+  constexpr std::size_t most = 10;
+  const std::string wrong =
+      report::findings_text(run.check, arguments.verbose ? run.check.findings.size() : most);
+  stages.print(arguments.quiet ? each_line_of(arguments.output, wrong) : wrong);
   if (const auto trace = staged_trace(process, arguments, run.trace)) process.files.commit({trace.get()});
   throw process::Stopped(
       ExitCode::guarantee_missed,
@@ -150,7 +154,7 @@ ExitCode make_and_write(process::Process& process, const MeshArguments& argument
     Stages stages(process, arguments, run.times);
     stages.begin("read", 0, 0.02);
     make(stages, run);
-    if (!arguments.keep_invalid) require_usable(process, arguments, run);
+    if (!arguments.keep_invalid) require_usable(process, arguments, stages, run);
     write_files(process, arguments, stages, run);
   }
   tell_of(process.console, arguments, run);
