@@ -13,6 +13,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <random>
 #include <set>
 #include <string_view>
 #include <vector>
@@ -73,6 +74,13 @@ fs::path temporary_place() {
   return ".";
 }
 
+/// Returns a name with 64 random bits, which no other folder has. Unlike that of mkdtemp, it is known before
+/// the folder exists.
+std::string unique_folder_name() {
+  std::random_device bits;
+  return fmt::format("{}{:08x}{:08x}", folder_prefix, bits(), bits());
+}
+
 }  // namespace
 
 fs::path StagedFiles::make_folder_beside(const fs::path& target) {
@@ -86,9 +94,10 @@ fs::path StagedFiles::make_folder_beside(const fs::path& target) {
         fmt::format("{}: {} is not a folder; choose another place", target.string(), parent.string()));
   if (target != standard_output) require_place(target);
   remove_dead_folders(parent);
-  // Lists the folder before creating it, because memory may run out at any time.
-  folders_.push_back((parent / fmt::format("{}XXXXXX", folder_prefix)).string());
-  if (mkdtemp(folders_.back().data()) == nullptr) {
+  // Lists the folder before creating it, because the program may end at any time.
+  folders_.push_back((parent / unique_folder_name()).string());
+  process_.supervisor.add_folder(folders_.back());
+  if (mkdir(folders_.back().c_str(), S_IRWXU) != 0) {
     const std::string why = reason();
     folders_.pop_back();
     throw WriteError(
@@ -109,7 +118,6 @@ StagedFile::StagedFile(StagedFiles& files, fs::path target) : files_(files), tar
   folder_ = files_.make_folder_beside(target_);
   lock_ = open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (lock_ >= 0) flock(lock_, LOCK_EX | LOCK_NB);
-  files_.process_.supervisor.add_folder(folder_.native());
 }
 
 StagedFile::~StagedFile() {
