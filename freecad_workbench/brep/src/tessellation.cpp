@@ -29,6 +29,7 @@
 #include <TopoDS_Vertex.hxx>
 
 #include <algorithm>
+#include <cassert>
 #include <numbers>
 #include <set>
 
@@ -584,6 +585,7 @@ class Tessellator {
 
 Tessellation tessellate(const Topology& topology, const std::string& file,
                         const TessellationOptions& options) {
+  assert(options.deflection > 0);
   return Tessellator(topology, file).run(options);
 }
 

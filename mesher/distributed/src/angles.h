@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 
@@ -21,6 +22,7 @@ inline ExtremeAngles extreme_angles(const std::array<Point, 4>& p) {
   const std::array<Vector, 4> normals{cross(bc, bd), cross(ad, ac), cross(ab, ad), cross(ac, ab)};
   std::array<double, 4> lengths;
   for (std::size_t i = 0; i < 4; ++i) lengths[i] = norm(normals[i]);
+  assert(std::min({lengths[0], lengths[1], lengths[2], lengths[3]}) > 0);
   double least = 1, most = -1;  // cosines of the least and the largest angle
   for (std::size_t i = 0; i < 4; ++i)
     for (std::size_t j = i + 1; j < 4; ++j) {

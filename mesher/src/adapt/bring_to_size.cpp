@@ -1,6 +1,7 @@
 #include "adapt/bring_to_size.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -167,6 +168,7 @@ class Bringing {
 }  // namespace
 
 bool bring_to_size(TetMesh& mesh, const Plc& plc, const MeshOptions& options, const Execution& execution) {
+  assert(options.bounds.tolerance);
   bool ended = false;
   ThreadLimit(options.threads).run([&] { ended = Bringing(mesh, plc, options, execution).run(); });
   return ended;

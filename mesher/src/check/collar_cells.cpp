@@ -1,6 +1,7 @@
 // Finds the tets that are judged as cells of collars. A mark in a file does not suffice: the tet must also
 // lie at a crease of the complex.
 #include <algorithm>
+#include <cassert>
 
 #include "check/subject.h"
 #include "collarmesh/plc_builder.h"
@@ -92,6 +93,7 @@ void add_wrong_mark(const Subject& subject, Index tet, std::uint8_t kind, Findin
 }  // namespace
 
 void find_collar_cells(Subject& subject, Findings& findings) {
+  assert(subject.is_matched());
   const TetMesh& mesh = subject.mesh;
   const bool marked = any_of(mesh.tet_collar);
   subject.collar.assign(mesh.tets.size(), 0);

@@ -1,5 +1,6 @@
 // Checks that every curve is a union of mesh edges.
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "check/polyline.h"
@@ -190,6 +191,7 @@ class CurveCheck {
 }  // namespace
 
 void check_listed_edges(const Subject& subject, Findings& findings) {
+  assert(subject.is_matched());
   const TetMesh& mesh = subject.mesh;
   std::vector<ListedEdge> edges;
   for (Index e = 0; e < mesh.edges.size(); ++e)
@@ -212,6 +214,7 @@ void check_listed_edges(const Subject& subject, Findings& findings) {
 }
 
 void check_curves(const Subject& subject, CheckReport& report, Findings& findings) {
+  assert(subject.is_matched());
   const TetMesh& mesh = subject.mesh;
   for (Index e = 0; e < mesh.edges.size(); ++e) {
     const Index curve = subject.match.edge_curve[e];

@@ -1,6 +1,7 @@
 #include "check/feature_sizes.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "common/edge_key.h"
@@ -58,6 +59,7 @@ double area_of_face(const TetMesh& mesh, Index face) {
 }
 
 ShapeMeasures feature_sizes(const Subject& subject) {
+  assert(subject.is_matched());
   const TetMesh& mesh = subject.mesh;
   ShapeMeasures sizes{{},
                       std::vector<double>(subject.plc.patches.size(), 0),

@@ -1,5 +1,6 @@
 // Checks that every patch is a union of faces: tags, regions, planes, areas and distances.
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "check/feature_sizes.h"
@@ -189,6 +190,7 @@ void check_labels(const Subject& subject, Index face, Findings& findings) {
 }  // namespace
 
 void check_patches(const Subject& subject, CheckReport& report, Findings& findings) {
+  assert(subject.is_matched());
   for (Index f = 0; f < subject.mesh.faces.size(); ++f) check_labels(subject, f, findings);
   const CurveUses uses(subject);
   const PatchPoints patch_points(subject.plc);

@@ -1,4 +1,5 @@
 // Checks the volumes of the mesh's regions against those that the complex's triangles enclose.
+#include <cassert>
 #include <cmath>
 #include <vector>
 
@@ -25,6 +26,7 @@ RegionVolumes expected_volumes(const Subject& subject) {
 }
 
 void check_region_volumes(const Subject& subject, const CheckReport& report, Findings& findings) {
+  assert(report.region_volumes.size() == subject.plc.regions.size());
   const Plc& plc = subject.plc;
   const RegionVolumes volumes = expected_volumes(subject);
   for (Index r = 1; r < plc.regions.size(); ++r) {

@@ -1,4 +1,5 @@
 // Compares volumes, areas and lengths of the mesh with those of the input.
+#include <cassert>
 #include <cmath>
 #include <string>
 
@@ -69,6 +70,7 @@ std::string name_of(const Plc& plc, const Shell& shell) {
 }  // namespace
 
 void check_shape_kept(const Subject& subject, CheckReport& report, Findings& findings) {
+  assert(subject.is_matched());
   const Plc& plc = subject.plc;
   report.of_input = input_sizes(subject);
   const std::vector<Shell> shells = shells_of(plc);

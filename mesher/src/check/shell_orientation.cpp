@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <numeric>
 #include <tuple>
@@ -152,6 +153,7 @@ void check_agreement(const Subject& subject, const Plc& plc, Findings& findings)
 }  // namespace
 
 void check_shell_orientation(const Subject& subject, const Plc& plc, Findings& findings) {
+  assert(subject.is_matched());
   check_outward(subject, plc, findings);
   check_agreement(subject, plc, findings);
 }

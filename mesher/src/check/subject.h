@@ -47,6 +47,11 @@ struct Subject {
   /// The first tet that is part of a prism or pyramid; these cells are judged elsewhere, as a whole.
   Index first_part = none;
 
+  /// Returns whether `match` is filled in.
+  bool is_matched() const {
+    return match.face_patch.size() == mesh.faces.size() && match.edge_curve.size() == mesh.edges.size() &&
+           match.vertex_point.size() == plc.vertices.size();
+  }
   /// Returns whether the mesh has layers; the angles of its tets are then judged elsewhere.
   bool has_layers() const { return !mesh.layers.tet_layer.empty(); }
 

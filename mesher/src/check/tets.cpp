@@ -1,5 +1,6 @@
 // Volumes and shapes of the tets.
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "check/predicates.h"
@@ -154,6 +155,7 @@ void check_region_tag(Index tet, const CornersOfTet& p, const Subject& subject, 
 }  // namespace
 
 void check_tets(const Subject& subject, CheckReport& report, Findings& findings) {
+  assert(subject.collar.size() == subject.mesh.tets.size());
   const TetMesh& mesh = subject.mesh;
   std::vector<long double> volumes(subject.plc.regions.size(), 0);
   const ThinCells thin(subject);

@@ -1,6 +1,7 @@
 // Compares thickness of walls and width of gaps in the mesh with those of the complex: a thin place of a
 // large region may vanish although the region keeps its volume.
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <vector>
 
@@ -166,6 +167,7 @@ class ThicknessKept {
 }  // namespace
 
 void check_thickness_kept(const Subject& subject, CheckReport& report, Findings& findings) {
+  assert(subject.is_matched());
   const auto& patches = subject.plc.patches;
   if (std::ranges::all_of(patches, [](const Plc::Patch& patch) { return patch.planar; })) return;
   ThicknessKept(subject).judge(report, findings);

@@ -1,6 +1,7 @@
 // Finds the tets that may exceed the radius-edge bound because their angles are bounded instead, and the
 // bounds on these angles.
 #include <algorithm>
+#include <cassert>
 
 #include "check/subject.h"
 #include "collarmesh/plc_builder.h"
@@ -14,6 +15,7 @@ constexpr double thin_slack = 1e-9;  // relative tolerance
 }  // namespace
 
 std::vector<TetMesh::VertexFeature> features_of(const Subject& subject) {
+  assert(subject.is_matched());
   std::vector<TetMesh::VertexFeature> features(subject.mesh.points.size());
   for (Index f = 0; f < subject.mesh.faces.size(); ++f)
     for (const Index p : subject.mesh.faces[f])
@@ -32,6 +34,7 @@ ThinCells::ThinCells(const Subject& subject)
       smallest_(subject.options.bounds.thin_angle),
       marks_(subject.mesh.tet_thin),
       all_(marks_.empty() && subject.mesh.features.empty()) {
+  assert(subject.is_matched());
   if (!(smallest_ > 0) || (marks_.empty() && !all_ && !subject.coarsened)) return;
   const Plc& plc = subject.plc;
   forced_.emplace(plc, features_of(subject), mesh_.points, mesh_.faces, subject.match.face_patch,

@@ -1,6 +1,8 @@
 // Checks that the complex's vertices are in the mesh, and the features that the mesh gives for its points.
 #include "check/subject.h"
 
+#include <cassert>
+
 namespace collarmesh::checks {
 
 namespace {
@@ -25,6 +27,7 @@ class FeatureOfPoint {
 }  // namespace
 
 void check_vertices_present(const Subject& subject, Findings& findings) {
+  assert(subject.match.vertex_point.size() == subject.plc.vertices.size());
   const Plc& plc = subject.plc;
   for (Index v = 0; v < plc.vertices.size(); ++v) {
     const Point& where = plc.points[plc.vertices[v].point];
@@ -36,6 +39,7 @@ void check_vertices_present(const Subject& subject, Findings& findings) {
 }
 
 void check_vertices(const Subject& subject, Findings& findings) {
+  assert(subject.is_matched());
   check_vertices_present(subject, findings);
   const TetMesh& mesh = subject.mesh;
   if (mesh.features.empty()) return;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <functional>
 #include <memory>
 #include <span>
@@ -75,7 +76,10 @@ class CollarSystem {
 
   bool empty() const { return balls_.empty(); }
   /// Returns the hierarchy of the features around which the balls lie. Precondition: the complex has creases.
-  const FeatureHierarchy& features() const { return *features_; }
+  const FeatureHierarchy& features() const {
+    assert(features_);
+    return *features_;
+  }
   const std::vector<CollarBall>& balls() const { return balls_; }
   const std::vector<CollarLink>& links() const { return links_; }
   const std::vector<CornerPoint>& corners() const { return corners_; }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <bit>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -33,6 +34,7 @@ inline std::uint64_t hash_of(const Point& p) {
 /// power of two, and some are free.
 template <class IsIt>
 Index& find_slot(std::span<Index> slots, std::uint64_t hash, const IsIt& is_it) {
+  assert(std::has_single_bit(slots.size()));
   const std::size_t last = slots.size() - 1;
   std::size_t slot = hash & last;
   while (slots[slot] != none && !is_it(slots[slot])) slot = (slot + 1) & last;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <concepts>
 #include <cstddef>
 #include <span>
@@ -63,7 +64,10 @@ class Hierarchy {
   template <class Item>
   void renumber(const Item& item, Index from = 0) {
     for (Index node = from; node < node_count(); ++node)
-      if (is_leaf(node)) nodes_[node].first = item(nodes_[node].first);
+      if (is_leaf(node)) {
+        assert(nodes_[node].count == 1);
+        nodes_[node].first = item(nodes_[node].first);
+      }
   }
 
   /// Visits the items of leaves below a node. `narrow(bounds, state)` returns the state for the nodes below a

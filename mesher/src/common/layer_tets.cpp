@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <map>
 #include <utility>
 
@@ -170,7 +171,11 @@ void require_tets_alone(const TetMesh& mesh, std::string_view what) {
                   what, mesh.layers.prisms.size(), mesh.layers.pyramids.size()));
 }
 
-TetMesh tets_of_layers(const TetMesh& mesh) { return Cutter(mesh).cut(); }
+TetMesh tets_of_layers(const TetMesh& mesh) {
+  assert(mesh.layers.prisms.size() == mesh.layers.prism_region.size() &&
+         mesh.layers.pyramids.size() == mesh.layers.pyramid_region.size());
+  return Cutter(mesh).cut();
+}
 
 namespace {
 

@@ -17,6 +17,11 @@
 
 namespace collarmesh {
 
+/// Returns whether no corner of a tet occurs twice.
+inline bool all_differ(const std::array<Index, 4>& t) {
+  return t[0] != t[1] && t[0] != t[2] && t[0] != t[3] && t[1] != t[2] && t[1] != t[3] && t[2] != t[3];
+}
+
 /// Calls `use(vertex, cells)` for the vertices of a mesh, from several threads at once and in no particular
 /// order. `cells` are the tets that have the vertex and a corner with a larger number, then the listed faces
 /// whose smallest corner it is, both in their order; faces are numbered after all tets. Precondition: corners
@@ -33,6 +38,7 @@ void for_each_vertex_with_cells(const TetMesh& mesh, const Use& use) {
     }
     const auto& tet = mesh.tets[i];
     const Index largest = std::max({tet[0], tet[1], tet[2], tet[3]});
+    assert(largest < mesh.points.size());
     for (const Index v : tet)
       if (v != largest) give(v, static_cast<Index>(i));
   };
@@ -90,6 +96,7 @@ class FittingTetsAtVertex : public EdgesAtVertex {
         fit_ = false;
         continue;
       }
+      assert(all_differ(mesh.tets[cell]));
       fit_ &= mesh.tet_region[cell] == mesh.tet_region[cells[0]];
       add_tet(mesh.tets[cell], vertex);
     }
@@ -170,6 +177,7 @@ class TrianglesAtVertex {
     clear(3 * cells.size());
     for (const Index cell : cells) {
       if (cell < mesh.tets.size()) {
+        assert(all_differ(mesh.tets[cell]));
         add_sides(mesh.tets[cell], cell, vertex);
         continue;
       }

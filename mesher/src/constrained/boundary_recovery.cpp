@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numeric>
 
@@ -110,6 +111,10 @@ BoundaryRecovery::BoundaryRecovery(Tetrahedra& mesh, const Plc& plc, RecoveryWay
       way_(way),
       changes_(mesh, required_),
       most_added_(most_times * plc.points.size() + some) {
+  assert(
+      mesh.point_count() >= plc.points.size() &&
+      (plc.points.empty() || (mesh.point(0) == plc.points.front() &&
+                              mesh.point(static_cast<Index>(plc.points.size() - 1)) == plc.points.back())));
   for (const Plc::Triangle& t : plc.triangles) add_facet(t.points, t.patch);
   for (Index c = 0; c < plc.curves.size(); ++c) {
     const auto& points = plc.curves[c].points;

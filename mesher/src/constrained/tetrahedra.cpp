@@ -76,6 +76,34 @@ Tetrahedra::Tetrahedra(const std::vector<Point>& points) : points_(points) {
     for (unsigned k = 0; tet_of[c] != none && k < 4; ++k)
       if (const FaceId beyond = mesh.opposite(face_id(c, k)); beyond != no_face)
         tets_[tet_of[c]].neighbours[k] = {tet_of[cell_of(beyond)], corner_of(beyond)};
+  assert(consistent(all()));
+}
+
+std::vector<Index> Tetrahedra::all() const {
+  std::vector<Index> tets;
+  for (Index t = 0; t < size(); ++t)
+    if (alive(t)) tets.push_back(t);
+  return tets;
+}
+
+bool Tetrahedra::consistent(std::span<const Index> tets) const {
+  const auto side = [this](const Face& face) {
+    auto corners_of_side = side_corners(corners(face.tet), face.corner);
+    std::ranges::sort(corners_of_side);
+    return corners_of_side;
+  };
+  const auto agrees = [&](const Face& face) {
+    const Face other = opposite(face);
+    if (other.tet == none) return true;
+    const Face back = opposite(other);
+    return alive(other.tet) && back.tet == face.tet && back.corner == face.corner &&
+           side(other) == side(face) && facet(other) == facet(face);
+  };
+  return std::ranges::all_of(tets, [&](Index t) {
+    const auto& [a, b, c, d] = corners(t);
+    return alive(t) && orientation(a, b, c, d) > 0 && agrees({t, 0}) && agrees({t, 1}) && agrees({t, 2}) &&
+           agrees({t, 3});
+  });
 }
 
 int Tetrahedra::orientation(Index a, Index b, Index c, Index d) const {
@@ -141,6 +169,7 @@ void Tetrahedra::replace(std::span<const Index> old, std::span<const Corners> cr
     std::ranges::sort(v);
     return v;
   };
+  assert(std::ranges::all_of(old, [this](Index t) { return alive(t); }));
   sides_.clear();
   for (const Index t : old) tets_[t].alive = false;
   for (const Index t : old)
@@ -167,10 +196,12 @@ void Tetrahedra::replace(std::span<const Index> old, std::span<const Corners> cr
     if (y.face.tet != none) tets_[y.face.tet].neighbours[y.face.corner] = x.face;
   }
   for (const Index t : step.created) attach(t);
+  assert(consistent(step.created));
   journal_.push_back(std::move(step));
 }
 
 void Tetrahedra::undo_to(std::size_t mark) {
+  assert(mark <= journal_.size());
   while (journal_.size() > mark) {
     const Step& step = journal_.back();
     for (const Index t : step.created) tets_[t].alive = false;
@@ -181,6 +212,7 @@ void Tetrahedra::undo_to(std::size_t mark) {
         if (const Face next = tets_[t].neighbours[k]; next.tet != none)
           tets_[next.tet].neighbours[next.corner] = {t, k};
     }
+    assert(consistent(step.old));
     free_.insert(free_.end(), step.created.begin(), step.created.end());
     journal_.pop_back();
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -61,7 +62,10 @@ class Tetrahedra {
   /// Adds a point that is not a corner yet. Returns its number.
   Index add_point(const Point& p);
   /// Removes the last point, which must not be a corner.
-  void drop_point() { points_.pop_back(), tet_at_.pop_back(); }
+  void drop_point() {
+    assert(tet_at_.back() == none);
+    points_.pop_back(), tet_at_.pop_back();
+  }
   /// Replaces tetrahedra by others that fill the same space. Faces on the border of that space stay.
   void replace(std::span<const Index> old, std::span<const Corners> created);
 
@@ -70,6 +74,12 @@ class Tetrahedra {
   void undo_to(std::size_t mark);
   /// Makes all changes permanent.
   void keep();
+
+  /// Returns whether these tetrahedra are positively oriented, and agree with their neighbours: each is the
+  /// other's neighbour across the same triangle, which carries one facet.
+  bool consistent(std::span<const Index> tets) const;
+  /// Returns all tetrahedra.
+  std::vector<Index> all() const;
 
  private:
   struct Tet {

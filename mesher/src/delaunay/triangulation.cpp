@@ -407,6 +407,8 @@ bool Triangulation::Block::find_conflict_zone(const Point& p, Index start, Confl
 }
 
 Index Triangulation::Block::insert(ConflictZone& zone) {
+  assert(next_vertex_ < end_vertex_ &&
+         std::ranges::all_of(zone.cells, [this](Index cell) { return owns(cell); }));
   const Index vertex = next_vertex_++;
   auto& free_cells = workspace_.free_cells;
   mesh_->replace_zone(zone, vertex, workspace_, [&] {

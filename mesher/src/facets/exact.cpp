@@ -1,5 +1,7 @@
 #include "facets/exact.h"
 
+#include <cassert>
+
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Exact_rational.h>
 
@@ -43,6 +45,7 @@ bool between(const Point& a, const Point& b, const Point& c) {
 }
 
 bool same_side(const Point& a, const Point& b, const Point& c, const Point& d) {
+  assert(!collinear(a, b, c));
   for (unsigned axis = 0; axis < 3; ++axis) {
     const int side = planar_orientation(axis, a, b, c);
     if (side != 0) return planar_orientation(axis, a, b, d) == side;
@@ -55,6 +58,7 @@ int compare_crossings(const Point& p, const Point& q, const std::array<Point, 3>
   // The parameter on triangle i is P / (P - Q), with P and Q the volumes that p and q span with it.
   const Rational p0 = exact_six_volume(t0, p), q0 = exact_six_volume(t0, q);
   const Rational p1 = exact_six_volume(t1, p), q1 = exact_six_volume(t1, q);
+  assert(p0 * q0 < 0 && p1 * q1 < 0);
   const Rational r0 = p0 / (p0 - q0), r1 = p1 / (p1 - q1);
   return r0 < r1 ? -1 : r0 > r1 ? 1 : 0;
 }

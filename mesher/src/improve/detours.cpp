@@ -1,6 +1,7 @@
 #include "improve/detours.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <tuple>
 #include <utility>
@@ -47,6 +48,7 @@ Change Detours::propose(Index tet) {
 }
 
 std::size_t Detours::take_all(std::vector<Index> tets, const std::function<bool()>& stopped) {
+  assert(edited_.is_prepared() && remedies_.has_forgotten());
   bool any = true;
   while (any && !ended_) {
     any = false;

@@ -100,6 +100,7 @@ class Improvement {
   // Finds poor tets, like find_poor_tets, in less time. Precondition: tets have changed only in batches after
   // this one, and `poor_` is in the order of tets.
   void find_poor_tets_again(std::uint32_t batch) {
+    assert(std::ranges::is_sorted(poor_, {}, &Item::tet));
     std::vector<Index> asked;
     auto poor = poor_.begin();
     for (Index t = 0; t < complex().size(); ++t) {
@@ -194,6 +195,7 @@ class Improvement {
   // Takes detours. Returns false if none was tried, so that `poor_` is still up to date. Precondition:
   // `poor_` is up to date.
   bool take_detours() {
+    assert(std::ranges::all_of(poor_, [this](const Item& item) { return is_up_to_date(item); }));
     std::vector<Index> poor;
     for (const Item& item : poor_) poor.push_back(item.tet);
     const auto may_change = [this](Index t) { return remedies_.may_change_vertices(t); };

@@ -1,5 +1,6 @@
 #include "improve/improve_edited.h"
 
+#include <cassert>
 #include <vector>
 
 #include "common/cell_shapes.h"
@@ -58,6 +59,7 @@ Change change_for(Operations& operations, const TetComplex& complex, Index tet) 
 }  // namespace
 
 void insert_interior_nodes(EditableMesh& edited, const Bounds& bounds, InteriorNodesReport& report) {
+  assert(edited.complex.mesh().features.size() == edited.complex.mesh().points.size());
   edited.complex.forget_balls();
   const InteriorRule rule(edited, bounds);
   Operations operations(edited, rule);

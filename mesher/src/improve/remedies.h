@@ -44,6 +44,7 @@ class Remedies {
   /// Forgets all records of `nothing_helps`, for example because the rule asks for less. Until
   /// `nothing_helps` is called again, proposals depend on the mesh alone.
   void forget() { stays_.clear(); }
+  bool has_forgotten() const { return stays_.empty(); }
 
  private:
   // Returns whether the vertex is known to stay. Whether a move helps depends only on the tets at the vertex,

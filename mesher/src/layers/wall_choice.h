@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cassert>
 #include <map>
 #include <set>
 #include <string>
@@ -25,7 +26,10 @@ class WallChoice {
   /// Returns the numbers of layers, by patch and the region on that side of it.
   std::map<std::pair<Index, Index>, unsigned> counts(const Plc& plc) const;
   /// Returns the layers of a patch. Precondition: it is a wall.
-  const WallLayers& operator[](Index patch) const { return walls_[wall_of_[patch]]; }
+  const WallLayers& operator[](Index patch) const {
+    assert(is_wall(patch));
+    return walls_[wall_of_[patch]];
+  }
 
  private:
   bool lies_in(Index wall, Index region) const {

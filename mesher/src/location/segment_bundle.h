@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <vector>
 
@@ -26,6 +27,7 @@ class SegmentBundle {
 
   /// Starts a new bundle. All points must lie in the ball B(centre, radius). Precondition: radius > 0.
   void start(const Point& centre, double radius) {
+    assert(radius > 0);
     centre_ = centre;
     scale_ = 1 / radius;
     points_.clear();

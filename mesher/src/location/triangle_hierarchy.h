@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -180,6 +181,7 @@ Index TriangleHierarchy::triangle_within(const Point& p, double bound, Index hin
     return is_within(bound, p, t[0], t[1], t[2]);
   };
   if (tree_.empty()) return none;
+  assert(hint == none || counts(hint));
   if (hint != none && is_near(hint)) return hint;
   Index found = none;
   tree_.descend<ChildOrder::right_first>(

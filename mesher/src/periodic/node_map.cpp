@@ -1,6 +1,7 @@
 #include "periodic/node_map.h"
 
 #include <algorithm>
+#include <cassert>
 #include <set>
 #include <span>
 
@@ -100,6 +101,7 @@ void map_corners(TetMesh& mesh) {
     std::size_t faces = 0;
     const Nodes first = nodes_of(mesh, pair.first, faces), second = nodes_of(mesh, pair.second, faces);
     const std::vector<Index> images = images_of(mesh, first, second, pair.motion);
+    assert(faces > 0 && first.corners.size() == second.corners.size());
     pair.nodes.clear();
     for (std::size_t i = 0; i < images.size(); ++i)
       if (images[i] != none) pair.nodes.push_back({first.corners[i], images[i]});

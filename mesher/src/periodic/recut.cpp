@@ -1,6 +1,7 @@
 #include "periodic/recut.h"
 
 #include <algorithm>
+#include <cassert>
 #include <functional>
 #include <limits>
 #include <queue>
@@ -39,6 +40,7 @@ std::vector<Index> keys_of(const std::unordered_map<Index, Index>& map) {
 Recut::Recut(const TetMesh& mesh, const Plc& plc, const SurfaceTolerance& tolerance,
              const std::vector<PatchPair>& pairs, const std::vector<FeatureImages>& images, Moved moved)
     : mesh_(mesh), plc_(plc) {
+  assert(mesh.order() == 1 && mesh.periodic.size() == pairs.size());
   find_seams(pairs, images, moved);
   find_shifts(moved);
   number_copies();

@@ -1,6 +1,7 @@
 #include "pipeline/refinement.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <optional>
 
@@ -113,6 +114,7 @@ class VertexCounter {
 }  // namespace
 
 MeshOptions options_of_refinement(const MeshJob& job, NarrowCells narrow_cells) {
+  assert(job.plc);
   MeshOptions options = job.options.mesh;
   options.time_limit = 0;  // the control has one limit for all stages
   if (job.options.coarsen) options.narrow_cells = narrow_cells;

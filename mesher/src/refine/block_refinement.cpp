@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <limits>
 
 #include "common/parallel_for.h"
@@ -102,6 +103,7 @@ std::size_t BlockRefinement::most_insertions() const {
 }
 
 void BlockRefinement::round() {
+  assert(queue_.count(priority_, bucket_) >= least_entries);
   const std::size_t before = mesh_.vertex_count();
   const std::vector<WorkQueue::Entry> taken = queue_.take(priority_, bucket_);
   ThreadLimit(domain_.options.threads).run([&] {

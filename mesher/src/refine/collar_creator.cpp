@@ -9,6 +9,7 @@
 namespace collarmesh {
 
 void CollarCreator::start() {
+  assert(points_.begin_with_vertices_of(domain_.plc));
   CollarOptions options;
   options.size = [this](const Feature& feature, const Point& p) { return target_size(feature, p); };
   options.tolerance = domain_.tolerance;
@@ -66,7 +67,7 @@ void CollarCreator::create_if_isolated(Index at) {
 
 // Places a vertex ball. Curves that end at the vertex then end at the ball's sphere.
 void CollarCreator::create_at_vertex(Index vertex, Index near, BallReason reason) {
-  assert(collars_.ball_at_vertex(vertex) == none);
+  assert(waits_for_ball(vertex));
   gap_size().start_near(near);
   placement_->place_at_vertex(vertex);
   for (const Index curve : domain_.plc.vertices[vertex].curves)
@@ -89,6 +90,7 @@ void CollarCreator::create_on_isolated_curves() {
 // Returns whether a curve is isolated. Precondition: its chain is resolved.
 bool CollarCreator::is_isolated(Index curve) {
   const OpenCreases::Chain& chain = open_creases_.chain(curve);
+  assert(chain.unresolved == 0);
   std::vector<CollarBall> at_ends;
   for (const Index end : domain_.plc.curves[curve].ends)
     if (end != none) at_ends.push_back(collars_.balls()[collars_.ball_at_vertex(end)]);
@@ -120,6 +122,9 @@ bool CollarCreator::create_remaining() {
 }
 
 void CollarCreator::create_on_curve(Index curve, BallReason reason) {
+  assert(std::ranges::all_of(domain_.plc.curves[curve].ends, [this](Index end) {
+    return end == none || collars_.ball_at_vertex(end) != none;
+  }));
   const OpenCreases::Chain chain = open_creases_.close(curve);
   isolated_.erase(curve);
   // Centre balls on mesh vertices on closed curves only: on other curves this kept the repair of the collar

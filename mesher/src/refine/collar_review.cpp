@@ -1,6 +1,7 @@
 #include "refine/collar_review.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -54,6 +55,7 @@ void CollarReview::vertex_joined_feature(Index vertex) {
 
 bool CollarReview::check() {
   if (collars_.empty()) return false;
+  assert(queue_.first_priority() == WorkQueue::priority_count);
   if (!started_) start();
   if (!std::exchange(changed_, false)) return false;
   std::vector<Index> cells = take_touched();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "common/distances.h"
@@ -24,6 +25,7 @@ constexpr double least_clipped_length = 0.3;
 }  // namespace
 
 void CurveChains::start() {
+  assert(points_.begin_with_vertices_of(domain_.plc));
   chain_ends_.assign(domain_.plc.curves.size(), {none, none});
   for (Index c = 0; c < domain_.plc.curves.size(); ++c) add_chain(c);
 }
@@ -308,6 +310,7 @@ Index CurveChains::end_to_resolve(Index subsegment, const Candidate& candidate) 
 
 std::optional<CurveChains::Split> CurveChains::split_of(Index subsegment) {
   const Chained& chained = subsegments_[subsegment];
+  assert(chained.alive);
   const Subsegment& s = chained.piece;
   if (domain_.at_floor(s.centre, s.squared_radius)) {
     outcome_.give_up(s.centre,
@@ -337,6 +340,7 @@ bool CurveChains::can_join(const Split& split) const {
 }
 
 void CurveChains::split_ahead(const Split& split) {
+  assert(split.candidate.start != none && is_there(split.link));
   UnresolvedPoints::Unresolved point{split.candidate.point, split.candidate.feature};
   point.across = split.candidate.across;
   const Index curve = split.candidate.feature.index;
@@ -356,6 +360,7 @@ void CurveChains::drop_ball(const Split& split) {
 // Splits a subsegment at a vertex. If inserting the vertex has created a ball at an end of the curve, another
 // piece has taken the place of the subsegment.
 void CurveChains::split_at(const Split& split, Index vertex) {
+  assert(vertex < mesh_.vertex_count());
   Index piece = split.link.subsegment;
   if (!is_there(split.link)) {
     const auto has_place = [&](Index s) {
@@ -388,6 +393,7 @@ void CurveChains::queue_again(const Split& split) {
 }
 
 void CurveChains::cells_made(const ConflictZone& zone, Index vertex) {
+  assert(vertex < mesh_.vertex_count());
   const Point p = mesh_.point(vertex);
   for (const Index neighbour : zone.vertices)
     balls_.visit_at(neighbour, [&](Index o, const LocationObjects::Object& ball) {

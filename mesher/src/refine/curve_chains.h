@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <optional>
 #include <vector>
 
@@ -132,7 +133,11 @@ class CurveChains {
   Index remove_chain(Index curve);
   /// Returns the mesh vertices between the ends of a chain, in their order.
   std::vector<PlaceOnCurve> vertices_amid(Index curve) const;
-  Index curve_of(Index subsegment) const { return subsegments_[subsegment].piece.curve; }
+  /// Returns the curve of a subsegment. Precondition: the subsegment exists.
+  Index curve_of(Index subsegment) const {
+    assert(subsegments_[subsegment].alive);
+    return subsegments_[subsegment].piece.curve;
+  }
 
   const LocationObjects& balls() const { return balls_; }
   std::size_t bytes() const;

@@ -1,6 +1,7 @@
 #include "refine/facing_sheets.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "common/edge_key.h"
@@ -74,6 +75,7 @@ std::optional<Candidate> FacingSheets::candidate_across(FaceId face) {
 
 std::optional<double> FacingSheets::parameter_across(const Subsegment& s, const Vector& along,
                                                      Index vertex) const {
+  assert(vertex != s.ends[0] && vertex != s.ends[1]);
   if (domain_.is_papers() || !are_apart(mesh_.feature(vertex), {1, s.curve})) return std::nullopt;
   const Point& p = mesh_.point(vertex);
   if (squared_distance(p, s.centre) > s.squared_radius) return std::nullopt;

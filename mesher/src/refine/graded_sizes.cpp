@@ -1,5 +1,6 @@
 #include "refine/graded_sizes.h"
 
+#include <cassert>
 #include <queue>
 
 namespace collarmesh {
@@ -31,6 +32,7 @@ void GradedSizes::impose(std::span<const Index> vertices, double size, double di
 
 void GradedSizes::cells_made(const ConflictZone& zone, Index vertex) {
   if (gradation_ == 0) return;
+  assert(at_vertex_.size() == vertex);
   const Point& p = mesh_.point(vertex);
   double size = INFINITY;
   for (const Index cell : zone.created) size = std::min(size, sizing_.region_size(surface_.region(cell), p));

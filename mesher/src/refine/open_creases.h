@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -41,7 +42,10 @@ class OpenCreases {
     return found;
   }
   /// Returns the chain of a crease. Precondition: the crease is open.
-  const Chain& chain(Index curve) const { return creases_.at(curve).chain; }
+  const Chain& chain(Index curve) const {
+    assert(is_open(curve));
+    return creases_.at(curve).chain;
+  }
 
   /// Reports that the crease waits for one more unresolved point of its chain.
   void note_unresolved(Index curve) {
@@ -83,6 +87,7 @@ class OpenCreases {
 
   /// Closes a crease because balls replace its chain. Returns the chain. Precondition: the crease is open.
   Chain close(Index curve) {
+    assert(is_open(curve));
     Chain chain = std::move(creases_.at(curve).chain);
     creases_.erase(curve);
     return chain;

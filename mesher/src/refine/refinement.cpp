@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include "common/thread_limit.h"
@@ -280,6 +281,7 @@ void Refinement::insert_point(Index index) {
 }
 
 Index Refinement::force_insert(const Feature& feature) {
+  assert(!zone_.cells.empty() && mesh_.in_conflict(zone_.cells.front(), zone_.point));
   const bool early = counter_ && too_early();
   surface_.cells_vanish(zone_);
   const Index vertex = mesh_.insert(zone_, feature);

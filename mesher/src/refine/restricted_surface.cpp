@@ -205,6 +205,8 @@ void RestrictedSurface::mark_border_faces(const ConflictZone& zone, Index vertex
 }
 
 void RestrictedSurface::cells_vanish(const ConflictZone& zone, Workspace& w) {
+  assert(std::ranges::all_of(zone.cells, [this](Index cell) { return mesh_.alive(cell); }));
+  assert(&w == &workspace_ || has_room(zone, w));
   const auto has_marks = [&](Index cell) { return labels_[cell].marked != 0; };
   if (std::ranges::none_of(zone.cells, has_marks)) return;
   // The record of a border face stays, because the cell beyond uses it, too.
@@ -300,6 +302,7 @@ void RestrictedSurface::unmark(FaceId face, Workspace& w) {
 
 // Marks a face and makes its record. Precondition: crossings_ are those of its dual edge, at least one.
 void RestrictedSurface::restrict_face(FaceId face, Workspace& w) {
+  assert(!w.crossings_.empty());
   const Index record = new_record(w);
   mark(face, record);
   mark(mesh_.opposite(face), record);

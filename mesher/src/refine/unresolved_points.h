@@ -42,6 +42,18 @@ class UnresolvedPoints {
   const Unresolved& operator[](Index point) const { return points_[point]; }
   std::size_t size() const { return points_.size(); }
   bool resolved(Index point) const { return points_[point].vertex != none; }
+  /// Returns whether no point is left that is neither resolved nor withdrawn.
+  bool all_resolved() const {
+    for (Index point = 0; point < size(); ++point)
+      if (points_[point].object != none) return false;
+    return true;
+  }
+  /// Returns whether the vertices of the complex are the first points, in their order.
+  bool begin_with_vertices_of(const Plc& plc) const {
+    for (Index v = 0; v < plc.vertices.size(); ++v)
+      if (v >= size() || points_[v].feature != Feature{0, v}) return false;
+    return true;
+  }
   /// Returns whether an unresolved point is theta_0-medial (paper, section 3.1 and appendix A): the second
   /// nearest mesh vertex is not much farther away than the nearest one.
   bool medial(Index point) const;

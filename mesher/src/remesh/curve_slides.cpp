@@ -1,6 +1,7 @@
 #include "remesh/curve_slides.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -119,6 +120,7 @@ void CurveSlides::skipped(Index vertex) {
 // Returns whether vertex `next` comes after `vertex` on the curve. Precondition: an edge on the curve joins
 // them.
 bool CurveSlides::follows(Index curve, Index vertex, Index next) const {
+  assert(vertex != next && mesh_.features[vertex].dimension <= 1 && mesh_.features[next].dimension <= 1);
   if (mesh_.features[vertex].dimension == 1) return places_[vertex].neighbours[1] == next;
   if (mesh_.features[next].dimension == 1) return places_[next].neighbours[0] == vertex;
   return mesh_.features[vertex].feature == plc_.curves[curve].ends[0];

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <mutex>
 #include <optional>
 #include <vector>
@@ -33,7 +34,10 @@ class CurveSlides {
     places_[vertex].parameter += way;
   }
   /// Returns the mesh vertices before and after the vertex. Precondition: it is movable.
-  const std::array<Index, 2>& neighbours(Index vertex) const { return places_[vertex].neighbours; }
+  const std::array<Index, 2>& neighbours(Index vertex) const {
+    assert(movable(vertex));
+    return places_[vertex].neighbours;
+  }
   /// Returns whether a single edge could join the vertex's neighbours.
   bool may_skip(Index vertex) const;
   /// Records that a single edge joins the vertex's neighbours.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -119,7 +120,11 @@ class EditableMesh {
   const std::vector<Index>& apply(Change change);
 
   /// Builds the data that is otherwise built on first use; call it before the first trial.
-  void prepare() { surfaces.prepare(), curves.prepare(); }
+  void prepare() {
+    surfaces.prepare(), curves.prepare();
+    prepared_ = true;
+  }
+  bool is_prepared() const { return prepared_; }
 
   TetComplex complex;
   SmoothSurfaces surfaces;
@@ -133,6 +138,7 @@ class EditableMesh {
   std::vector<bool> kept_;          // by patch: whether its triangles stay; empty: none stays
   std::vector<bool> fixed_, left_;  // by vertex; empty or shorter: false
   std::vector<Index> changed_;
+  bool prepared_ = false;
 };
 
 /// Changes of a mesh that are undone as a whole at the end unless they are kept. Precondition: the mesh
@@ -141,6 +147,7 @@ class Trial {
  public:
   /// Keeps the mesh by reference.
   explicit Trial(EditableMesh& on) : on_(on) {
+    assert(on.is_prepared());
     on.complex.begin_trial(), on.surfaces.begin_trial(), on.curves.begin_trial();
   }
   /// Undoes changes that are neither kept nor undone, as after an exception. Undoing may fail for lack of

@@ -1,6 +1,7 @@
 #include "remesh/replace_tets.h"
 
 #include <algorithm>
+#include <cassert>
 #include <set>
 #include <utility>
 #include <vector>
@@ -42,6 +43,7 @@ class Replacing {
  public:
   Replacing(EditableMesh& edited, const ShapeRule& rule, double least_quality)
       : edited_(edited), rule_(rule), operations_(edited, rule), least_(least_quality) {
+    assert(edited.complex.mesh().features.size() == edited.complex.mesh().points.size());
     edited_.prepare();
   }
 

@@ -25,7 +25,8 @@ class ShapeRule {
   /// Returns this rule if it depends only on the extreme angles of tets (pairs of tets are then measured
   /// faster), else null.
   virtual const AngleRule* by_angles() const { return nullptr; }
-  /// Returns whether an operation may make this tet. Precondition: its quality is positive.
+  /// Returns whether an operation may make this tet, whose quality is given. A flat or an inverted tet comes
+  /// here if it replaces a worse one.
   virtual bool allows(const Corners& p, const std::array<Index, 4>& corners, double quality) const = 0;
   /// Returns whether an operation may make an edge between these vertices in place of another edge there.
   virtual bool allows_edge(Index, Index, const Vector& /*edge*/, const Vector& /*before*/) const {
@@ -79,7 +80,7 @@ class ThinRule final : public AngleRule {
     const bool fits = !bounds_.cells.forbid_thin_tets() || bounds_.cells.allow(p, corners);
     return fits ? quality : CellBounds::forbidden * std::min(1.0, quality);
   }
-  bool allows(const Corners&, const std::array<Index, 4>&, double) const override { return true; }
+  bool allows(const Corners&, const std::array<Index, 4>&, double /*quality*/) const override { return true; }
 
  private:
   TetBounds bounds_;
@@ -99,7 +100,7 @@ class SliverRule final : public ShapeRule {
     if (forbids_thin_tets() && !cells_->allow(p, corners)) return CellBounds::forbidden * sine;
     return thin_->is_blunt(p, sine) ? beyond * sine : thin_->shape_quality_where_forced(p, corners, sine);
   }
-  bool allows(const Corners& p, const std::array<Index, 4>& corners, double) const override {
+  bool allows(const Corners& p, const std::array<Index, 4>& corners, double /*quality*/) const override {
     return (bound_.holds(p) || (thin_ != nullptr && thin_->contains(p, corners))) &&
            (cells_ == nullptr || cells_->allow(p, corners));
   }

@@ -249,6 +249,7 @@ bool TetComplex::on_faces(Index a, Index b) const {
 
 std::span<const Index> TetComplex::replace(const Replacement& replacement) {
   const auto& [old, created, old_faces, created_faces] = replacement;
+  assert(std::ranges::all_of(old, [this](Index t) { return tets_[t].alive; }));
   open_.clear();
   ++stamp_;
   for (const Index t : old) stamps_[t] = stamp_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <span>
 #include <tuple>
@@ -94,7 +95,10 @@ class TetComplex {
   /// Inserts a vertex into a curve: two edges replace the edge between `before` and `after`.
   void divide_curve_edge(Index before, Index vertex, Index after);
   /// Returns the mesh edge on a curve that joins these vertices. Precondition: on_curve(a, b).
-  Index curve_edge(Index a, Index b) const { return curve_edges_.at(edge_key(a, b)); }
+  Index curve_edge(Index a, Index b) const {
+    assert(on_curve(a, b));
+    return curve_edges_.at(edge_key(a, b));
+  }
 
   /// Moves a vertex; connections of tets and faces stay.
   void move_vertex(Index vertex, const Point& p) { old_points_.set(vertex, p); }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cassert>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -19,6 +20,7 @@ class UndoLog {
   UndoLog& operator=(const UndoLog&) = delete;
 
   void begin() {
+    assert(!on_);
     on_ = true;
     size_ = values_.size();
     entries_.clear();
@@ -44,6 +46,7 @@ class UndoLog {
   const std::vector<std::pair<std::size_t, Value>>& noted() const { return entries_; }
   /// Restores all entries that were present at the beginning, removes those added since, and ends the trial.
   void undo() {
+    assert(on_);
     values_.resize(size_);
     for (auto entry = entries_.rbegin(); entry != entries_.rend(); ++entry)
       values_[entry->first] = entry->second;

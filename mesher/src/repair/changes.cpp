@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <tuple>
 #include <utility>
 
@@ -69,6 +70,8 @@ std::vector<Index> places_that_meet(Draft draft, const std::vector<Index>& place
 }  // namespace
 
 Changes::Changes(const Draft& before, const Draft& after) : before_(before), after_(after) {
+  assert(before.points.size() <= after.points.size() &&
+         std::equal(before.points.begin(), before.points.end(), after.points.begin()));
   match();
   find_places();
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <span>
 #include <utility>
 #include <vector>
@@ -57,6 +58,8 @@ class ChangingTriangles {
   /// boxes; O(n log n + p) if k is a large share of n.
   template <class Visit>
   void for_each_near_pair(const std::vector<Index>& changed, const Visit& visit) {
+    assert(std::ranges::is_sorted(changed) &&
+           std::ranges::all_of(changed, [this](Index t) { return alive_[t]; }));
     std::vector<bool> among(end(), false);
     for (const Index t : changed) among[t] = true;
     const auto box_of = [&](Index t) { return box_around(draft_.triangles[t]); };

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cassert>
+
 #include "collarmesh/exact_geometry.h"
 #include "common/flat_features.h"
 #include "location/feature_shapes.h"
@@ -30,6 +32,7 @@ class PlacesOnFeatures {
   }
   /// Returns the place of a node. Precondition: has_places(feature).
   Point place(const TetMesh::VertexFeature& feature, const Point& p) {
+    assert(has_places(feature));
     if (exact_)
       if (const auto place = exact_(feature.dimension, feature.feature, p)) return *place;
     return is_smooth(feature) ? shapes_.nearest(feature, p) : p;

@@ -94,6 +94,7 @@ class Curving {
   }
   /// Removes the nodes. Precondition: the mesh has its nodes.
   void take_nodes_back() {
+    assert(mesh_.order() == 2);
     mesh_.points.resize(edges_.first_node());
     mesh_.features.resize(std::min<std::size_t>(mesh_.features.size(), edges_.first_node()));
     mesh_.tet_mid_nodes.clear(), mesh_.face_mid_nodes.clear(), mesh_.edge_mid_nodes.clear();

@@ -1,6 +1,7 @@
 #include "second_order/untangling.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <deque>
 
@@ -88,6 +89,7 @@ std::size_t Untangling::untangle_farther(Index tet) {
 }
 
 std::size_t Untangling::untangle_within(Index tet, bool wide) {
+  assert(mesh_.order() == 2);
   const auto& nodes = mesh_.tet_mid_nodes[tet];
   const auto is_free = [this](Index node) { return may_move(node - edges_.first_node()); };
   if (std::ranges::none_of(nodes, is_free)) return 0;

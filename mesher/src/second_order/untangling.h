@@ -20,11 +20,11 @@ namespace collarmesh::second_order {
 /// curvilinear meshes, 2013).
 class Untangling {
  public:
-  /// Keeps all by reference. Precondition: the mesh has its nodes.
+  /// Keeps all by reference.
   Untangling(TetMesh& mesh, const MeshEdges& edges, const Plc& plc, double least_jacobian);
 
   /// Makes a tet valid without making another one invalid. Returns the number of moved nodes; 0 if that was
-  /// not possible, and then all nodes are at their old places.
+  /// not possible, and then all nodes are at their old places. Precondition: the mesh has its nodes.
   std::size_t untangle(Index tet) { return untangle_within(tet, false); }
   /// Makes a tet valid by moving nodes in a wider neighbourhood, at several times the cost. Gives up after
   /// many failures.

@@ -1,6 +1,7 @@
 #include "shells/surface_complex.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "common/sort_uniquely.h"
 #include "shells/triangle_shape.h"
@@ -24,19 +25,49 @@ Index SurfaceComplex::add_vertex(const Point& point, const TetMesh::VertexFeatur
   return static_cast<Index>(vertices.size() - 1);
 }
 
+bool SurfaceComplex::consistent(Index vertex) const {
+  const auto has_triangle = [&](Index t) { return triangles[t].alive() && triangles[t].has(vertex); };
+  const auto has_edge = [&](Index e) {
+    return edges[e].alive() && (edges[e].ends[0] == vertex) != (edges[e].ends[1] == vertex);
+  };
+  return std::ranges::all_of(vertices[vertex].triangles, has_triangle) &&
+         std::ranges::all_of(vertices[vertex].edges, has_edge);
+}
+
+bool SurfaceComplex::consistent() const {
+  std::size_t listed_triangles = 0, listed_edges = 0;
+  const auto all_differ = [](std::vector<Index> listed) {
+    std::ranges::sort(listed);
+    return std::ranges::adjacent_find(listed) == listed.end();
+  };
+  for (Index v = 0; v < vertices.size(); ++v) {
+    if (!consistent(v) || !all_differ(vertices[v].triangles) || !all_differ(vertices[v].edges)) return false;
+    listed_triangles += vertices[v].triangles.size();
+    listed_edges += vertices[v].edges.size();
+  }
+  const auto alive = [](const auto& each) { return each.alive(); };
+  return listed_triangles == 3 * static_cast<std::size_t>(std::ranges::count_if(triangles, alive)) &&
+         listed_edges == 2 * static_cast<std::size_t>(std::ranges::count_if(edges, alive));
+}
+
 Index SurfaceComplex::add_triangle(const std::array<Index, 3>& corners, Index patch) {
+  assert(corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0]);
   const auto number = static_cast<Index>(triangles.size());
   triangles.push_back({corners, patch, shape_of(this->corners(corners))});
   for (const Index v : corners) {
     vertices[v].triangles.push_back(number);
     ++vertices[v].changes;
   }
+  assert(std::ranges::all_of(corners, [this](Index v) { return consistent(v); }));
   return number;
 }
 
 void SurfaceComplex::remove_triangle(Index triangle) {
-  for (const Index v : triangles[triangle].corners) erase_one(vertices[v].triangles, triangle);
+  assert(triangles[triangle].alive());
+  const std::array<Index, 3> corners = triangles[triangle].corners;
+  for (const Index v : corners) erase_one(vertices[v].triangles, triangle);
   triangles[triangle] = {};
+  assert(std::ranges::all_of(corners, [this](Index v) { return consistent(v); }));
 }
 
 void SurfaceComplex::move_vertex(Index vertex, const Point& to) {
@@ -49,12 +80,16 @@ Index SurfaceComplex::add_edge(const std::array<Index, 2>& ends, Index curve,
   const auto number = static_cast<Index>(edges.size());
   edges.push_back({ends, curve, at});
   for (const Index v : ends) vertices[v].edges.push_back(number);
+  assert(consistent(ends[0]) && consistent(ends[1]));
   return number;
 }
 
 void SurfaceComplex::remove_edge(Index edge) {
-  for (const Index v : edges[edge].ends) erase_one(vertices[v].edges, edge);
+  assert(edges[edge].alive());
+  const std::array<Index, 2> ends = edges[edge].ends;
+  for (const Index v : ends) erase_one(vertices[v].edges, edge);
   edges[edge] = {};
+  assert(consistent(ends[0]) && consistent(ends[1]));
 }
 
 std::vector<Index> SurfaceComplex::triangles_at(Index a, Index b) const {

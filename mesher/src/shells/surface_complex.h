@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <optional>
 #include <vector>
 
@@ -23,6 +24,7 @@ class SurfaceComplex {
     bool has(Index v) const { return corners[0] == v || corners[1] == v || corners[2] == v; }
     /// Returns the third corner. Precondition: the triangle has both a and b.
     Index third(Index a, Index b) const {
+      assert(a != b && has(a) && has(b));
       for (const Index c : corners)
         if (c != a && c != b) return c;
       return none;
@@ -74,6 +76,11 @@ class SurfaceComplex {
   Index edge_at(Index a, Index b) const;
   /// Returns the vertices that share a triangle or edge with v, sorted.
   std::vector<Index> neighbours(Index v) const;
+  /// Returns whether the triangles and edges of a vertex exist and have it as a corner or end.
+  bool consistent(Index vertex) const;
+  /// Returns whether this holds for all vertices, and every triangle and edge is listed exactly once at each
+  /// of its corners or ends. Cost: near linear.
+  bool consistent() const;
   /// Returns the triangle on the other side of the side ab of a triangle; none at a curve or border.
   Index across(Index triangle, Index a, Index b) const;
 };

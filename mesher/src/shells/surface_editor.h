@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <optional>
 #include <span>
 #include <utility>
@@ -96,6 +97,7 @@ class SurfaceEditor {
   bool put(Index vertex, const Point& p, double least);
   /// Returns the point at an arc length of a vertex's curve. Precondition: the vertex is on one curve only.
   Point place_on_curve(Index vertex, double at) const {
+    assert(complex_.vertices[vertex].feature.dimension == 1);
     return paths_.point(complex_.vertices[vertex].feature.feature, at);
   }
 
@@ -122,7 +124,7 @@ class SurfaceEditor {
   double length(Index a, Index b) const {
     return distance(complex_.vertices[a].point, complex_.vertices[b].point);
   }
-  /// Returns the edges of a vertex's curve, before and behind it. Precondition: it is on one curve only.
+  /// Returns the edges of a vertex's curve, before and behind it; none unless it is inside a single curve.
   std::optional<std::array<Index, 2>> edges_around(Index vertex) const;
   /// Returns whether the vertex is the end of a tip. Such vertices stay where they are.
   bool ends_tip(Index vertex) const {

@@ -1,5 +1,6 @@
 // Removal of vertices: the best triangles are put into the hole.
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -180,6 +181,7 @@ SurfaceEditor::Surroundings SurfaceEditor::surroundings(Index vertex) const {
 }
 
 void SurfaceEditor::restore(const Surroundings& before) {
+  assert(complex_.vertices[before.vertex].triangles.empty());
   for (Index t = before.first_triangle; t < complex_.triangles.size(); ++t) complex_.remove_triangle(t);
   for (Index e = before.first_edge; e < complex_.edges.size(); ++e) complex_.remove_edge(e);
   for (const auto& n : before.neighbours) complex_.move_vertex(n.vertex, n.point);

@@ -1,6 +1,7 @@
 #include "shells/surface_mesher.h"
 
 #include <algorithm>
+#include <cassert>
 #include <functional>
 #include <limits>
 #include <queue>
@@ -194,6 +195,7 @@ void SurfaceMesher::contract_short(double least_shape) {
 
 /// Flips edges where triangles have changed since the last call.
 void SurfaceMesher::flip_all() {
+  assert(complex_.consistent());
   constexpr unsigned rounds = 20;
   flipped_.resize(complex_.vertices.size(), 0);
   std::vector<bool> waiting(complex_.vertices.size(), false);
@@ -294,6 +296,7 @@ void SurfaceMesher::run() {
     repair_.run(rest());
   }
   repair_.improve(least_angle);
+  assert(complex_.consistent());
 }
 
 /// Removes vertices and moves those that stay, in turns, as long as each turn removes at least one vertex in
@@ -327,6 +330,7 @@ bool SurfaceMesher::project_vertex(Index vertex, const Point& target) {
 }
 
 ProjectReport SurfaceMesher::project(const ExactGeometry& exact, double most_excess) {
+  assert(!complex_.vertices.empty());
   ProjectReport report;
   editor_.set_most_excess(most_excess);
   for (Index v = 0; v < complex_.vertices.size() && !execution_.cancelled(); ++v) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <vector>
 
 #include "shells/surface_complex.h"
@@ -34,6 +35,7 @@ class VertexFan {
   /// Returns a unit vector orthogonal to the normal. Precondition: there is a normal.
   Vector across() const {
     const Vector& n = normal_;
+    assert(dot(n, n) > 0);
     const Vector least = std::fabs(n.x) < 0.6 ? Vector{1, 0, 0} : Vector{0, 1, 0};
     const Vector u = least - dot(least, n) * n;
     return u / norm(u);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <OpenMesh/Core/Utils/Property.hh>
+#include <cassert>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -44,6 +45,7 @@ class TagProperty {
   /// Precondition: there is a property.
   template <class Entity>
   Tag operator[](Entity entity) const {
+    assert(static_cast<bool>(*this));
     return std::visit(
         [&](const auto& handle) -> Tag {
           if constexpr (std::is_same_v<std::decay_t<decltype(handle)>, std::monostate>)
