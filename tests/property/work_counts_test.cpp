@@ -37,8 +37,8 @@ double looks_per_object(const WorkCounts& counts) {
   return static_cast<double>(counts.looks) / static_cast<double>(counts.located);
 }
 
-/// The largest of each count over the members of a family. Compares them with the table of expected counts at
-/// the end of its life.
+/// The maximum of each count over the members of a family. The destructor compares the maxima with the table
+/// of expected counts.
 class LargestCounts {
  public:
   explicit LargestCounts(std::string family) : family_(std::move(family)) {}
@@ -59,7 +59,7 @@ class LargestCounts {
   std::map<std::string, double> largest_;
 };
 
-// Aspect ratios are those of the bound on radius-edge ratios.
+// Adds counts that are bounded because the bound on radius-edge ratios makes vertices well spaced.
 void add_well_spaced(LargestCounts& largest, const WorkCounts& counts) {
   EXPECT_GT(counts.smallest_aspect, 1);
   largest.add("aspect ratio", counts.largest_aspect);

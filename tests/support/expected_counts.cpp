@@ -46,9 +46,9 @@ void expect_count(const std::string& key, double count) {
                                     << count;
   const auto& [expected, least, most, counted] = found->second;
   EXPECT_TRUE(count >= least * expected && count <= most * expected)
-      << key << " (" << counted << "): counted " << count << ", expected " << expected << " times " << least
-      << " to " << most
-      << ". If the change is meant, put the new number in this row of tests/expected_counts.tsv";
+      << key << " (" << counted << "): the count is " << count << ", allowed are " << least * expected
+      << " to " << most * expected << ", which is " << least << " to " << most << " times " << expected
+      << ". If the change is intended, put the new count in this row of tests/expected_counts.tsv";
 }
 
 }  // namespace collarmesh::testing
