@@ -94,8 +94,8 @@ def main():
     if "--check" not in sys.argv:
         TABLE.write_text(table, encoding="utf-8")
     elif table != TABLE.read_text(encoding="utf-8"):
-        sys.exit(f"{TABLE.name} differs from the program's table of options: run freecad_workbench/{pathlib.Path(__file__).name} "
-                 f"{sys.argv[1]}, then translations/update.py")
+        sys.exit(f"{TABLE.name} differs from the program's table of options: run "
+                 f"freecad_workbench/{pathlib.Path(__file__).name} {sys.argv[1]}, then translations/update.py")
 
 
 if __name__ == "__main__":
