@@ -38,15 +38,17 @@ double looks_per_object(const WorkCounts& counts) {
 }
 
 /// The maximum of each count over the members of a family. The destructor compares the maxima with the table
-/// of expected counts.
+/// of expected counts. Each count of the family in the table must have been added.
 class LargestCounts {
  public:
   explicit LargestCounts(std::string family) : family_(std::move(family)) {}
   LargestCounts(const LargestCounts&) = delete;
   LargestCounts& operator=(const LargestCounts&) = delete;
   ~LargestCounts() {
-    for (const auto& [counted, largest] : largest_)
-      testing::expect_count("work/" + family_ + "/" + counted, largest);
+    const std::string prefix = "work/" + family_ + "/";
+    for (const auto& [counted, largest] : largest_) testing::expect_count(prefix + counted, largest);
+    for (const std::string& key : testing::expected_keys(prefix))
+      EXPECT_TRUE(largest_.contains(key.substr(prefix.size()))) << key << " was not counted";
   }
   template <class Number>
   void add(const std::string& counted, Number count) {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 namespace collarmesh::testing {
 
@@ -13,5 +14,8 @@ void expect_count(const std::string& key, double count);
 inline void expect_count(const std::string& key, std::size_t count) {
   expect_count(key, static_cast<double>(count));
 }
+
+/// Returns the keys of tests/expected_counts.tsv that begin with this prefix.
+std::vector<std::string> expected_keys(const std::string& prefix);
 
 }  // namespace collarmesh::testing
