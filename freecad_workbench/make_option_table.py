@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Writes the add-on's table of options from the program's: make_option_table.py PROGRAM [--check]
 
-The table is kept with the sources, as whoever clones the add-on has no program yet. --check changes nothing and fails
-where the table is not the program's.
+The table is kept in the repository, because a clone of the add-on has no program to generate it with. --check changes
+nothing and fails if the table differs from the program's.
 """
 
 import json
@@ -33,7 +33,7 @@ class Option:
     type: type
     default: object  # a number 0 leaves the value to the program
     unit: str  # "length", "degrees", "diagonal", "seconds" or none
-    counts: bool  # whether it affects the number of elements, so that predictions take it
+    counts: bool  # whether predictions pass it to `collarmesh info`; `size` is passed apart
     text: str  # what it does; empty if the add-on has its own text
 
 
@@ -41,7 +41,7 @@ class Option:
 
 
 def type_of(option):
-    """Returns the type of a setting. The value called N of a number is a whole one."""
+    """Returns the type of a setting. A number whose value is called N is an integer."""
     if option["kind"] == "number":
         return int if option["value_name"] == "N" else float
     if option["kind"] == "choice":
@@ -94,8 +94,8 @@ def main():
     if "--check" not in sys.argv:
         TABLE.write_text(table, encoding="utf-8")
     elif table != TABLE.read_text(encoding="utf-8"):
-        sys.exit(f"{TABLE.name} is not the program's table of options: run freecad_workbench/{pathlib.Path(__file__).name} "
-                 f"{sys.argv[1]}, then translations/update.py")
+        sys.exit(f"{TABLE.name} differs from the program's table of options: run "
+                 f"freecad_workbench/{pathlib.Path(__file__).name} {sys.argv[1]}, then translations/update.py")
 
 
 if __name__ == "__main__":

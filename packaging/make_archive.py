@@ -3,8 +3,9 @@
 
     make_archive.py BUILD OUTPUT [options]    BUILD: a folder in which collarmesh_product was built; OUTPUT: a folder
 
-Two are written: collarmesh-...tar.gz, and collarmesh-freecad-...tar.gz, which is unpacked into FreeCAD's folder Mod. The
-options are those of freecad_workbench/make_package.py. Needs patchelf, and ldd and objdump of the system that built the program.
+Two are written: collarmesh-...tar.gz, and collarmesh-freecad-...tar.gz, which is unpacked into FreeCAD's folder Mod.
+The options are those of freecad_workbench/make_package.py. Needs patchelf, and ldd and objdump of the system that built
+the program.
 """
 
 import argparse
@@ -22,7 +23,8 @@ import make_package  # noqa: E402
 
 README = """collarmesh {version}, with its libraries, for Linux on x86-64 with the GNU C library {glibc} or newer.
 
-Run bin/collarmesh; bin/collarmesh --help tells more. The folder may be moved; bin/collarmesh must stay where it is in it.
+Run bin/collarmesh; bin/collarmesh --help tells more. The folder may be moved; bin/collarmesh must stay where \
+it is in it.
 The licence is in LICENSE; those of the libraries are in share/doc/collarmesh/libraries.
 """
 

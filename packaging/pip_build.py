@@ -1,8 +1,8 @@
-"""What `pip install .` and `pip wheel .` call: builds the mesher with CMake and makes a wheel of the package `collarmesh`,
-of the program and of the modules that they load. Nothing but Python itself is needed for it.
+"""What `pip install .` and `pip wheel .` call: builds the mesher with CMake and makes a wheel of the package
+`collarmesh`, of the program and of the modules that they load. Nothing but Python itself is needed for it.
 
-COLLARMESH_BUILD_DIR names a CMake build that is there already; then nothing is compiled. CMAKE_BUILD_PARALLEL_LEVEL says
-how many compilers run at a time.
+COLLARMESH_BUILD_DIR names a CMake build that is there already; then nothing is compiled. CMAKE_BUILD_PARALLEL_LEVEL
+says how many compilers run at a time.
 """
 
 import base64
@@ -72,8 +72,8 @@ def lay_out(root, folder):
 
 
 def compile_package(folder):
-    options = ["-DCMAKE_BUILD_TYPE=Release", "-DCOLLARMESH_TESTS=OFF", "-DCOLLARMESH_DISTRIBUTED=OFF", "-DCOLLARMESH_IN_GROUPS=ON",
-               "-DCMAKE_REQUIRE_FIND_PACKAGE_pybind11=ON",
+    options = ["-DCMAKE_BUILD_TYPE=Release", "-DCOLLARMESH_TESTS=OFF", "-DCOLLARMESH_DISTRIBUTED=OFF",
+               "-DCOLLARMESH_IN_GROUPS=ON", "-DCMAKE_REQUIRE_FIND_PACKAGE_pybind11=ON",
                f"-DPYTHON_EXECUTABLE={sys.executable}", f"-DPython_EXECUTABLE={sys.executable}"]
     if shutil.which("ninja"):
         options += ["-G", "Ninja"]
@@ -83,8 +83,8 @@ def compile_package(folder):
     try:
         subprocess.run(["cmake", "-S", SOURCES, "-B", folder, *options], check=True, env=environment)
     except (OSError, subprocess.CalledProcessError) as error:
-        raise SystemExit(f"The build cannot be prepared: {error}. It needs packages that Debian and Ubuntu call so; as root, "
-                         f"run:\n  apt-get install {packages_needed()}")
+        raise SystemExit(f"The build cannot be prepared: {error}. It needs packages that Debian and Ubuntu call so; as "
+                         f"root, run:\n  apt-get install {packages_needed()}")
     subprocess.run(["cmake", "--build", folder, "--target", "collarmesh_python_package"], check=True, env=environment)
 
 
@@ -103,7 +103,8 @@ def describe(root):
     tag = f"{python}-{python}-{PLATFORM}"
     readme = (SOURCES / "README.md").read_text(encoding="utf-8")
     for name, text in {
-            "METADATA": f"{METADATA.format(version=project.version())}Description-Content-Type: text/markdown\n\n{readme}",
+            "METADATA": f"{METADATA.format(version=project.version())}Description-Content-Type: text/markdown\n\n"
+                        f"{readme}",
             "WHEEL": f"Wheel-Version: 1.0\nGenerator: collarmesh\nRoot-Is-Purelib: false\nTag: {tag}\n",
             "entry_points.txt": "[console_scripts]\ncollarmesh = collarmesh.__main__:main\n"}.items():
         (information / name).write_text(text, encoding="utf-8")

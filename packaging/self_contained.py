@@ -12,7 +12,8 @@ import subprocess
 # The loader and what comes with it.
 C_LIBRARY = re.compile(
     r"(linux-vdso|ld-linux.*|lib(c|m|dl|rt|pthread|util|resolv|anl|nsl|mvec|nss_.*|thread_db))\.so\.\d+")
-# A process has one C++ library, which is the newest that any part of it needs: the program that loads a module brings it.
+# A process has one C++ library, which is the newest that any part of it needs: the program that loads a module brings
+# it.
 CXX_LIBRARY = re.compile(r"lib(stdc\+\+|gcc_s)\.so\.\d+")
 
 

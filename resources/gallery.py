@@ -20,8 +20,8 @@ import vtk
 from PIL import Image
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
-from drawing import (BOOK, SCALE, STAR, actor_of, array, centres, crease_edges, extract, label, legend, palette, save, shrunk,
-                     split_by_origin, surface_of, tinted, tubes, with_quality)
+from drawing import (BOOK, SCALE, STAR, actor_of, array, centres, crease_edges, extract, label, legend, palette, save,
+                     shrunk, split_by_origin, surface_of, tinted, tubes, with_quality)
 
 HERE = pathlib.Path(__file__).resolve().parent
 SIZE = (2800, 1960)  # pictures are drawn twice as large as they are saved

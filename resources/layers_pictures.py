@@ -31,8 +31,8 @@ def cut_open(grid, normal, at, near=lambda centres: True):
     layer = gallery.array(grid, "layer")
     pyramid = kinds == vtk.VTK_PYRAMID
     actors = []
-    for chosen, colour in ((layer == 0, TETS), ((layer % 2 == 1) & ~pyramid, ODD), ((layer > 0) & (layer % 2 == 0) & ~pyramid, EVEN),
-                           (pyramid, PYRAMIDS)):
+    for chosen, colour in ((layer == 0, TETS), ((layer % 2 == 1) & ~pyramid, ODD),
+                           ((layer > 0) & (layer % 2 == 0) & ~pyramid, EVEN), (pyramid, PYRAMIDS)):
         cells = (kept & chosen).nonzero()[0]
         if len(cells):
             actors.append(gallery.tinted(gallery.extract(grid, cells), colour, width=1.1))

@@ -45,8 +45,8 @@ def row(option):
         default = "none"
     elif option["words"]:
         default = f"`{default}`"
-    meaning = [code(option["help"][0].lower() + option["help"][1:], option["words"]), range_of(option), option["details"],
-               "repeatable" if option["kind"] in ("texts", "sizes") else ""]
+    meaning = [code(option["help"][0].lower() + option["help"][1:], option["words"]), range_of(option),
+               option["details"], "repeatable" if option["kind"] in ("texts", "sizes") else ""]
     return f"| {names} | {code(default)} | {'; '.join(filter(None, meaning))} |\n"
 
 

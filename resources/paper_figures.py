@@ -19,8 +19,8 @@ import vtk
 from PIL import Image
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
-from drawing import (BOOK, CREASE, EDGES, SCALE, STAR, actor_of, array, centres, extract, legend, palette, save, surface_of, tinted,
-                     tubes, with_quality)
+from drawing import (BOOK, CREASE, EDGES, SCALE, STAR, actor_of, array, centres, extract, legend, palette, save,
+                     surface_of, tinted, tubes, with_quality)
 from gallery import write_off
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -28,8 +28,8 @@ COLOURS = 160
 TET, PATCH, COLLAR_SURFACE, SEGMENT, BALL = range(5)
 OUTSIDE, REGION, RIPPED, IN_STAR, IN_BOOK, THIN = range(6)
 # By BallReason in collarmesh/trace.h.
-REASONS = {1: (0.55, 0.60, 0.66), 3: (0.93, 0.66, 0.32), 4: (0.36, 0.56, 0.78), 5: (0.50, 0.72, 0.47), 6: (0.80, 0.46, 0.46),
-           7: (0.62, 0.53, 0.76)}
+REASONS = {1: (0.55, 0.60, 0.66), 3: (0.93, 0.66, 0.32), 4: (0.36, 0.56, 0.78), 5: (0.50, 0.72, 0.47),
+           6: (0.80, 0.46, 0.46), 7: (0.62, 0.53, 0.76)}
 PLAIN, GOLD = (0.80, 0.84, 0.90), (0.96, 0.74, 0.30)
 WHITE, GREEN = (0.93, 0.93, 0.90), (0.62, 0.80, 0.60)
 PROFILE = [(0, 0), (3, 0), (3, 1.4), (2, 1.4)]
@@ -182,15 +182,16 @@ def outline(y=0.75):
 
 
 def collars(grid, axis=1, at=10.0):
-    return [*solid(below(cells(grid, TET, REGION, THIN), axis, at)), *solid(below(cells(grid, TET, IN_STAR), axis, at), STAR),
+    return [*solid(below(cells(grid, TET, REGION, THIN), axis, at)),
+            *solid(below(cells(grid, TET, IN_STAR), axis, at), STAR),
             *solid(below(cells(grid, TET, IN_BOOK), axis, at), BOOK)]
 
 
 # Pictures
 
 def draw(path, *panels, size=(2800, 1400), view=VIEW, zoom=1.25, around=None):
-    """Panels side by side, each a list of actors; drawn twice as large as they are kept. `around`: a place and how much of
-    its surroundings to show, else everything."""
+    """Panels side by side, each a list of actors; drawn twice as large as they are kept. `around`: a place and how much
+    of its surroundings to show, else everything."""
     window = vtk.vtkRenderWindow()
     window.SetOffScreenRendering(True)
     window.SetMultiSamples(8)
@@ -234,7 +235,8 @@ def figure_1(path):
                            & (np.abs(centres(grid)[:, 2]) < 0.4)).nonzero()[0])
     sheets = lambda opacity: solid(inner, PLAIN, opacity)
     axis = crease((0, 0, -0.35), (0, 0, 0.35), 0.012)
-    draw(path, [*sheets(1), axis], [*sheets(0.35), *solid(cells(grid, TET, IN_STAR), STAR), *solid(cells(grid, TET, IN_BOOK), BOOK)],
+    draw(path, [*sheets(1), axis],
+         [*sheets(0.35), *solid(cells(grid, TET, IN_STAR), STAR), *solid(cells(grid, TET, IN_BOOK), BOOK)],
          [*sheets(0.35), axis, *balls(grid)], size=(2800, 1000), view=(0.6, -1.6, 0.9), zoom=1.35)
 
 
@@ -254,8 +256,8 @@ def figure_3(path):
     line = crease((0, 0, 0), (0, 1.5, 0), 0.012)
     shape = lambda opacity: solid(cells(after, PATCH), PLAIN, opacity)
     draw(path, [*shape(0.4), line, *balls(after)], [*sliced(before, SECTION, 0.6), *outline(0.6)],
-         [*shape(0.3), line, *solid(inside_surface(before), GOLD)], [*collars(after, 1, 0.6)], size=(2800, 800), view=(-0.5, -1.6, 0.7),
-         around=((0.3, 0.6, 0.1), 0.75))
+         [*shape(0.3), line, *solid(inside_surface(before), GOLD)], [*collars(after, 1, 0.6)], size=(2800, 800),
+         view=(-0.5, -1.6, 0.7), around=((0.3, 0.6, 0.1), 0.75))
 
 
 def inside_surface(grid):
@@ -309,8 +311,8 @@ def figure_4(path):
             actor.GetMapper().SetColorModeToDirectScalars()
         return actor
 
-    draw(path, [sphere_actor(False), crease((0, 0, 0), (0, 1.5, 0), 0.015)], [sphere_actor(True)], solid(cells(grid, COLLAR_SURFACE), GOLD),
-         size=(2800, 1000), view=(-1.2, -1.8, 1.1), zoom=1.2)
+    draw(path, [sphere_actor(False), crease((0, 0, 0), (0, 1.5, 0), 0.015)], [sphere_actor(True)],
+         solid(cells(grid, COLLAR_SURFACE), GOLD), size=(2800, 1000), view=(-1.2, -1.8, 1.1), zoom=1.2)
 
 
 def the_run():
@@ -333,21 +335,22 @@ def how_2_box(path):
 
 def how_3_coarse(path):
     refining = [grid for name, grid in the_run() if name == "refine"]
-    draw(path, *([*sliced(grid, SECTION), *outline()] for grid in (refining[1], refining[-1])), size=(2800, 1100), view=FRONT,
-         around=((1.5, 0.75, 0.7), 2.3))
+    draw(path, *([*sliced(grid, SECTION), *outline()] for grid in (refining[1], refining[-1])), size=(2800, 1100),
+         view=FRONT, around=((1.5, 0.75, 0.7), 2.3))
 
 
 def how_4_balls(path):
     grid = last(the_run(), "rip")
-    draw(path, [*solid(cells(last(the_run(), "stitch"), PATCH), PLAIN, 0.25), *balls(grid, {k: v for k, v in REASONS.items() if k > 1}, 0.9),
+    draw(path, [*solid(cells(last(the_run(), "stitch"), PATCH), PLAIN, 0.25),
+                *balls(grid, {k: v for k, v in REASONS.items() if k > 1}, 0.9),
                 *balls(grid, {1: REASONS[1]}, 0.12)])
 
 
 def how_5_surface(path):
     refining = [grid for name, grid in the_run() if name == "refine"]
     early, late = refining[len(refining) // 2], last(the_run(), "rip")
-    draw(path, [*solid(cells(early, PATCH)), *curves(early, CREASE, 0.015)], [*solid(cells(late, PATCH)), *curves(late, CREASE, 0.015)],
-         size=(2800, 1100), zoom=1.3)
+    draw(path, [*solid(cells(early, PATCH)), *curves(early, CREASE, 0.015)],
+         [*solid(cells(late, PATCH)), *curves(late, CREASE, 0.015)], size=(2800, 1100), zoom=1.3)
 
 
 def how_6_quality(path):
@@ -383,8 +386,9 @@ def how_10_improve(path):
 
 
 PICTURES = {"paper_1": figure_1, "paper_2": figure_2, "paper_3": figure_3, "paper_4": figure_4, "how_1": how_1_input,
-            "how_2": how_2_box, "how_3": how_3_coarse, "how_4": how_4_balls, "how_5": how_5_surface, "how_6": how_6_quality,
-            "how_7": how_7_rip, "how_8": how_8_stitch, "how_9": how_9_coarsen, "how_10": how_10_improve}
+            "how_2": how_2_box, "how_3": how_3_coarse, "how_4": how_4_balls, "how_5": how_5_surface,
+            "how_6": how_6_quality, "how_7": how_7_rip, "how_8": how_8_stitch, "how_9": how_9_coarsen,
+            "how_10": how_10_improve}
 
 
 def main():

@@ -58,7 +58,8 @@ def main():
         pathlib.Path("gear.poly").write_text(planar_domains.gear().poly())
         scenes = [gallery.scene(coloured("panel.mesh", "--size", "7"), (1.1, -1.9, 0.3), 1.1, (0, 0, 0.4, 1)),
                   gallery.scene(coloured("gear.poly", "--size", "6"), (0, -0.001, 1), 1.05, (0.4, 0, 0.68, 1)),
-                  gallery.scene(coloured(HERE / "models" / "flange.step", "--size", "4"), gallery.FRONT, 1.3, (0.68, 0, 1, 1))]
+                  gallery.scene(coloured(HERE / "models" / "flange.step", "--size", "4"), gallery.FRONT, 1.3,
+                                (0.68, 0, 1, 1))]
         gallery.picture(into / "shells.png", *scenes)
 
 

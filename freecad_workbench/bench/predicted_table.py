@@ -2,8 +2,9 @@
 
     tests/freecad/run.py PROGRAM freecad_workbench/bench/predicted_table.py --gui -- FOLDER
 
-FOLDER has STEP parts; some are taken, spread by size. Printed are seconds of the clock, and the processor time of FreeCAD and of
-the mesher, which depends less on other work of the machine. Importing the part into FreeCAD does not count."""
+FOLDER has STEP parts; some are taken, spread by size. Printed are seconds of the clock, and the processor time of
+FreeCAD and of the mesher, which depends less on other work of the machine. Importing the part into FreeCAD does not
+count."""
 
 import os
 import pathlib
@@ -22,7 +23,8 @@ from freecad.collarmesh_workbench import mesh_object, task_panel, view_provider 
 
 PARTS = int(os.environ.get("COLLARMESH_BENCH_PARTS", 21))
 LIMIT = 120  # seconds to wait for a table
-ROW = ", ".join(f"{which} {{:.2f}} s (processors: FreeCAD {{:.2f}} s, mesher {{:.2f}} s)" for which in ("chosen", "all"))
+ROW = ", ".join(f"{which} {{:.2f}} s (processors: FreeCAD {{:.2f}} s, mesher {{:.2f}} s)"
+                for which in ("chosen", "all"))
 
 
 def spread(paths):

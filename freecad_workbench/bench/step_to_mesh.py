@@ -80,7 +80,8 @@ def main(path):
     for name in meshers:
         spread = f"{min(times[name]):.2f} to {max(times[name]):.2f}"
         print(
-            f"RESULT {name}: size {sizes[name]:.3g} mm, {tets[name]} tets, median {statistics.median(times[name]):.2f} s ({spread})")
+            f"RESULT {name}: size {sizes[name]:.3g} mm, {tets[name]} tets, median {statistics.median(times[name]):.2f} "
+            f"s ({spread})")
     ratio = statistics.median(times["Gmsh"]) / statistics.median(times["collarmesh"])
     print(f"RESULT Gmsh's time / ours: {ratio:.2f}")
 

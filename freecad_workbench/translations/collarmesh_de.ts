@@ -100,8 +100,8 @@
       <translation>Längste Dauer in Sekunden, vom Lesen bis zum Schreiben; 0: unbegrenzt</translation>
     </message>
     <message>
-      <source>Neighbouring facets that lie within this of one plane form one patch, relative to the diagonal; 0: 1e-06</source>
-      <translation>Benachbarte Facetten, die einer Ebene so nahe liegen, bilden eine Fläche, relativ zur Diagonale; 0: 1e-06</translation>
+      <source>Neighbouring facets within this distance of one plane form one patch, relative to the diagonal; 0: 1e-06</source>
+      <translation>Benachbarte Facetten, die höchstens so weit von einer Ebene entfernt sind, bilden eine Fläche, relativ zur Diagonale; 0: 1e-06</translation>
     </message>
     <message>
       <source>Number of layers</source>
@@ -164,8 +164,8 @@
       <translation>Größen in Kugeln, Quadern und Zylindern und nahe Flächen und Kanten</translation>
     </message>
     <message>
-      <source>Smallest target edge length, whatever else asks for less; 0: none</source>
-      <translation>Kleinste angestrebte Kantenlänge, was auch immer weniger verlangt; 0: keine</translation>
+      <source>Smallest target edge length; smaller local sizes are raised to it; 0: none</source>
+      <translation>Kleinste angestrebte Kantenlänge; kleinere örtliche Größen werden auf sie angehoben; 0: keine</translation>
     </message>
     <message>
       <source>Target edge length everywhere; 0: 1/20 of the diagonal</source>

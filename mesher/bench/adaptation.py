@@ -5,9 +5,9 @@ domain, Fichera's corner, and wires in a block with dolfinx; a plate with a hole
 CalculiX. Then meshes that are adapted up and down many times: how much volumes, curves and names change, and
 how well lengths fit.
 
-Errors are those of the energy: the root of the energy of the difference from the solution. With linear elements the best rate
-is the third root of the number of unknowns. Energies of the solutions come from elements of second order on the last mesh.
-Prints Markdown tables."""
+Errors are those of the energy: the root of the energy of the difference from the solution. With linear elements the
+best rate is the third root of the number of unknowns. Energies of the solutions come from elements of second order on
+the last mesh. Prints Markdown tables."""
 
 from __future__ import annotations
 
@@ -144,8 +144,8 @@ class Elasticity:
 
     young, poisson = 1.0, 0.3
 
-    def __init__(self, pulled: list[tuple[float, float]], held: Callable[[Array], list[tuple[Array, int]]], folder: Path,
-                 limit: float) -> None:
+    def __init__(self, pulled: list[tuple[float, float]], held: Callable[[Array], list[tuple[Array, int]]],
+                 folder: Path, limit: float) -> None:
         self.pulled, self.held, self.folder, self.limit = pulled, held, folder, limit
 
     def squared_error(self, energy: float, exact: float) -> float:
@@ -216,7 +216,8 @@ def problems(folder: Path, limit: float) -> list[Problem]:
         return ufl.as_vector((-along * ufl.sin(angle / 3), along * ufl.cos(angle / 3), 0))
 
     def l_walls(x: Array) -> Array:
-        return (near(abs(x[0]), 1) | near(abs(x[1]), 1) | near(x[0], 0) & (x[1] < 1e-9) | near(x[1], 0) & (x[0] > -1e-9))
+        return (near(abs(x[0]), 1) | near(abs(x[1]), 1)
+                | near(x[0], 0) & (x[1] < 1e-9) | near(x[1], 0) & (x[0] > -1e-9))
 
     def fichera_walls(x: Array) -> Array:
         inner = (x > -1e-9).all(axis=0) & near(x, 0).any(axis=0)
@@ -230,7 +231,8 @@ def problems(folder: Path, limit: float) -> list[Problem]:
 
     def bar_held(points: Array) -> list[tuple[Array, int]]:
         at = lambda *p: np.flatnonzero(near(points, np.asarray(p)).all(axis=1))
-        return [(at(-2, 2, 0), 1), (at(-2, 2, 0), 2), (at(-2, 2, 0), 3), (at(2, 2, 0), 2), (at(2, 2, 0), 3), (at(-2, 2, 0.5), 2)]
+        return [(at(-2, 2, 0), 1), (at(-2, 2, 0), 2), (at(-2, 2, 0), 3), (at(2, 2, 0), 2), (at(2, 2, 0), 3),
+                (at(-2, 2, 0.5), 2)]
 
     plate = Elasticity([(4, 1)], quarter_held, folder, limit)
     bar = Elasticity([(-2, -1), (2, 1)], bar_held, folder, limit)
@@ -263,7 +265,8 @@ def study(collarmesh, problem: Problem, loops: int, first: int, growth: float, l
     for loop in range(loops + 1):
         solution = equation.solve(mesh)
         adapted.append(solution)
-        log(f"{problem.name}: loop {loop}, {len(mesh.tets)} tets, {solution.unknowns} unknowns, energy {solution.energy:.8g}")
+        log(f"{problem.name}: loop {loop}, {len(mesh.tets)} tets, {solution.unknowns} unknowns, energy "
+            f"{solution.energy:.8g}")
         if loop == loops:
             break
         errors = collarmesh.estimated_errors(mesh, solution.values)
@@ -339,7 +342,8 @@ def change(now: dict, before: dict) -> float:
 
 
 def up_and_down(collarmesh, path: Path, loops: int, log) -> list[str]:
-    """Adapts a mesh to fine sizes at a place that goes around, again and again, and in the end to those of the first mesh."""
+    """Adapts a mesh to fine sizes at a place that goes around, again and again, and in the end to those of the first
+    mesh."""
     first = mesh = collarmesh.mesh(str(path))
     low, high = first.points.min(0), first.points.max(0)
     size = np.linalg.norm(high - low) / 20
@@ -365,7 +369,8 @@ def up_and_down(collarmesh, path: Path, loops: int, log) -> list[str]:
         smallest, largest = min(smallest, angles[0]), max(largest, angles[1])
         log(f"{path.name}: loop {loop}, {len(mesh.tets)} tets, lengths {medians[-1]:.2f}, {percentiles[-1]:.2f}, "
             f"angles {angles[0]:.1f} to {angles[1]:.1f}, volumes {change(volumes_by_region(mesh), volumes):.2g}")
-    return [path.name, f"{len(first.tets)}", f"{len(mesh.tets)}", f"{100 * change(volumes_by_region(mesh), volumes):.2g}%",
+    return [path.name, f"{len(first.tets)}", f"{len(mesh.tets)}",
+            f"{100 * change(volumes_by_region(mesh), volumes):.2g}%",
             f"{100 * change(lengths_by_curve(mesh), curves):.2g}%", "yes" if mesh.names == first.names else "no",
             f"{min(medians):.2f} to {max(medians):.2f}", f"{max(percentiles):.2f}", f"{smallest:.1f} to {largest:.1f}",
             "yes" if passed else "no"]
@@ -374,7 +379,8 @@ def up_and_down(collarmesh, path: Path, loops: int, log) -> list[str]:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument(
-        "--module", default=str(Path(__file__).parents[2] / "build/release/python"), help="folder of the Python package")
+        "--module", default=str(Path(__file__).parents[2] / "build/release/python"),
+        help="folder of the Python package")
     parser.add_argument("--problems", nargs="*", help="names, else all")
     parser.add_argument("--loops", type=int, default=6)
     parser.add_argument("--first", type=int, default=3000, help="tets that the first loop asks for")
@@ -389,7 +395,8 @@ def main() -> None:
     print(machine(Path(options.module).parent))
     with tempfile.TemporaryDirectory() as name:
         rows = [study(collarmesh, problem, options.loops, options.first, options.growth, log)
-                for problem in problems(Path(name), options.limit) if not options.problems or problem.name in options.problems]
+                for problem in problems(Path(name), options.limit)
+                if not options.problems or problem.name in options.problems]
     if rows:
         print(table(["problem", "solver", "unknowns", "error", "rate", "rate of equal sizes (theory)",
                      "times the unknowns at equal sizes", "angles", "µs a tet", "certified"], rows), "\n")

@@ -52,7 +52,8 @@ class Outcome:
     warned: bool = False
     missed: list[str] = field(default_factory=list)     # guarantees, by the certificate
     differs: list[str] = field(default_factory=list)    # statements of the judge or the report that disagree
-    within: bool = False       # whether no tet is thin, so that the ratio holds everywhere outside collars, by the judge
+    # whether no tet is thin, so that the ratio holds everywhere outside collars, by the judge
+    within: bool = False
     largest: float = 0         # largest dihedral angle in collars, by the judge
 
 
@@ -155,8 +156,8 @@ def run(program: Path, judging: str | None, case: Case, question: tuple[str, ...
     return outcome
 
 
-header = ["option", "meshes", "with creases", "with collars there", "exit code 7", "no mesh", "warned", "ratio everywhere outside collars",
-          "largest angle in collars", "tets", "judge differs"]
+header = ["option", "meshes", "with creases", "with collars there", "exit code 7", "no mesh", "warned",
+          "ratio everywhere outside collars", "largest angle in collars", "tets", "judge differs"]
 
 
 def row(question: tuple[str, ...], outcomes: list[Outcome]) -> list[str]:

@@ -44,7 +44,8 @@ import FreeCAD, Part, numpy
 shape = Part.read(sys.argv[1])
 parts = [s.tessellate(1e-4 * shape.BoundBox.DiagonalLength) for s in shape.Solids or shape.Faces]
 triangles = [[points[i] for i in t] for points, ts in parts for t in ts]
-numpy.savez(sys.argv[2], triangles=numpy.array(triangles, float).reshape(-1, 3, 3), volumes=[s.Volume for s in shape.Solids])
+numpy.savez(sys.argv[2], triangles=numpy.array(triangles, float).reshape(-1, 3, 3), \
+volumes=[s.Volume for s in shape.Solids])
 """
 
 
@@ -336,7 +337,8 @@ def repair(path: Path, folder: Path, options: argparse.Namespace) -> tuple[np.nd
     return read_off(out), json.loads(report.read_text())
 
 
-def input_volume(given: Given, repaired: np.ndarray, count: int, random: np.random.Generator) -> tuple[float, float, float]:
+def input_volume(given: Given, repaired: np.ndarray, count: int,
+                 random: np.random.Generator) -> tuple[float, float, float]:
     """Returns the input's volume, its standard deviation, and the share of the volume in which input and
     result differ."""
     corners = given.triangles.reshape(-1, 3)
@@ -407,8 +409,8 @@ def main() -> None:
         except (NotRepaired, subprocess.CalledProcessError) as failure:
             print(f"{path.name}: {failure}", file=sys.stderr, flush=True)
     rows.sort(key=lambda row: -max(row.of_repaired, row.of_input))
-    print(table(["file", "repaired from input", "input from repaired", "told", "volume", "of the input", "differs", "bodies",
-                 "changed", "after", "solids", "regions"], [row.cells() for row in rows]))
+    print(table(["file", "repaired from input", "input from repaired", "told", "volume", "of the input", "differs",
+                 "bodies", "changed", "after", "solids", "regions"], [row.cells() for row in rows]))
     print_doubts(rows)
 
 

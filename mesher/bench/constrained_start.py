@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Meshes every input that starts from constrained tetrahedra: does each valid complex give a mesh within a bound on CPU
-time, and how many tets miss the bounds on angles? Beside it TetGen's constrained tetrahedra (-p, without quality) of the
-same complex. Prints Markdown tables; a log of one JSON line for each input lets an interrupted run go on."""
+time, and how many tets miss the bounds on angles? Beside it TetGen's constrained tetrahedra (-p, without quality) of
+the same complex. Prints Markdown tables; a log of one JSON line for each input lets an interrupted run go on."""
 
 from __future__ import annotations
 
@@ -48,7 +48,8 @@ def angles_of(path: Path) -> np.ndarray:
 
     def rows(keyword: str, width: int) -> np.ndarray:
         at = re.search(rf"^{keyword}\s+(\d+)\s", text, re.MULTILINE)
-        return np.array(text[at.end():].split(None, width * int(at[1]))[:width * int(at[1])], dtype=float).reshape(-1, width)
+        return np.array(text[at.end():].split(None, width * int(at[1]))[:width * int(at[1])],
+                        dtype=float).reshape(-1, width)
 
     points, tets = rows("Vertices", 4)[:, :3], rows("Tetrahedra", 5)[:, :4].astype(int) - 1
     return dihedral_angles(points[tets])

@@ -82,8 +82,8 @@ def main() -> int:
                 rows.append([path.name + told, str(level), *angles(Path(folder) / "mesh.vtu"), seconds(measured.cpu)])
                 print(*rows[-1], file=sys.stderr, flush=True)
     print(f"{about}. collarmesh {Collarmesh(program, 0).version()}.\n")
-    print(table(["input", "level", "tets", "thin", "smallest", "largest", "tets away from thin ones", "smallest", "largest",
-                 "with a corner inside", "smallest", "largest", "CPU s"], rows))
+    print(table(["input", "level", "tets", "thin", "smallest", "largest", "tets away from thin ones", "smallest",
+                 "largest", "with a corner inside", "smallest", "largest", "CPU s"], rows))
     return 0
 
 

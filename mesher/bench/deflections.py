@@ -34,8 +34,10 @@ def tube(outer, inner, length, along):
     return Part.makeCylinder(outer, length, V(), along).cut(Part.makeCylinder(inner, length, V(), along))
 tube(0.03, 0.027, 1, V(1, 0, 0)).exportStep(folder + "/tube.step")
 Part.makeBox(1, 0.3, 0.01).exportStep(folder + "/strip.step")
-sector = Part.Face(Part.makePolygon([V(0, 0, 0), V(0, -60 * math.sin(math.radians(40)), 60 * math.cos(math.radians(40))),
-                                     V(0, 60 * math.sin(math.radians(40)), 60 * math.cos(math.radians(40))), V(0, 0, 0)]))
+sector = Part.Face(Part.makePolygon([V(0, 0, 0), \
+V(0, -60 * math.sin(math.radians(40)), 60 * math.cos(math.radians(40))),
+                                     V(0, 60 * math.sin(math.radians(40)), 60 * math.cos(math.radians(40))), \
+V(0, 0, 0)]))
 tube(25.125, 24.875, 50, V(1, 0, 0)).common(sector.extrude(V(50, 0, 0))).exportStep(folder + "/roof.step")
 helix = Part.makeHelix(2, 10, 5)
 wire = Part.Wire(Part.makeCircle(0.5, V(5, 0, 0), V(0, 1, 0)))
@@ -169,7 +171,8 @@ def main() -> None:
                 line = [part.name, str(order)]
                 for mesher in ("collarmesh", "Gmsh"):
                     shape = str(folder / f"{part.name}.step")
-                    command = ([options.program, shape, "-o", "mesh.vtu", "--order", str(order), "--progress", "none", "-q"]
+                    command = ([options.program, shape, "-o", "mesh.vtu", "--order", str(order), "--progress", "none",
+                                "-q"]
                                if mesher == "collarmesh" else gmsh_part_command(Path(shape), "mesh.msh", order))
                     try:
                         run(command, folder, options.limit)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""How many elements CAD files get at a size, and how near they are to the exact shape: collarmesh with its defaults beside
-Gmsh (HXT), both at a twentieth of the diagonal, with elements of the first and of the second order.
+"""How many elements CAD files get at a size, and how near they are to the exact shape: collarmesh with its defaults
+beside Gmsh (HXT), both at a twentieth of the diagonal, with elements of the first and of the second order.
 
 Distances are relative to the diagonal. They lead from points on the mesh's outer faces (curved ones by their
 six nodes) to a dense tessellation by OpenCASCADE (FreeCAD's Shape.tessellate, with an error of 1e-4), and
@@ -40,7 +40,8 @@ import FreeCAD, Part, numpy
 shape = Part.Shape()
 shape.read(sys.argv[1])
 points, triangles = shape.tessellate(float(sys.argv[3]) * shape.BoundBox.DiagonalLength)
-numpy.savez(sys.argv[2], volume=shape.Volume, points=[tuple(p) for p in points], triangles=triangles, diagonal=shape.BoundBox.DiagonalLength)
+numpy.savez(sys.argv[2], volume=shape.Volume, points=[tuple(p) for p in points], triangles=triangles, \
+diagonal=shape.BoundBox.DiagonalLength)
 """
 # Sides and corners of a tetrahedron's faces, and the node between each two corners (VTK's order).
 faces = ((1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1))

@@ -26,8 +26,8 @@ def main() -> int:
     pin_to_core(options.core)
     programs = options.build.resolve() / "bin"
     limit = options.time_limit
-    meshers = [Collarmesh(programs / "collarmesh", limit, improve=0), Collarmesh(programs / "collarmesh", limit, improve=2),
-               TetGen(limit, switches="g"), Gmsh(limit)]
+    meshers = [Collarmesh(programs / "collarmesh", limit, improve=0),
+               Collarmesh(programs / "collarmesh", limit, improve=2), TetGen(limit, switches="g"), Gmsh(limit)]
     labels = ["collarmesh --improve 0", "collarmesh --improve 2", "TetGen", "Gmsh HXT"]
     cache = SizeCache()
     lines = []

@@ -102,8 +102,9 @@ def curve_table(program: Path, time_limit: float, folder: Path) -> str:
             run = mesher.mesh(cube, length if uniform else size, folder)
             refine = run.stages["refine"]
             growth = "" if before is None else f"{exponent(before.tets, before.stages['refine'], run.tets, refine):.2f}"
-            rows.append([cube.title, f"{length:g}" if uniform else f"1/{1 / length:.0f}", tets_text(run), seconds(refine), growth,
-                         f"{1e6 * refine / run.tets:.2f}", f"{run.structure_bytes / run.tets:.0f}",
+            rows.append([cube.title, f"{length:g}" if uniform else f"1/{1 / length:.0f}", tets_text(run),
+                         seconds(refine), growth, f"{1e6 * refine / run.tets:.2f}",
+                         f"{run.structure_bytes / run.tets:.0f}",
                          f"{run.cells / run.tets:.2f}", f"{run.structure_bytes / run.cells:.0f}"])
             before = run
     return table(["fine curves", "their edges", "tets", "refine s", "exponent", "us/tet", "bytes/tet", "cells/tet",

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """How fast this version is: appends a line to history.tsv beside this file, and draws history.svg of all lines.
 
-Whole runs of a box by one thread, in turn with CGAL triangulating the vertices of our mesh (`triangulate_points`, where the build
-has it) and with Gmsh HXT and its optimization (where python3-gmsh is installed), CPU seconds, medians. Compare ratios of tets
-per second: they hardly depend on the machine."""
+Whole runs of a box by one thread, in turn with CGAL triangulating the vertices of our mesh (`triangulate_points`, where
+the build has it) and with Gmsh HXT and its optimization (where python3-gmsh is installed), CPU seconds, medians.
+Compare ratios of tets per second: they hardly depend on the machine."""
 
 from __future__ import annotations
 
@@ -86,7 +86,8 @@ def measure(options, target: int, size: float) -> dict[str, str]:
     ratio = {name: f"{statistics.median(found):.3f}" if found else ""
              for name, found in (("over_triangulation", over_triangulation), ("over_hxt", over_hxt))}
     taken = statistics.median(cpu)
-    return {"target": si(target), "tets": str(tets), "cpu_s": f"{taken:.3f}", "tets_per_s": f"{tets / taken:.0f}", **ratio}
+    return {"target": si(target), "tets": str(tets), "cpu_s": f"{taken:.3f}", "tets_per_s": f"{tets / taken:.0f}",
+            **ratio}
 
 
 def draw(lines: list[dict[str, str]], path: Path) -> None:

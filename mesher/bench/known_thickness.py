@@ -71,8 +71,8 @@ def measured(path: Path, program: str, order: int, limit: float, count: int) -> 
     known, rays = member(path.stem)
     with tempfile.TemporaryDirectory() as folder:
         try:
-            run([program, str(path.resolve()), "-o", "mesh.vtu", "--progress", "none", "-q", "--order", str(order)], Path(folder),
-                limit, accepted=(0, 7))
+            run([program, str(path.resolve()), "-o", "mesh.vtu", "--progress", "none", "-q", "--order", str(order)],
+                Path(folder), limit, accepted=(0, 7))
         except ProgramFailed as failure:
             return [path.stem, str(order), f"{known:g}", "", "", "", "", str(failure)]
         mesh = meshio.read(Path(folder) / "mesh.vtu")
@@ -80,7 +80,8 @@ def measured(path: Path, program: str, order: int, limit: float, count: int) -> 
     surface = boundary(mesh.points, tets)
     found = np.array([first_two(surface, *ray) for ray in zip(*rays(np.random.default_rng(1), count))]) / known - 1
     some = found[~np.isnan(found)]
-    return [path.stem, str(order), f"{known:g}", str(len(tets)), f"{100 * some.mean():+.2f}%", f"{100 * some.min():+.1f}%",
+    return [path.stem, str(order), f"{known:g}", str(len(tets)), f"{100 * some.mean():+.2f}%",
+            f"{100 * some.min():+.1f}%",
             f"{100 * some.max():+.1f}%", str(len(found) - len(some)) if len(some) < len(found) else ""]
 
 

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Families of bodies whose volumes are known, at default options: how far each region's volume is off, and with how many
-elements. Most lengths are in target edge lengths, a twentieth of the diagonal, so a rod of radius 0.02 is fifty times thinner than
-the elements that are asked for.
+"""Families of bodies whose volumes are known, at default options: how far each region's volume is off, and with how
+many elements. Most lengths are in target edge lengths, a twentieth of the diagonal, so a rod of radius 0.02 is fifty
+times thinner than the elements that are asked for.
 
-known_volumes.py write FOLDER makes the inputs: surfaces that are cut coarsely (24 edges to a circle) and finely (96), complexes
-of several regions, and STEP files (these need FreeCAD). known_volumes.py run FOLDER meshes them and prints a table."""
+known_volumes.py write FOLDER makes the inputs: surfaces that are cut coarsely (24 edges to a circle) and finely (96),
+complexes of several regions, and STEP files (these need FreeCAD). known_volumes.py run FOLDER meshes them and prints a
+table."""
 
 from __future__ import annotations
 
@@ -133,8 +134,10 @@ def cube(edge: float) -> Surface:
 
 
 def torus(radius: float, wire: float, around: int, along: int) -> Surface:
-    points = [((radius + wire * math.cos(b)) * math.cos(a), (radius + wire * math.cos(b)) * math.sin(a), wire * math.sin(b))
-              for a in (2 * math.pi * i / along for i in range(along)) for b in (2 * math.pi * j / around for j in range(around))]
+    points = [((radius + wire * math.cos(b)) * math.cos(a), (radius + wire * math.cos(b)) * math.sin(a),
+               wire * math.sin(b))
+              for a in (2 * math.pi * i / along for i in range(along))
+              for b in (2 * math.pi * j / around for j in range(around))]
     polygons = []
     for i in range(along):
         for j in range(around):
@@ -261,7 +264,8 @@ def write(folder: Path) -> None:
         for r in (0.02, 0.1):
             family.shells(f"ring_{r}_{cut}", [cube(side), torus(3, r, around, 4 * around)])
         family.shells(f"gear_{cut}", [prism([(r * math.cos(a), r * math.sin(a)) for k in range(10 * around)
-                                             for a in [2 * math.pi * k / (10 * around)] for r in [6 + 0.3 * math.sin(20 * a)]],
+                                             for a in [2 * math.pi * k / (10 * around)]
+                                             for r in [6 + 0.3 * math.sin(20 * a)]],
                                             0, 2)])
         family.shells(f"screw_{cut}", [screw(1.5, 0.25, 0.5, 8, around)])
         for t in (0.01, 0.05, 0.3):
@@ -289,8 +293,8 @@ def differences(made: list[float], known: list[float]) -> float:
 def measure(path: Path, program: str, order: int, limit: int) -> Row:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        command = [program, str(path.resolve()), "-o", "mesh.vtu", "--report", "report.json", "--progress", "none", "--threads", "1",
-                   "--order", str(order)]
+        command = [program, str(path.resolve()), "-o", "mesh.vtu", "--report", "report.json", "--progress", "none",
+                   "--threads", "1", "--order", str(order)]
         done = run_limited(command, folder, limit, memory_limit)
         if done.exit_code < 0:
             return Row(path.name, order, f"not done in {limit} s", done.cpu)
@@ -298,8 +302,8 @@ def measure(path: Path, program: str, order: int, limit: int) -> Row:
             return Row(path.name, order, f"exit code {done.exit_code}", done.cpu)
         mesh = json.loads((folder / "report.json").read_text())["mesh"]
         known = json.loads(Path(f"{path}.json").read_text())
-        return Row(path.name, order, "good" if done.exit_code == 0 else f"exit code {done.exit_code}", done.cpu, mesh["tets"],
-                   differences(list(mesh["region_volumes"].values()), known))
+        return Row(path.name, order, "good" if done.exit_code == 0 else f"exit code {done.exit_code}", done.cpu,
+                   mesh["tets"], differences(list(mesh["region_volumes"].values()), known))
 
 
 def read_rows(path: Path) -> list[Row]:
@@ -319,8 +323,8 @@ def print_table(rows: list[Row]) -> None:
         line = [file]
         for order in sorted({r.order for r in rows}):
             r = of[file, order]
-            line += [r.outcome, "", f"{r.cpu:.2f}"] if not r.tets else [f"{100 * r.off:.2f}%" + ("" if r.outcome == "good" else f" ({r.outcome})"),
-                                                                        str(r.tets), f"{r.cpu:.2f}"]
+            off = f"{100 * r.off:.2f}%" + ("" if r.outcome == "good" else f" ({r.outcome})")
+            line += [off, str(r.tets), f"{r.cpu:.2f}"] if r.tets else [r.outcome, "", f"{r.cpu:.2f}"]
         lines.append(line)
     header = ["input"]
     for order in sorted({r.order for r in rows}):
@@ -343,7 +347,8 @@ def main() -> None:
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--only", default="", help="names that contain this")
     parser.add_argument("--out", type=Path,
-                        help="rows as they come: file, order, outcome, CPU seconds, tets, difference; a run that it holds is not made again")
+                        help="rows as they come: file, order, outcome, CPU seconds, tets, difference; a run that it "
+                             "holds is not made again")
     options = parser.parse_args()
     if options.action == "write":
         write(options.folder)

@@ -62,8 +62,8 @@ def main():
                 ("layers", (0.5, 0.35, 0.25, 0.17), lambda size: ("--layers", layers, "--layers-tets"))):
             for size in sizes:
                 general = 0.3 if title.startswith("small") else size
-                subprocess.run([arguments.program, str(arguments.models / "box.off"), "-o", str(mesh), "--size", str(general), "-q",
-                                *options(size)], check=True)
+                subprocess.run([arguments.program, str(arguments.models / "box.off"), "-o", str(mesh), "--size",
+                                str(general), "-q", *options(size)], check=True)
                 unknowns, energy = solve(mesh, depth)
                 error = math.sqrt(max(energy - exact, 0) / exact)
                 rows.append([title, str(size), str(unknowns),

@@ -4,11 +4,11 @@
     layer_peers.py PROGRAM [--parts FILE...] [--only WORDS] [--size-share 20] [--limit 300]
 
 Each mesher gets the triangles of a mesh without layers at 1/20 of the diagonal. Netgen fills them and pushes layers
-into its mesh; Gmsh makes patches of them at 40 degrees, meshes these at the same size, extrudes them and fills the rest.
-All are asked for three layers on all faces, the first a tenth of the size, growth 1.2. One measure judges all files:
-`covered` is the share of the input's area where the boundary's triangle is one of a prism, `folded` counts cells with a
-Jacobian that is not positive, `volume` compares the sum over cells with the input. Needs Debian's python3-netgen,
-python3-gmsh and python3-meshio; shapes that are STEP files need FreeCAD."""
+into its mesh; Gmsh makes patches of them at 40 degrees, meshes these at the same size, extrudes them and fills the
+rest. All are asked for three layers on all faces, the first a tenth of the size, growth 1.2. One measure judges all
+files: `covered` is the share of the input's area where the boundary's triangle is one of a prism, `folded` counts cells
+with a Jacobian that is not positive, `volume` compares the sum over cells with the input. Needs Debian's
+python3-netgen, python3-gmsh and python3-meshio; shapes that are STEP files need FreeCAD."""
 
 from __future__ import annotations
 
@@ -66,7 +66,8 @@ def by_netgen(surface: str, out: str, size: float) -> None:
             for (tag, a, b), (other, _, _) in (sides, sides[::-1]):
                 mesh.Add(meshing.Element1D([number[a], number[b]], [faces[tag], faces[other]], faces[tag]))
     mesh.GenerateVolumeMesh(meshing.MeshingParameters(maxh=size))
-    # Innermost first; each layer pushes the cells of the volume before. In a single call with all heights, cells overlap.
+    # Innermost first; each layer pushes the cells of the volume before. In a single call with all heights, cells
+    # overlap.
     for volume, top in enumerate(reversed(np.cumsum(heights(0.1 * size))), 1):
         mesh.BoundaryLayer(1, [float(top)], volume, [f"layer{volume}"])
     cells = collections.defaultdict(list)
@@ -183,7 +184,8 @@ def area_and_volume(points: np.ndarray, triangles: np.ndarray) -> tuple[float, f
 
 
 def timed(command: list[str], limit: float, folder: Path) -> tuple[float, str]:
-    """Runs a command in a folder, where Netgen leaves a log. Returns its CPU seconds and, if it failed, its last words."""
+    """Runs a command in a folder, where Netgen leaves a log. Returns its CPU seconds and, if it failed, its last
+    words."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     try:
         made = subprocess.run(command, capture_output=True, text=True, timeout=limit, cwd=folder)
@@ -242,8 +244,8 @@ def inputs_of(arguments, folder: Path) -> list[tuple[str, Path]]:
 
 
 def print_table(rows: list[Row]) -> None:
-    text = [[row.shape, row.mesher, row.outcome, str(row.tets), str(row.prisms), str(row.pyramids), f"{row.covered:.1f}",
-             str(row.folded), f"{row.volume:+.2f}", f"{row.seconds:.1f}"] for row in rows]
+    text = [[row.shape, row.mesher, row.outcome, str(row.tets), str(row.prisms), str(row.pyramids),
+             f"{row.covered:.1f}", str(row.folded), f"{row.volume:+.2f}", f"{row.seconds:.1f}"] for row in rows]
     print(table(["shape", "mesher", "outcome", "tets", "prisms", "pyramids",
           "covered %", "folded", "volume off %", "CPU s"], text))
 

@@ -23,8 +23,8 @@ from tables import table
 names = {"patches": {"walls": 2, "sides": [1, 3, 5], "inlet": 6, "outlet": 4}}
 files = {
     "system/controlDict": "endTime 400; deltaT 1; writeControl timeStep; writeInterval 400;",
-    "system/fvSchemes": "ddtSchemes { default steadyState; } gradSchemes { default leastSquares; limited cellLimited leastSquares 1; } "
-                        "divSchemes { default none; div(phi,U) bounded Gauss linearUpwindV limited; "
+    "system/fvSchemes": "ddtSchemes { default steadyState; } gradSchemes { default leastSquares; limited cellLimited "
+                        "leastSquares 1; } divSchemes { default none; div(phi,U) bounded Gauss linearUpwindV limited; "
                         "div((nuEff*dev2(T(grad(U))))) Gauss linear; } "
                         "laplacianSchemes { default Gauss linear corrected; } interpolationSchemes { default linear; } "
                         "snGradSchemes { default corrected; }",
@@ -60,7 +60,8 @@ def blasius():
 
 def field(path, what="internalField"):
     values = path.read_text().split(what)[1].split("boundaryField")[0]
-    return np.array(values[values.index("\n(") + 2:values.rindex(")")].replace("(", " ").replace(")", " ").split(), float)
+    return np.array(values[values.index("\n(") + 2:values.rindex(")")].replace("(", " ").replace(")", " ").split(),
+                    float)
 
 
 def flow(case, viscosity):
@@ -87,14 +88,16 @@ def main():
     arguments = parser.parse_args()
     eta, slope = blasius()
     rows = []
-    for title, size, options in (("one size", 0.25, ()), ("one size", 0.15, ()), ("layers", 0.25, ("count=10",)), ("layers", 0.15, ("count=10",))):
+    for title, size, options in (("one size", 0.25, ()), ("one size", 0.15, ()), ("layers", 0.25, ("count=10",)),
+                                 ("layers", 0.15, ("count=10",))):
         with tempfile.TemporaryDirectory() as folder:
             case = pathlib.Path(folder)
             (case / "constant" / "polyMesh").mkdir(parents=True)
             (case / "names.json").write_text(json.dumps(names))
             layers = ("--layers", "walls:first=0.012,growth=1.15,count=10") if options else ()
-            subprocess.run([arguments.program, str(arguments.models / "box.off"), "-o", str(case / "constant/polyMesh/boundary"),
-                            "--format", "polymesh", "--size", str(size), "--names", str(case / "names.json"), "-q", *layers],
+            subprocess.run([arguments.program, str(arguments.models / "box.off"), "-o",
+                            str(case / "constant/polyMesh/boundary"), "--format", "polymesh", "--size", str(size),
+                            "--names", str(case / "names.json"), "-q", *layers],
                            check=True)
             result = flow(case, arguments.viscosity)
             if result is None:
@@ -107,9 +110,10 @@ def main():
             outside = np.polyfit(x[(x > 1) & (z > 0.5)], u[(x > 1) & (z > 0.5)], 2)
             error = u[chosen] / np.polyval(outside, x[chosen]) - np.interp(at, eta, slope)
             inside = at < 5
-            rows.append([title, str(size), str(len(x)), str(int(inside.sum())), f"{100 * np.sqrt((error[inside]**2).mean()):.1f}",
-                         f"{100 * np.abs(error[inside]).max():.1f}"])
-    print(table(["mesh", "size", "cells", "of them inside 5 sqrt(nu x / U)", "error there, % of the speed", "largest"], rows))
+            rows.append([title, str(size), str(len(x)), str(int(inside.sum())),
+                         f"{100 * np.sqrt((error[inside]**2).mean()):.1f}", f"{100 * np.abs(error[inside]).max():.1f}"])
+    print(table(["mesh", "size", "cells", "of them inside 5 sqrt(nu x / U)", "error there, % of the speed", "largest"],
+                rows))
 
 
 if __name__ == "__main__":

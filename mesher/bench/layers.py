@@ -5,7 +5,8 @@
 
 Every shape gets layers on all faces: three of them, the first a tenth of the size. A second reading of the file, with
 numpy alone, measures the Jacobians at corners and integration points, the volumes and the angles. `--openfoam` has
-checkMesh judge each mesh, too. T-junction, airfoil and fin are STEP files that FreeCAD makes; without it they are left out."""
+checkMesh judge each mesh, too. T-junction, airfoil and fin are STEP files that FreeCAD makes; without it they are left
+out."""
 
 from __future__ import annotations
 
@@ -120,9 +121,9 @@ def measure(row: Row, path: Path, first: float) -> None:
 
 
 def measure_first_heights(row: Row, prisms: np.ndarray, layers: np.ndarray, first: float) -> None:
-    """Measures the 95th percentile of the errors of the first heights, where no node has less than nine tenths of the height
-    asked for. A node has one height above a wall, but several above its triangles, which deviate from a curved wall to
-    both sides."""
+    """Measures the 95th percentile of the errors of the first heights, where no node has less than nine tenths of the
+    height asked for. A node has one height above a wall, but several above its triangles, which deviate from a curved
+    wall to both sides."""
     p = prisms[layers == 1]
     if not len(p):
         return
@@ -187,7 +188,8 @@ def judge_in_openfoam(row: Row, program: str, mesh: Path, folder: Path) -> None:
     boundary = case / "constant" / "polyMesh" / "boundary"
     subprocess.run([program, "convert", str(mesh), "-o", str(boundary), "--format", "polymesh", "--quiet"], check=True)
     schemes = "".join(f"{kind}Schemes {{}} " for kind in ("ddt", "grad", "div", "laplacian", "interpolation", "snGrad"))
-    for name, text in {"controlDict": "deltaT 1; endTime 1; writeInterval 1;", "fvSchemes": schemes, "fvSolution": ""}.items():
+    for name, text in {"controlDict": "deltaT 1; endTime 1; writeInterval 1;", "fvSchemes": schemes,
+                       "fvSolution": ""}.items():
         (case / "system" / name).write_text(
             f"FoamFile {{ version 2.0; format ascii; class dictionary; object {name}; }}\n{text}\n")
     environment = {**os.environ, "WM_PROJECT_DIR": "/usr/share/openfoam", "FOAM_ETC": "/usr/share/openfoam/etc"}
@@ -231,9 +233,10 @@ def airfoil() -> str:
 # Solids, as expressions of FreeCAD's Python: a pipe that branches, the room around an airfoil between two walls, a fin
 # that leaves a sphere.
 solids = {
-    "T-junction": "[Part.makeCylinder(1, 8, V(-4, 0, 0), V(1, 0, 0)).fuse(Part.makeCylinder(0.7, 4, V(0, 0, 0), V(0, 0, 1)))"
-                  ".removeSplitter()]",
-    "airfoil in a box": "[(lambda c: (c.interpolate(" + airfoil() + "), Part.makeBox(4, 2, 1).cut(Part.Face(Part.Wire(c.toShape()))"
+    "T-junction": "[Part.makeCylinder(1, 8, V(-4, 0, 0), V(1, 0, 0))"
+                  ".fuse(Part.makeCylinder(0.7, 4, V(0, 0, 0), V(0, 0, 1))).removeSplitter()]",
+    "airfoil in a box": "[(lambda c: (c.interpolate(" + airfoil() + "), "
+                        "Part.makeBox(4, 2, 1).cut(Part.Face(Part.Wire(c.toShape()))"
                         ".extrude(V(0, 0, 1))))[1])(Part.BSplineCurve())]",
     "sphere with a fin": "[Part.makeSphere(1).fuse(Part.makeBox(1, 0.2, 1, V(0.6, -0.1, -0.5))).removeSplitter()]",
 }
@@ -305,9 +308,9 @@ def print_table(rows: list[Row]) -> None:
              f"{row.full:.0f}", str(row.negative), f"{row.first_error:.1f}", f"{row.step:.2f}",
              f"{row.smallest:.1f}", f"{row.largest:.1f}", f"{row.seconds:.1f}", f"{row.share:.0f}",
              row.openfoam, row.non_orthogonality, row.skewness] for row in rows]
-    print(table(["shape", "outcome", "tets", "prisms", "pyramids", "covered %", "full thickness %", "negative Jacobians",
-                 "error of the first height %", "largest step", "smallest angle", "largest angle", "CPU s", "layers' share %",
-                 "checkMesh", "non-orthogonality: largest, mean", "skewness"],
+    print(table(["shape", "outcome", "tets", "prisms", "pyramids", "covered %", "full thickness %",
+                 "negative Jacobians", "error of the first height %", "largest step", "smallest angle", "largest angle",
+                 "CPU s", "layers' share %", "checkMesh", "non-orthogonality: largest, mean", "skewness"],
                 text))
     covered = [row.coverage for row in rows if not math.isnan(row.coverage)]
     if covered:

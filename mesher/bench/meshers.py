@@ -134,8 +134,8 @@ class Gmsh:
     def mesh(self, surface: Surface, size: float, folder: Path) -> MeshRun:
         (folder / "input.geo").write_text('Include "model.geo";\n' f"Mesh.MeshSizeMin = {size:.17g};\n"
                                           f"Mesh.MeshSizeMax = {size:.17g};\n")
-        measured = run([self.program, "-3", "-algo", self.algorithm, "-nt", str(self.threads), *self.switches, "input.geo", "-bin",
-                        "-o", self.mesh_file], folder, self.time_limit)
+        measured = run([self.program, "-3", "-algo", self.algorithm, "-nt", str(self.threads), *self.switches,
+                        "input.geo", "-bin", "-o", self.mesh_file], folder, self.time_limit)
         if "Error" in measured.output:
             raise ProgramFailed(re.search(r"Error +: (.*)", measured.output).group(1))
         return MeshRun(int(_number(self._count(measured.output), measured.output)),

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Quality and edge lengths of meshes as MMG's histograms give them, for comparison with published ones: the quality
-12 sqrt(3) 3 V / (sum of squared edge lengths)^(3/2) of a tetrahedron, 1 for a regular one, and lengths of edges over the
-size asked for. Prints a Markdown row for each file: MESH SIZE ..."""
+12 sqrt(3) 3 V / (sum of squared edge lengths)^(3/2) of a tetrahedron, 1 for a regular one, and lengths of edges over
+the size asked for. Prints a Markdown row for each file: MESH SIZE ..."""
 
 import itertools
 import sys

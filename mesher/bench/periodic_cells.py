@@ -176,7 +176,8 @@ class Mesh:
         self.cells = {kind: (np.concatenate(nodes), np.concatenate(tags)) for kind, (nodes, tags) in self.cells.items()}
 
     def images(self, axis):
-        """Returns node numbers at the low end of an axis and their images at the high end; fails if an image is missing."""
+        """Returns node numbers at the low end of an axis and their images at the high end; fails if an image is
+        missing."""
         at = [np.flatnonzero(np.abs(self.points[:, axis] - end) < ROUNDING) for end in (0.0, 1.0)]
         others = [k for k in range(3) if k != axis]
         keys = [{tuple(np.round(self.points[v, others], 11) + 0.0): v for v in nodes} for nodes in at]
@@ -284,7 +285,8 @@ def main():
     parser.add_argument("--order", default="1")
     options = parser.parse_args()
     common = ["--size", options.size, "--order", options.order, "--threads", "1"]
-    print("| cell | tets | periodic / without | angles without | periodic | findings | CPU periodic / without | exit | conductivity | bounds |")
+    print("| cell | tets | periodic / without | angles without | periodic | findings | CPU periodic / without | exit | "
+          "conductivity | bounds |")
     print("|---|---|---|---|---|---|---|---|---|---|")
     diagonals = {"grains": [], "spheres": []}
     with tempfile.TemporaryDirectory() as folder:

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Ten planar domains, of kinds that papers and collections on 2D meshing show, beside Ruppert's refinement as CGAL has it
-(Triangle's algorithm) and Gmsh: planar_domains.py collarmesh planar_cgal [SIZES_PER_DIAGONAL]. The coordinates are made here.
+"""Ten planar domains, of kinds that papers and collections on 2D meshing show, beside Ruppert's refinement as CGAL has
+it (Triangle's algorithm) and Gmsh: planar_domains.py collarmesh planar_cgal [SIZES_PER_DIAGONAL]. The coordinates are
+made here.
 
 Without a size the angles alone decide, as with `triangle -pq`: 20.7 degrees, the largest bound for which
 Ruppert's refinement is proved to end. With a size, edges are 1/40 of the diagonal long (or
@@ -63,7 +64,8 @@ class Domain:
 
 
 def circle(x, y, radius, count, start=0.0):
-    return [(x + radius * math.cos(start + 2 * math.pi * i / count), y + radius * math.sin(start + 2 * math.pi * i / count))
+    return [(x + radius * math.cos(start + 2 * math.pi * i / count),
+             y + radius * math.sin(start + 2 * math.pi * i / count))
             for i in range(count)]
 
 
@@ -107,13 +109,15 @@ def guitar():
     neck = [p for p in points if not (p[0] > 0 and abs(p[1]) < 4)]
     first = next(i for i, p in enumerate(neck) if p[0] > 0 and p[1] > 0)
     outline = [(110.0, -2.5), (122.0, -5.0), (124.0, 5.0), (110.0, 2.5)] + neck[first:] + neck[:first]
-    return Domain("guitar", "as Shewchuk's electric guitar", outline, [round_hole(0.0, 0.0, 8, 40), round_hole(-18.0, 0.0, 2, 12)])
+    return Domain("guitar", "as Shewchuk's electric guitar", outline,
+                  [round_hole(0.0, 0.0, 8, 40), round_hole(-18.0, 0.0, 2, 12)])
 
 
 def bolted_plate():
     holes = [round_hole(40 * math.cos(2 * math.pi * k / 6), 40 * math.sin(2 * math.pi * k / 6), 6, 32)
              for k in range(6)]
-    return Domain("plate with seven holes", "finite element text books", [(-70.0, -70.0), (70.0, -70.0), (70.0, 70.0), (-70.0, 70.0)],
+    return Domain("plate with seven holes", "finite element text books",
+                  [(-70.0, -70.0), (70.0, -70.0), (70.0, 70.0), (-70.0, 70.0)],
                   [round_hole(0.0, 0.0, 18, 64), *holes])
 
 
@@ -154,8 +158,8 @@ def airfoil():
 
     xs = [(1 - math.cos(math.pi * i / 60)) / 2 for i in range(61)]
     foil = [(x, half(x)) for x in xs[::-1]] + [(x, -half(x)) for x in xs[1:-1]]
-    return Domain("airfoil in a box", "NACA 0012, closed trailing edge", [(-3.0, -3.0), (5.0, -3.0), (5.0, 3.0), (-3.0, 3.0)],
-                  [(foil, (0.3, 0.0))])
+    return Domain("airfoil in a box", "NACA 0012, closed trailing edge",
+                  [(-3.0, -3.0), (5.0, -3.0), (5.0, 3.0), (-3.0, 3.0)], [(foil, (0.3, 0.0))])
 
 
 def snowflake():
@@ -166,7 +170,8 @@ def snowflake():
         for (ax, ay), (bx, by) in zip(points, points[1:] + points[:1]):
             dx, dy = (bx - ax) / 3, (by - ay) / 3
             finer += [(ax, ay), (ax + dx, ay + dy),
-                      (ax + 1.5 * dx + math.sqrt(3) / 2 * dy, ay + 1.5 * dy - math.sqrt(3) / 2 * dx), (ax + 2 * dx, ay + 2 * dy)]
+                      (ax + 1.5 * dx + math.sqrt(3) / 2 * dy, ay + 1.5 * dy - math.sqrt(3) / 2 * dx),
+                      (ax + 2 * dx, ay + 2 * dy)]
         points = finer
     return Domain("snowflake", "Koch's curve, three times", points)
 
@@ -174,7 +179,8 @@ def snowflake():
 def cracked_square():
     """A square with segments inside, two of which meet at 9 degrees."""
     tip = (5.0, 5.0)
-    return Domain("square with cracks", "segments inside, a small angle", [(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0)],
+    return Domain("square with cracks", "segments inside, a small angle",
+                  [(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0)],
                   inside=[(tip, (8.5, 5.0)), (tip, (8.5, 5.55)), (tip, (2.0, 7.5)), ((3.0, 2.0), (7.0, 2.2))])
 
 
@@ -199,7 +205,8 @@ def angles_of(path):
 
 def ours(program, domain, size, folder):
     (folder / "in.poly").write_text(domain.poly())
-    run = subprocess.run([program, "in.poly", "-o", "out.stl", "--dimension", "2", "--size", repr(size), "--threads", "1"],
+    run = subprocess.run([program, "in.poly", "-o", "out.stl", "--dimension", "2", "--size", repr(size), "--threads",
+                          "1"],
                          cwd=folder, capture_output=True, text=True, check=False)
     if run.returncode not in (0, 7):
         raise SystemExit(f"{domain.name}: {run.stderr}")
@@ -264,7 +271,8 @@ def main():
                 for row in (alone, peers[0], sized, *peers[1:])]
         print(f"| {domain.name} | {domain.source} | " + " | ".join(text) + " |", flush=True)
     print(
-        f"\nTriangles over CGAL's, median: {statistics.median(ratios[0]):.2f} by angles alone, {statistics.median(ratios[1]):.2f} with a size")
+        f"\nTriangles over CGAL's, median: {statistics.median(ratios[0]):.2f} by angles alone, "
+        f"{statistics.median(ratios[1]):.2f} with a size")
 
 
 if __name__ == "__main__":

@@ -182,7 +182,8 @@ def main() -> int:
     print(f"{about}. {Collarmesh(options.program, 0).version()}.\n")
     print(tables(pairs))
     print("\nCPU seconds for one prediction beyond reading the part: "
-          f"median {seconds(statistics.median(costs))}, 90% {seconds(float(np.percentile(costs, 90)))}, most {seconds(max(costs))}.")
+          f"median {seconds(statistics.median(costs))}, 90% {seconds(float(np.percentile(costs, 90)))}, most "
+          f"{seconds(max(costs))}.")
     return 0
 
 

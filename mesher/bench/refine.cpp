@@ -1,5 +1,4 @@
 // Builds a complex and refines it, without certificate and output, for profile.sh.
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
@@ -9,6 +8,7 @@
 #include "collarmesh/io/soup_io.h"
 #include "collarmesh/mesher.h"
 #include "collarmesh/plc_builder.h"
+#include "common/stopwatch.h"
 
 namespace {
 
@@ -18,13 +18,13 @@ void refine(const char* path, double size, unsigned threads) {
   const collarmesh::PolygonSoup soup = collarmesh::io::read_soup(path);
   const collarmesh::Plc plc = collarmesh::build_plc(std::span(&soup, 1));
   const double begin = cpu_seconds();
-  const auto started = std::chrono::steady_clock::now();
+  const collarmesh::Stopwatch stopwatch;
   collarmesh::MeshOptions options;
   options.size = size;
   options.threads = threads;
   const collarmesh::MeshResult result = collarmesh::generate(plc, options);
   const double seconds = cpu_seconds() - begin;
-  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+  const double wall = stopwatch.seconds();
   const auto tets = static_cast<double>(result.mesh.tets.size());
   std::printf(
       "complex %.3f s, refinement %.5f s, %.0f tets, %.0f tets/s, %.0f bytes/tet, %zu exact predicates, wall "

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Remeshes meshes of Gmsh (Delaunay, without its optimization), TetGen (with bounds on quality, and without: slivers and needles)
-and Netgen, at the lengths that they have, against the input that they were made of, and alone. Prints a Markdown table:
-whether every guarantee holds, tets, extreme dihedral angles, share of tets beyond 8 to 150 degrees, and CPU seconds."""
+"""Remeshes meshes of Gmsh (Delaunay, without its optimization), TetGen (with bounds on quality, and without: slivers
+and needles) and Netgen, at the lengths that they have, against the input that they were made of, and alone. Prints a
+Markdown table: whether every guarantee holds, tets, extreme dihedral angles, share of tets beyond 8 to 150 degrees, and
+CPU seconds."""
 
 from __future__ import annotations
 
@@ -96,7 +97,8 @@ def rows(peers: Peers, part: Path, size: float) -> list[list[str]]:
 
 def remeshed(peers: Peers, mesh: Path, against: list[str], folder: Path) -> list[str]:
     try:
-        made = peers.ours(["remesh", str(mesh), "-o", "next.vtu", "--threads", "1", "-q", "--report", "report.json", *against],
+        made = peers.ours(["remesh", str(mesh), "-o", "next.vtu", "--threads", "1", "-q", "--report", "report.json",
+                           *against],
                           folder)
     except ProgramFailed as failure:
         return [str(failure).replace("|", " ")[:160], "", "", "no mesh", ""]

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """The cost of removing a tetrahedron relative to making one: CAD parts with the defaults.
 
-Two ratios of coarsening's time per tetrahedron that it removes: to refinement's time per tetrahedron that it makes, and to
-the time of refinement and improvement per tetrahedron in runs without coarsening (because coarsening improves, too). The
-least of some runs each, wall time. Prints a Markdown table of quantiles over the parts; with --each a line for every part,
-too."""
+Two ratios of coarsening's time per tetrahedron that it removes: to refinement's time per tetrahedron that it makes, and
+to the time of refinement and improvement per tetrahedron in runs without coarsening (because coarsening improves, too).
+The least of some runs each, wall time. Prints a Markdown table of quantiles over the parts; with --each a line for
+every part, too."""
 
 from __future__ import annotations
 

@@ -75,7 +75,8 @@ def main() -> int:
             continue
         shown.append([stage, seconds(alone), f"{100 * of['serial'] / alone:.1f}%", f"{of['parts']:.0f}",
                       *(f"{alone / time_with(of, count, options.barrier):.2f}" for count in options.workers)])
-    print(table(["stage", "one worker, s", "serial", "parallel parts", *(f"{count} workers: times" for count in options.workers)],
+    print(table(["stage", "one worker, s", "serial", "parallel parts",
+                 *(f"{count} workers: times" for count in options.workers)],
                 shown) + "\n")
     rows.sort(key=lambda row: -time_with(row, 16, options.barrier))
     print(table(["stage", "up to", "serial, ms", "parallel, ms", "by 16 workers, ms", "parts"],

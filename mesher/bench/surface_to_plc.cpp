@@ -4,7 +4,6 @@
 //   surface_to_plc read FILE            read it into a complex
 #include <sys/resource.h>
 
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <span>
@@ -12,15 +11,10 @@
 
 #include "collarmesh/io/soup_io.h"
 #include "collarmesh/plc_builder.h"
+#include "common/stopwatch.h"
 #include "shapes.h"
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 double peak_megabytes() {
   rusage usage{};
@@ -36,13 +30,13 @@ double processor_seconds() {
 }
 
 void read(const char* path) {
-  auto start = Clock::now();
+  collarmesh::Stopwatch stopwatch;
   const collarmesh::PolygonSoup soup = collarmesh::io::read_soup(path);
-  const double read = seconds_since(start), read_processor = processor_seconds();
-  start = Clock::now();
+  const double read = stopwatch.seconds(), read_processor = processor_seconds();
+  stopwatch = collarmesh::Stopwatch();
   const collarmesh::Plc plc = collarmesh::build_plc(std::span(&soup, 1));
   std::printf("%u triangles, %zu regions: read %.2f s (CPU %.2f), complex %.2f s (CPU %.2f), peak %.0f MB\n",
-              soup.facet_count(), plc.regions.size() - 1, read, read_processor, seconds_since(start),
+              soup.facet_count(), plc.regions.size() - 1, read, read_processor, stopwatch.seconds(),
               processor_seconds() - read_processor, peak_megabytes());
 }
 

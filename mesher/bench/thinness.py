@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Families of bodies with one thin feature, ever thinner: what it costs, and whether volumes stay.
 
-thinness.py [--families wedge step ...] [--thinness 1e-1 1e-2 ...] [--program collarmesh] [--limit 60] [--options '--order 2']
+thinness.py [--families wedge step ...] [--thinness 1e-1 1e-2 ...] [--program collarmesh] [--limit 60]
+            [--options '--order 2']
 
 Each body is about 10 target edge lengths wide, and its feature's thickness is a share of that length. A cell
 has the vertices that refinement inserted (in the last try), the tets and the CPU seconds of the whole run;
@@ -133,7 +134,8 @@ def layer(h: float) -> Body:
     polygons = [[4 * k + c for c in range(4)] for k in range(4)]
     polygons += [[4 * k + c, 4 * k + (c + 1) % 4, 4 * k + 4 + (c + 1) % 4, 4 * k + 4 + c]
                  for k in range(3) for c in range(4)]
-    return Body([wide * wide * (b - a) for a, b in zip(heights, heights[1:])], complex=Surface("layer", points, polygons))
+    return Body([wide * wide * (b - a) for a, b in zip(heights, heights[1:])],
+                complex=Surface("layer", points, polygons))
 
 
 def cylinders(h: float) -> Body:
@@ -146,12 +148,14 @@ def cylinders(h: float) -> Body:
 
 def cad_cylinders(h: float) -> Body:
     """Two round cylinders of a STEP file, with a gap of this width."""
-    return Body(2 * [math.pi * 9 * wide], step=f"[cylinder(3, {wide}, 0, {3 + h / 2}), cylinder(3, {wide}, 0, {-3 - h / 2})]")
+    return Body(2 * [math.pi * 9 * wide],
+                step=f"[cylinder(3, {wide}, 0, {3 + h / 2}), cylinder(3, {wide}, 0, {-3 - h / 2})]")
 
 
 families: dict[str, Callable[[float], Body]] = {
-    "wedge": wedge, "notch": notch, "step": step, "fin": fin, "slit": slit, "flake": flake, "blocks apart": blocks_apart,
-    "layer": layer, "cylinders": cylinders, "cylinders (STEP)": cad_cylinders, "sliver face": sliver_face, "fold": fold}
+    "wedge": wedge, "notch": notch, "step": step, "fin": fin, "slit": slit, "flake": flake,
+    "blocks apart": blocks_apart, "layer": layer, "cylinders": cylinders, "cylinders (STEP)": cad_cylinders,
+    "sliver face": sliver_face, "fold": fold}
 
 
 @dataclass
@@ -188,8 +192,9 @@ def measure(family: str, thinness: float, options: argparse.Namespace) -> Row:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         given = body.write(folder)
-        done = run_limited([str(options.program.resolve()), given.name, "-o", "mesh.vtu", "--size", f"{size:g}", "--report", "report.json",
-                            "--progress", "none", "--threads", "1", *shlex.split(options.options)], folder, options.limit, memory)
+        done = run_limited([str(options.program.resolve()), given.name, "-o", "mesh.vtu", "--size", f"{size:g}",
+                            "--report", "report.json", "--progress", "none", "--threads", "1",
+                            *shlex.split(options.options)], folder, options.limit, memory)
         row = Row(family, thinness, done.exit_code, done.cpu)
         lines = [line for line in done.output.splitlines() if not line.startswith(("repaired:", "  "))]
         row.said = lines[0] if done.exit_code and lines else ""

@@ -20,7 +20,8 @@ from tables import machine, seconds, table
 stages = ("read", "complex", "refine", "coarsen", "improve", "check", "write", "total")
 
 
-def run(program: Path, surface: Path, size: str, threads: int, cores: set[int], suffix: str, time_limit: float) -> dict[str, float]:
+def run(program: Path, surface: Path, size: str, threads: int, cores: set[int], suffix: str,
+        time_limit: float) -> dict[str, float]:
     fetch_memory()
     os.sched_setaffinity(0, cores)
     with tempfile.TemporaryDirectory() as folder:

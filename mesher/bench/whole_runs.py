@@ -119,8 +119,8 @@ def main() -> int:
     about = machine(options.build).replace("pinned to one core; ", "")
 
     def ours(threads: int) -> Collarmesh:
-        return Collarmesh(options.build / "bin" / "collarmesh", options.time_limit, ["--threads", str(threads)], improve=2,
-                          name="collarmesh, whole run")
+        return Collarmesh(options.build / "bin" / "collarmesh", options.time_limit, ["--threads", str(threads)],
+                          improve=2, name="collarmesh, whole run")
 
     def peer(threads: int) -> Gmsh:
         return Gmsh(options.time_limit, threads=threads)

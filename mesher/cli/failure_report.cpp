@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -12,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "common/stopwatch.h"
 #include "common/xml_text.h"
 #include "io/file_writer.h"
 #include "report/html_report.h"
@@ -23,13 +23,12 @@ namespace collarmesh::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Clock = std::chrono::steady_clock;
 
 /// The data of the command that are known before anything fails.
 struct Command {
   std::vector<std::string> reports;
   Json json;
-  Clock::time_point begin;
+  Stopwatch stopwatch;
 };
 const char* status_of(ExitCode code) {
   switch (code) {
@@ -61,7 +60,7 @@ Json failure_json(const Command& command, const process::StageReached& reached, 
       faults.push_back(
           {{"message", fault.message}, {"where", {fault.where.x, fault.where.y, fault.where.z}}});
   json["faults"] = std::move(faults);
-  json["seconds"] = {{"total", std::chrono::duration<double>(Clock::now() - command.begin).count()}};
+  json["seconds"] = {{"total", command.stopwatch.seconds()}};
   return json;
 }
 
@@ -105,7 +104,7 @@ void report_failures_of(process::Process& process, const Arguments& arguments) {
                                                            {"inputs", a->inputs},
                                                            {"output", a->output},
                                                            {"options", report::options_json(*a)}},
-                                                          Clock::now()}](
+                                                          Stopwatch()}](
                                  ExitCode code, std::string_view message, const PlcError* faults) {
     const Json json = failure_json(command, process.interrupts.stage_reached(), code, message, faults);
     for (const std::string& path : command.reports) write(path, json);

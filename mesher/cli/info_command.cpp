@@ -2,12 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
-
 #include "collarmesh/error.h"
 #include "collarmesh/io/size_field_io.h"
 #include "collarmesh/predict.h"
 #include "command/interruptible.h"
+#include "common/stopwatch.h"
 #include "files/complex_input.h"
 #include "files/input_files.h"
 #include "report/json_text.h"
@@ -66,11 +65,11 @@ std::vector<Prediction> predictions(process::Process& process, const InfoArgumen
 }
 
 void print_complex(process::Process& process, const InfoArguments& arguments) {
-  const auto begin = std::chrono::steady_clock::now();
+  const Stopwatch stopwatch;
   files::ComplexInput input(arguments.inputs, interruptible(process, files::reading_of(arguments)));
   const Plc plc = build_any(input, arguments);
   process.interrupts.stop_if_asked();
-  const double read = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const double read = stopwatch.seconds();
   const std::vector<Prediction> predicted = predictions(process, arguments, plc, read);
   const PlcSummary summary = summarize(plc, arguments.mesh.bounds.crease_angle);
   const GroupNames names = input.has_cad() ? GroupNames::cad : GroupNames::complex;

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -91,12 +92,12 @@ void ProgressDisplay::update(const ProgressReport& report) {
   fraction_ = std::max(fraction_, begin_ + std::clamp(report.fraction, 0.0, 1.0) * (end_ - begin_));
   vertices_ = report.vertices;
   tets_ = report.tets;
-  if (new_phase || seconds() - json_printed_ > 0.25) print_json();
+  if (new_phase || stopwatch_.seconds() - json_printed_ > 0.25) print_json();
 }
 
 void ProgressDisplay::print_json() {
   if (form_ != Form::json) return;
-  json_printed_ = seconds();
+  json_printed_ = stopwatch_.seconds();
   const nlohmann::ordered_json line{{"phase", phase_},
                                     {"fraction", fraction_},
                                     {"vertices", vertices_},
@@ -107,7 +108,8 @@ void ProgressDisplay::print_json() {
 
 void ProgressDisplay::redraw() {
   if (phase_.empty()) return;
-  console_.tell("\r{}\033[K", progress_line(phase_, fraction_, tets_, seconds(), terminal_width() - 1));
+  console_.tell("\r{}\033[K",
+                progress_line(phase_, fraction_, tets_, stopwatch_.seconds(), terminal_width() - 1));
 }
 
 void ProgressDisplay::keep_drawing() {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <chrono>
 #include <condition_variable>
 #include <mutex>
 #include <string>
@@ -8,6 +7,7 @@
 
 #include "collarmesh/progress.h"
 #include "command/mesh_arguments.h"
+#include "common/stopwatch.h"
 #include "process/console.h"
 
 namespace collarmesh::command {
@@ -32,16 +32,14 @@ class ProgressDisplay {
 
  private:
   enum class Form { bar, json, nothing };
-  using Clock = std::chrono::steady_clock;
 
-  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
   void redraw();
   void print_json();
   void keep_drawing();
 
   const process::Console& console_;
   Form form_;
-  Clock::time_point start_ = Clock::now();
+  Stopwatch stopwatch_;
   std::mutex mutex_;
   std::condition_variable wake_;
   bool finished_ = false;

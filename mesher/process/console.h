@@ -17,7 +17,7 @@ class Console {
   /// Silences this process. When several ranks do the same work, only one prints.
   void be_silent() { silent_ = true; }
 
-  /// Prints a message to standard error. Ignores errors, because a run must not fail for its messages.
+  /// Prints a message to standard error. Ignores errors: a run goes on if its messages cannot be printed.
   void tell_text(const std::string& text) const noexcept;
   template <class... Values>
   void tell(fmt::format_string<Values...> format, Values&&... values) const {

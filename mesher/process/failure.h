@@ -23,8 +23,9 @@ class FailureReports {
     written_ = false;
   }
 
-  /// Writes the reports, at the first call only; if that fails, the message and the exit code tell the rest.
-  /// Any thread may call it, possibly when memory is used up.
+  /// Writes the reports at the first call; does nothing at later calls. Ignores errors, because the caller
+  /// prints the message and returns the exit code in any case. Any thread may call it, possibly when memory
+  /// is used up.
   void failed(ExitCode code, std::string_view message, const PlcError* faults = nullptr) noexcept {
     if (!write_ || written_.exchange(true)) return;
     try {

@@ -40,7 +40,7 @@ void* gmp_reallocate(void* block, std::size_t old_bytes, std::size_t bytes) {
   return grown;
 }
 
-/// Catches a signal unless it is ignored: nohup has set that.
+/// Catches a signal unless the process was started with this signal ignored, as by nohup.
 void catch_unless_ignored(int number, const struct sigaction& action) {
   struct sigaction before = {};
   if (sigaction(number, nullptr, &before) == 0 && before.sa_handler != SIG_IGN)
@@ -50,7 +50,8 @@ void catch_unless_ignored(int number, const struct sigaction& action) {
 }  // namespace
 
 void Process::before_all() {
-  // Before this program's variables are initialized, because that takes a thousand allocations.
+  // This function runs before the program's global variables are initialized, because their initialization
+  // makes a thousand allocations.
   std::set_new_handler(on_no_memory);
 }
 
@@ -67,9 +68,8 @@ void Process::end(ExitCode code, std::string_view message) noexcept {
   std::set_new_handler(nullptr);
   Process* const process = current_;
   if (process != nullptr) process->reserve_.reset();
-  if (process != nullptr && !process->files.abandon())
-    std::_Exit(0);  // the command has succeeded: all files
-                    // are in place
+  // If all files are in place, the command has succeeded.
+  if (process != nullptr && !process->files.abandon()) std::_Exit(0);
   print(message);
   if (process != nullptr)
     process->reports.failed(code, message.substr(program.size(), message.find('\n') - program.size()));
@@ -153,9 +153,9 @@ void Process::catch_signals() {
   for (const int number : {SIGINT, SIGTERM}) sigaction(number, &action, nullptr);
   for (const int number : {SIGHUP, SIGQUIT}) catch_unless_ignored(number, action);
   std::signal(SIGXCPU, on_processor_time);
-  // The CPU seconds, of all threads, that remain to end after the soft limit. `ulimit -t` sets both limits,
-  // and the signal of the hard limit cannot be caught.
-  constexpr rlim_t to_end_within = 2;  // CPU seconds of all threads
+  // `ulimit -t` sets the soft and the hard limit to the same time, and the signal of the hard limit cannot be
+  // caught. Lowers the soft limit so that these CPU seconds, of all threads, remain to end in.
+  constexpr rlim_t to_end_within = 2;
   rlimit limit = {};
   if (getrlimit(RLIMIT_CPU, &limit) == 0 && limit.rlim_max != RLIM_INFINITY &&
       limit.rlim_max > to_end_within && limit.rlim_cur > limit.rlim_max - to_end_within) {

@@ -65,8 +65,7 @@ class Process {
   [[noreturn]] static void end(ExitCode code, std::string_view message) noexcept;
 
   /// The only static variable: the system passes no pointer to a handler, so handlers find the object here.
-  /// They use its lock-free
-  /// atomic variables and, if they end the program, its files.
+  /// They use its lock-free atomic variables and, if they end the program, its files.
   static inline std::atomic<Process*> current_{nullptr};
   static_assert(std::atomic<Process*>::is_always_lock_free);
 

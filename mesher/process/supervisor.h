@@ -14,7 +14,8 @@ namespace collarmesh::process {
 
 class Process;
 
-/// The work in child processes, and what a child tells the process that watches it.
+/// The runner of commands in child processes, which it watches. In a child, its functions pass information to
+/// the watching process.
 class Supervisor {
  public:
   explicit Supervisor(Process& process) : process_(process) {}
@@ -33,7 +34,7 @@ class Supervisor {
 
   /// The child to which signals are passed on; 0: none.
   std::atomic<pid_t> child{0};
-  /// Whether a signal has asked this process to stop since it passes signals on.
+  /// Whether a signal has asked this process to stop since it began to pass signals on.
   std::atomic<bool> asked_to_stop{false};
   static_assert(std::atomic<pid_t>::is_always_lock_free, "signal handlers need it");
 

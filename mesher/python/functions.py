@@ -25,8 +25,8 @@ def mesh(
         region, numbered from 1; a surface inside another one that is oriented inwards bounds a cavity.
     # options of mesh
     input_format: extension that replaces the files' own, ".stl".
-    progress: True for a bar on standard error; or a callable that is called with the stage and the fraction of the whole
-        run that is done, up to 1; if it returns False, the run is cancelled.
+    progress: True for a bar on standard error; or a callable that is called with the stage and the fraction of the
+        whole run that is done, up to 1; if it returns False, the run is cancelled.
 
     Returns a `Mesh`; its `passed` says whether every guarantee holds. Raises the subclasses of `Error` that the
     description of the package lists.
@@ -43,13 +43,13 @@ def remesh(
     # options of remesh
     progress: Union[bool, Callable[[str, float], Optional[bool]], None] = None,
 ) -> Mesh:
-    """Adapt a mesh to target edge lengths, finer or coarser, and certify the result. Keeps its regions, surfaces, edges, names
-    and tags. The result follows the mesh's own surface; the certificate bounds the change of volumes.
+    """Adapt a mesh to target edge lengths, finer or coarser, and certify the result. Keeps its regions, surfaces,
+    edges, names and tags. The result follows the mesh's own surface; the certificate bounds the change of volumes.
 
-    mesh: a `Mesh`, of this or another program, or the path of one. A mesh of second order is remeshed by its corners; with
-        `order=2` the result is of second order again.
-    size: a length; lengths for each point or each tetrahedron of the mesh, as `sizes_from_errors` returns them; or a size
-        field, as `size_field` in `collarmesh.mesh`. None: improve tetrahedra and keep the lengths.
+    mesh: a `Mesh`, of this or another program, or the path of one. A mesh of second order is remeshed by its corners;
+        with `order=2` the result is of second order again.
+    size: a length; lengths for each point or each tetrahedron of the mesh, as `sizes_from_errors` returns them; or a
+        size field, as `size_field` in `collarmesh.mesh`. None: improve tetrahedra and keep the lengths.
     against: the input that the mesh was made of, or a list of its surfaces, as in `collarmesh.mesh`. The result follows
         this input (on CAD shapes the exact faces) instead of the triangles of the mesh, and is certified against it.
     # options of remesh
@@ -76,8 +76,8 @@ def predict(
     surfaces, options: as in `collarmesh.mesh`.
     sizes: target edge lengths, in place of `size`.
 
-    Returns a dict for each size, as `collarmesh info --predict --json` prints it: "size", "tets", and "seconds", the time
-    of all stages from the refinement to the certificate. Raises `Error`.
+    Returns a dict for each size, as `collarmesh info --predict --json` prints it: "size", "tets", and "seconds", the
+    time of all stages from the refinement to the certificate. Raises `Error`.
     """
     return _core.predict(inputs(surfaces), [float(size) for size in sizes], given(locals()))
 

@@ -62,7 +62,8 @@ def main():
         if in_signature(match):
             return "".join(f"{indent}{option['key']}: Optional[{type_of(option)}] = None,\n" for option in taken)
         return "".join(textwrap.fill(description(option), WIDTH, initial_indent=indent,
-                                     subsequent_indent=indent + "    ", break_on_hyphens=False) + "\n" for option in taken)
+                                     subsequent_indent=indent + "    ", break_on_hyphens=False) + "\n"
+                       for option in taken)
 
     with open(template, encoding="utf-8") as file:
         text = file.read()

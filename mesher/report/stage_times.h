@@ -1,9 +1,10 @@
 #pragma once
 
-#include <chrono>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "common/stopwatch.h"
 
 namespace collarmesh::report {
 
@@ -14,11 +15,10 @@ class StageTimes {
   void begin(std::string stage) {
     end();
     stages_.emplace_back(std::move(stage), 0.0);
-    start_ = Clock::now();
+    stopwatch_ = Stopwatch();
   }
   void end() {
-    if (!stages_.empty() && stages_.back().second == 0)
-      stages_.back().second = std::chrono::duration<double>(Clock::now() - start_).count();
+    if (!stages_.empty() && stages_.back().second == 0) stages_.back().second = stopwatch_.seconds();
   }
   const std::vector<std::pair<std::string, double>>& stages() const { return stages_; }
   double total() const {
@@ -28,8 +28,7 @@ class StageTimes {
   }
 
  private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point start_;
+  Stopwatch stopwatch_;
   std::vector<std::pair<std::string, double>> stages_;
 };
 

@@ -53,7 +53,8 @@ class Batch(ProgramTest):
     def test_mistakes(self):
         for code, says, *arguments in (
                 (2, "contradicts --output", self.box, "--batch", "made", "-o", self.out),
-                (2, "the meshes of .*box.off and .*box.off the same name", self.box, MODELS / "box.off", "--batch", "made"),
+                (2, "the meshes of .*box.off and .*box.off the same name", self.box, MODELS / "box.off", "--batch",
+                 "made"),
                 (2, "must be json or html", self.box, "--batch", "made", "--report", "r.json"),
                 (2, "would overwrite the input", "made/box.vtu", "--batch", "made"),
                 (8, "made", self.box, "--batch", "box.off/made")):
@@ -64,8 +65,8 @@ class Batch(ProgramTest):
             self.assertRegex(run.stderr, says)
 
     def test_a_signal_ends_all_of_it(self):
-        run = subprocess.Popen([PROGRAM, MODELS / "box.off", MODELS / "sphere.off", "--batch", "made", "--size", "0.004",
-                                "--progress", "json"],
+        run = subprocess.Popen([PROGRAM, MODELS / "box.off", MODELS / "sphere.off", "--batch", "made", "--size",
+                                "0.004", "--progress", "json"],
                                cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.addCleanup(run.kill)
         for line in run.stderr:

@@ -198,8 +198,8 @@ class Streams(HostileTest):
         self.expect(0, self.box, "-o", self.out, writes=True)
         for redirection in (">/dev/full", ">&-"):
             for arguments in (("info", self.box), ("info", self.box, "--json"), ("info", self.out),
-                              ("check", self.out, "--against", self.box), ("--help",), ("info", "--help"), ("--version",),
-                              ("check", self.out, "--against", self.box, "--json"),
+                              ("check", self.out, "--against", self.box), ("--help",), ("info", "--help"),
+                              ("--version",), ("check", self.out, "--against", self.box, "--json"),
                               ("repair", self.box, "-o", "r.off", "--json"),
                               ("convert", self.box, "-o", "-", "--format", ".stl")):
                 with self.subTest(redirection=redirection, arguments=arguments):
@@ -303,7 +303,8 @@ class Libraries(HostileTest):
         self.plant("collarmesh_cad.so")
         self.plant("collarmesh_hdf5.so")
         self.plant("collarmesh_scotch.so")
-        for arguments in ((self.box, "-o", self.out), (self.box, "-o", "a.med"), (self.box, "-o", "a.vtu", "--partitions", "2"), ("info", "missing.step")):
+        for arguments in ((self.box, "-o", self.out), (self.box, "-o", "a.med"),
+                          (self.box, "-o", "a.vtu", "--partitions", "2"), ("info", "missing.step")):
             run = self.run_program(*arguments)
             self.assertNotIn("PLANTED", run.stderr)
         step = self.write("part.step", "ISO-10303-21;\nEND-ISO-10303-21;\n")

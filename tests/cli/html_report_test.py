@@ -1,6 +1,7 @@
 """Reports as HTML: what they hold, and what a browser makes of them.
 
-Run by ctest with COLLARMESH_PROGRAM set. The browser is chromium, without a window; its tests are skipped where there is none.
+Run by ctest with COLLARMESH_PROGRAM set. The browser is chromium, without a window; its tests are skipped where there
+is none.
 """
 
 import base64
@@ -265,7 +266,8 @@ class InABrowser(ReportTest):
         marks = data[-json.loads(Page(path.read_text()).scripts["shown"])["tets"]:]
         self.assertEqual(sum(1 for mark in marks if mark & 24), 3 * report["layers"]["prisms"])
         _, dom, whole = self.look(path)
-        for text in ("Boundary layers", "by the share of the thickness reached", "100 % covered", "90–100%: 100 % of the area"):
+        for text in ("Boundary layers", "by the share of the thickness reached", "100 % covered",
+                     "90–100%: 100 % of the area"):
             self.assertIn(text, dom)
         _, dom, layers = self.look(path, "#cut=x,0.5&colour=layers")
         self.assertIn("odd layers", re.search(r'<p id="legend">.*?</p>', dom, re.S).group())

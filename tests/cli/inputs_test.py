@@ -43,20 +43,22 @@ class Hostile(ProgramTest):
 
     FILES = {
         "off": "OFF\n2000000000 2000000000 0\n0 0 0\n",
-        "ply": "ply\nformat ascii 1.0\nelement vertex 2000000000\nproperty float x\nproperty float y\nproperty float z\n"
-               "element face 2000000000\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n",
+        "ply": "ply\nformat ascii 1.0\nelement vertex 2000000000\nproperty float x\nproperty float y\n"
+               "property float z\nelement face 2000000000\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n",
         "stl": " " * 80 + "\x7f\x7f\x7f\x7f" + "\0" * 50,
         "om": "OMT\x40\x7f\x7f\x7f\x7f\x7f\x7f\x7f\x7f\x7f\x7f\x7f\x7f",
         "obj": "v 0 0 0\nf 1 2000000000 3\n",
         "poly": "2000000000 3 0 0\n1 0 0 0\n",
         "smesh": "3 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n2000000000 0\n3 1 2 3\n",
         "vtk": "# vtk DataFile Version 3.0\nx\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 2000000000 double\n\0\0\0\0",
-        "vtu": '<VTKFile type="UnstructuredGrid"><UnstructuredGrid><Piece NumberOfPoints="2000000000" NumberOfCells="2000000000">'
-               '<Points><DataArray type="Float64" NumberOfComponents="3">0 0 0</DataArray></Points></Piece></UnstructuredGrid></VTKFile>',
+        "vtu": '<VTKFile type="UnstructuredGrid"><UnstructuredGrid><Piece NumberOfPoints="2000000000" '
+               'NumberOfCells="2000000000"><Points><DataArray type="Float64" NumberOfComponents="3">0 0 0</DataArray>'
+               '</Points></Piece></UnstructuredGrid></VTKFile>',
         "msh": "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n2000000000\n1 0 0 0\n$EndNodes\n",
         "mesh": "MeshVersionFormatted 2\nDimension 3\nVertices 2000000000\n0 0 0 1\n",
         "inp": "*NODE\n1, 0, 0, 0\n*ELSET, ELSET=X, GENERATE\n1, 2000000000, 1\n",
-        "unv": "    -1\n  2467\n         1         0         0         0         0         0         0 200000000\nname\n    -1\n",
+        "unv": "    -1\n  2467\n         1         0         0         0         0         0         0 200000000\n"
+               "name\n    -1\n",
         "ele": "2000000000 4 0\n1 1 2 3 4\n",
     }
 
@@ -66,8 +68,9 @@ class Hostile(ProgramTest):
         for extension, text in self.FILES.items():
             with self.subTest(extension=extension):
                 (self.folder / f"a.{extension}").write_bytes(text.encode("latin-1"))
-                run = subprocess.run([PROGRAM, "info", f"a.{extension}"], cwd=self.folder, timeout=60, capture_output=True,
-                                     text=True, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
+                run = subprocess.run([PROGRAM, "info", f"a.{extension}"], cwd=self.folder, timeout=60,
+                                     capture_output=True, text=True,
+                                     preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
                 self.assertEqual(run.returncode, 3, run.stderr)
                 self.assertRegex(run.stderr, rf"a\.{extension}: (line|byte) \d+: ")
 
@@ -142,7 +145,8 @@ class MeshesOfOtherPrograms(ProgramTest):
     def test_gmsh_from_stl(self):
         self.expect(0, "convert", self.box, "-o", "box.stl")
         self.write("box.geo", 'Merge "box.stl";\nSurface Loop(1) = {1};\nVolume(1) = {1};\nMesh.MeshSizeMax = 0.4;\n')
-        for extension, format_name in (("msh", "msh41"), ("msh", "msh22"), ("mesh", "mesh"), ("unv", "unv"), ("vtk", "vtk"), ("inp", "inp")):
+        for extension, format_name in (("msh", "msh41"), ("msh", "msh22"), ("mesh", "mesh"), ("unv", "unv"),
+                                       ("vtk", "vtk"), ("inp", "inp")):
             with self.subTest(format=format_name):
                 mesh = self.folder / f"{format_name}.{extension}"
                 self.other_program("gmsh", "-3", "-v", "0", "-format", format_name, "-o", mesh, "box.geo")

@@ -571,8 +571,8 @@ class Words(ProgramTest):
         self.expect(3, "chek", "-o", self.out, says=["format is not known"])
 
     def test_help_says_what_commands_do(self):
-        for command, words in (("check", "Certify a mesh"), ("info", "Describe the input"), ("convert", "Convert surfaces"),
-                               ("repair", "Write the facets")):
+        for command, words in (("check", "Certify a mesh"), ("info", "Describe the input"),
+                               ("convert", "Convert surfaces"), ("repair", "Write the facets")):
             self.assertIn(words, self.expect(0, command, "--help").stdout)
 
     def test_standard_output_names_convert(self):
@@ -601,8 +601,8 @@ class Generated(ProgramTest):
         script = f"source {path}; COMP_WORDS=({' '.join(words)} ''); COMP_CWORD={len(words)}; "
         if words[-1] != "--coarsen":
             script = f"source {path}; COMP_WORDS=({' '.join(words)}); COMP_CWORD={len(words) - 1}; "
-        run = subprocess.run(["bash", "-c", script + '_collarmesh; echo "${COMPREPLY[@]}"'], capture_output=True, text=True,
-                             cwd=self.folder)
+        run = subprocess.run(["bash", "-c", script + '_collarmesh; echo "${COMPREPLY[@]}"'], capture_output=True,
+                             text=True, cwd=self.folder)
         self.assertEqual(run.stderr, "")
         return run.stdout.split()
 
@@ -617,8 +617,9 @@ class Generated(ProgramTest):
         path = self.write("collarmesh.fish", self.run_program("--generate", "fish").stdout)
 
         def complete(line):
-            run = subprocess.run(["fish", "--no-config", "-c", f"source {path}; complete -C '{line}'"], capture_output=True,
-                                 text=True, cwd=self.folder, env={**os.environ, "HOME": str(self.folder)})
+            run = subprocess.run(["fish", "--no-config", "-c", f"source {path}; complete -C '{line}'"],
+                                 capture_output=True, text=True, cwd=self.folder,
+                                 env={**os.environ, "HOME": str(self.folder)})
             self.assertEqual((run.returncode, run.stderr), (0, ""))
             return [line.split("\t")[0] for line in run.stdout.splitlines()]
 
@@ -635,8 +636,9 @@ class Generated(ProgramTest):
         self.write("_collarmesh", self.run_program("--generate", "zsh").stdout)
         setup = ("PS1=; PS2=; fpath=($PWD $fpath); autoload -U compinit; compinit -u -D; setopt no_beep no_prompt_cr; "
                  "collarmesh() { print -r -- \"<$*>\" }; print ready\n")
-        for typed, completed in (("collarmesh --patch-s", "--patch-size"), ("collarmesh check --again", "check --against"),
-                                 ("collarmesh conv", "convert"), ("collarmesh box.off --coarsen of", "box.off --coarsen off"),
+        for typed, completed in (("collarmesh --patch-s", "--patch-size"),
+                                 ("collarmesh check --again", "check --against"), ("collarmesh conv", "convert"),
+                                 ("collarmesh box.off --coarsen of", "box.off --coarsen off"),
                                  ("collarmesh bo", "box.off")):
             with self.subTest(typed=typed):
                 self.assertIn(f"<{completed}>", self.typed(["zsh", "-f", "-i"], setup, f"{typed}\t\n"))

@@ -21,7 +21,8 @@ class Periodic(ProgramTest):
                                    order, *self.PAIRS, "--report", report)
             self.assertEqual(run.returncode, 0, run.stderr)
             self.assertIn("every guarantee holds", run.stderr)
-            told = re.findall(r"periodic ([xyz]): (\d+) nodes, (\d+) triangles map onto their images; largest gap (\S+)\n",
+            told = re.findall(r"periodic ([xyz]): (\d+) nodes, (\d+) triangles map onto their images; largest gap "
+                              r"(\S+)\n",
                               run.stderr)
             self.assertEqual([each[0] for each in told], ["x", "y", "z"])
             read = json.loads(report.read_text())
@@ -42,8 +43,8 @@ class Periodic(ProgramTest):
             points, [(0, 2, 1), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)]))
         out = self.folder / "sector.inp"
         for order in ("1", "2"):
-            run = self.run_program(sector, "-o", out, "--size", "0.3", "--order", order, "--periodic", "3=5:rotation,z,90",
-                                   "--periodic", "z")
+            run = self.run_program(sector, "-o", out, "--size", "0.3", "--order", order, "--periodic",
+                                   "3=5:rotation,z,90", "--periodic", "z")
             self.assertEqual(run.returncode, 0, run.stderr)
             self.assertRegex(run.stderr, r"periodic 3=5:rotation,z,90: \d+ nodes")
             text = (self.folder / "sector_periodic.inp").read_text()

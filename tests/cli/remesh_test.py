@@ -50,7 +50,7 @@ class Remeshing(ProgramTest):
         run = self.run_program("remesh", "first.vtu", "-o", "next.vtu", "--size", 0.2, "--smooth-surface")
         self.assertIn("moved onto the smooth surface", run.stdout + run.stderr)
         self.expect(2, "remesh", "first.vtu", "-o", "last.vtu", "--smooth-surface", "--against", self.box,
-                    says=["smooth-surface", "leave one of them out"])
+                    says=["smooth-surface", "leave out smooth-surface or that input"])
 
     def test_against_the_input(self):
         report = self.report("first.vtu", "-o", "next.vtu", "--size", 0.2, "--against", self.box)

@@ -1,5 +1,5 @@
-"""Surfaces and curves on their own on the command line: open ones, formats, the certificate of a file, some faces of a solid,
-elements of a plane, lines for beams, what is wrong.
+"""Surfaces and curves on their own on the command line: open ones, formats, the certificate of a file, some faces of a
+solid, elements of a plane, lines for beams, what is wrong.
 
 Run by ctest with COLLARMESH_PROGRAM set; each class is one ctest.
 """
@@ -89,8 +89,8 @@ class Shells(ProgramTest):
         self.expect(2, self.box, "--faces", "1", "-o", self.out, says=["faces are for triangles alone"])
 
     def test_faces_of_a_cad_solid(self):
-        run = self.run_program(MODELS / "flange.step", "-o", "f.msh", "--dimension", "2", "--size", "4", "--faces", "Face3",
-                               "--order", "2", "--report", "r.json")
+        run = self.run_program(MODELS / "flange.step", "-o", "f.msh", "--dimension", "2", "--size", "4", "--faces",
+                               "Face3", "--order", "2", "--report", "r.json")
         if "OpenCASCADE" in run.stderr:
             self.skipTest("without OpenCASCADE")
         self.assertEqual(run.returncode, 0, run.stderr)
@@ -100,7 +100,8 @@ class Shells(ProgramTest):
 
     def test_elements_of_a_plane(self):
         """Elements are counterclockwise in the plane z = 0, whichever way the input is oriented."""
-        for corners, kind, order, element in ((SQUARE, "plane-stress", 1, "CPS3"), (SQUARE[::-1], "plane-strain", 2, "CPE6")):
+        for corners, kind, order, element in ((SQUARE, "plane-stress", 1, "CPS3"),
+                                              (SQUARE[::-1], "plane-strain", 2, "CPE6")):
             square = self.write("square.off", off_text(corners, [(0, 1, 2, 3)]))
             run = self.run_program(square, "-o", "s.inp", "--dimension", "2", "--size", "0.5", "--order", order,
                                    "--triangle-elements", kind)
@@ -180,8 +181,8 @@ class Shells(ProgramTest):
     def test_lines_that_cross_share_a_node(self):
         cross = self.write(
             "cross.poly", "4 3 0 0\n1 0 0 0\n2 9 9 0\n3 9 0 0\n4 0 9 0\n2 1\n1 0 1\n2 1 2\n1 0 2\n2 3 4\n0\n0\n")
-        self.expect(0, cross, "-o", self.out, "--dimension", "1", "--size", "2", says=[r"cut, the first at \(4.5, 4.5, 0\)"],
-                    writes=True)
+        self.expect(0, cross, "-o", self.out, "--dimension", "1", "--size", "2",
+                    says=[r"cut, the first at \(4.5, 4.5, 0\)"], writes=True)
         self.run_program(cross, "-o", "w.inp", "--dimension", "1", "--size", "2")
         ends = [n for edge in elements_of(self.folder / "w.inp")["B31"] for n in edge]
         self.assertEqual(sorted(ends.count(n) for n in set(ends))[-1], 4)

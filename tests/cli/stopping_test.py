@@ -15,7 +15,8 @@ from program import COORDINATES, MODELS, PROGRAM, ProgramTest
 class Budgets(ProgramTest):
     def test_vertices(self):
         self.expect(5, self.box, "-o", self.out, "--size", "0.02", "--max-vertices", "200",
-                    says=["the budget of 200 vertices is spent at \\d+ vertices", r"cells, .* MB, after", COORDINATES, "raise max-vertices"])
+                    says=["the budget of 200 vertices is spent at \\d+ vertices", r"cells, .* MB, after", COORDINATES,
+                          "raise max-vertices"])
 
     def test_memory(self):
         self.expect(5, self.box, "-o", self.out, "--size", "0.01", "--max-memory", "200K",

@@ -37,7 +37,8 @@ class ThinFin(ProgramTest):
         tags = [patch["tag"] for patch in self.info(self.out, "mesh")["patch_list"] if patch["name"] == name]
         mesh = meshio.read(self.out)
         return {float(mesh.points[corner][2]) for block, tag_of in zip(mesh.cells, mesh.cell_data["tag"])
-                if block.type == "triangle" for corners, tag in zip(block.data, tag_of) if tag in tags for corner in corners}
+                if block.type == "triangle" for corners, tag in zip(block.data, tag_of) if tag in tags
+                for corner in corners}
 
     def test_a_name_stays_on_the_face_it_was_given_to(self):
         top, = (patch for patch in self.info(self.fin, "complex")["patch_list"] if patch["where"][2] == TOP)

@@ -14,7 +14,8 @@ from program import MODELS, PROGRAM, ProgramTest
 class Usage(ProgramTest):
     def test_help_tells_defaults_and_codes(self):
         run = self.expect(0, "--help")
-        for text in ("1/20 of the diagonal", "less where the part is thin", "--coarsen", "--collar-angle", "--theta", "--improve", "Exit codes", "check", "info"):
+        for text in ("1/20 of the diagonal", "less where the part is thin", "--coarsen", "--collar-angle", "--theta",
+                     "--improve", "Exit codes", "check", "info"):
             self.assertIn(text, run.stdout)
         for command in ("check", "info", "convert", "repair"):
             self.assertIn("--feature-angle", self.expect(0, command, "--help").stdout)
@@ -25,9 +26,11 @@ class Usage(ProgramTest):
     def test_mistakes(self):
         for arguments in ((), (self.box,), ("-o", self.out), (self.box, "-o", self.out, "--sise", "1"),
                           (self.box, "-o", self.out, "--size", "nan"), (self.box, "-o", self.out, "--size", "-1"),
-                          (self.box, "-o", self.out, "--size", "small"), (self.box, "-o", self.out, "--radius-edge", "0.5"),
-                          (self.box, "-o", self.out, "--region-size", "1"), (self.box, "-o", self.out, "--theta", "0.7"),
-                          (self.box, "-o", self.out, "-v", "-q"), (self.box, "-o", self.out, "--progress", "loud"),
+                          (self.box, "-o", self.out, "--size", "small"),
+                          (self.box, "-o", self.out, "--radius-edge", "0.5"),
+                          (self.box, "-o", self.out, "--region-size", "1"),
+                          (self.box, "-o", self.out, "--theta", "0.7"), (self.box, "-o", self.out, "-v", "-q"),
+                          (self.box, "-o", self.out, "--progress", "loud"),
                           (self.box, "-o", self.out, "--max-memory", "much"), ("check", self.out), ("info",),
                           (self.box, "-o", self.out, "--max-vertices", "-5")):
             with self.subTest(arguments=arguments):

@@ -3,8 +3,8 @@
     corpus_test.py PROGRAM [-k WORD] [--keep FOLDER] [--workers N]
 
 COLLARMESH_CORPUS names the folder; its MANIFEST.tsv says what to expect of each file. Files are
-meshed at 1/20 of their bounding box's diagonal (1/25 with COLLARMESH_LONG); COLLARMESH_JUDGE may name a checker (judging.py).
-Exit code 77 (skipped) without a corpus.
+meshed at 1/20 of their bounding box's diagonal (1/25 with COLLARMESH_LONG); COLLARMESH_JUDGE may name a checker
+(judging.py). Exit code 77 (skipped) without a corpus.
 """
 
 import argparse
@@ -33,7 +33,8 @@ RELATIVE_DISTANCE = 1e-3
 # The facets are triangles of flat faces, each with a tag of its own. Their acute corners in the plane are
 # creases (curves 58 and 59 meet at 0.59 degrees in (19.5, 0, 0)), which the judge does not look for.
 NOT_JUDGED = ("gmsh_compound2.poly",)
-CAD_EXCEPTIONS = 0.1  # largest share of boundary vertices that a bound keeps off their faces, mostly in collars at tangent edges
+# largest share of boundary vertices that a bound keeps off their faces, mostly in collars at tangent edges
+CAD_EXCEPTIONS = 0.1
 EXACT = ("cross", "star", "itemb")  # files with exactly planar facets, as all .poly files have
 # The manifest calls them open or soups, because their facets have separate points. When points at the same
 # place are merged, each of their edges has two facets (counted independently of the mesher) and they bound

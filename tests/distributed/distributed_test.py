@@ -93,7 +93,8 @@ class Mesh:
         """Returns a hash of all cells with their labels and the exact places of their nodes, independent of
         numbers."""
         digest = hashlib.sha256()
-        for cells, labels in ((self.tets, [self.tags, self.collar]), (self.faces, [self.face_tags]), (self.edges, [self.edge_tags])):
+        for cells, labels in ((self.tets, [self.tags, self.collar]), (self.faces, [self.face_tags]),
+                              (self.edges, [self.edge_tags])):
             places = (self.points[cells] + 0.0).view(numpy.int64).reshape(len(cells), cells.shape[1], 3)
             order = numpy.lexsort(numpy.moveaxis(places, 2, 0)[::-1],
                                   axis=1) if len(cells) else numpy.zeros((0, 1), int)
@@ -109,8 +110,8 @@ class DistributedTest(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
 
     def mpirun(self, ranks, *command, **options):
-        return subprocess.run([*MPIRUN, "-q", "-n", str(ranks), *map(str, command)], capture_output=True, text=True, cwd=self.folder,
-                              timeout=900, **options)
+        return subprocess.run([*MPIRUN, "-q", "-n", str(ranks), *map(str, command)], capture_output=True, text=True,
+                              cwd=self.folder, timeout=900, **options)
 
     def mesh(self, ranks, part, *options, output="out.h5", expected=0):
         run = self.mpirun(ranks, PROGRAM, part, "-o", output, "--report", "report.json", *options)
@@ -142,7 +143,8 @@ class DistributedTest(unittest.TestCase):
         for tag, volume in report["region_volumes"].items():
             self.assertAlmostEqual(volumes[mesh.tags == int(tag)].sum() / volume, 1, delta=1e-9)
         angles = mesh.dihedrals()
-        for inside, least, most in ((False, "min_dihedral", "max_dihedral"), (True, "min_collar_dihedral", "max_collar_dihedral")):
+        for inside, least, most in ((False, "min_dihedral", "max_dihedral"),
+                                    (True, "min_collar_dihedral", "max_collar_dihedral")):
             of_kind = angles[:, (mesh.collar > 0) == inside]
             if of_kind.size == 0:
                 continue
@@ -260,8 +262,8 @@ class Failures(DistributedTest):
                          if "out" in p.name or p.name.startswith(".collarmesh")], [])
 
     def test_memory(self):
-        self.assert_fails(self.mpirun(2, PROGRAM, MODELS / "bracket.off", "-o", "out.h5", "--size", "4", "--levels", "2",
-                                      "--max-memory", "80M"), 5, "memory", by_each_rank=True)
+        self.assert_fails(self.mpirun(2, PROGRAM, MODELS / "bracket.off", "-o", "out.h5", "--size", "4", "--levels",
+                                      "2", "--max-memory", "80M"), 5, "memory", by_each_rank=True)
 
     def test_options(self):
         self.assert_fails(self.mpirun(3, PROGRAM, MODELS / "box.off", "-o",
@@ -276,28 +278,30 @@ class Failures(DistributedTest):
                           "out.h5", "--size", "1", "--time-limit", "1"), 5, "time limit")
 
     def test_other_options_on_a_rank(self):
-        run = self.mpirun(1, PROGRAM, MODELS / "box.off", "-o", "out.h5", ":", "-n", "1", PROGRAM, MODELS / "box.off", "-o", "out.h5",
-                          "--levels", "2")
+        run = self.mpirun(1, PROGRAM, MODELS / "box.off", "-o", "out.h5", ":", "-n", "1", PROGRAM, MODELS / "box.off",
+                          "-o", "out.h5", "--levels", "2")
         self.assert_fails(run, 2, "rank 1", "other options")
 
     def test_other_input_on_a_rank(self):
         for name in "one", "other":
             (self.folder / name).mkdir()
             shutil.copy(MODELS / ("box.off" if name == "one" else "sphere.off"), self.folder / name / "part.off")
-        run = self.mpirun(1, "-wdir", self.folder / "one", PROGRAM, "part.off", "-o", self.folder / "out.h5", ":", "-n", "1", "-wdir",
-                          self.folder / "other", PROGRAM, "part.off", "-o", self.folder / "out.h5")
+        run = self.mpirun(1, "-wdir", self.folder / "one", PROGRAM, "part.off", "-o", self.folder / "out.h5", ":", "-n",
+                          "1", "-wdir", self.folder / "other", PROGRAM, "part.off", "-o", self.folder / "out.h5")
         self.assert_fails(run, 3, "part.off", "rank 1")
 
     def test_full_disk(self):
         """Files may have 1 MB, but the mesh takes more."""
         for output in "out.h5", "out.pvtu":
             run = self.mpirun(
-                2, "bash", "-c", f"ulimit -f 1000; exec {PROGRAM} {MODELS / 'bracket.off'} -o {output} --size 6 --levels 2 -q")
+                2, "bash", "-c",
+                f"ulimit -f 1000; exec {PROGRAM} {MODELS / 'bracket.off'} -o {output} --size 6 --levels 2 -q")
             self.assert_fails(run, 8, "out")
 
     def run_until_meshed(self, *options):
-        process = subprocess.Popen([*MPIRUN, "-n", "2", PROGRAM, MODELS / "bracket.off", "-o", "out.h5", "--size", "6", "--levels", "4",
-                                    *options], cwd=self.folder, stderr=subprocess.PIPE, text=True, start_new_session=True)
+        process = subprocess.Popen([*MPIRUN, "-n", "2", PROGRAM, MODELS / "bracket.off", "-o", "out.h5", "--size", "6",
+                                    "--levels", "4", *options], cwd=self.folder, stderr=subprocess.PIPE, text=True,
+                                   start_new_session=True)
         self.addCleanup(process.stderr.close)
         for line in process.stderr:
             if line.startswith("level 1"):

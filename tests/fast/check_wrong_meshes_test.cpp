@@ -570,7 +570,7 @@ TEST(CheckWrongMeshes, AnglesAreMissedAtFeaturesThatHaveNames) {
   };
   for (const Finding& finding : report.findings) {
     EXPECT_EQ(finding.guarantee, thin_angles);
-    EXPECT_TRUE(is_said(finding, "in region 1 (tag 1), which touches ")) << finding.message;
+    EXPECT_TRUE(is_said(finding, "in region 1 (tag 1) and touching ")) << finding.message;
     const bool at_floor = finding.where.z < 0.1;
     EXPECT_EQ(is_said(finding, "bed plate"), at_floor) << finding.message;
     EXPECT_EQ(is_said(finding, "no feature"), !at_floor) << finding.message;

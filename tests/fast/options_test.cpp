@@ -40,7 +40,8 @@ std::string some_text(const Option& option) {
   throw std::runtime_error("only one value for " + option.name);
 }
 
-// Callers of the mesher have functions for several commands, so a name may be there for each of these.
+// An option may have a row for each of several commands, but no command may have two rows of it. `programs`
+// stands for callers with functions for several commands, so it may have several rows.
 TEST(OptionTable, ANameIsThereOnceForEachCommand) {
   std::set<std::pair<std::string, unsigned>> known;
   for (const Option& option : option_table())

@@ -1,5 +1,5 @@
-"""Each call of the system that a run makes fails in turn; after that: the right exit code, whole files or none, and what was
-there before as it was.
+"""Each call of the system that a run makes fails in turn; after that: the right exit code, whole files or none, and
+what was there before as it was.
 
 Run by ctest with COLLARMESH_PROGRAM and COLLARMESH_FAULTS, the library to preload (faults.cpp). Allocations are many:
 COLLARMESH_ALL_FAULTS=1 has every one fail (an hour), else samples of them do.
@@ -39,8 +39,8 @@ class FaultsTest(unittest.TestCase):
         for file in files:
             (self.folder / file).write_text(BEFORE)
         patient = ["--time-limit", "100000"] if "forks" in faults else []  # reading CAD files has its own limit
-        run = subprocess.run([PROGRAM, part, "-o", files[0], "-q", "--threads", "1", *patient], cwd=self.folder, env=environment,
-                             capture_output=True, text=True, timeout=7200 if ALL else 600)
+        run = subprocess.run([PROGRAM, part, "-o", files[0], "-q", "--threads", "1", *patient], cwd=self.folder,
+                             env=environment, capture_output=True, text=True, timeout=7200 if ALL else 600)
         return run.returncode, run.stderr
 
     def counts(self, name, kind):
@@ -109,7 +109,8 @@ class Memory(FaultsTest):
                 first = 1 if ALL else max(1, total - 5000)
                 code, messages = self.run_with(name, kind="new", at=first, forks=1)
                 self.assertEqual(code, 0, messages[-2000:])
-                wrong = [line for line in self.count.read_text().splitlines() if not line.startswith(("calls", "before"))]
+                wrong = [line for line in self.count.read_text().splitlines()
+                         if not line.startswith(("calls", "before"))]
                 self.assertEqual(wrong, [])
                 self.assert_whole(name, 0, messages[-2000:])
 

@@ -1,5 +1,5 @@
-"""The package for FreeCAD's Add-on Manager has what that asks for at its base, the same bytes each time, and works where it
-is unpacked.
+"""The package for FreeCAD's Add-on Manager has what that asks for at its base, the same bytes each time, and works
+where it is unpacked.
 
     addon_test.py PROGRAM
 
@@ -47,7 +47,8 @@ def check_metadata(addon, program):
     require(all(each.text.startswith("https://b.example/mesh") for each in urls.values()), "URLs of the site")
     require(urls["repository"].get("branch"), "the branch")
     require(len(root.findall("p:content/p:workbench/p:tag", NAMES)) > 2, "tags")
-    require("GNU GENERAL PUBLIC LICENSE" in (addon / root.find("p:license", NAMES).get("file")).read_text(), "the licence")
+    require("GNU GENERAL PUBLIC LICENSE" in (addon / root.find("p:license", NAMES).get("file")).read_text(),
+            "the licence")
     for icon in ("p:icon", "p:content/p:workbench/p:icon"):
         require((addon / text(icon)).exists(), f"no icon {text(icon)}")
 
@@ -66,8 +67,8 @@ def main():
         check_metadata(addon, program)
         strange = [path for path in addon.rglob("*") if path.suffix in (".cpp", ".ts", ".pyc") or path.is_symlink()]
         require(not strange, f"{strange} are none of the add-on")
-        return subprocess.run([sys.executable, HERE / "run.py", program, HERE / "addon_in_freecad.py", "--addon", addon, "--",
-                               addon / "package.xml"]).returncode
+        return subprocess.run([sys.executable, HERE / "run.py", program, HERE / "addon_in_freecad.py", "--addon", addon,
+                               "--", addon / "package.xml"]).returncode
 
 
 if __name__ == "__main__":

@@ -182,5 +182,6 @@ def peak(result, radius):
     points = numpy.array([tuple(nodes[number]) for number in result.NodeNumbers])
     stresses = numpy.array(result.vonMises)
     return max(
-        stresses[numpy.linalg.norm(points - points[i], axis=1) <= radius].mean() for i in numpy.argsort(-stresses)[:centres]
+        stresses[numpy.linalg.norm(points - points[i], axis=1) <= radius].mean()
+        for i in numpy.argsort(-stresses)[:centres]
     )

@@ -87,7 +87,8 @@ class Apart(unittest.TestCase):
         self.assertFalse(nodes_of(fem_mesh, sides[0]) & nodes_of(fem_mesh, sides[1]))
 
     def test_where_no_solids_touch_nothing_is_kept_apart(self):
-        for shape in (Part.makeBox(10, 10, 10), Part.makeCompound([Part.makeBox(9, 9, 9), Part.makeBox(9, 9, 9, BESIDE)])):
+        for shape in (Part.makeBox(10, 10, 10),
+                      Part.makeCompound([Part.makeBox(9, 9, 9), Part.makeBox(9, 9, 9, BESIDE)])):
             obj = self.mesh_of(shape)
             obj.KeepApart = True
             with mesh_object.start(obj) as job:

@@ -15,7 +15,8 @@ from PySide import QtCore, QtGui
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import window as w  # noqa: E402
-from freecad.collarmesh_workbench import mesh_object, mesh_properties, take_over, up_to_date, view_provider  # noqa: E402
+from freecad.collarmesh_workbench import (mesh_object, mesh_properties, take_over, up_to_date,  # noqa: E402
+                                          view_provider)
 from freecad.collarmesh_workbench.commands import GROUP_COMMAND, MESH_COMMAND, REFINEMENT_COMMAND  # noqa: E402
 
 

@@ -37,10 +37,10 @@ async def german_numbers(obj):
     sizes = [table.topLevelItem(i).text(1) for i in range(table.topLevelItemCount())]
     w.require(any("," in size for size in sizes) and not any("." in size for size in sizes), f"{sizes}")
     await w.click(w.child("advanced"))
-    for name, text, value in (("CharacteristicLengthMax", "3,5 mm", 3.5), ("CharacteristicLengthMax", "3 mm + 1,25 mm", 4.25),
-                              ("CharacteristicLengthMin", "0,5", 0.5), ("RadiusEdgeRatio",
-                                                                        "1,8", 1.8), ("Gradation", "0,4", 0.4),
-                              ("CreaseAngle", "55,5 °", 55.5)):
+    for name, text, value in (("CharacteristicLengthMax", "3,5 mm", 3.5),
+                              ("CharacteristicLengthMax", "3 mm + 1,25 mm", 4.25),
+                              ("CharacteristicLengthMin", "0,5", 0.5), ("RadiusEdgeRatio", "1,8", 1.8),
+                              ("Gradation", "0,4", 0.4), ("CreaseAngle", "55,5 °", 55.5)):
         w.child(name).setText(text)
         await w.click(w.child("run"))
         await w.wait_until(lambda: w.child("run").isEnabled(), "the end of the run")

@@ -181,7 +181,8 @@ class Groups(unittest.TestCase):
             fem_mesh, meshtools.get_femelement_table(fem_mesh), fem_mesh.Nodes, force)]
         of_group, of_face = sorted(tables, key=lambda table: -max(fem_mesh.Nodes[node].z for node in table))
         self.assertEqual(set(of_group), self.nodes_of_group(curved))
-        areas = [sum(face.Area for face, name in zip(faces.Shape.Faces, faces.Groups) if name == curved), LENGTH * WIDTH]
+        areas = [sum(face.Area for face, name in zip(faces.Shape.Faces, faces.Groups) if name == curved),
+                 LENGTH * WIDTH]
         for table, area in zip((of_group, of_face), areas):
             self.assertAlmostEqual(sum(map(float, table.values())) / FORCE, area / sum(areas), delta=1e-3)
 

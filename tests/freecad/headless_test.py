@@ -214,8 +214,8 @@ class Headless(unittest.TestCase):
         other.References = [(part, "Solid1")]
         obj = collarmesh_workbench.mesh(part, size=4, analysis=analysis)
         told = [note for note in mesh_object.remesh(obj)["notes"] if "has no elements" in note]
-        self.assertEqual(told, [f"Steel has no elements: {part.Label} has none of its solids ({before.Label}: Solid1); choose "
-                                f"solids of {part.Label}."])
+        self.assertEqual(told, [f"Steel has no elements: {part.Label} has none of its solids ({before.Label}: Solid1); "
+                                f"choose solids of {part.Label}."])
         steel.References = [(part, "Solid2")]
         self.assertFalse([note for note in mesh_object.remesh(obj)["notes"] if "has no elements" in note])
 
@@ -240,7 +240,8 @@ class Headless(unittest.TestCase):
             "PlanarTolerance": 2e-6, "WeldTolerance": 2e-9,
             "RepairTolerance": 2e-5, "RadiusEdgeRatio": 1.9, "Coarsen": False, "ImproveLevel": 3,
             "MinDihedralAngle": 25, "Seed": 7, "TimeLimit": 60, "FillHoles": True,
-            "KeepApart": True, "SplitFaces": [], "PeriodicFaces": [], "InteriorNode": False, "LayersAsTetrahedra": False,
+            "KeepApart": True, "SplitFaces": [], "PeriodicFaces": [], "InteriorNode": False,
+            "LayersAsTetrahedra": False,
         }
         self.assertEqual(set(values), {name for _, name, *_ in mesh_properties.PROPERTIES})
         # tested elsewhere
@@ -263,8 +264,8 @@ class Headless(unittest.TestCase):
         for name, value in (("radius_edge", 2), ("crease_angle", 60), ("collar_angle", 150)):
             self.assertEqual((numbers[name].default, table[name]["default"]), (value, value), name)
         every = program.Settings(
-            **{name: 7 for name in numbers}, coarsen=False, dimension=2, repair="wrap", keep_apart=True, interior_node=True,
-            layers=["all"], layers_tets=True, split=["Face1"], periodic=["x"],
+            **{name: 7 for name in numbers}, coarsen=False, dimension=2, repair="wrap", keep_apart=True,
+            interior_node=True, layers=["all"], layers_tets=True, split=["Face1"], periodic=["x"],
             solid_sizes={1: 2}, face_sizes={3: 4}, edge_sizes={5: 6})
         self.assertLessEqual(options_in(every.arguments()), set(table))
         self.assertLessEqual(set(numbers), options_in(every.arguments()))

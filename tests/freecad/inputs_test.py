@@ -119,8 +119,9 @@ class Shapes(WithDocument):
 
     def test_what_the_button_takes(self):
         box = self.add("Part::Box", "Box")
-        taken = [box, self.add("App::Link", "Link", LinkedObject=box), self.document.addObject("App::Part", "Container"),
-                 self.document.addObject("PartDesign::Body", "Body"), self.document.addObject("Mesh::Feature", "Mesh")]
+        taken = [box, self.add("App::Link", "Link", LinkedObject=box),
+                 self.document.addObject("App::Part", "Container"), self.document.addObject("PartDesign::Body", "Body"),
+                 self.document.addObject("Mesh::Feature", "Mesh")]
         refused = [self.document.addObject("App::DocumentObjectGroup", "Folder"), mesh_object.make(self.document, box),
                    ObjectsFem.makeMeshGmsh(self.document), self.document.addObject("App::Link", "Dangling")]
         for obj in taken + refused:
@@ -265,7 +266,8 @@ class OutOfDate(WithDocument):
         self.assertFalse(self.is_out_of_date())
 
     def test_the_shape_changed_and_back(self):
-        for change in (lambda: setattr(self.box, "Length", 10.001), lambda: setattr(self.part, "Edges", [(1, 1.1, 1.1)]),
+        for change in (lambda: setattr(self.box, "Length", 10.001),
+                       lambda: setattr(self.part, "Edges", [(1, 1.1, 1.1)]),
                        lambda: setattr(self.part, "Edges", [(2, 1.0, 1.0)])):
             change()
             self.assertTrue(self.is_out_of_date())
@@ -275,8 +277,9 @@ class OutOfDate(WithDocument):
 
     def test_sizes_and_settings_changed(self):
         size, obj = self.size, self.obj
-        for holder, name, value in ((size, "Radius", 2), (size, "Size", 0.5), (size, "Growth", 0.2), (obj, "ElementOrder", "1st"),
-                                    (obj, "CharacteristicLengthMax", 2), (obj, "MeshSizeList", [])):
+        for holder, name, value in ((size, "Radius", 2), (size, "Size", 0.5), (size, "Growth", 0.2),
+                                    (obj, "ElementOrder", "1st"), (obj, "CharacteristicLengthMax", 2),
+                                    (obj, "MeshSizeList", [])):
             with self.subTest(name):
                 before = getattr(holder, name)
                 self.assertFalse(self.is_out_of_date())

@@ -12,8 +12,8 @@ import numpy
 import ObjectsFem
 import Part
 from freecad import collarmesh_workbench
-from freecad.collarmesh_workbench import (elements, groups, guarantees, layer_objects, mesh_object, places, program, take_over,
-                                          up_to_date, worst_elements)
+from freecad.collarmesh_workbench import (elements, groups, guarantees, layer_objects, mesh_object, places, program,
+                                          take_over, up_to_date, worst_elements)
 from freecad.collarmesh_workbench.program import MesherError
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))

@@ -32,7 +32,8 @@ def main():
         usr = folder / "root" / "usr"
         if not (usr / "bin" / "collarmesh").exists():
             raise SystemExit("the package has no program")
-        if list(pathlib.Path(build).glob("python/collarmesh/_core*.so")) and not list(usr.glob("lib/python3/*/collarmesh/_core*.so")):
+        if (list(pathlib.Path(build).glob("python/collarmesh/_core*.so"))
+                and not list(usr.glob("lib/python3/*/collarmesh/_core*.so"))):
             raise SystemExit("the package has no Python module")
         for file in ("share/doc/collarmesh/copyright", "share/doc/collarmesh/changelog.Debian.gz",
                      "share/man/man1/collarmesh.1.gz", "share/bash-completion/completions/collarmesh",

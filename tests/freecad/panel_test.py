@@ -23,8 +23,8 @@ from freecad.collarmesh_workbench import (angle_chart, colours, cost, guarantees
                                           work_folder, worst_elements)
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from window import (child, click, click_at, click_command, click_item, close_panel, find, open_panel, pause,  # noqa: E402
-                    plate, require, rows, run_mesher, run_test, said, screenshot, turn, wait_until)
+from window import (child, click, click_at, click_command, click_item, close_panel, find, open_panel,  # noqa: E402
+                    pause, plate, require, rows, run_mesher, run_test, said, screenshot, turn, wait_until)
 
 PROGRAM = os.environ["COLLARMESH_PROGRAM"]
 LONG = "0.25 mm"  # a size with which meshing the plate takes much longer than any test
@@ -95,7 +95,8 @@ def held_program():
     """Lets the mesher's runs wait until the file exists whose path this yields; predictions do not wait."""
     with tempfile.TemporaryDirectory() as folder:
         go = pathlib.Path(folder, "go")
-        wait = f"import time\nwhile '--predict' not in sys.argv and not os.path.exists({str(go)!r}):\n    time.sleep(0.05)"
+        wait = (f"import time\nwhile '--predict' not in sys.argv and not os.path.exists({str(go)!r}):\n"
+                "    time.sleep(0.05)")
         os.environ["COLLARMESH_PROGRAM"] = stand_in(folder, wait)
         try:
             yield go
@@ -800,7 +801,8 @@ async def files_have_no_marks():
         await close(document)
         document = FreeCAD.openDocument(path)
     part, obj = document.getObject(label), document.getObject(name)
-    require(obj.ViewObject.Transparency == 0 and not part.ViewObject.Visibility, "what is opened looks as it did before")
+    require(obj.ViewObject.Transparency == 0 and not part.ViewObject.Visibility,
+            "what is opened looks as it did before")
     await close(document)
 
 
@@ -853,7 +855,8 @@ async def documents_and_objects_go_while_meshing():
             require(not meshing_process._runs, "no run")
             if what == "object":
                 FreeCAD.closeDocument(document.Name)
-            await wait_until(lambda: not collarmesh_folders() - before, f"no folder stays: {collarmesh_folders() - before}")
+            await wait_until(lambda: not collarmesh_folders() - before,
+                             f"no folder stays: {collarmesh_folders() - before}")
 
 
 async def the_report_opens():

@@ -118,7 +118,8 @@ async def open_surfaces_are_asked_about(document, part, obj):
     w.child("ElementDimension").setCurrentIndex(3)
     await w.click(w.child("run"))
     w.require("open at 4 edges" in w.child("question").text(), w.child("question").text())
-    w.require(w.child("run").text() == "Fill the holes" and obj.FemMesh.NodeCount == before, "nothing is filled unasked")
+    w.require(w.child("run").text() == "Fill the holes" and obj.FemMesh.NodeCount == before,
+              "nothing is filled unasked")
     await w.screenshot("open_surface.png")
     await w.click(w.child("run"))
     await w.wait_until(lambda: w.child("message").isVisible(), "the mesh")

@@ -21,7 +21,8 @@ DISPLACEMENT_TOLERANCE = 0.02
 STRESS_TOLERANCE = 0.02
 PEAK_RADIUS = 0.3  # mm, a tenth of the smallest hole's radius
 REACTION_TOLERANCE = 0.005  # because triangles replace curved faces
-OUR_SIZE = 0.85  # relative to Gmsh's size: with a size on one face, our mesher makes two thirds of its nodes at the same size
+# relative to Gmsh's size: with a size on one face, our mesher makes two thirds of its nodes at the same size
+OUR_SIZE = 0.85
 ORDERS = [int(order) for order in os.environ.get("COLLARMESH_TEST_ORDERS", "1,2").split(",")]
 
 

@@ -1,5 +1,5 @@
-"""Refinement by a result in FreeCAD's window: the button, the panel's fields, a run, "Stop", undo, a result of another mesh. Run
-by run.py --gui."""
+"""Refinement by a result in FreeCAD's window: the button, the panel's fields, a run, "Stop", undo, a result of another
+mesh. Run by run.py --gui."""
 
 import os
 import sys

@@ -1,5 +1,5 @@
-"""Refinement by the result of an analysis: the estimated error, the next mesh, its groups and constraints, refusals. Run by
-run.py."""
+"""Refinement by the result of an analysis: the estimated error, the next mesh, its groups and constraints, refusals.
+Run by run.py."""
 
 import math
 import os
@@ -118,7 +118,8 @@ class Settled(unittest.TestCase):
     def test_settings_of_an_adapted_mesh(self):
         self.assertEqual(Settings(size=3, seed=5, face_sizes={1: 2},
                          min_dihedral=20).for_adapting(), Settings(min_dihedral=20))
-        for other in (Settings(keep_apart=True), Settings(split=["Face1"]), Settings(repair="wrap"), Settings(coarsen=False)):
+        for other in (Settings(keep_apart=True), Settings(split=["Face1"]), Settings(repair="wrap"),
+                      Settings(coarsen=False)):
             self.assertIsNone(other.for_adapting())
 
 

@@ -1,5 +1,5 @@
-"""Shells and beams by clicks: the panel chooses triangles and lines from the shape and says so, FEM's thickness and beam section,
-CalculiX, and its result in the window. Run by run.py --gui."""
+"""Shells and beams by clicks: the panel chooses triangles and lines from the shape and says so, FEM's thickness and
+beam section, CalculiX, and its result in the window. Run by run.py --gui."""
 
 import os
 import sys

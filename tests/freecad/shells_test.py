@@ -1,5 +1,5 @@
-"""Faces, open surfaces and wires, meshed with triangles and lines: from the shape to CalculiX's displacements, with FEM's
-thicknesses and beam sections. Run by run.py."""
+"""Faces, open surfaces and wires, meshed with triangles and lines: from the shape to CalculiX's displacements, with
+FEM's thicknesses and beam sections. Run by run.py."""
 
 import math
 import os
@@ -75,8 +75,9 @@ class Decisions(unittest.TestCase):
 
     def test_the_dimension_is_that_of_the_shape(self):
         box = Part.makeBox(10, 10, 10)
-        for shape, expected in ((box, 3), (Part.makeShell(box.Faces), 3), (Part.makeSphere(5).Faces[0], 3), (box.Faces[0], 2),
-                                (Part.makeShell(box.Faces[:5]), 2), (angle_sheet(), 2), (Part.Wire(box.Faces[0].Edges), 1)):
+        for shape, expected in ((box, 3), (Part.makeShell(box.Faces), 3), (Part.makeSphere(5).Faces[0], 3),
+                                (box.Faces[0], 2), (Part.makeShell(box.Faces[:5]), 2), (angle_sheet(), 2),
+                                (Part.Wire(box.Faces[0].Edges), 1)):
             part = self.add(shape)
             self.assertEqual(open_shape.dimension(part, 0, False), expected)
             self.assertEqual(elements.dimension(collarmesh_workbench.mesh(part, size=5).FemMesh), expected)

@@ -282,8 +282,9 @@ class Files(WithPart):
 
     def test_export_with_names(self):
         with tempfile.TemporaryDirectory() as folder:
-            for extension, words in ((".msh", (b'"Face1"', b'"Edge1"', b'"Solid1"')), (".inp", (b"FACE1", b"C3D10", b"SOLID1")),
-                                     (".unv", (b"Face1", b"Solid1")), (".stl", (b"STL",))):
+            for extension, words in ((".msh", (b'"Face1"', b'"Edge1"', b'"Solid1"')),
+                                     (".inp", (b"FACE1", b"C3D10", b"SOLID1")), (".unv", (b"Face1", b"Solid1")),
+                                     (".stl", (b"STL",))):
                 path = os.path.join(folder, "plate" + extension)
                 mesh_file.export(self.obj, path)
                 with open(path, "rb") as file:

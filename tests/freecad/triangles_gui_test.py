@@ -1,5 +1,5 @@
-"""From triangles to stresses by clicks: a mesh, faces for its groups, FEM's own panels for constraints, CalculiX. Run by
-run.py --gui."""
+"""From triangles to stresses by clicks: a mesh, faces for its groups, FEM's own panels for constraints, CalculiX. Run
+by run.py --gui."""
 
 import os
 import sys

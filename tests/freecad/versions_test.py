@@ -9,7 +9,8 @@ from unittest import mock
 import FreeCAD
 import ObjectsFem
 import Part
-from freecad.collarmesh_workbench import compatibility, mesh_object, mesh_properties, size_objects, take_over, up_to_date
+from freecad.collarmesh_workbench import (compatibility, mesh_object, mesh_properties, size_objects, take_over,
+                                          up_to_date)
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import run_in_freecad  # noqa: E402
@@ -134,8 +135,8 @@ class Versions(unittest.TestCase):
             plain,
             self.refinement("MeshShape", ShapeType="Sphere",
                             SphereCenter=FreeCAD.Vector(1, 2, 3), SphereRadius=2, **sizes),
-            self.refinement("MeshShape", ShapeType="Box", BoxCenter=FreeCAD.Vector(5, 4, 3), BoxLength=2, BoxWidth=4, BoxHeight=6,
-                            **sizes),
+            self.refinement("MeshShape", ShapeType="Box", BoxCenter=FreeCAD.Vector(5, 4, 3), BoxLength=2, BoxWidth=4,
+                            BoxHeight=6, **sizes),
             self.refinement("MeshDistance", DistanceMinimum=1, DistanceMaximum=5, SizeMinimum=0.5, SizeMaximum=2.5,
                             References=[(self.part, ("Face1",))]),
             self.refinement("MeshTransfiniteCurve", References=[(self.part, ("Edge1",))]),

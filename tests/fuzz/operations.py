@@ -8,8 +8,9 @@ sanitizer: no memory budget, as the sanitizer's memory would count, and ten time
 
 A run is wrong if a signal ends it, if its exit code is 1 or not one of those expected, if it takes longer than its time
 limit by more than a tenth (at least a second) and another second, if the volumes of the regions are not those known, or
-if it writes a mesh that `check` does not pass. Wrong ones are kept in FOLDER, with how to repeat them. COLLARMESH_PROGRAM is the program, COLLARMESH_REAL a folder of CAD files to
-mutate, beside those made here. The seed is that of the day unless it is given.
+if it writes a mesh that `check` does not pass. Wrong ones are kept in FOLDER, with how to repeat them.
+COLLARMESH_PROGRAM is the program, COLLARMESH_REAL a folder of CAD files to mutate, beside those made here. The seed is
+that of the day unless it is given.
 """
 
 import argparse
@@ -167,8 +168,10 @@ def seeds_of_files(folder):
     """Returns a sample file of each format."""
     models = SOURCES / "resources" / "models"
     for name in ("box.off", "two_boxes.poly", "bracket.off"):
-        for suffix in (".vtu", ".vtk", ".msh", ".mesh", ".inp", ".unv", ".ele", ".off", ".obj", ".stl", ".ply", ".poly", ".smesh"):
-            subprocess.run([PROGRAM, "convert", models / name, "-o", folder / f"{pathlib.Path(name).stem}{suffix}", "-q"],
+        for suffix in (".vtu", ".vtk", ".msh", ".mesh", ".inp", ".unv", ".ele", ".off", ".obj", ".stl", ".ply", ".poly",
+                       ".smesh"):
+            subprocess.run([PROGRAM, "convert", models / name, "-o", folder / f"{pathlib.Path(name).stem}{suffix}",
+                            "-q"],
                            capture_output=True, timeout=60)
     return sorted(p for p in folder.iterdir() if p.suffix not in (".node", ".face", ".edge"))
 
@@ -198,7 +201,8 @@ def main():
             seeds = [p for p in seeds_of_cad() if p.suffix.lower() in CAD_KINDS[kind]]
             trials[kind] = lambda place, seed, seeds=seeds: try_cad(place, seed, seeds)
         end = math.inf if options.runs else time.monotonic() + options.seconds
-        for seed, kind in ((s, k) for s in itertools.islice(itertools.count(options.seed), options.runs) for k in kinds):
+        for seed, kind in ((s, k) for s in itertools.islice(itertools.count(options.seed), options.runs)
+                           for k in kinds):
             if time.monotonic() >= end:
                 break
             try:

@@ -17,8 +17,8 @@ def rows_of(text):
 
 
 def faults(table, tests):
-    """Yields a text for each row that cannot be right, or whose key no single test file can make: the parts of a key
-    between its slashes, without numbers, stand in the file as texts."""
+    """Yields a message for each faulty row, and for each row that no test uses. A test file uses a row if it contains
+    all parts of the row's key, which slashes and numbers separate."""
     seen = set()
     for row in table:
         key = row[0]

@@ -8,8 +8,8 @@ import pathlib
 import re
 import sys
 
-PARTS = ("mesher/cli", "mesher/command", "mesher/files", "mesher/process", "mesher/report", "mesher/python", "mesher/distributed/program",
-         "mesher/distributed", "mesher/include", "openmesh_io", "freecad_workbench/brep")
+PARTS = ("mesher/cli", "mesher/command", "mesher/files", "mesher/process", "mesher/report", "mesher/python",
+         "mesher/distributed/program", "mesher/distributed", "mesher/include", "openmesh_io", "freecad_workbench/brep")
 
 
 def allowed(root):

@@ -67,8 +67,9 @@ def with_calculix(folder):
         job = folder / f"{name}_job"
         job.with_suffix(".inp").write_text(
             f"*INCLUDE, INPUT={name}.inp\n*MATERIAL, NAME=STEEL\n*ELASTIC\n210000., 0.3\n*EXPANSION, ZERO=0.\n"
-            f"{expansion},\n*SOLID SECTION, ELSET=EALL, MATERIAL=STEEL\n*INITIAL CONDITIONS, TYPE=TEMPERATURE\nNALL, 0.\n"
-            f"*BOUNDARY\n{boundary}*STEP\n*STATIC\n*TEMPERATURE\nNALL, {rise}\n*NODE PRINT, NSET=NALL\nU\n*END STEP\n")
+            f"{expansion},\n*SOLID SECTION, ELSET=EALL, MATERIAL=STEEL\n*INITIAL CONDITIONS, TYPE=TEMPERATURE\n"
+            f"NALL, 0.\n*BOUNDARY\n{boundary}*STEP\n*STATIC\n*TEMPERATURE\nNALL, {rise}\n*NODE PRINT, NSET=NALL\nU\n"
+            "*END STEP\n")
         run = subprocess.run([ccx, "-i", job.name], cwd=folder, capture_output=True, text=True)
         errors = re.findall(r"\*ERROR[^\n]*|[^\n]*nonpositive[^\n]*", run.stdout)
         expect(run.returncode == 0 and "Job finished" in run.stdout and not errors,
@@ -119,7 +120,8 @@ def with_meshio(folder):
     tets = found.points[found.cells_dict["tetra10"]]
     ends = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))   # nodes of VTK_QUADRATIC_TETRA
     volume = 0
-    for weight, *place in ((-0.8, 0.25, 0.25, 0.25, 0.25), *((0.45, *np.roll([0.5, 1 / 6, 1 / 6, 1 / 6], k)) for k in range(4))):
+    for weight, *place in ((-0.8, 0.25, 0.25, 0.25, 0.25),
+                           *((0.45, *np.roll([0.5, 1 / 6, 1 / 6, 1 / 6], k)) for k in range(4))):
         slopes = np.zeros((10, 4))   # slopes of the shape functions, in barycentric coordinates
         for i in range(4):
             slopes[i, i] = 4 * place[i] - 1

@@ -42,7 +42,8 @@ exact.interpolate(lambda x: 1 + 2 * x[0] + 3 * x[1])
 tags = numpy.array([1, 2, 3, 4, 5, 6])
 bc = fem.dirichletbc(exact, fem.locate_dofs_topological(V, 2, sides.indices[numpy.isin(sides.values, tags)]))
 u, v = ufl.TrialFunction(V), ufl.TestFunction(V)
-problem = fem.petsc.LinearProblem(ufl.inner(ufl.grad(u), ufl.grad(v)) * dx, fem.Constant(domain, ScalarType(0)) * v * dx,
+problem = fem.petsc.LinearProblem(ufl.inner(ufl.grad(u), ufl.grad(v)) * dx, \
+fem.Constant(domain, ScalarType(0)) * v * dx,
                                   bcs=[bc], petsc_options={"ksp_type": "preonly", "pc_type": "lu"})
 error = total((problem.solve() - exact) ** 2 * dx) ** 0.5
 volume, areas = total(one * dx(1)), [total(one * ds(int(tag))) for tag in tags]
@@ -69,8 +70,9 @@ def main():
             subprocess.run([program, models / "box.off", "-o", folder / f"box{order}.xdmf", "--size", "0.3", "--order",
                             str(order), "--quiet", *(divided if order == 1 else [])], check=True)
             for processes in (1, 2):
-                run = subprocess.run([mpirun, "--allow-run-as-root", "--oversubscribe", "-n", str(processes), sys.executable,
-                                      "solve.py", f"box{order}"], cwd=folder, capture_output=True, text=True)
+                run = subprocess.run([mpirun, "--allow-run-as-root", "--oversubscribe", "-n", str(processes),
+                                      sys.executable, "solve.py", f"box{order}"], cwd=folder, capture_output=True,
+                                     text=True)
                 if run.returncode != 0 or "solved" not in run.stdout:
                     raise SystemExit(f"order {order}, {processes} processes:\n{run.stdout}\n{run.stderr}")
                 print(f"order {order}, {processes} processes: {run.stdout.strip()}")

@@ -167,8 +167,8 @@ def with_vtk(folder):
     numbers = {1: (10, 13, 14), 2: (24, 26, 27)}
     for order in (1, 2):
         sample = Sample(folder, order, ".vtu", ".vtk", ".exo")
-        for extension, reader in ((".vtu", vtk.vtkXMLUnstructuredGridReader()), (".vtk", vtk.vtkUnstructuredGridReader()),
-                                  (".exo", vtk.vtkExodusIIReader())):
+        for extension, reader in ((".vtu", vtk.vtkXMLUnstructuredGridReader()),
+                                  (".vtk", vtk.vtkUnstructuredGridReader()), (".exo", vtk.vtkExodusIIReader())):
             label = f"{extension} of order {order} by VTK"
             reader.SetFileName(sample.files[extension])
             if extension == ".vtk":
@@ -248,7 +248,8 @@ FOAM_HEADER = "FoamFile {{ version 2.0; format ascii; class dictionary; object {
 FOAM_FILES = {
     "controlDict": "application simpleFoam; startFrom startTime; startTime 0; stopAt endTime; endTime 1; deltaT 1; "
     "writeControl timeStep; writeInterval 1; ",
-    "fvSchemes": "ddtSchemes {} gradSchemes {} divSchemes {} laplacianSchemes {} interpolationSchemes {} snGradSchemes {} ",
+    "fvSchemes": "ddtSchemes {} gradSchemes {} divSchemes {} laplacianSchemes {} interpolationSchemes {} "
+    "snGradSchemes {} ",
     "fvSolution": "",
 }
 
@@ -262,8 +263,8 @@ def with_openfoam(folder):
     for name, text in FOAM_FILES.items():
         with open(os.path.join(folder, "system", name), "w") as file:
             file.write(FOAM_HEADER.format(name) + text)
-    collarmesh("convert", sample.files[".vtu"], "-o", os.path.join(folder, "constant", "polyMesh", "boundary"), "--format",
-               "polymesh")
+    collarmesh("convert", sample.files[".vtu"], "-o", os.path.join(folder, "constant", "polyMesh", "boundary"),
+               "--format", "polymesh")
     environment = {**os.environ, "WM_PROJECT_DIR": "/usr/share/openfoam", "FOAM_ETC": "/usr/share/openfoam/etc"}
     run = subprocess.run(["checkMesh", "-allTopology", "-allGeometry"], cwd=folder, capture_output=True, text=True,
                          env=environment)
@@ -325,7 +326,8 @@ def with_calculix(folder):
         points, elements = nodes_and_elements(text)
         kinds = {name for name, _ in elements}
         expect(kinds == {("layers", 1): {"C3D4", "C3D6", "C3D8"}, ("prisms", 1): {"C3D4", "C3D6"},
-                         ("prisms", 2): {"C3D10", "C3D15"}, ("layers", 2): {"C3D10", "C3D15"}}[kind, order], f"{label}: elements {kinds}")
+                         ("prisms", 2): {"C3D10", "C3D15"}, ("layers", 2): {"C3D10", "C3D15"}}[kind, order],
+               f"{label}: elements {kinds}")
         outside = set()
         for match in re.finditer(r"\*NSET, NSET=PATCH_(\S+?)_NODES\n([^*]*)", text):
             if match[1] != "7":  # nodes on the interface are free
@@ -334,8 +336,8 @@ def with_calculix(folder):
         expect(len(free) > 0, f"{label}: there are free nodes")
         name = os.path.join(folder, f"{kind}_patch{order}")
         with open(name + ".inp", "w") as file:
-            file.write(text + "*MATERIAL, NAME=M\n*ELASTIC\n2., 0.3\n*SOLID SECTION, ELSET=EALL, MATERIAL=M\n*STEP\n*STATIC\n"
-                       "*BOUNDARY\n")
+            file.write(text + "*MATERIAL, NAME=M\n*ELASTIC\n2., 0.3\n*SOLID SECTION, ELSET=EALL, MATERIAL=M\n"
+                       "*STEP\n*STATIC\n*BOUNDARY\n")
             for number in sorted(outside):
                 for axis, value in enumerate(gradient @ points[number], 1):
                     file.write(f"{number}, {axis}, {axis}, {value:.12e}\n")

@@ -17,7 +17,8 @@ HEADER = "FoamFile {{ version 2.0; format ascii; class dictionary; object {}; }}
 FILES = {
     "controlDict": "application simpleFoam; startFrom startTime; startTime 0; stopAt endTime; endTime 1; deltaT 1; "
     "writeControl timeStep; writeInterval 1; ",
-    "fvSchemes": "ddtSchemes {} gradSchemes {} divSchemes {} laplacianSchemes {} interpolationSchemes {} snGradSchemes {} ",
+    "fvSchemes": "ddtSchemes {} gradSchemes {} divSchemes {} laplacianSchemes {} interpolationSchemes {} "
+    "snGradSchemes {} ",
     "fvSolution": "",
 }
 

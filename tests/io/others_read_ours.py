@@ -122,8 +122,8 @@ def check_msh_with_meshio(label, path, counts, ours):
     check_counts(label, mesh, counts)
     tags, cells, our_tags, our_cells = tags_of_msh(mesh), by_type(mesh), by_type(ours, "tag"), by_type(ours)
     for kind in DIMENSIONS:
-        expect(canonical(mesh.points, cells[kind], tags[kind]) == canonical(ours.points, our_cells[kind], our_tags[kind]),
-               f"{label}: tags of {kind}")
+        read, written = (mesh.points, cells[kind], tags[kind]), (ours.points, our_cells[kind], our_tags[kind])
+        expect(canonical(*read) == canonical(*written), f"{label}: tags of {kind}")
     if "collar" in mesh.cell_data:
         expect(canonical(mesh.points, cells["tetra"], by_type(mesh, "collar")["tetra"])
                == canonical(ours.points, our_cells["tetra"], by_type(ours, "collar")["tetra"]), f"{label}: collar")

@@ -78,8 +78,8 @@ def pair(mesh, axis):
     nodes = [np.unique(mesh._cells("faces")[mesh.face_tag == 2 * axis + 1 + end]) for end in (0, 1)]
     at = {tuple(mesh.points[node]): node for node in nodes[1]}
     images = [at[tuple(mesh.points[node] + shift)] for node in nodes[0]]
-    return {"first": np.array([2 * axis + 1]), "second": np.array([2 * axis + 2]), "rotation": np.eye(3), "shift": shift,
-            "nodes": np.column_stack([nodes[0], images])}
+    return {"first": np.array([2 * axis + 1]), "second": np.array([2 * axis + 2]), "rotation": np.eye(3),
+            "shift": shift, "nodes": np.column_stack([nodes[0], images])}
 
 
 def gmsh(folder):

@@ -127,7 +127,8 @@ def with_meshio(folder):
             if extension == ".inp":
                 expect({"REGION_20", "REGION_MINUS_4", "VOLUME_1", "EALL"} <= set(
                     mesh.cell_sets), f"{label}: element sets {set(mesh.cell_sets)}")
-                expect("PATCH_MINUS_3_NODES" in mesh.point_sets and any(name.startswith("CURVE_") for name in mesh.point_sets),
+                expect("PATCH_MINUS_3_NODES" in mesh.point_sets
+                       and any(name.startswith("CURVE_") for name in mesh.point_sets),
                        f"{label}: node sets {set(mesh.point_sets)}")
             if extension == ".med":
                 names = {name for families in mesh.cell_tags.values() for name in families}
@@ -159,7 +160,8 @@ def with_vtk(folder):
     for order in (1, 2):
         sample = Sample(folder, order, ".vtk", ".vtu")
         grids = []
-        for extension, reader in ((".vtk", vtk.vtkUnstructuredGridReader()), (".vtu", vtk.vtkXMLUnstructuredGridReader())):
+        for extension, reader in ((".vtk", vtk.vtkUnstructuredGridReader()),
+                                  (".vtu", vtk.vtkXMLUnstructuredGridReader())):
             label = f"{extension} of order {order} by VTK"
             reader.SetFileName(sample.files[extension])
             if extension == ".vtk":
@@ -279,7 +281,8 @@ def with_calculix(folder):
         with open(name + ".dat") as file:
             dat = file.read()
         displacements = [list(map(float, line.split())) for line in
-                         dat.split("displacements", 1)[1].split("stresses")[0].splitlines()[1:] if len(line.split()) == 4]
+                         dat.split("displacements", 1)[1].split("stresses")[0].splitlines()[1:]
+                         if len(line.split()) == 4]
         expect(len(displacements) > 0, f"ccx of order {order}: displacements of a node set")
         for number, *u in displacements:
             wanted = [expansion * rise * (c - o) for c, o in zip(coordinates[int(number)], origin)]
@@ -310,8 +313,8 @@ def with_freecad(folder):
             script = os.path.join(folder, "read.py")
             with open(script, "w") as file:
                 file.write(FREECAD_SCRIPT.format(path=sample.files[extension]))
-            run = subprocess.run([freecad, script], capture_output=True, text=True, timeout=120, stdin=subprocess.DEVNULL,
-                                 env={**os.environ, "HOME": folder})
+            run = subprocess.run([freecad, script], capture_output=True, text=True, timeout=120,
+                                 stdin=subprocess.DEVNULL, env={**os.environ, "HOME": folder})
             found = re.search(r"FOUND (\d+) (\d+) (\d+) (\d+) ([\d.e+-]+)", run.stdout)
             expect(found is not None, f"{label}: {run.stdout[-500:]} {run.stderr[-500:]}")
             if found is None:

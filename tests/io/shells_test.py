@@ -5,7 +5,8 @@ plate: a square plate, simply supported, under pressure; Timoshenko's 0.00406 q 
 cylinder: pinched by two forces of 1, its ends on diaphragms; 1.8248e-5 below each force. S6.
 channel: a cantilever of a channel section, bent along its flanges; F l^3 / (3 E I). S6.
 hole: a quarter of a wide plate with a small hole, pulled; Kirsch's stress of 3 beside the hole. CPS6.
-patch: a square whose border is displaced by a linear field, which the stresses inside have to be those of. CPE3 and CPE6.
+patch: a square whose border is displaced by a linear field, which the stresses inside have to be those of. CPE3 and
+CPE6.
 beam: a cantilever bent by a force at its end; F l^3 / (3 E I). B31 and B32.
 """
 
@@ -53,8 +54,8 @@ def nodes_of(text):
 def mesh_file(program, folder, surface, size, *options, extension=".off"):
     """Meshes a surface; returns the text of the mesh file, which is in the folder."""
     (folder / f"in{extension}").write_text(surface)
-    run = subprocess.run([program, f"in{extension}", "-o", "mesh.inp", "--size", str(size), "--distance", str(size / 50),
-                          *options], cwd=folder, capture_output=True, text=True, check=False)
+    run = subprocess.run([program, f"in{extension}", "-o", "mesh.inp", "--size", str(size), "--distance",
+                          str(size / 50), *options], cwd=folder, capture_output=True, text=True, check=False)
     assert run.returncode == 0, run.stderr
     return (folder / "mesh.inp").read_text()
 
@@ -108,8 +109,8 @@ def plate(program, folder, size):
         on_border = lambda p: min(p[0], p[1], side - p[0], side - p[1]) < 1e-6
         corner = min(nodes, key=lambda n: math.dist(nodes[n], (0, 0, 0)))
         other = min(nodes, key=lambda n: math.dist(nodes[n], (side, 0, 0)))
-        return (f"*MATERIAL, NAME=M\n*ELASTIC\n{young}, {poisson}\n*SHELL SECTION, ELSET=EALL, MATERIAL=M\n{thickness}\n"
-                "*BOUNDARY\n" + fixed(nodes, on_border, 3, 3) + f"{corner},1,2\n{other},2,2\n"
+        return (f"*MATERIAL, NAME=M\n*ELASTIC\n{young}, {poisson}\n*SHELL SECTION, ELSET=EALL, MATERIAL=M\n"
+                f"{thickness}\n*BOUNDARY\n" + fixed(nodes, on_border, 3, 3) + f"{corner},1,2\n{other},2,2\n"
                 + "*STEP\n*STATIC\n*DLOAD\nEALL, P, 0.01\n*NODE PRINT, NSET=NALL\nU\n*END STEP\n")
 
     nodes, moved = solve(program, folder, patch_text(lambda s, t: (side * s, side * t, 0.0), 1, 1), size, deck)
@@ -138,7 +139,8 @@ def cylinder(program, folder, size):
         side = min(nodes, key=lambda n: math.dist(nodes[n], (0, radius, 0)))
         return ("*MATERIAL, NAME=M\n*ELASTIC\n3e6, 0.3\n*SHELL SECTION, ELSET=EALL, MATERIAL=M\n"
                 f"{thickness}\n*BOUNDARY\n" + fixed(nodes, on_diaphragm, 1, 2) + f"{side},3,3\n"
-                + f"*STEP\n*STATIC\n*CLOAD\n{corners[0]},1,-1\n{corners[1]},1,1\n*NODE PRINT, NSET=NALL\nU\n*END STEP\n")
+                + f"*STEP\n*STATIC\n*CLOAD\n{corners[0]},1,-1\n{corners[1]},1,1\n*NODE PRINT, NSET=NALL\nU\n"
+                  "*END STEP\n")
 
     _, moved = solve(program, folder, surface, size, deck, ".mesh")
     return (moved[corners[1]][0] - moved[corners[0]][0]) / 2 / 1.8248e-5
@@ -166,7 +168,8 @@ def channel(program, folder, size):
         ends = [n for n, p in nodes.items() if abs(p[0] - length) < 1e-6]
         tip.extend(ends)
         loads = dict.fromkeys(ends, 0.0)
-        for chosen, along in ((lambda p: p[1] < 1e-6, lambda p: p[2]), (lambda p: p[2] < 1e-6 - web / 2, lambda p: p[1]),
+        for chosen, along in ((lambda p: p[1] < 1e-6, lambda p: p[2]),
+                              (lambda p: p[2] < 1e-6 - web / 2, lambda p: p[1]),
                               (lambda p: p[2] > web / 2 - 1e-6, lambda p: p[1])):
             for n, share in shares_along(nodes, [n for n in ends if chosen(nodes[n])], along).items():
                 loads[n] += force * share / (web + 2 * flange)
@@ -206,8 +209,8 @@ def hole(program, folder, size):
         out = min(length / max(c, 1e-9), width / max(d, 1e-9))
         return round(c * (1 + t * (out - 1)), 12), round(d * (1 + t * (out - 1)), 12), 0.0
 
-    text = mesh_file(program, folder, patch_text(point, 480, 6), size, "--dimension", "2", "--order", "2", "--triangle-elements",
-                     "plane-stress", "--elements-per-circle", str(round(40 / size)))
+    text = mesh_file(program, folder, patch_text(point, 480, 6), size, "--dimension", "2", "--order", "2",
+                     "--triangle-elements", "plane-stress", "--elements-per-circle", str(round(40 / size)))
     assert "TYPE=CPS6" in text
     nodes = nodes_of(text)
     loads = shares_along(nodes, [n for n, p in nodes.items() if p[0] > length - 1e-9], lambda p: p[1])
@@ -225,14 +228,15 @@ def patch(program, folder, size):
     gradient = ((1e-3, 2e-4), (5e-4, -4e-4))
     worst = 0
     for order in (1, 2):
-        text = mesh_file(program, folder, patch_text(lambda s, t: (2 * s, t, 0.0), 1, 1), size, "--dimension", "2", "--order",
-                         str(order), "--triangle-elements", "plane-strain")
+        text = mesh_file(program, folder, patch_text(lambda s, t: (2 * s, t, 0.0), 1, 1), size, "--dimension", "2",
+                         "--order", str(order), "--triangle-elements", "plane-strain")
         assert f"TYPE=CPE{3 * order}" in text
         nodes = nodes_of(text)
         border = {n: p for n, p in nodes.items() if min(p[0], 2 - p[0], p[1], 1 - p[1]) < 1e-9}
         held = "".join(f"{n},{axis + 1},{axis + 1},{gradient[axis][0] * p[0] + gradient[axis][1] * p[1]:.12f}\n"
                        for n, p in border.items() for axis in (0, 1))
-        lines = calculix(folder, f"*MATERIAL, NAME=M\n*ELASTIC\n{young}, {poisson}\n*SOLID SECTION, ELSET=EALL, MATERIAL=M\n1\n"
+        lines = calculix(folder,
+                         f"*MATERIAL, NAME=M\n*ELASTIC\n{young}, {poisson}\n*SOLID SECTION, ELSET=EALL, MATERIAL=M\n1\n"
                          "*STEP\n*STATIC\n*BOUNDARY\n" + held + "*EL PRINT, ELSET=EALL\nS\n*END STEP\n")
         lame = young * poisson / (1 + poisson) / (1 - 2 * poisson)
         shear = young / 2 / (1 + poisson)
@@ -257,7 +261,9 @@ def beam(program, folder, size):
         nodes = nodes_of(text)
         end = min(nodes, key=lambda n: math.dist(nodes[n], (length, 0, 0)))
         start = min(nodes, key=lambda n: math.dist(nodes[n], (0, 0, 0)))
-        lines = calculix(folder, f"*MATERIAL, NAME=M\n*ELASTIC\n{young}, 0\n*BEAM SECTION, ELSET=EALL, MATERIAL=M, SECTION=RECT\n"
+        lines = calculix(folder,
+                         f"*MATERIAL, NAME=M\n*ELASTIC\n{young}, 0\n"
+                         "*BEAM SECTION, ELSET=EALL, MATERIAL=M, SECTION=RECT\n"
                          f"{side}, {side}\n0, 1, 0\n*BOUNDARY\n{start},1,6\n*STEP\n*STATIC\n*CLOAD\n{end},3,{force}\n"
                          "*NODE PRINT, NSET=NALL\nU\n*END STEP\n")
         shares.append(next(float(f[3]) for f in lines if len(f) == 4 and int(f[0]) == end) / known)
@@ -265,8 +271,9 @@ def beam(program, folder, size):
     return max(shares, key=lambda share: abs(share - 1))
 
 
-CASES = {"roof": (roof, (12, 6, 3), 0.03), "plate": (plate, (3, 1.5, 0.75), 0.03), "cylinder": (cylinder, (60, 40, 25), 0.05),
-         "channel": (channel, (40, 20, 10), 0.02), "hole": (hole, (2, 1, 0.5), 0.03), "patch": (patch, (0.4, 0.2), 1e-4),
+CASES = {"roof": (roof, (12, 6, 3), 0.03), "plate": (plate, (3, 1.5, 0.75), 0.03),
+         "cylinder": (cylinder, (60, 40, 25), 0.05), "channel": (channel, (40, 20, 10), 0.02),
+         "hole": (hole, (2, 1, 0.5), 0.03), "patch": (patch, (0.4, 0.2), 1e-4),
          "beam": (beam, (20, 10, 5), 0.02)}
 
 

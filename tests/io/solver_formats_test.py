@@ -87,8 +87,8 @@ class Sample:
             setattr(self, name[:-1] + "_tag",
                     np.concatenate([mesh.cell_data["tag"][i] for i in blocks]) if blocks else np.zeros(0, int))
         of_faces = [i for i, block in enumerate(mesh.cells) if block.type == pick["faces"]]
-        self.face_inside = np.concatenate([(mesh.cell_data["region_back"][i] != 0) & (mesh.cell_data["region_front"][i] != 0)
-                                           for i in of_faces])
+        self.face_inside = np.concatenate([
+            (mesh.cell_data["region_back"][i] != 0) & (mesh.cell_data["region_front"][i] != 0) for i in of_faces])
         self.region = np.concatenate([mesh.cell_data["region"][i]
                                      for i, b in enumerate(mesh.cells) if b.type == pick["tets"]])
 
@@ -283,7 +283,8 @@ def mfem(folder):
         expect(all(attributes[tag] == a for tag, a in zip(
             sample.face_tag, cells["boundary"][:, 0])), "attributes of faces")
         if len(np.unique(sample.region)) == 2:
-            expect({"steel", "air"} <= set(re.findall(r"^# attribute \d+: (.*)$", (folder / "a.mfem").read_text(), re.M)), names)
+            of_attributes = re.findall(r"^# attribute \d+: (.*)$", (folder / "a.mfem").read_text(), re.M)
+            expect({"steel", "air"} <= set(of_attributes), names)
             expect({"Wall left", "outlet"} <= set(names.values()), names)
 
 

@@ -86,8 +86,8 @@ def crack(folder):
     points += [(-half, 0, 0), (half, 0, 0), (half, 0, 0.5), (-half, 0, 0.5)]
     facets = [(facet, tag) for tag, facet in enumerate(BOX, 1)] + [((8, 9, 10, 11), 7)]
     poly = write_poly(folder / "plate.poly", points, facets)
-    text = mesh(folder, "plate", poly, "--size", "0.8", "--patch-size", "7=0.06", "--gradation", "0.3", "--order", "2", "--split", "7",
-                "--name", "crack=7")
+    text = mesh(folder, "plate", poly, "--size", "0.8", "--patch-size", "7=0.06", "--gradation", "0.3", "--order", "2",
+                "--split", "7", "--name", "crack=7")
     nodes = nodes_of(text)
     minus, plus = node_set(text, "CRACK_MINUS_NODES"), node_set(text, "CRACK_PLUS_NODES")
     at = {tuple(nodes[n]): n for n in minus}

@@ -31,7 +31,8 @@ def main():
         files = {line.split()[5].removeprefix("./") for line in listed.splitlines()}
         if lacking := set(WANTED) - files:
             raise SystemExit(f"the package lacks {lacking}")
-        if unwanted := [file for file in files if re.search(r"bench|/tests?/|gtest|acute_shape", file.replace("workbench", ""))]:
+        if unwanted := [file for file in files
+                        if re.search(r"bench|/tests?/|gtest|acute_shape", file.replace("workbench", ""))]:
             raise SystemExit(f"the package has {unwanted}")
         found = subprocess.run(["lintian", "--allow-root", "--fail-on", "error",
                                package], capture_output=True, text=True)

@@ -1,4 +1,5 @@
-"""The wheel that carries its libraries: installed without network, its libraries found where the system has none of them.
+"""The wheel that carries its libraries: installed without network, its libraries found where the system has none of
+them.
 
     wheel_test.py SOURCES BUILD
 """
@@ -18,7 +19,8 @@ collarmesh.mesh(models / "box.off", size=0.5, partitions={partitions}).write("bo
 {cad}collarmesh.mesh(models / "flange.step", size=4).write("flange.vtu")
 here = os.path.dirname(os.path.dirname(collarmesh.__file__))
 loaded = {{line.split()[-1] for line in open("/proc/self/maps") if ".so" in line}}
-of_ours = {{path for path in loaded if any(name in path for name in ("libTK", "libtbb-", "libtbb.", "libfmt", "libmpfr", "hdf5", "scotch"))}}
+of_ours = {{path for path in loaded if any(name in path \
+for name in ("libTK", "libtbb-", "libtbb.", "libfmt", "libmpfr", "hdf5", "scotch"))}}
 assert of_ours and all(path.startswith(here) for path in of_ours), of_ours
 for command in (["collarmesh"], [sys.executable, "-m", "collarmesh"]):
     command[0] = os.path.join(os.path.dirname(sys.executable), command[0])

@@ -11,7 +11,8 @@ builds without a warning, so that no link leads nowhere; every option is on its 
 
 A comment before a block tells what it needs and where it runs: <!-- needs dolfinx ccx --> are modules of Python and
 programs without which it is left out, <!-- in the sources --> runs it in a copy of them, in a fresh environment of
-Python, which later blocks have, too, <!-- in FreeCAD --> in FreeCAD with the add-on. <!-- recipe: NAME; needs ... --> is a part of a recipe, which is a test of its own.
+Python, which later blocks have, too, <!-- in FreeCAD --> in FreeCAD with the add-on. <!-- recipe: NAME; needs ... -->
+is a part of a recipe, which is a test of its own.
 """
 
 import dataclasses
@@ -103,7 +104,8 @@ class Reader:
             shutil.copy(model, folder)
         self.python = sys.executable
         self.environment = {**os.environ, "PATH": f"{build}/bin:{os.environ['PATH']}", "PYTHONPATH": f"{build}/python",
-                            "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",  # needed in containers
+                            # needed in containers
+                            "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
                             "OMPI_MCA_rmaps_base_oversubscribe": "1"}
 
     def make_clone(self):
@@ -131,7 +133,8 @@ class Reader:
     def run_in_freecad(self, page, block):
         script = self.folder / "macro.py"
         script.write_text(block.code + "print('the macro has ended', flush=True)\n")
-        run = subprocess.run([sys.executable, self.sources / "tests/freecad/run.py", self.build / "bin/collarmesh", script],
+        run = subprocess.run([sys.executable, self.sources / "tests/freecad/run.py", self.build / "bin/collarmesh",
+                              script],
                              cwd=self.folder, capture_output=True, text=True)
         if run.returncode == 77:
             leave_out(page, ["FreeCAD"])
@@ -197,7 +200,8 @@ def run_cpp(sources, build):
         for target, code in programs.items():
             (folder / f"{target}.cpp").write_text(code)
             linked = link.replace("program", f"on_page_{target}").replace("::mesher", f"::{target}")
-            text += f"if(TARGET collarmesh::{target})\nadd_executable(on_page_{target} {target}.cpp)\n{linked}\nendif()\n"
+            text += (f"if(TARGET collarmesh::{target})\nadd_executable(on_page_{target} {target}.cpp)\n"
+                     f"{linked}\nendif()\n")
         (folder / "CMakeLists.txt").write_text(text)
         subprocess.run(["cmake", "-S", folder, "-B", folder / "build",
                        f"-DCMAKE_PREFIX_PATH={folder}/prefix"], check=True)
@@ -298,7 +302,8 @@ def draw_gallery(sources, build):
         return 77
     with tempfile.TemporaryDirectory() as folder:
         environment = {**os.environ, "PATH": f"{build}/bin:{os.environ['PATH']}"}
-        subprocess.run(["xvfb-run", "-a", sys.executable, sources / "resources/gallery.py", "--draft", "--into", folder], check=True,
+        subprocess.run(["xvfb-run", "-a", sys.executable, sources / "resources/gallery.py", "--draft", "--into",
+                        folder], check=True,
                        env=environment)
         made = {path.name for path in pathlib.Path(folder).glob("*.png") if path.stat().st_size > SMALLEST_PICTURE}
     shown = re.findall(r"!\[[^\]]+\]\(images/(\w+\.png)\)", (sources / "mesher/doc/gallery.md").read_text())

@@ -37,16 +37,18 @@ double looks_per_object(const WorkCounts& counts) {
   return static_cast<double>(counts.looks) / static_cast<double>(counts.located);
 }
 
-/// The largest of each count over the members of a family. Compares them with the table of expected counts at
-/// the end of its life.
+/// The maximum of each count over the members of a family. The destructor compares the maxima with the table
+/// of expected counts. Each count of the family in the table must have been added.
 class LargestCounts {
  public:
   explicit LargestCounts(std::string family) : family_(std::move(family)) {}
   LargestCounts(const LargestCounts&) = delete;
   LargestCounts& operator=(const LargestCounts&) = delete;
   ~LargestCounts() {
-    for (const auto& [counted, largest] : largest_)
-      testing::expect_count("work/" + family_ + "/" + counted, largest);
+    const std::string prefix = "work/" + family_ + "/";
+    for (const auto& [counted, largest] : largest_) testing::expect_count(prefix + counted, largest);
+    for (const std::string& key : testing::expected_keys(prefix))
+      EXPECT_TRUE(largest_.contains(key.substr(prefix.size()))) << key << " was not counted";
   }
   template <class Number>
   void add(const std::string& counted, Number count) {
@@ -59,7 +61,7 @@ class LargestCounts {
   std::map<std::string, double> largest_;
 };
 
-// Aspect ratios are those of the bound on radius-edge ratios.
+// Adds counts that are bounded because the bound on radius-edge ratios makes vertices well spaced.
 void add_well_spaced(LargestCounts& largest, const WorkCounts& counts) {
   EXPECT_GT(counts.smallest_aspect, 1);
   largest.add("aspect ratio", counts.largest_aspect);

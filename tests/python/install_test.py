@@ -1,4 +1,5 @@
-"""`cmake --install` into a prefix, and `pip install .` from a copy of the sources into a fresh environment, without network, and what it gives.
+"""`cmake --install` into a prefix, and `pip install .` from a copy of the sources into a fresh environment, without
+network, and what it gives.
 
     install_test.py SOURCES BUILD
 """

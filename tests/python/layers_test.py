@@ -85,8 +85,8 @@ class Layers(unittest.TestCase):
                     path = os.path.join(folder, f"a{order}{extension}")
                     mesh.write(path)
                     read = collarmesh.read(path)
-                    for name in ("points", "tets", "prisms", "pyramids", "quads", "prism_mid_nodes", "pyramid_mid_nodes",
-                                 "quad_mid_nodes", "quad_tag", "prism_tag"):
+                    for name in ("points", "tets", "prisms", "pyramids", "quads", "prism_mid_nodes",
+                                 "pyramid_mid_nodes", "quad_mid_nodes", "quad_tag", "prism_tag"):
                         self.assertEqual(getattr(read, name).tolist(), getattr(mesh, name).tolist(), (extension, name))
             with self.assertRaisesRegex(collarmesh.WriteError, "prisms and pyramids"):
                 layers().write(os.path.join(folder, "a.pvtu"))
@@ -130,7 +130,8 @@ class Layers(unittest.TestCase):
                 collarmesh.Mesh(POINTS, [TET], faces=boundary()[0], **wrong)
         with self.assertRaisesRegex(collarmesh.OptionError, "faces"):
             collarmesh.Mesh(POINTS, [TET], prisms=[PRISM])
-        for what in (lambda mesh: mesh.interpolate(numpy.zeros(8), [(0.5, 0.2, 0.2)]), lambda mesh: mesh.partitioned(1)):
+        for what in (lambda mesh: mesh.interpolate(numpy.zeros(8), [(0.5, 0.2, 0.2)]),
+                     lambda mesh: mesh.partitioned(1)):
             with self.assertRaisesRegex(collarmesh.OptionError, "prisms"):
                 what(layers())
 

@@ -251,7 +251,8 @@ class Signatures(unittest.TestCase):
         """Every parameter is described in its own function, or in `mesh` if the description refers to it."""
         for function in (collarmesh.mesh, collarmesh.check, collarmesh.info, collarmesh.convert, collarmesh.repair,
                          collarmesh.read, collarmesh.Complex, collarmesh.Mesh.write, collarmesh.Mesh.partitioned,
-                         collarmesh.Mesh.interpolate, collarmesh.Mesh.to_dolfinx, collarmesh.predict, collarmesh.sampled_sizes):
+                         collarmesh.Mesh.interpolate, collarmesh.Mesh.to_dolfinx, collarmesh.predict,
+                         collarmesh.sampled_sizes):
             text = inspect.getdoc(function)
             if "collarmesh.mesh" in text:
                 text += inspect.getdoc(collarmesh.mesh)
@@ -265,9 +266,9 @@ class Signatures(unittest.TestCase):
         if not program.exists():
             self.skipTest("the program was not built")
         said = subprocess.run([program, "--help"], check=True, capture_output=True, text=True).stdout
-        others = {"help", "version", "against", "output", "format", "scale", "report", "verbose", "quiet", "ghost_cells",
-                  "cell_decomposition", "help_all", "name", "batch", "interaction", "cohesive", "trace", "triangle_elements",
-                  "keep_invalid"}
+        others = {"help", "version", "against", "output", "format", "scale", "report", "verbose", "quiet",
+                  "ghost_cells", "cell_decomposition", "help_all", "name", "batch", "interaction", "cohesive", "trace",
+                  "triangle_elements", "keep_invalid"}
         options = {name.replace("-", "_") for name in re.findall(r"--([a-z][a-z-]+)", said)} - others
         self.assertGreater(len(options), 30)
         self.assertLessEqual(options - set(inspect.signature(collarmesh.mesh).parameters), set())
@@ -309,9 +310,9 @@ class Options(unittest.TestCase):
                 collarmesh.mesh(self.box, **{option: {1.5: 0.1}})
 
     def test_out_of_range(self):
-        for option in ({"weld": 0.5}, {"feature_angle": 190}, {"crease_angle": 91}, {"collar_angle": 90}, {"improve": 4},
-                       {"thin_angle": 40}, {"theta": 0.5}, {"radius_edge": 0.5}, {"vertex_ratio": 2}, {"order": 3},
-                       {"overlap": "both"}, {"collar_creation": "later"}, {"seed": -1}, {"size": "small"},
+        for option in ({"weld": 0.5}, {"feature_angle": 190}, {"crease_angle": 91}, {"collar_angle": 90},
+                       {"improve": 4}, {"thin_angle": 40}, {"theta": 0.5}, {"radius_edge": 0.5}, {"vertex_ratio": 2},
+                       {"order": 3}, {"overlap": "both"}, {"collar_creation": "later"}, {"seed": -1}, {"size": "small"},
                        {"max_memory": "much"}, {"planar_tolerance": 0.1}, {"size": -1}):
             with self.assertRaises(collarmesh.OptionError, msg=option):
                 collarmesh.mesh(self.box, **option)

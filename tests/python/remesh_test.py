@@ -60,7 +60,8 @@ class Sizes(unittest.TestCase):
 
     def test_tags_and_names_stay(self):
         mesh = collarmesh.Mesh(self.mesh.points, self.mesh.tets, numpy.full(len(self.mesh.tets), 7),
-                               faces=self.mesh.faces, face_tags=10 * self.mesh.face_tag, names={2: {10: "inlet"}, 3: {7: "oil"}})
+                               faces=self.mesh.faces, face_tags=10 * self.mesh.face_tag,
+                               names={2: {10: "inlet"}, 3: {7: "oil"}})
         made = mesh.adapt(0.2)
         self.assertEqual(set(made.face_tag), set(mesh.face_tag))
         self.assertEqual((made.name(2, 10), made.name(3, 7)), ("inlet", "oil"))
@@ -194,7 +195,8 @@ def block_with_wires():
     outlines = [ring(0, 0, 1), ring(-0.2, 0, 0.01), ring(0.2, 0, 0.01)]
     points = [(x, y, z) for outline in outlines for z in (0, 0.5) for x, y in outline]
     sides = [tuple(first + i for i in ((k, (k + 1) % 4, (k + 1) % 4 + 4, k + 4) if first == 0 else
-                                       (k + 4, (k + 1) % 4 + 4, (k + 1) % 4, k))) for first in (0, 8, 16) for k in range(4)]
+                                       (k + 4, (k + 1) % 4 + 4, (k + 1) % 4, k))) for first in (0, 8, 16)
+             for k in range(4)]
     low = [(3, 2, 1, 0), (8, 9, 10, 11), (16, 17, 18, 19)]
     high = [(4, 5, 6, 7), (15, 14, 13, 12), (23, 22, 21, 20)]
     return collarmesh.Complex(points, [*sides, low, high])
@@ -255,12 +257,14 @@ class AgainstTheInput(unittest.TestCase):
 
 
 class ResultsOfCalculix(unittest.TestCase):
-    HEAD = "    1C\n    2C                             3                                     1\n -1         1 0.00000E+00 0.00000E+00\n -3\n"
+    HEAD = ("    1C\n    2C                             3                                     1\n"
+            " -1         1 0.00000E+00 0.00000E+00\n -3\n")
 
     @staticmethod
     def block(name, rows, end=" -3\n"):
         """Returns the text of a field; rows: node and values, six to a line."""
-        text = f"  100CL  101 1.000000000           3                     0    1           1\n -4  {name}        4    1\n"
+        text = "  100CL  101 1.000000000           3                     0    1           1\n"
+        text += f" -4  {name}        4    1\n"
         text += " -5  D1          1    2    1    0\n -5  ALL         1    2    0    0    1ALL\n"
         for node, *values in rows:
             lines = [values[i:i + 6] for i in range(0, len(values), 6)]
@@ -277,16 +281,18 @@ class ResultsOfCalculix(unittest.TestCase):
 
     def test_the_last_step_of_each_field(self):
         wide = [float(i) for i in range(8)]
-        fields = self.read(self.HEAD + self.block("DISP", [(1, 1, 2, 3), (2, 4, 5, 6)]) + self.block("OTHER", [(3, *wide)]) +
+        fields = self.read(self.HEAD + self.block("DISP", [(1, 1, 2, 3), (2, 4, 5, 6)])
+                           + self.block("OTHER", [(3, *wide)]) +
                            self.block("DISP", [(1, -1, 0.5, -3e-5), (3, -7, -8, -9e10)]) + " 9999\n")
         numpy.testing.assert_array_equal(fields["DISP"], [[-1, 0.5, -3e-5], 3 * [numpy.nan], [-7, -8, -9e10]])
         numpy.testing.assert_array_equal(fields["OTHER"][2], wide)
 
     def test_bad_files(self):
         whole = self.block("DISP", [(1, 1, 2, 3), (2, 4, 5, 6)])
-        for text in ("", "solid cube\n", self.HEAD, self.block("DISP", [(1, 1, 2, 3)], end=""), whole.replace("E+00", "E+xx", 1),
-                     whole.replace(" -1         2", " -1        -2"), self.block("DISP", [(1, 1, 2, 3), (2, 4, 5)]),
-                     self.HEAD + " -4\n -3\n", self.block("DISP", [(9999999999, 1, 2, 3)])):
+        for text in ("", "solid cube\n", self.HEAD, self.block("DISP", [(1, 1, 2, 3)], end=""),
+                     whole.replace("E+00", "E+xx", 1), whole.replace(" -1         2", " -1        -2"),
+                     self.block("DISP", [(1, 1, 2, 3), (2, 4, 5)]), self.HEAD + " -4\n -3\n",
+                     self.block("DISP", [(9999999999, 1, 2, 3)])):
             with self.assertRaises(collarmesh.ReadError):
                 self.read(text)
         with self.assertRaises(collarmesh.ReadError):

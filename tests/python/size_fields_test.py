@@ -21,8 +21,8 @@ def median_lengths(mesh):
 
 class Callables(unittest.TestCase):
     def test_what_is_no_length_is_told_with_the_place(self):
-        for wrong, words in ((0, "gave 0 at"), (-1.5, r"gave -1\.5 at"), (math.nan, "gave nan at"), ("2", "gave '2' at"),
-                             (None, "gave None at")):
+        for wrong, words in ((0, "gave 0 at"), (-1.5, r"gave -1\.5 at"), (math.nan, "gave nan at"),
+                             ("2", "gave '2' at"), (None, "gave None at")):
             field = lambda x, y, z: wrong if x > 0.5 else 0.4
             with self.assertRaisesRegex(collarmesh.OptionError, rf"size_field {words} \((0\.[5-9]\d*|1), \S+, \S+\)"):
                 collarmesh.mesh(CUBE, size=0.5, size_field=field)
@@ -81,7 +81,8 @@ class CallablesOfArrays(unittest.TestCase):
         self.assertGreater(numpy.median(lengths[centres > 0.4]), 0.08)
 
     def test_threads_change_nothing(self):
-        one, several = (collarmesh.mesh(CUBE, size=1, size_field=lambda p: 0.6 * FINEST + 0.1 * p[:, 0], threads=threads)
+        one, several = (collarmesh.mesh(CUBE, size=1, size_field=lambda p: 0.6 * FINEST + 0.1 * p[:, 0],
+                                        threads=threads)
                         for threads in (1, 4))
         numpy.testing.assert_array_equal(one.points, several.points)
         numpy.testing.assert_array_equal(one.tets, several.tets)
@@ -178,7 +179,8 @@ class Fields(unittest.TestCase):
     def test_mistakes_are_told(self):
         mesh = self.background
         for field, words in (((mesh, [1, 2]), "2 values, but"), ((mesh, -numpy.ones(len(mesh.tets))), "positive"),
-                             ((mesh.points, mesh.tets + 10**6, numpy.ones(len(mesh.tets))), "corners"), ((mesh,), "tuple")):
+                             ((mesh.points, mesh.tets + 10**6, numpy.ones(len(mesh.tets))), "corners"),
+                             ((mesh,), "tuple")):
             with self.assertRaisesRegex(collarmesh.OptionError, words):
                 collarmesh.mesh(CUBE, size_field=field)
         for function, words in ((lambda x, y, z: z - 0.5, r"gave -0\.5 at \(0\.0, 0\.0, 0\.0\)"),

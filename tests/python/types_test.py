@@ -18,7 +18,8 @@ from typing import List
 import collarmesh
 import numpy
 
-m: collarmesh.Mesh = collarmesh.mesh(pathlib.Path("box.off"), size=0.5, patch_size={3: 0.1}, size_field=lambda x, y, z: 1.0)
+m: collarmesh.Mesh = collarmesh.mesh(pathlib.Path("box.off"), size=0.5, patch_size={3: 0.1}, \
+size_field=lambda x, y, z: 1.0)
 told: List[str] = m.findings
 m.write(pathlib.Path("box.vtu"))
 tag: int = collarmesh.info("box.off")["complex"]["patch_list"][0]["tag"]

@@ -7,6 +7,7 @@
 #include <map>
 #include <sstream>
 #include <string>
+#include <vector>
 
 namespace collarmesh::testing {
 namespace {
@@ -31,6 +32,11 @@ std::map<std::string, ExpectedCount> read_expected_counts() {
   return table;
 }
 
+const std::map<std::string, ExpectedCount>& expected_counts() {
+  static const std::map<std::string, ExpectedCount> table = read_expected_counts();
+  return table;
+}
+
 void append_counted(const std::string& key, double count) {
   if (const char* path = std::getenv("COLLARMESH_COUNTED"))
     std::ofstream(path, std::ios::app) << key << '\t' << count << '\n';
@@ -39,16 +45,22 @@ void append_counted(const std::string& key, double count) {
 }  // namespace
 
 void expect_count(const std::string& key, double count) {
-  static const std::map<std::string, ExpectedCount> table = read_expected_counts();
   append_counted(key, count);
-  const auto found = table.find(key);
-  ASSERT_TRUE(found != table.end()) << "tests/expected_counts.tsv has no row " << key << "; the count is "
-                                    << count;
+  const auto found = expected_counts().find(key);
+  ASSERT_TRUE(found != expected_counts().end())
+      << "tests/expected_counts.tsv has no row " << key << "; the count is " << count;
   const auto& [expected, least, most, counted] = found->second;
   EXPECT_TRUE(count >= least * expected && count <= most * expected)
-      << key << " (" << counted << "): counted " << count << ", expected " << expected << " times " << least
-      << " to " << most
-      << ". If the change is meant, put the new number in this row of tests/expected_counts.tsv";
+      << key << " (" << counted << "): the count is " << count << ", allowed are " << least * expected
+      << " to " << most * expected << ", which is " << least << " to " << most << " times " << expected
+      << ". If the change is intended, put the new count in this row of tests/expected_counts.tsv";
+}
+
+std::vector<std::string> expected_keys(const std::string& prefix) {
+  std::vector<std::string> keys;
+  for (const auto& [key, expected] : expected_counts())
+    if (key.starts_with(prefix)) keys.push_back(key);
+  return keys;
 }
 
 }  // namespace collarmesh::testing

@@ -86,7 +86,8 @@ class StepFile:
         return self._add(f"DIRECTION('',({','.join(repr(float(x)) for x in d)}))")
 
     def _axes(self, origin, normal=(0, 0, 1), along=(1, 0, 0)):
-        return self._add(f"AXIS2_PLACEMENT_3D('',{self._point(origin)},{self._direction(normal)},{self._direction(along)})")
+        return self._add(
+            f"AXIS2_PLACEMENT_3D('',{self._point(origin)},{self._direction(normal)},{self._direction(along)})")
 
     def _edge(self, a, b, points, vertices):
         along = [q - p for p, q in zip(points[a], points[b])]

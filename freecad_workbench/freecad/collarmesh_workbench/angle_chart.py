@@ -104,7 +104,8 @@ class AngleChart(QtGui.QWidget):
             x += line * 1.6 + metrics.boundingRect(text).width()
 
     def _is_on_mark(self, place):
-        return self.is_of_tetrahedra and self._mark().boundingRect().adjusted(-3, -3, 3, 3).contains(QtCore.QPointF(place))
+        around = self._mark().boundingRect().adjusted(-3, -3, 3, 3) if self.is_of_tetrahedra else None
+        return around is not None and around.contains(QtCore.QPointF(place))
 
     def mousePressEvent(self, event):
         if self._is_on_mark(event.pos()):

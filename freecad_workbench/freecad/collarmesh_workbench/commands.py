@@ -69,7 +69,8 @@ class MeshFromShape(Command):
     icon = ICON
     menu_text = new_mesh.CREATION
     tool_tip = mark(
-        "collarmesh", "Make a mesh of the selected solid, surface or wire, certified, with groups for its faces, or open "
+        "collarmesh",
+        "Make a mesh of the selected solid, surface or wire, certified, with groups for its faces, or open "
         "the one that is there"
     )
 
@@ -224,7 +225,8 @@ class RefineByResult(Command):
     icon = os.path.join(os.path.dirname(ICON), "refine_by_result.svg")
     menu_text = mark("collarmesh", "Refine by result")
     tool_tip = mark(
-        "collarmesh", "Make the mesh finer where the error of the stresses in a result is large, and coarser where it is small"
+        "collarmesh",
+        "Make the mesh finer where the error of the stresses in a result is large, and coarser where it is small"
     )
 
     def target(self):

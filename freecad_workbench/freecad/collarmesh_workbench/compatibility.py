@@ -90,7 +90,8 @@ def size_by_place(obj):
         return None
     sizes = obj.SizeIn.Value, obj.SizeOut.Value, obj.Thickness.Value
     if obj.ShapeType == "Sphere":
-        return "Sphere", *sizes, {"Radius": obj.SphereRadius.Value, "Placement": FreeCAD.Placement(obj.SphereCenter, FreeCAD.Rotation())}
+        return "Sphere", *sizes, {"Radius": obj.SphereRadius.Value,
+                                  "Placement": FreeCAD.Placement(obj.SphereCenter, FreeCAD.Rotation())}
     lengths = [getattr(obj, f"Box{name}").Value for name in ("Length", "Width", "Height")]
     corner = FreeCAD.Placement(obj.BoxCenter - FreeCAD.Vector(*lengths) / 2, FreeCAD.Rotation())
     return "Box", *sizes, {**dict(zip(("Length", "Width", "Height"), lengths)), "Placement": corner}

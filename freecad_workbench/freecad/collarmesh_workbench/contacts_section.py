@@ -20,8 +20,9 @@ class ContactsSection(QtGui.QWidget):
         self.label = widgets.label("collarmesh_contacts")
         self.box = QtGui.QCheckBox(translate("collarmesh", "Keep touching solids apart"))
         self.box.setObjectName("collarmesh_KeepApart")
-        self.box.setToolTip(translate("collarmesh", "Give each solid nodes of its own where solids touch, for contact and "
-                                                    "tie constraints; otherwise they are glued"))
+        self.box.setToolTip(translate("collarmesh",
+                                      "Give each solid nodes of its own where solids touch, for contact and "
+                                      "tie constraints; otherwise they are glued"))
         self.box.setChecked(obj.KeepApart)
         self.box.toggled.connect(self._toggled)
         widgets.stack(self, self.label, self.box)

@@ -28,7 +28,8 @@ def elements_by_extent(part, size, dimension=3):
 def estimates(part, sizes, dimension):
     """Returns {size: (elements, None)} for meshes that the program does not predict. Ignores curvature and
     small faces."""
-    return {} if part is None else {size: (elements_by_extent(part, size, dimension), None) for size in sizes if size > 0}
+    return {} if part is None else {size: (elements_by_extent(part, size, dimension), None)
+                                    for size in sizes if size > 0}
 
 
 def loading_seconds(elements, order):

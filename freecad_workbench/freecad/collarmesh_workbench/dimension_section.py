@@ -19,9 +19,11 @@ class DimensionSection(QtGui.QWidget):
         self.combo = QtGui.QComboBox()
         self.combo.setObjectName("collarmesh_ElementDimension")
         self.combo.addItems([translate("collarmesh", "from shape"), translate("collarmesh", "1D: lines, for beams"),
-                             translate("collarmesh", "2D: triangles, for shells"), translate("collarmesh", "3D: tetrahedra")])
+                             translate("collarmesh", "2D: triangles, for shells"),
+                             translate("collarmesh", "3D: tetrahedra")])
         self.combo.setToolTip(translate(
-            "collarmesh", "From shape: tetrahedra in what encloses a volume, triangles on faces and open surfaces, lines on wires"))
+            "collarmesh",
+            "From shape: tetrahedra in what encloses a volume, triangles on faces and open surfaces, lines on wires"))
         self.note = widgets.label("collarmesh_dimension_note")
         row = widgets.form()
         row.addRow(translate("collarmesh", "Dimension of the elements"), self.combo)

@@ -45,8 +45,9 @@ def _groups_of_layers():
 def _groups_of_triangles():
     return [
         (translate("collarmesh", "The mesh covers the surface: every face, edge and corner is kept"),
-         ("conforming", "curve_cover", "curve_distance", "curve_present", "patch_area", "patch_border", "patch_distance",
-          "patch_manifold", "patch_plane", "patch_present", "vertex_feature", "vertex_present", "listed_edges")),
+         ("conforming", "curve_cover", "curve_distance", "curve_present", "patch_area", "patch_border",
+          "patch_distance", "patch_manifold", "patch_plane", "patch_present", "vertex_feature", "vertex_present",
+          "listed_edges")),
         (translate("collarmesh", "Triangles of a solid look outwards, those of a surface are turned alike"),
          ("patch_orientation", "shell_orientation")),
         (translate("collarmesh", "Elements know their faces and edges"), ("curve_tag", "patch_tag")),

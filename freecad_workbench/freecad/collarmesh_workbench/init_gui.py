@@ -2,8 +2,8 @@
 
 import FreeCADGui
 
-from . import (commands, constraint_faces_view, fem_buttons, layers_view, mesh_menu, meshing_process, preferences, size_view,
-               translations, view_provider)
+from . import (commands, constraint_faces_view, fem_buttons, layers_view, mesh_menu, meshing_process, preferences,
+               size_view, translations, view_provider)
 
 translations.load()  # must come before any text is used
 commands.register()

@@ -106,7 +106,8 @@ def notes(report, order):
     layers = report.get("layers")
     if layers and layers["pyramids"] and order == 2:
         text = translate(
-            "collarmesh", "The layers end in {count} pyramids, which FreeCAD has as bricks with equal nodes. Those of second "
+            "collarmesh",
+            "The layers end in {count} pyramids, which FreeCAD has as bricks with equal nodes. Those of second "
             "order are inexact in CalculiX: choose tetrahedra in place of prisms, or first order.")
         return [text.format(count=layers["pyramids"])]
     return []

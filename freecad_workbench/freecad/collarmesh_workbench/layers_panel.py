@@ -34,7 +34,8 @@ class LayersPanel(EditPanel):
         self.count = self._add_number(rows, QtGui.QSpinBox(), "Count", translate("collarmesh", "Number of layers"),
                                       layer_objects.MOST_LAYERS)
         self.growth = self._add_number(rows, QtGui.QDoubleSpinBox(), "Growth",
-                                       translate("collarmesh", "Each is thicker by the factor"), layer_objects.MOST_GROWTH)
+                                       translate("collarmesh", "Each is thicker by the factor"),
+                                       layer_objects.MOST_GROWTH)
         self.growth.setSingleStep(0.05)
         self.thickness = self._add_length(rows, "Thickness", translate("collarmesh", "Thickness of all"),
                                           translate("collarmesh", "from the first height"))

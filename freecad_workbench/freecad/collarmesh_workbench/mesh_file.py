@@ -12,8 +12,8 @@ from .work_folder import WorkFolder
 # FreeCAD's own export writes only some of these formats, and loses groups of faces in .inp.
 FORMATS = (
     ("VTK, ParaView", ".vtu"), ("VTK", ".vtk"), ("Gmsh", ".msh"), ("Gmsh 2.2", ".msh2"), ("Abaqus, CalculiX", ".inp"),
-    ("I-DEAS, SALOME", ".unv"), ("Medit", ".mesh"), ("TetGen", ".ele"), ("STL", ".stl"), ("OBJ", ".obj"), ("PLY", ".ply"),
-    ("OFF", ".off"),
+    ("I-DEAS, SALOME", ".unv"), ("Medit", ".mesh"), ("TetGen", ".ele"), ("STL", ".stl"), ("OBJ", ".obj"),
+    ("PLY", ".ply"), ("OFF", ".off"),
 )
 
 

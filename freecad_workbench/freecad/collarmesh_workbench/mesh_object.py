@@ -40,8 +40,8 @@ def make(document, part=None, name="FEMMeshCollarmesh"):
 def start(obj, program="", settings=None):
     """Returns a Job that is ready to run, with the shape written. `settings` replaces the object's own.
     Raises MesherError."""
-    return prepare(obj, settings or mesh_properties.settings_of(obj), up_to_date.state_of(obj), size_objects.sources_of(obj),
-                   program)
+    return prepare(obj, settings or mesh_properties.settings_of(obj), up_to_date.state_of(obj),
+                   size_objects.sources_of(obj), program)
 
 
 def prepare(obj, settings, state, sources=(), program="", adapts=False):

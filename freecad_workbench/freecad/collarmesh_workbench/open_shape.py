@@ -42,8 +42,9 @@ def fault(part, dimension_of_elements=3):
     shape = inputs.shape_of(part)
     text = ""
     if dimension_of_elements == 2 and not shape.isNull() and not shape.Faces:
-        text = translate("collarmesh", "{label} has no face to be meshed with triangles: choose 1D in “Dimension of the elements”, "
-                                       "or make a face of it (Part: Face from wires).")
+        text = translate("collarmesh",
+                         "{label} has no face to be meshed with triangles: choose 1D in “Dimension of the elements”, "
+                         "or make a face of it (Part: Face from wires).")
     elif dimension_of_elements == 1 and (shape.isNull() or not shape.Edges):
         text = translate("collarmesh", "{label} has no edges to be meshed with lines.")
     elif dimension_of_elements == 3:
@@ -55,11 +56,13 @@ def _fault_of_volume(shape):
     if shape is None:
         return ""
     if not shape.Faces:
-        return translate("collarmesh", "{label} has edges or points only, and encloses no volume: choose 1D in “Dimension of the "
-                                       "elements” for beams, or make a solid of it (Part: Sweep).")
+        return translate("collarmesh",
+                         "{label} has edges or points only, and encloses no volume: choose 1D in “Dimension of the "
+                         "elements” for beams, or make a solid of it (Part: Sweep).")
     if len(shape.Faces) == 1 and open_edges(shape):
-        return translate("collarmesh", "{label} is a face, which encloses no volume: choose 2D in “Dimension of the elements” for "
-                                       "shells, or make a solid of it (Part: Extrude).")
+        return translate("collarmesh",
+                         "{label} is a face, which encloses no volume: choose 2D in “Dimension of the elements” for "
+                         "shells, or make a solid of it (Part: Extrude).")
     return ""
 
 
@@ -69,15 +72,18 @@ def question(part):
     count = open_edges(shape) if shape is not None and len(shape.Faces) > 1 else 0
     if not count:
         return ""
-    text = translate("collarmesh", "{label} is a surface that is open at {count} edges, and encloses no volume. Choose 2D in "
-                                   "“Dimension of the elements” for shells, or close it and make a solid of it (Part: Shape builder).")
+    text = translate("collarmesh",
+                     "{label} is a surface that is open at {count} edges, and encloses no volume. Choose 2D in "
+                     "“Dimension of the elements” for shells, or close it and make a solid of it (Part: "
+                     "Shape builder).")
     return text.format(label=part.Label, count=count)
 
 
 def word(part, chosen):
     """Returns the panel's text on a dimension that follows from the shape; "" for solids."""
     text = {1: translate("collarmesh", "{label} has edges only: it is meshed with lines, for beams."),
-            2: translate("collarmesh", "{label} encloses no volume: it is meshed with triangles, for shells.")}.get(chosen, "")
+            2: translate("collarmesh",
+                         "{label} encloses no volume: it is meshed with triangles, for shells.")}.get(chosen, "")
     return text.format(label=part.Label)
 
 

@@ -12,7 +12,7 @@ class Option:
     type: type
     default: object  # a number 0 leaves the value to the program
     unit: str  # "length", "degrees", "diagonal", "seconds" or none
-    counts: bool  # whether it affects the number of elements, so that predictions take it
+    counts: bool  # whether predictions pass it to `collarmesh info`; `size` is passed apart
     text: str  # what it does; empty if the add-on has its own text
 
 
@@ -22,7 +22,7 @@ OPTIONS = {
         doc("Target edge length everywhere; 0: 1/20 of the diagonal")),
     "size_min": Option(
         float, 0.0, "length", True,
-        doc("Smallest target edge length, whatever else asks for less; 0: none")),
+        doc("Smallest target edge length; smaller local sizes are raised to it; 0: none")),
     "elements_per_circle": Option(
         int, 0, "", True,
         doc("Refine where smooth surfaces and edges curve: N elements per full circle; 0: none")),
@@ -46,7 +46,7 @@ OPTIONS = {
         doc("Largest distance from smooth surfaces and curves; 0: 1/10 of the size, less where the part is thin")),
     "planar_tolerance": Option(
         float, 0.0, "diagonal", True,
-        doc("Neighbouring facets that lie within this of one plane form one patch, relative to the diagonal; 0: "
+        doc("Neighbouring facets within this distance of one plane form one patch, relative to the diagonal; 0: "
             "1e-06")),
     "weld": Option(
         float, 0.0, "diagonal", True,

@@ -73,7 +73,8 @@ def _lower_layers(layers):
     one for each face that they do not cover."""
     if not layers:
         return []
-    places = [told(LAYERS, f"{each['why']}: {each['nodes']} nodes, down to {100 * each['smallest_share']:.0f}%", [each["where"]])
+    places = [told(LAYERS, f"{each['why']}: {each['nodes']} nodes, down to {100 * each['smallest_share']:.0f}%",
+                   [each["where"]])
               for each in layers["reductions"]]
     for each in layers["patches"]:
         if each["covered"] < COVERED * each["area"]:

@@ -13,14 +13,14 @@ from .option_table import OPTIONS
 from .translations import translate
 from .work_folder import WorkFolder
 
-GUARANTEE_MISSED = 7  # exit code of a run that writes the mesh although a guarantee is missed
+GUARANTEE_MISSED = 7  # exit code if the mesh misses a guarantee; it is written unless it is unusable
 # Names of settings: sizes, and those that also hold when a mesh is adapted to other sizes.
 SIZES = ("size", "size_min", "elements_across_gap", "gradation",
          "solid_sizes", "face_sizes", "edge_sizes", "size_field")
-OF_ADAPTING = ("elements_per_circle", "radius_edge", "distance", "planar_tolerance", "min_dihedral", "time_limit", "improve",
-               "order")
-OF_THEIR_OWN = ("improve", "order", "dimension")  # numbers that are not given to the program like others
-DEFAULTS = {"order": 2, "dimension": 0}  # where they are not the program's
+OF_ADAPTING = ("elements_per_circle", "radius_edge", "distance", "planar_tolerance", "min_dihedral", "time_limit",
+               "improve", "order")
+OF_THEIR_OWN = ("improve", "order", "dimension")  # options with numbers that `arguments` treats individually
+DEFAULTS = {"order": 2, "dimension": 0}  # defaults that differ from the program's
 
 
 class MesherError(RuntimeError):
@@ -44,10 +44,10 @@ def _field(name, option):
 
 @dataclasses.dataclass
 class Settings(dataclasses.make_dataclass("OfProgram", [_field(*item) for item in OPTIONS.items()])):
-    """The options for the program (option_table), and what the add-on makes of FreeCAD's own. Lengths are millimetres
-    and are target edge lengths; 0 leaves a value to the program. Dimension 0 is that of the shape. `split` and
-    `periodic` name faces as "Face7" and "Face1=Face2". Sizes by sub-shape have FreeCAD's numbers as keys: {7: 0.5} in
-    `face_sizes` is Face7."""
+    """The options for the program (option_table), and settings that only the add-on has. Lengths are in millimetres,
+    and sizes are target edge lengths; 0 lets the program choose the value. Dimension 0 means the dimension of the
+    shape. `split` and `periodic` name faces as "Face7" and "Face1=Face2". Sizes by sub-shape have FreeCAD's numbers as
+    keys: {7: 0.5} in `face_sizes` is Face7."""
 
     fill_holes: bool = False  # fill holes of open surfaces; otherwise such surfaces are rejected
     solid_sizes: dict = dataclasses.field(default_factory=dict)
@@ -65,7 +65,8 @@ class Settings(dataclasses.make_dataclass("OfProgram", [_field(*item) for item i
     @classmethod
     def numbers(cls):
         """Returns the fields that are options with a number."""
-        return [field for field in dataclasses.fields(cls) if field.type in (int, float) and field.name not in OF_THEIR_OWN]
+        return [field for field in dataclasses.fields(cls)
+                if field.type in (int, float) and field.name not in OF_THEIR_OWN]
 
     def arguments(self):
         """Returns arguments for the command line."""
@@ -111,7 +112,8 @@ def find_program(preferred=""):
                 path=candidate)
     addon = pathlib.Path(__file__).resolve().parents[2]
     candidates = [addon / "bin" / "collarmesh", "collarmesh", addon.parent / "build" / "release" / "bin" / "collarmesh"]
-    if len(addon.parents) > 3:  # an installed add-on is in WHERE/share/freecad/Mod/collarmesh, and the program in WHERE/bin
+    # An installed add-on is in WHERE/share/freecad/Mod/collarmesh, and the program in WHERE/bin.
+    if len(addon.parents) > 3:
         candidates.append(addon.parents[3] / "bin" / "collarmesh")
     for candidate in map(str, candidates):
         if shutil.which(candidate):

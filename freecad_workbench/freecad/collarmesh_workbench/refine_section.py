@@ -26,7 +26,8 @@ class RefineSection(QtGui.QWidget):
         body = QtGui.QWidget()
         self.fold = Fold(body, translate("collarmesh", "Refine by result"))
         self.fold.setObjectName("collarmesh_refine_fold")
-        self.fold.setToolTip(translate("collarmesh", "Make the mesh finer where the error of the stresses is large, and "
+        self.fold.setToolTip(translate("collarmesh",
+                                       "Make the mesh finer where the error of the stresses is large, and "
                                        "coarser where it is small"))
         self.fold.toggled.connect(lambda _shown: self.refresh())
         self.note = widgets.label("collarmesh_refine_note")
@@ -101,7 +102,8 @@ class RefineSection(QtGui.QWidget):
     def asks(self):
         """Shows a question if one must be answered before an expensive run; another click confirms. Returns False if
         there is none."""
-        question = "" if self.question.text() else cost.question(self.plan.sizes.count(self.factors), self.plan.solution.order)
+        question = "" if self.question.text() else cost.question(self.plan.sizes.count(self.factors),
+                                                                 self.plan.solution.order)
         if question:
             self.question.setText(question)
             self.question.show()

@@ -42,13 +42,14 @@ def volume_text(volume):
 
 class RegionsTable(WholeTable):
     def __init__(self):
-        super().__init__((translate("collarmesh", "in mm³"), translate("collarmesh", "Volume"), translate("collarmesh", "in the mesh"),
-                          translate("collarmesh", "difference")), MOST)
+        super().__init__((translate("collarmesh", "in mm³"), translate("collarmesh", "Volume"),
+                          translate("collarmesh", "in the mesh"), translate("collarmesh", "difference")), MOST)
         self.setObjectName("collarmesh_regions")
         self.setSelectionMode(QtGui.QAbstractItemView.NoSelection)
         self.setFocusPolicy(QtCore.Qt.NoFocus)
-        self.setToolTip(translate("collarmesh", "Volumes of the shape and of its mesh. A smaller size, or a smaller largest "
-                                                "distance from the shape, brings them closer"))
+        self.setToolTip(translate("collarmesh",
+                                  "Volumes of the shape and of its mesh. A smaller size, or a smaller largest "
+                                  "distance from the shape, brings them closer"))
 
     def show_report(self, report):
         self.clear()

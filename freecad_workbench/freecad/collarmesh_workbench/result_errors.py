@@ -1,8 +1,8 @@
 """The error of a finite element solution, estimated from its strains, and target edge lengths that even it out. Works
 without FreeCAD.
 
-Zienkiewicz and Zhu, A simple error estimator and adaptive procedure for practical engineering analysis, 1987. The Python
-package collarmesh has the same for fields on nodes; the add-on uses the program alone."""
+Zienkiewicz and Zhu, A simple error estimator and adaptive procedure for practical engineering analysis, 1987. The
+Python package collarmesh has the same for fields on nodes; the add-on uses the program alone."""
 
 import dataclasses
 
@@ -68,7 +68,8 @@ def strains(solution):
     if solution.order == 1:
         gradients = numpy.repeat(numpy.einsum("mia,mib->mab", values, slopes)[:, None], 4, axis=1)
     else:
-        # At corner k the shape function of corner i has the slope 4 L_i - 1, that of edge ij 4 L_j (grad L_i) + 4 L_i (grad L_j).
+        # At corner k the shape function of corner i has the slope 4 L_i - 1, that of edge ij 4 L_j (grad L_i) + 4 L_i
+        # (grad L_j).
         factors = 4 * numpy.eye(4) - 1
         gradients = numpy.einsum("mia,ki,mib->mkab", values[:, :4], factors, slopes)
         for node, (i, j) in enumerate(MIDDLES, 4):
@@ -78,12 +79,13 @@ def strains(solution):
 
 
 def means_at_points(corners, weights, values, count):
-    """Returns the weighted means of values at the corners of tetrahedra, shape (m, 4, k), over the tetrahedra around each
-    of `count` points; NaN at points without any."""
+    """Returns the weighted means of values at the corners of tetrahedra, shape (m, 4, k), over the tetrahedra around
+    each of `count` points; NaN at points without any."""
     flat, weight = corners.ravel(), numpy.repeat(weights, 4)
     total = numpy.bincount(flat, weight, count)
     with numpy.errstate(invalid="ignore"):
-        return numpy.stack([numpy.bincount(flat, weight * each, count) / total for each in values.reshape(len(flat), -1).T], axis=1)
+        return numpy.stack([numpy.bincount(flat, weight * each, count) / total
+                            for each in values.reshape(len(flat), -1).T], axis=1)
 
 
 def recovered(solution, strain, weights):

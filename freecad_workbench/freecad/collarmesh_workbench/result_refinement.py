@@ -60,7 +60,8 @@ def plan(obj):
     try:
         errors = result_errors.estimate(solution)
     except numpy.linalg.LinAlgError:
-        raise MesherError(translate("collarmesh", "The mesh has flat elements, in which there are no strains: mesh the part again.")
+        raise MesherError(translate("collarmesh",
+                                    "The mesh has flat elements, in which there are no strains: mesh the part again.")
                           ) from None
     if errors.energy_norm == 0:
         raise MesherError(translate("collarmesh", "{label}: nothing is deformed, so there is no error to estimate."),
@@ -74,7 +75,8 @@ def _displacements(obj):
     if result is not None and result.Mesh is not None:
         places = result.Mesh.FemMesh.Nodes
         return result.Label, {number: (places[number], vector)
-                              for number, vector in zip(result.NodeNumbers, result.DisplacementVectors) if number in places}
+                              for number, vector in zip(result.NodeNumbers, result.DisplacementVectors)
+                              if number in places}
     path = file_of_result(obj)
     if path is None:
         raise MesherError(
@@ -86,7 +88,8 @@ def _displacements(obj):
         raise MesherError(translate("collarmesh", "{file} cannot be read ({fault}): solve the analysis again."),
                           file=path.name, fault=fault) from None
     moved = next((step["disp"] for step in reversed(read["Results"]) if step.get("disp")), {})
-    return path.name, {number: (read["Nodes"][number], vector) for number, vector in moved.items() if number in read["Nodes"]}
+    return path.name, {number: (read["Nodes"][number], vector)
+                       for number, vector in moved.items() if number in read["Nodes"]}
 
 
 def _solution(obj, label, displacements):
@@ -95,8 +98,9 @@ def _solution(obj, label, displacements):
     numbers = sorted(fem_mesh.Volumes)
     nodes = [fem_mesh.getElementNodes(number) for number in numbers]
     if any(len(element) not in (4, 10) for element in nodes):
-        raise MesherError(translate("collarmesh", "The mesh has prisms of boundary layers, which are not refined: let the layers "
-                                                  "be tetrahedra, mesh and solve again."))
+        raise MesherError(translate("collarmesh",
+                                    "The mesh has prisms of boundary layers, which are not refined: let the layers "
+                                    "be tetrahedra, mesh and solve again."))
     nodes = numpy.array(nodes)
     used, tets = numpy.unique(nodes, return_inverse=True)
     of_mesh = fem_mesh.Nodes
@@ -110,8 +114,8 @@ def _solution(obj, label, displacements):
         raise MesherError(translate("collarmesh", "{label} is the result of another mesh: solve the analysis again."),
                           label=label)
     materials, moduli = _materials(obj, numbers)
-    return result_errors.Solution(points, tets.reshape(nodes.shape), numpy.array([tuple(vector) for _, vector in found]),
-                                  materials, moduli)
+    return result_errors.Solution(points, tets.reshape(nodes.shape),
+                                  numpy.array([tuple(vector) for _, vector in found]), materials, moduli)
 
 
 def _materials(obj, numbers):

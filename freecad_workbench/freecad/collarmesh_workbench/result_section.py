@@ -50,8 +50,9 @@ class ResultSection(QtGui.QWidget):
         else:
             self._show_report(outcome.report)
             if outcome.part_changed:
-                text = translate("collarmesh", "The part was changed while it was meshed: this is the mesh of the part as "
-                                               "it was before. Mesh it again.")
+                text = translate("collarmesh",
+                                 "The part was changed while it was meshed: this is the mesh of the part as "
+                                 "it was before. Mesh it again.")
                 self.say(text, colours.CARE)
 
     def _show_report(self, report):
@@ -77,8 +78,8 @@ def counts_text(report):
         counts = translate("collarmesh", "<b>{triangles}</b> triangles, <b>{nodes}</b> nodes")
         angles = translate("collarmesh", "angles from {smallest}° to {largest}°, in {time}")
         return (counts.format(triangles=grouped(mesh["faces"]), nodes=grouped(mesh["points"])) + "<br>"
-                + angles.format(smallest=shown(f"{triangles['min_angle']:.1f}"), largest=shown(f"{triangles['max_angle']:.1f}"),
-                                time=time))
+                + angles.format(smallest=shown(f"{triangles['min_angle']:.1f}"),
+                                largest=shown(f"{triangles['max_angle']:.1f}"), time=time))
     counts = translate("collarmesh", "<b>{tets}</b> tetrahedra, <b>{nodes}</b> nodes, <b>{faces}</b> faces")
     layers = "<br>" + layers_text(report["layers"]) if report.get("layers") else ""
     angles = translate("collarmesh", "dihedral angles from {smallest}° to {largest}°, in {time}")
@@ -100,13 +101,16 @@ def filled_text(areas):
     if len(areas) == 1:
         text = translate("collarmesh", "A hole of the shape is filled, with {area} mm²; the list has its place.")
     else:
-        text = translate("collarmesh", "{count} holes of the shape are filled, the largest with {area} mm²; the list has "
-                                       "their places.")
+        text = translate("collarmesh",
+                         "{count} holes of the shape are filled, the largest with {area} mm²; the list has "
+                         "their places.")
     return text.format(count=len(areas), area=shown(f"{max(areas):.4g}"))
 
 
 def _time(seconds):
-    return translate("collarmesh", "{n} s").format(n=shown(f"{seconds:.1f}")) if seconds < 10 else duration_text(seconds)
+    if seconds >= 10:
+        return duration_text(seconds)
+    return translate("collarmesh", "{n} s").format(n=shown(f"{seconds:.1f}"))
 
 
 def _coloured(kind, text):

@@ -1,4 +1,5 @@
-"""Sizes as objects of the document: in a sphere, a box or a cylinder, and near faces and edges. Works without the GUI."""
+"""Sizes as objects of the document: in a sphere, a box or a cylinder, and near faces and edges. Works without the
+GUI."""
 
 import re
 
@@ -251,7 +252,8 @@ def with_labels(message, labels):
         return message.replace(match[0], label)
     text = translate(
         "collarmesh",
-        "{label}: the mesh has nothing of {name}: it lies inside another solid, or repair has removed it; choose others.",
+        "{label}: the mesh has nothing of {name}: it lies inside another solid, or repair has removed it; choose "
+        "others.",
     )
     kind = next(kind for kind, tags in Distance.TAGS.items() if tags == match[2])
     return text.format(label=label, name=f"{kind}{match[3]}")

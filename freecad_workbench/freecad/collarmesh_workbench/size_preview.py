@@ -28,8 +28,9 @@ class SizePreview(QtGui.QWidget):
         self.button = QtGui.QPushButton(translate("collarmesh", "Show sizes"))
         self.button.setObjectName("collarmesh_show_sizes")
         self.button.setCheckable(True)
-        self.button.setToolTip(translate("collarmesh", "The sizes that are asked for, as colours on the part. The mesh is finer "
-                                                       "where thin places and sharp corners need it"))
+        self.button.setToolTip(translate("collarmesh",
+                                         "The sizes that are asked for, as colours on the part. The mesh is finer "
+                                         "where thin places and sharp corners need it"))
         self.legend = QtGui.QLabel()
         self.legend.setObjectName("collarmesh_sizes_legend")
         self.ends = QtGui.QLabel()

@@ -63,7 +63,8 @@ def bars(histogram):
         if count:
             pixels = max(1, round(BAR * count / most))
             text += (f"<tr><td align='right'>{i * width}° - {(i + 1) * width}°</td><td align='right'>{count}</td>"
-                     f"<td><table cellspacing='0'><tr><td bgcolor='#8ec07c' width='{pixels}'>&nbsp;</td></tr></table></td></tr>")
+                     "<td><table cellspacing='0'><tr><td bgcolor='#8ec07c' "
+                     f"width='{pixels}'>&nbsp;</td></tr></table></td></tr>")
     return text + "</table>"
 
 

@@ -112,7 +112,8 @@ def take_layers(layers, new):
         made.FirstHeight = each.MinimumThickness
         made.Growth, made.Count = max(1, each.GrowthRate), max(1, each.NumberOfLayers)
         take_place(made, each)
-    return note_on(lost, translate("collarmesh", "Boundary layers of Gmsh on edges, which collarmesh does not have: {names}"))
+    return note_on(lost,
+                   translate("collarmesh", "Boundary layers of Gmsh on edges, which collarmesh does not have: {names}"))
 
 
 def take_place(made, old):

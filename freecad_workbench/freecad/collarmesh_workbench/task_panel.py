@@ -6,8 +6,9 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtGui
 
-from . import (colours, compatibility, constraint_faces, constraint_faces_view, cost, dock, elements, extent, mesh_properties,
-               meshing_process, new_mesh, open_shape, places, prediction, up_to_date, views, widgets, worst_elements)
+from . import (colours, compatibility, constraint_faces, constraint_faces_view, cost, dock, elements, extent,
+               mesh_properties, meshing_process, new_mesh, open_shape, places, prediction, up_to_date, views, widgets,
+               worst_elements)
 from .advanced_section import AdvancedSection, in_panel_words
 from .contacts_section import ContactsSection
 from .dimension_section import DimensionSection
@@ -151,8 +152,9 @@ class MeshTaskPanel:
     def _show_predictions(self, known, missing=""):
         self.known = known
         order = self.order.order()
-        self.size.show_predictions({size: (count, None if seconds is None else seconds + cost.loading_seconds(count, order))
-                                    for size, (count, seconds) in known.items()}, missing)
+        self.size.show_predictions(
+            {size: (count, None if seconds is None else seconds + cost.loading_seconds(count, order))
+             for size, (count, seconds) in known.items()}, missing)
 
     def start(self):
         if self.run is not None:
@@ -200,7 +202,8 @@ class MeshTaskPanel:
     def _open_surface(self):
         """Returns the question about filling the holes of an open surface for tetrahedra; "" for other parts."""
         part = compatibility.meshed_object(self.object)
-        return open_shape.question(part) if part is not None and self.dimension.chosen(self.object.FillHoles) == 3 else ""
+        is_asked = part is not None and self.dimension.chosen(self.object.FillHoles) == 3
+        return open_shape.question(part) if is_asked else ""
 
     def _question(self):
         """Returns the question about an expensive mesh; "" if there is none."""

@@ -21,6 +21,7 @@
 #include "collarmesh/distributed.h"
 #include "command/guarded.h"
 #include "command/make_mesh.h"
+#include "common/stopwatch.h"
 #include "distributed_arguments.h"
 #include "files/complex_input.h"
 #include "files/file_groups.h"
@@ -330,22 +331,12 @@ double peak_bytes() {
   return 0;
 }
 
-class Timer {
- public:
-  double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
 /// Writes files under temporary names into a folder of rank 0. Rank 0 moves them to their places when all
 /// ranks are done.
 void write_files(process::Process& process, const DistributedArguments& arguments, const ParallelMesh& mesh,
                  Report& report) {
   const bool first = Ranks(MPI_COMM_WORLD).rank == 0;
-  const Timer timer;
+  const Stopwatch stopwatch;
   std::optional<process::StagedFile> staged, staged_report;
   std::string place;
   together([&] {
@@ -366,7 +357,7 @@ void write_files(process::Process& process, const DistributedArguments& argument
     const std::filesystem::path target = arguments.mesh.output, staged_at = place;
     throw WriteError(process::with_folder(error.what(), staged_at.parent_path(), target.parent_path()));
   }
-  report.write_seconds = timer.seconds();
+  report.write_seconds = stopwatch.seconds();
   report.peak_bytes = gathered(MPI_COMM_WORLD, std::vector{peak_bytes()});
   together([&] {
     if (!first) return;
@@ -421,9 +412,9 @@ process::ExitCode mesh_distributed(process::Process& process, const DistributedA
         "places by at most {:.3g}\n",
         report.order->nodes, report.order->curved, report.order->straightened, report.order->farthest_off);
   stop();
-  const Timer timer;
+  const Stopwatch stopwatch;
   report.certificate = mesh.certify(shape, arguments.slack);
-  report.certify_seconds = timer.seconds();
+  report.certify_seconds = stopwatch.seconds();
   mesh.scale(arguments.mesh.scale);
   stop();
   write_files(process, arguments, mesh, report);

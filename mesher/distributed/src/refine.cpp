@@ -1,13 +1,13 @@
 // One level of refinement: divides every tet into eight.
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cstdint>
 #include <limits>
 
 #include "angles.h"
 #include "calls.h"
 #include "collarmesh/distributed.h"
+#include "common/stopwatch.h"
 #include "labels.h"
 #include "local_mesh.h"
 #include "placement.h"
@@ -63,7 +63,7 @@ void choose_diagonals(DM dm) {
 
 LevelReport ParallelMesh::refine(const Shape& shape) {
   const PetscMessages messages;
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch stopwatch;
   PetscInt first = 0, end = 0;
   call(DMPlexGetHeightStratum(dm_, 0, &first, &end));
   // Estimates the number of points: each tet adds two faces, and more than an edge and a fifth of a vertex.
@@ -90,8 +90,7 @@ LevelReport ParallelMesh::refine(const Shape& shape) {
     label_patches_and_curves(dm_, shape.plc);
   });
   LevelReport report = place(dm_, shape, coarse_angles_);
-  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-  report.seconds = all_reduce(communicator_, taken.count(), MPI_MAX);
+  report.seconds = all_reduce(communicator_, stopwatch.seconds(), MPI_MAX);
   return report;
 }
 

@@ -11,7 +11,8 @@ from ._inputs import Array
 def mesh_and_tags(
     comm: Any, points: Array, order: int, tets: Tuple[Array, Array], faces: Tuple[Array, Array]
 ) -> Tuple[Any, Any, Any]:
-    """Returns the mesh and the tags of its cells and faces. tets, faces: (cells, tags), nodes in the order of dolfinx."""
+    """Returns the mesh and the tags of its cells and faces. tets, faces: (cells, tags), nodes in the order of
+    dolfinx."""
     import dolfinx
     from mpi4py import MPI
 

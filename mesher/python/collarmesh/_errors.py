@@ -19,7 +19,8 @@ def _volumes(mesh: Mesh) -> Array:
 
 
 def _at_corners(corners: Array, weights: Array, values: Array) -> Array:
-    """Returns the weighted mean of the values of the tetrahedra around each corner, by its number; NaN where there is none.
+    """Returns the weighted mean of the values of the tetrahedra around each corner, by its number; NaN where there is
+    none.
 
     corners: (m, 4). weights: (m,). values: (m, k).
     """
@@ -51,12 +52,12 @@ def _set_mid_nodes(mesh: Mesh, values: Array) -> None:
 
 
 def estimated_errors(mesh: Mesh, values: ArrayLike, *, across_regions: bool = False) -> Array:
-    """Estimate the error of a solution that is linear in each tetrahedron (Zienkiewicz and Zhu 1987): the L2 norm over each
-    tetrahedron of the difference between the solution's gradient and the mean of the gradients around.
+    """Estimate the error of a solution that is linear in each tetrahedron (Zienkiewicz and Zhu 1987): the L2 norm over
+    each tetrahedron of the difference between the solution's gradient and the mean of the gradients around.
 
     values: (n,) or (n, k), the solution at the points of the mesh, such as a temperature or displacements.
-    across_regions: if False, means are those of tetrahedra with the same `tet_tag`, as gradients jump where materials meet.
-        Pass True if all tags stand for one material.
+    across_regions: if False, means are those of tetrahedra with the same `tet_tag`, as gradients jump where materials
+        meet. Pass True if all tags stand for one material.
 
     Returns (m,), one for each tetrahedron. Raises OptionError for wrong shapes and flat tetrahedra.
     """
@@ -70,8 +71,8 @@ def estimated_errors(mesh: Mesh, values: ArrayLike, *, across_regions: bool = Fa
         gradients = numpy.linalg.solve(edges, rises).reshape(len(mesh.tets), -1)
     except numpy.linalg.LinAlgError:
         flat = int(numpy.argmin(abs(numpy.linalg.det(edges))))
-        raise OptionError(f"tetrahedron {flat} at {corners[flat].mean(axis=0)} is flat, so that the solution has no gradient "
-                          "in it; remesh without a size first, which mends flat tetrahedra") from None
+        raise OptionError(f"tetrahedron {flat} at {corners[flat].mean(axis=0)} is flat, so that the solution has no "
+                          "gradient in it; remesh without a size first, which mends flat tetrahedra") from None
     volumes = _volumes(mesh)
     around = mesh.tets if across_regions else _corners_by_material(mesh)
     recovered = _at_corners(around, volumes, gradients)[around]
@@ -92,17 +93,17 @@ def sizes_from_errors(
     finest: float = 0.25,
     coarsest: float = 2.0,
 ) -> Array:
-    """Return target edge lengths for the next mesh such that all its tetrahedra have the same error. This takes the fewest
-    tetrahedra for a given error, and makes the least error for a given number of tetrahedra.
+    """Return target edge lengths for the next mesh such that all its tetrahedra have the same error. This takes the
+    fewest tetrahedra for a given error, and makes the least error for a given number of tetrahedra.
 
-    errors: (m,), the error of each tetrahedron, from `estimated_errors` or a solver's indicators: norms, whose squares add up.
-        If indicators are squares already, pass their square roots.
+    errors: (m,), the error of each tetrahedron, from `estimated_errors` or a solver's indicators: norms, whose squares
+        add up. If indicators are squares already, pass their square roots.
     elements: the number of tetrahedra to aim for; or error: the total error to aim for, the root of the sum of squares.
     order: order of the solution's elements, which determines how fast its error falls with the lengths.
     finest, coarsest: least and greatest ratio of the next lengths to those of this mesh.
 
-    Returns (n,), a length for each point of the mesh, for `Mesh.adapt` and for `size_field=(mesh, lengths)`. Raises OptionError
-    for wrong shapes and values.
+    Returns (n,), a length for each point of the mesh, for `Mesh.adapt` and for `size_field=(mesh, lengths)`. Raises
+    OptionError for wrong shapes and values.
     """
     given = one_for_each(numpy.asarray(errors, dtype=numpy.float64), len(mesh.tets), "errors", "tetrahedron")
     if given.ndim != 1 or not (numpy.isfinite(given) & (given >= 0)).all():

@@ -37,7 +37,8 @@ def table_of(
 
 def _counts(figures: MeshFigures) -> str:
     counts = [("tetrahedra", figures["tets"]), ("prisms", figures["prisms"]), ("pyramids", figures["pyramids"]),
-              ("points", figures["points"]), ("boundary triangles", figures["faces"]), ("quadrangles", figures["quads"])]
+              ("points", figures["points"]), ("boundary triangles", figures["faces"]),
+              ("quadrangles", figures["quads"])]
     layers = ("prisms", "pyramids", "quadrangles")
     return ", ".join(f"{count} {what}" for what, count in counts if count > 0 or what not in layers)
 

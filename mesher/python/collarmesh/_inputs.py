@@ -247,8 +247,8 @@ def _size_field(field: SizeField) -> Any:
     if isinstance(arrays, tuple) and len(arrays) == 2 and hasattr(arrays[0], "tets"):
         arrays = (arrays[0].points, arrays[0]._cells("tets"), arrays[1])
     if not isinstance(arrays, tuple) or len(arrays) != 3:
-        raise OptionError("size_field must be a path, a dict, a callable, a tuple (mesh, values) or a tuple (points, tets, "
-                          "values)")
+        raise OptionError("size_field must be a path, a dict, a callable, a tuple (mesh, values) or a tuple (points, "
+                          "tets, values)")
     points = reals(arrays[0], "the points of size_field", 3)
     cells = numpy.asarray(arrays[1])
     tets = integers(cells, "the tets of size_field", 10 if cells.ndim == 2 and cells.shape[1] == 10 else 4)

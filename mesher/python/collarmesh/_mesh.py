@@ -53,7 +53,8 @@ _LATER = ("tet_partition", *(name for name in _ARRAYS if name.startswith(("prism
 # The positions of mid-edge nodes in cells of second order of meshio and VTK: corners, then ab, bc, ca, ad,
 # bd, cd.
 _MESHIO_CELLS = {
-    1: {"tets": "tetra", "faces": "triangle", "edges": "line", "prisms": "wedge", "pyramids": "pyramid", "quads": "quad"},
+    1: {"tets": "tetra", "faces": "triangle", "edges": "line", "prisms": "wedge", "pyramids": "pyramid",
+        "quads": "quad"},
     2: {"tets": "tetra10", "faces": "triangle6", "edges": "line3", "prisms": "wedge15", "pyramids": "pyramid13",
         "quads": "quad8"},
 }
@@ -319,8 +320,9 @@ class Mesh:
 
     @property
     def split(self) -> Optional[Dict[str, Any]]:
-        """The results of `split=` and `keep_apart=`, as in reports: "patches" with the tags of their sides ("minus", "plus"),
-        "triangles", "area" and "where"; "split_nodes", "junction_nodes", "new_nodes", "front_nodes". None without them."""
+        """The results of `split=` and `keep_apart=`, as in reports: "patches" with the tags of their sides ("minus",
+        "plus"), "triangles", "area" and "where"; "split_nodes", "junction_nodes", "new_nodes", "front_nodes". None
+        without them."""
         found: Optional[Dict[str, Any]] = self._said["split"]
         return found
 
@@ -415,8 +417,8 @@ class Mesh:
         given = numpy.asarray(values, dtype=numpy.float64)
         on_points = given.ndim > 0 and len(given) == len(self.points)
         if given.ndim not in (1, 2) or not (on_points or len(given) == len(self.tets)):
-            raise _core.OptionError(f"values must have a row for each of the {len(self.points)} points or {len(self.tets)} "
-                                    f"tetrahedra, not the shape {given.shape}")
+            raise _core.OptionError(f"values must have a row for each of the {len(self.points)} points or "
+                                    f"{len(self.tets)} tetrahedra, not the shape {given.shape}")
         if outside not in ("nan", "nearest") or (outside == "nearest" and not on_points):
             raise _core.OptionError('outside must be "nan", or for values on points "nearest"')
         self._require_tets_alone("interpolate")
@@ -437,8 +439,8 @@ class Mesh:
 
     def _require_tets_alone(self, what: str) -> None:
         if len(self.prisms) + len(self.pyramids) > 0:
-            raise _core.OptionError(f"{what}: the mesh has {len(self.prisms)} prisms and {len(self.pyramids)} pyramids, for "
-                                    "which this is not supported; make layers of tetrahedra")
+            raise _core.OptionError(f"{what}: the mesh has {len(self.prisms)} prisms and {len(self.pyramids)} "
+                                    "pyramids, for which this is not supported; make layers of tetrahedra")
 
     def _surface(self) -> Tuple[List[Any], Array]:
         """Returns the triangles and quadrangles with their tags."""
@@ -460,13 +462,14 @@ class Mesh:
         return numpy.hstack([nodes, amid.reshape(len(nodes), -1)])
 
     def to_meshio(self) -> Any:
-        """Return a meshio.Mesh of tetrahedra, triangles and lines, then prisms, pyramids and quadrangles if there are any, with
-        the data "tag" and "region" and a cell set for each name. Raises ImportError without meshio."""
+        """Return a meshio.Mesh of tetrahedra, triangles and lines, then prisms, pyramids and quadrangles if there are
+        any, with the data "tag" and "region" and a cell set for each name. Raises ImportError without meshio."""
         import meshio
 
         blocks = [("tets", 3, self.tet_tag, self.tet_region), ("faces", 2, self.face_tag, _beside(self.face_regions)),
                   ("edges", 1, self.edge_tag, numpy.zeros(len(self.edges), dtype=numpy.int64))]
-        of_layers = [("prisms", 3, self.prism_tag, self.prism_region), ("pyramids", 3, self.pyramid_tag, self.pyramid_region),
+        of_layers = [("prisms", 3, self.prism_tag, self.prism_region),
+                     ("pyramids", 3, self.pyramid_tag, self.pyramid_region),
                      ("quads", 2, self.quad_tag, _beside(self.quad_regions))]
         blocks += [block for block in of_layers if len(block[2]) > 0]
         cells = [(_MESHIO_CELLS[self.order][name], self._cells(name)) for name, *_ in blocks]
@@ -554,7 +557,8 @@ class Mesh:
             middle = here[numpy.linalg.norm(here - here.mean(axis=0), axis=1).argmin()]
             given = self.names.get(dimension, {}).get(int(tag), str(tag))
             axes.text(*middle, given, color="k" if dimension == 2 else "b", fontsize=8, ha="center", va="center",
-                      zorder=1e6, bbox={"boxstyle": "round,pad=0.15", "facecolor": "w", "edgecolor": "none", "alpha": 0.7})
+                      zorder=1e6, bbox={"boxstyle": "round,pad=0.15", "facecolor": "w", "edgecolor": "none",
+                                        "alpha": 0.7})
 
     def _repr_html_(self) -> str:
         """Return HTML for notebooks: the certificate and figures of the mesh."""
@@ -562,6 +566,7 @@ class Mesh:
                         self._check or {})
 
     def __repr__(self) -> str:
-        layers = "".join(f" {len(cells)} {name}," for name, cells in (("prisms", self.prisms), ("pyramids", self.pyramids))
+        layers = "".join(f" {len(cells)} {name},"
+                         for name, cells in (("prisms", self.prisms), ("pyramids", self.pyramids))
                          if len(cells) > 0)
         return f"<collarmesh.Mesh: {len(self.tets)} tets,{layers} {len(self.points)} points>"

@@ -23,4 +23,5 @@ def watching(progress: Union[bool, Told, None]) -> Iterator[Optional[Told]]:
 def _bar(stage: str, fraction: float) -> None:
     width = max(10, min(60, shutil.get_terminal_size().columns - 25))
     done = round(width * fraction)
-    print(f"\r{'#' * done}{'.' * (width - done)} {100 * fraction:3.0f} % {stage:<12}", end="", file=sys.stderr, flush=True)
+    print(f"\r{'#' * done}{'.' * (width - done)} {100 * fraction:3.0f} % {stage:<12}", end="", file=sys.stderr,
+          flush=True)

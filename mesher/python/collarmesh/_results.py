@@ -15,8 +15,8 @@ _LARGEST_NODE = 10**8  # a larger number would need more memory than its mesh co
 def read_frd(path: Path) -> Dict[str, Array]:
     """Read the fields on nodes from a text file of results of CalculiX (.frd; CalculiX CGX manual, "Result Format").
 
-    Returns for each field's name, such as "DISP", "STRESS" or "NDTEMP", its values in the last step that has it: shape (n, k),
-    row i for node i + 1, which is point i of the mesh that was written as .inp; NaN where a node has no value.
+    Returns for each field's name, such as "DISP", "STRESS" or "NDTEMP", its values in the last step that has it: shape
+    (n, k), row i for node i + 1, which is point i of the mesh that was written as .inp; NaN where a node has no value.
     Raises ReadError for files that cannot be read, are binary or end early.
     """
     name = os.fspath(path)

@@ -68,9 +68,8 @@ class Remeshing {
     validate({options});
     if (options.smooth_surface && complex != nullptr)
       throw OptionError(
-          "smooth-surface reconstructs a surface from the mesh, but the mesh follows a given input; leave "
-          "one of "
-          "them out");
+          "smooth-surface reconstructs the surface from the mesh, but the given input already determines it; "
+          "leave out smooth-surface or that input");
     if (options.partitions > 0) require_partitioner();
   }
 

@@ -28,8 +28,8 @@ constexpr double least_cosine_of_turn = 0.643;
 // A corner whose normal is farther from that of a triangle than this (cosine of 60 degrees) is no place for a
 // smooth surface.
 constexpr double least_cosine_to_facets = 0.5;
-// Least distance between the places from which a normal at the border is extrapolated, relative to that of
-// the farther one.
+// A normal at the border is extrapolated from normals at two distances from the border. These distances must
+// differ by at least this share of the larger one.
 constexpr double least_room_to_extrapolate = 0.3;
 // Limits on steps from facet to facet, and of Newton's method, which needs three or four.
 constexpr int most_walks = 16, most_newton_steps = 20;
@@ -261,9 +261,9 @@ void SmoothPatch::find_normals() {
       if (dot(normals_[p], unit(facet_normal(t))) < least_cosine_to_facets) folded_[p] = 1;
 }
 
-/// Returns the normal at a point of a smooth curve at the border. The mean normal of the triangles there is
-/// that of a place inside, as all of them are on one side. So the normal is extrapolated from this one and
-/// those of the neighbours inside, across the curve.
+/// Returns the normal at a point of a smooth curve at the border. All triangles there are on one side of the
+/// curve, so their mean normal belongs to a place farther inside. Extrapolates the normal at the curve,
+/// across the curve, from this mean and the mean normal of the neighbours inside.
 Vector SmoothPatch::border_normal(Index vertex, const CellsAtVertices& at) const {
   const Vector mean = unit(across(normals_[vertex], tangents_[vertex]));
   const Vector inwards = cross(mean, tangents_[vertex]);

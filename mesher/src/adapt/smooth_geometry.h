@@ -10,14 +10,15 @@ namespace collarmesh::remeshing::adapting {
 
 /// Returns smooth geometry through the points of a complex whose facets are the faces of a coarse mesh.
 ///
-/// Over each triangle of a smooth patch, the surface is a cubic height along the interpolated normals of its
-/// corners: at a corner it is tangent to the plane of the corner's normal (the heights are those of PN
-/// triangles: Vlachos, Peters, Boyd, Mitchell, Curved PN triangles, 2001). It is continuous over a patch.
-/// Normals are those that are exact on spheres (Max, Weights for computing vertex normals from facet normals,
-/// 1999). Curves are cubic offsets that are tangent to the circles through three points. The surface stays
-/// straight towards points where triangles of a patch, or segments of a curve, turn too far to be smooth. It
-/// is nowhere farther from the facets than a share of the tolerance. Planar
-/// patches and straight curves are exact. Keeps the complex by reference. Cost: O(n log n).
+/// Displaces each triangle of a smooth patch along the interpolated normals of its corners by a cubic height,
+/// such that the surface is perpendicular to the normal at each corner and continuous over the patch. The
+/// heights are those of PN triangles (Vlachos, Peters, Boyd, Mitchell, Curved PN triangles, 2001). Normals
+/// are weighted so that they are exact on spheres (Max, Weights for computing vertex normals from facet
+/// normals, 1999). Displaces the segments of a curve by cubics, too, such that the curve is tangent at each
+/// point to the circle through this point and its two neighbours. Where triangles of a patch, or segments of
+/// a curve, meet at too sharp an angle to be smooth, they run straight into that point. No point moves
+/// farther from the facets than a share of the tolerance. Planar patches and straight curves stay as they
+/// are. Keeps the complex by reference. Cost: O(n log n).
 ExactGeometry smooth_geometry(const Plc& plc, const SurfaceTolerance& tolerance);
 
 }  // namespace collarmesh::remeshing::adapting

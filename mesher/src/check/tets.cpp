@@ -123,7 +123,7 @@ void report_missed_angles(const Subject& subject, const ThinCells& thin, AllMiss
     const Point centre = corners_of(subject.mesh, tet).centre();
     findings.add(
         guarantee::collar_dihedral, centre, {tet},
-        "Tet {} of a collar at {} {}, has a dihedral angle of {:.6g} degrees, allowed are {:.6g}; a smaller "
+        "Tet {} of a collar at {}, {}, has a dihedral angle of {:.6g} degrees, allowed are {:.6g}; a smaller "
         "size there resolves the crease better.",
         tet, At{centre}, features, measure_tet(subject.mesh, tet).max_dihedral,
         subject.options.bounds.collar_angle);
@@ -133,11 +133,12 @@ void report_missed_angles(const Subject& subject, const ThinCells& thin, AllMiss
     const TetQuality quality = measure_tet(subject.mesh, tet);
     findings.add(
         guarantee::thin_angles, p.centre(), {tet},
-        "Tet {} at {} {}, has circumradius / shortest edge {:.6g} and does not count as thin: its dihedral "
-        "angles are from {:.6g} to {:.6g} degrees, those of its faces at most {:.6g}, allowed are {:.6g} to "
-        "{:.6g}; check with the angle that the mesh was made with.",
-        tet, At{p.centre()}, features, quality.radius_edge, quality.min_dihedral, quality.max_dihedral,
-        largest_face_angle(p.a, p.b, p.c, p.d), thin.smallest_angle(tet), ThinCells::largest_angle);
+        "Tet {} at {}, {}, has dihedral angles from {:.6g} to {:.6g} degrees and face angles up to {:.6g}; "
+        "allowed are {:.6g} to {:.6g}, because circumradius / shortest edge is {:.6g}, above {:.6g}; check "
+        "with the smallest angle of thin tets that the mesh was made with.",
+        tet, At{p.centre()}, features, quality.min_dihedral, quality.max_dihedral,
+        largest_face_angle(p.a, p.b, p.c, p.d), thin.smallest_angle(tet), ThinCells::largest_angle,
+        quality.radius_edge, subject.options.bounds.radius_edge);
   });
 }
 

@@ -84,7 +84,7 @@ std::string TouchedFeatures::of(Index tet) const {
       names += fmt::format("{}{}", names.empty() ? "" : ", ", label(subject_, dimension, features[i]));
     if (features.size() > named_per_kind) names += ", ...";
   }
-  return fmt::format("in {}, which touches {}", label(subject_, 3, subject_.mesh.tet_region[tet]),
+  return fmt::format("in {} and touching {}", label(subject_, 3, subject_.mesh.tet_region[tet]),
                      names.empty() ? "no feature" : names);
 }
 

@@ -13,8 +13,8 @@ class TouchedFeatures {
   /// Precondition: subject.match is filled in. Keeps a reference to the subject. Cost: linear.
   explicit TouchedFeatures(const Subject& subject);
 
-  /// Names the region of a tet and the features that it touches: "in region 1 (tag 1), which touches curve 3
-  /// (tag 4), patch 0 (tag 7, inlet)". Curves and patches that contain most corners come first.
+  /// Names the region of a tet and the features that the tet touches: "in region 1 (tag 1) and touching curve
+  /// 3 (tag 4), patch 0 (tag 7, inlet)". Curves and patches that contain most corners come first.
   std::string of(Index tet) const;
 
  private:

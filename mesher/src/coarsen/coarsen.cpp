@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <chrono>
 #include <climits>
 #include <cmath>
 #include <optional>
@@ -19,6 +18,7 @@
 #include "common/parallel_for.h"
 #include "common/shared_bounds.h"
 #include "common/sort_uniquely.h"
+#include "common/stopwatch.h"
 #include "common/tet_sides.h"
 #include "common/thread_limit.h"
 #include "remesh/ordered_speculation.h"
@@ -102,7 +102,7 @@ class Coarsening {
   }
 
   CoarsenReport run() {
-    const auto started = std::chrono::steady_clock::now();
+    const Stopwatch stopwatch;
     report_.tets_before = tets_ = complex().size();
     edited_.prepare();
     for (unsigned pass = 0; pass < plain_passes && !report_.cancelled; ++pass)
@@ -122,7 +122,7 @@ class Coarsening {
       ask_all = is_done;
     }
     finish();
-    report_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+    report_.seconds = stopwatch.seconds();
     return report_;
   }
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <chrono>
 #include <cmath>
 #include <queue>
 
@@ -13,6 +12,7 @@
 #include "common/found_in_ranges.h"
 #include "common/parallel_for.h"
 #include "common/shared_bounds.h"
+#include "common/stopwatch.h"
 #include "common/thread_limit.h"
 #include "improve/detours.h"
 #include "improve/improve_edited.h"
@@ -56,7 +56,7 @@ class Improvement {
         passes_(options.passes) {}
 
   ImproveReport run() {
-    const auto started = std::chrono::steady_clock::now();
+    const Stopwatch stopwatch;
     rule_.set_least_gain(least_gain);
     find_poor_tets();
     report_.candidates = poor_.size();
@@ -69,7 +69,7 @@ class Improvement {
     }
     if (detours_ && !report_.cancelled && take_detours()) find_poor_tets();
     report_.remaining = poor_.size();
-    report_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+    report_.seconds = stopwatch.seconds();
     return report_;
   }
 

@@ -1,11 +1,11 @@
 // Boundary layers: the front of the wall's triangles is pushed into the tets, and the space behind it is
 // filled with cells.
 #include <algorithm>
-#include <chrono>
 #include <map>
 #include <utility>
 
 #include "collarmesh/layers.h"
+#include "common/stopwatch.h"
 #include "common/thread_limit.h"
 #include "layers/core.h"
 #include "layers/curving.h"
@@ -215,7 +215,7 @@ class LayerMaker {
 LayersReport make(TetMesh& mesh, const Plc& plc, const LayerOptions& options,
                   const ImproveOptions& improvement, const SecondOrderOptions& second_order,
                   const Execution& execution, SecondOrderReport& made) {
-  const auto started = std::chrono::steady_clock::now();
+  const Stopwatch stopwatch;
   ImproveOptions with_tolerance = improvement;
   if (!with_tolerance.bounds.tolerance)
     with_tolerance.bounds.tolerance = tolerance_of_any_size(plc, improvement.bounds);
@@ -225,7 +225,7 @@ LayersReport make(TetMesh& mesh, const Plc& plc, const LayerOptions& options,
     if (!report.cancelled && with_tolerance.bounds.thin_angle > 0)
       remeshing::mark_cells(mesh, plc, with_tolerance.bounds);
   });
-  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+  report.seconds = stopwatch.seconds();
   return report;
 }
 

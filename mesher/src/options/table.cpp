@@ -111,7 +111,7 @@ std::vector<Option> size_options() {
        .place = in_mesh<&MeshOptions::size_min>,
        .unit = Unit::length,
        .default_text = "none",
-       .help = "Smallest target edge length, whatever else asks for less"},
+       .help = "Smallest target edge length; smaller local sizes are raised to it"},
       {.name = "region-size TAG=LENGTH",
        .place = in_mesh<&MeshOptions::region_size>,
        .unit = Unit::length,
@@ -228,7 +228,8 @@ std::vector<Option> quality_options() {
        .commands = Option::check | Option::programs},
       {.name = "smooth-surface",
        .place = at<&RunOptions::smooth_surface>,
-       .help = "Put nodes on curved faces and curves onto a smooth surface through the nodes of the mesh",
+       .help =
+           "Move the nodes on curved faces and curves onto a smooth surface through the given mesh's nodes",
        .details = "not farther from the triangles of the mesh than `--distance`; see [Adaptive "
                   "meshing](adaptive.md#a-smooth-surface)",
        .commands = Option::remesh | Option::programs},
@@ -275,8 +276,7 @@ std::vector<Option> element_options() {
        .low = 1,
        .high = 2,
        .help = "Order of the elements: 1 straight, with nodes at the corners; 2 with a mid-edge node on "
-               "every edge, "
-               "curved on smooth surfaces",
+               "every edge, curved on smooth surfaces",
        .commands = sizing},
       {.name = "dimension D",
        .place = asked_dimension,
@@ -399,9 +399,8 @@ std::vector<Option> complex_options() {
        .place = at<&RunOptions::complex, &PlcOptions::planar_tolerance>,
        .unit = Unit::of_diagonal,
        .high = 0.01,
-       .help =
-           "Neighbouring facets that lie within this of one plane form one patch, relative to the diagonal; "
-           "0: exactly coplanar ones only"},
+       .help = "Neighbouring facets within this distance of one plane form one patch, relative to the "
+               "diagonal; 0: exactly coplanar ones only"},
       {.name = "weld T",
        .place = at<&RunOptions::complex, &PlcOptions::weld>,
        .unit = Unit::of_diagonal,
@@ -414,8 +413,7 @@ std::vector<Option> complex_options() {
        .words = {"auto", "none", "wrap"},
        .place = choice_at<&RunOptions::repair, &RepairOptions::mode>,
        .help = "auto: repair facets that do not form a valid complex; none: report them as an error; wrap: "
-               "if repair "
-               "fails or its result cannot be meshed, mesh a closed surface around everything",
+               "if repair fails or its result cannot be meshed, mesh a closed surface around everything",
        .details = "see [Repair](repair.md)",
        .commands = complexes},
       {.name = "repair-tolerance T",

@@ -50,8 +50,4 @@ bool Budget::report_progress(const Usage& now) {
   return execution_.progress({"refine", fraction_, now.vertices, now.cells});
 }
 
-double Budget::elapsed() const {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
-}
-
 }  // namespace collarmesh

@@ -1,8 +1,7 @@
 #pragma once
 
-#include <chrono>
-
 #include "common/deadline.h"
+#include "common/stopwatch.h"
 #include "refine/domain.h"
 #include "refine/outcome.h"
 
@@ -26,7 +25,6 @@ class Budget {
       : options_(options),
         execution_(execution),
         outcome_(outcome),
-        started_(std::chrono::steady_clock::now()),
         deadline_(Deadline::in(options.time_limit)) {}
 
   /// Returns whether a budget is spent or the caller has cancelled; then sets the outcome.
@@ -34,7 +32,7 @@ class Budget {
 
   bool is_out_of_time() const { return deadline_.passed(); }
   /// Returns the seconds since the start.
-  double elapsed() const;
+  double elapsed() const { return stopwatch_.seconds(); }
   std::size_t peak_bytes() const { return peak_bytes_; }
 
  private:
@@ -44,7 +42,7 @@ class Budget {
   const MeshOptions& options_;
   const Execution& execution_;
   Outcome& outcome_;
-  std::chrono::steady_clock::time_point started_;
+  Stopwatch stopwatch_;
   Deadline deadline_;
   std::size_t peak_bytes_ = 0;
   double reported_ = -1, fraction_ = 0;  // reported_: seconds at the last progress report; fraction_: the

@@ -2,9 +2,9 @@
 
 namespace collarmesh {
 
-/// Largest distance of the middle of an edge, or of an arc's chord, from the smooth patch or curve through
-/// its ends, relative to its length: about 60 degrees of turning, 30 at each end, make 0.13. An edge across a
-/// fold is farther off.
+/// Largest distance between the middle of an edge, or of an arc's chord, and the smooth patch or curve
+/// through its ends, relative to the length of the edge or chord. An arc that turns by 60 degrees has 0.13;
+/// an edge across a fold has more than the limit.
 constexpr double largest_sagitta = 0.15;
 
 }  // namespace collarmesh

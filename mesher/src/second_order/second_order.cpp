@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <chrono>
 #include <cmath>
 #include <optional>
 #include <span>
@@ -12,6 +11,7 @@
 #include "collarmesh/curved_tet.h"
 #include "collarmesh/error.h"
 #include "collarmesh/mesher.h"
+#include "common/stopwatch.h"
 #include "common/thread_limit.h"
 #include "remesh/replace_tets.h"
 #include "remesh/thin_shape.h"
@@ -396,7 +396,7 @@ SecondOrderReport make_second_order(TetMesh& mesh, const Plc& plc, const SecondO
   assert(mesh.order() == 1);
   if (!(options.least_jacobian >= 0 && options.least_jacobian < 1))
     throw OptionError("least-jacobian must be at least 0 and below 1");
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch stopwatch;
   const std::size_t tets_before = mesh.tets.size();
   std::size_t flat_before = SIZE_MAX, invalid_before = SIZE_MAX;
   SecondOrderReport report;
@@ -426,7 +426,7 @@ SecondOrderReport make_second_order(TetMesh& mesh, const Plc& plc, const SecondO
     break;
   }
   report.more_tets = static_cast<std::ptrdiff_t>(mesh.tets.size() - tets_before);
-  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  report.seconds = stopwatch.seconds();
   return report;
 }
 

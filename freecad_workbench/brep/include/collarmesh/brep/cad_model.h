@@ -55,14 +55,14 @@ struct CadMeasures {
 /// to no face. Its sub-shapes are numbered from 1 in the order of TopExp::MapShapes; a face's tag is its
 /// number. Solids that touch are changed so that they share faces there. Pieces of faces and edges that are
 /// cut for this keep the number of the original; new edges get the next free numbers. The common part of
-/// several solids is given to one of them. Edges of no face are cut where they meet faces or one another.
-/// Pieces that lie outside the solids, on faces, or too near to faces or to one another are left out; notes
-/// list these. A shape of faces alone is sewn and becomes a solid if it is closed; the same happens to the
-/// faces of an open solid. Failures of OpenCASCADE are listed in `notes`, and the builder of the complex must
-/// handle them: solids that cannot be fused may intersect, solids that stay open have holes, and a face that
-/// cannot be triangulated may have points along its edges that its neighbours lack, or may be missing. The
-/// functions are virtual, so that a program without OpenCASCADE can use a model that the module has made
-/// (module.cpp).
+/// several solids is given to one of them. Edges that belong to no face are split where they meet faces or
+/// one another. Pieces that lie outside the solids, on faces, or too near to faces or to one another are left
+/// out; notes list these. A shape of faces alone is sewn and becomes a solid if it is closed; the same
+/// happens to the faces of an open solid. Failures of OpenCASCADE are listed in `notes`, and the builder of
+/// the complex must handle them: solids that cannot be fused may intersect, solids that stay open have holes,
+/// and a face that cannot be triangulated may have points along its edges that its neighbours lack, or may be
+/// missing. The functions are virtual, so that a program without OpenCASCADE can use a model that the module
+/// has made (module.cpp).
 class CadModel {
  public:
   /// Makes a model. `labels` are those of the shape's sub-shapes. Throws PlcError for a shape without solids,
