@@ -18,6 +18,7 @@
 #include "common/sort_uniquely.h"
 #include "files/cad_labels.h"
 #include "files/exact_measures.h"
+#include "files/faces_at_faults.h"
 #include "files/input_files.h"
 #include "files/named_features.h"
 #include "files/surface_files.h"
@@ -27,6 +28,7 @@ namespace collarmesh::files {
 namespace {
 
 constexpr double share_of_triangles = 0.1;  // relative to the distance that the mesh may have from the shape
+constexpr double finest = 4;                // the finest triangles of CAD faces, relative to the first ones
 
 bool may_be_too_coarse(const PlcError& error) {
   return std::all_of(error.faults.begin(), error.faults.end(), [](const PlcFault& fault) {
@@ -241,18 +243,8 @@ Plc ComplexInput::build_unnamed(const PlcOptions& options, const RepairOptions& 
       throw with_advice(error, repair, options.require_solid);
     }
   }
-  // Triangles of faces that nearly touch may intersect although finer ones do not.
   std::optional<PlcError> first;
-  for (const double finer : {1.0, 4.0}) {
-    tessellate(finer);
-    try {
-      Plc plc = build_valid(options, repair);
-      return finer == 1 ? resolved(std::move(plc), options, repair) : std::move(plc);
-    } catch (const PlcError& error) {
-      if (!first) first = with_names(error, cad_);
-      if (!cad_.fused() || !may_be_too_coarse(error)) break;
-    }
-  }
+  if (std::optional<Plc> plc = build_of_shapes(options, repair, first)) return std::move(*plc);
   if (repair.mode == RepairMode::off) throw with_advice(*first, repair, options.require_solid);
   tessellate(may_be_too_coarse(*first) ? 2 : 1);  // finer triangles intersect less often, which leaves less
                                                   // to cut
@@ -261,6 +253,32 @@ Plc ComplexInput::build_unnamed(const PlcOptions& options, const RepairOptions& 
   } catch (const PlcError&) {
     throw with_advice(*first, repair, options.require_solid);
   }
+}
+
+/// Builds the complex without cutting triangles that intersect. Triangles of faces that nearly touch may
+/// intersect although finer ones do not: those faces get finer triangles, and if that does not help, all do.
+/// Returns nothing if that fails, too; then `first` is the error of the first attempt.
+std::optional<Plc> ComplexInput::build_of_shapes(const PlcOptions& options, const RepairOptions& repair,
+                                                 std::optional<PlcError>& first) {
+  constexpr unsigned most_rounds = 3;  // of attempts with finer triangles on some faces
+  std::set<SoupFace> faces;
+  tessellate(1);
+  for (unsigned round = 0; round <= most_rounds; ++round) {
+    try {
+      Plc plc = build_valid(options, repair);
+      return finer_ == finest ? std::move(plc) : resolved(std::move(plc), faces, options, repair);
+    } catch (const PlcError& error) {
+      if (!first) first = with_names(error, cad_);
+      if (!cad_.fused() || !may_be_too_coarse(error) || finer_ == finest) return std::nullopt;
+      const std::size_t before = faces.size();
+      faces.merge(faces_at(error.faults, soups_));
+      if (faces.size() > before && round + 1 < most_rounds)
+        tessellate(finest, faces);
+      else
+        tessellate(finest);
+    }
+  }
+  return std::nullopt;
 }
 
 Plc ComplexInput::build_valid(const PlcOptions& options, const RepairOptions& repair) {
@@ -280,33 +298,35 @@ Plc ComplexInput::build_finer(const PlcOptions& options, const RepairOptions& re
 
 /// Returns the complex with finer triangles on the faces whose triangles are too coarse for the mesh, if that
 /// complex is valid without repair and its volumes are no worse. If only one side of a wall gets finer
-/// triangles, the wall becomes thinner; in that case all faces get finer triangles.
-Plc ComplexInput::resolved(Plc plc, const PlcOptions& options, const RepairOptions& repair) {
-  constexpr double margin = 1.5, finest = 4, little = 2e-3;
+/// triangles, the wall becomes thinner; in that case all faces get finer triangles. Faces that are `fine`
+/// already have the finest triangles.
+Plc ComplexInput::resolved(Plc plc, const std::set<SoupFace>& fine, const PlcOptions& options,
+                           const RepairOptions& repair) {
+  constexpr double margin = 1.5, little = 2e-3;
   if (!reading_.tolerance || built_.repaired.repaired) return plc;
-  std::set<std::pair<Index, Tag>> faces;
-  double finer = 1;
+  std::set<SoupFace> faces = fine;
+  double finer = fine.empty() ? 1 : finest;
   for (const auto& [patch, by] : coarse_patches(plc, reading_.tolerance(plc))) {
     if (!cad_.measures(plc.patches[patch].file)) continue;  // the patch is not of a CAD file
     faces.emplace(plc.patches[patch].file, plc.patches[patch].tag);
     finer = std::min(std::max(finer, margin * by), finest);
   }
-  if (faces.empty()) return plc;
+  if (faces.size() == fine.size()) return plc;
   const double most_off = std::max(volume_off(plc), little);
   const bool noisy = has_noise(plc, repair);
   Built coarse = std::exchange(built_, {});
   for (const bool everywhere : {false, true}) {
     try {
       everywhere ? tessellate(finer) : tessellate(finer, faces);
-      Plc fine = build_finer(options, repair, noisy);
-      if (!built_.repaired.repaired && fine.regions.size() == plc.regions.size() &&
-          volume_off(fine) <= most_off)
-        return fine;
+      Plc finer_plc = build_finer(options, repair, noisy);
+      if (!built_.repaired.repaired && finer_plc.regions.size() == plc.regions.size() &&
+          volume_off(finer_plc) <= most_off)
+        return finer_plc;
     } catch (const PlcError&) {
     }
     built_ = {};
   }
-  tessellate(1);
+  fine.empty() ? tessellate(1) : tessellate(finest, fine);
   built_ = std::move(coarse);
   return plc;
 }
@@ -337,7 +357,7 @@ void ComplexInput::tessellate(double finer) {
 }
 
 /// Replaces the triangles of some faces.
-void ComplexInput::tessellate(double finer, const std::set<std::pair<Index, Tag>>& faces) {
+void ComplexInput::tessellate(double finer, const std::set<SoupFace>& faces) {
   reading_.stop();
   finer_ = 0;
   cad_.tessellate(finer, faces, soups_);

@@ -18,6 +18,7 @@
 #include "collarmesh/surface_tolerance.h"
 #include "collarmesh/tag_colours.h"
 #include "files/cad_files.h"
+#include "files/faces_at_faults.h"
 
 namespace collarmesh::files {
 
@@ -99,13 +100,16 @@ class ComplexInput {
   Plc without_small_features(Plc plc, const PlcOptions& options, const RepairOptions& repair);
   Plc build_valid(const PlcOptions& options, const RepairOptions& repair);
   Plc build_finer(const PlcOptions& options, const RepairOptions& repair, bool with_noise);
-  Plc resolved(Plc plc, const PlcOptions& options, const RepairOptions& repair);
+  std::optional<Plc> build_of_shapes(const PlcOptions& options, const RepairOptions& repair,
+                                     std::optional<PlcError>& first);
+  Plc resolved(Plc plc, const std::set<SoupFace>& fine, const PlcOptions& options,
+               const RepairOptions& repair);
   Plc build_repaired(const PlcOptions& options, const RepairOptions& repair);
   PlcError with_advice(const PlcError& error, const RepairOptions& options, bool of_solids) const;
   Plc take(RepairedPlc result);
   double volume_off(const Plc& plc) const;
   void tessellate(double finer);
-  void tessellate(double finer, const std::set<std::pair<Index, Tag>>& faces);
+  void tessellate(double finer, const std::set<SoupFace>& faces);
 
   Execution watched() const;
 
