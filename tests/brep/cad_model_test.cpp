@@ -441,6 +441,35 @@ TEST(CadFiles, HaveAsManySoupsWhenCutAgain) {
   EXPECT_EQ(plc.regions.size(), 3U);
 }
 
+TEST(CadFiles, GetFinerTrianglesOnlyWhereTheyCross) {
+  const gp_Ax2 axis(gp_Pnt(20, 15, 0), gp::DZ()), turned(axis.Location(), gp::DZ(), gp_Dir(1, 0.2, 0)),
+      apart(gp_Pnt(60, 15, 0), gp::DZ());
+  const TopoDS_Shape plate =
+      BRepAlgoAPI_Cut(BRepPrimAPI_MakeBox(40, 30, 10).Shape(), BRepPrimAPI_MakeCylinder(axis, 6, 10).Shape())
+          .Shape();
+  const TemporaryFolder folder;
+  const std::string path = folder.file("pins.brep");
+  BRepTools::Write(compound({plate, BRepPrimAPI_MakeCylinder(turned, 5.995, 10).Shape(),
+                             BRepPrimAPI_MakeCylinder(apart, 6, 10).Shape()}),
+                   path.c_str());
+  files::InputReading reading;
+  reading.distance = [](double) { return 1; };
+  files::ComplexInput input({path}, reading);
+  const auto counts = [&] {
+    std::vector<Index> facets;
+    for (const PolygonSoup& soup : input.soups()) facets.push_back(soup.facet_count());
+    return facets;
+  };
+  const std::vector<Index> before = counts();
+  ASSERT_EQ(before.size(), 3U);
+  EXPECT_EQ(input.build({}, {}).regions.size(), 4U);
+  const std::vector<Index> after = counts();
+  ASSERT_EQ(after.size(), 3U);
+  EXPECT_FALSE(input.repaired().repaired);
+  EXPECT_GT(after[0] + after[1], before[0] + before[1]);
+  EXPECT_EQ(after[2], before[2]);
+}
+
 TEST(CadTessellation, KeepsTheDeflection) {
   const double radius = 10;
   CadModel model(BRepPrimAPI_MakeSphere(radius).Shape(), "ball");
