@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
+#include <BRepAdaptor_Curve.hxx>
 #include <BRepAlgoAPI_Cut.hxx>
 #include <BRepAlgoAPI_Fuse.hxx>
 #include <BRepBuilderAPI_MakeEdge.hxx>
@@ -15,7 +16,9 @@
 #include <IGESControl_Writer.hxx>
 #include <Interface_Static.hxx>
 #include <STEPControl_Writer.hxx>
+#include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
+#include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
 #include <gp.hxx>
@@ -29,6 +32,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <iterator>
+#include <random>
 #include <set>
 #include <thread>
 
@@ -548,6 +552,47 @@ TEST(CadNearest, LiesOnTheShape) {
   EXPECT_EQ(found, 1);  // the other two are planes
   EXPECT_FALSE(model.nearest(2, 4, {0, 0, 0}).has_value());
   EXPECT_FALSE(model.nearest(3, 1, {0, 0, 0}).has_value());
+}
+
+// Compares with many samples of each edge, at points as far away as mesh vertices may be.
+TEST(CadNearest, OnAnEdgeIsTheNearestOfAllItsPoints) {
+  const gp_Ax2 across(gp_Pnt(-10, 1, 10), gp_Dir(1, 0.2, 0.1));
+  const TopoDS_Shape shape = BRepAlgoAPI_Cut(BRepPrimAPI_MakeCylinder(5, 20).Shape(),
+                                             BRepPrimAPI_MakeCylinder(across, 3, 20).Shape())
+                                 .Shape();
+  CadModel model(shape, "rod");
+  model.tessellate({.deflection = 0.05});
+  TopTools_IndexedMapOfShape edges;
+  TopExp::MapShapes(shape, TopAbs_EDGE, edges);
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> offset(-0.5, 0.5);
+  int splines = 0;
+  for (int number = 1; number <= edges.Extent(); ++number) {
+    const BRepAdaptor_Curve curve(TopoDS::Edge(edges(number)));
+    if (curve.GetType() == GeomAbs_BSplineCurve) ++splines;
+    constexpr int count = 5000;
+    std::vector<Point> samples;
+    double spacing = 0;
+    for (int i = 0; i <= count; ++i) {
+      const gp_Pnt p =
+          curve.Value(curve.FirstParameter() + (curve.LastParameter() - curve.FirstParameter()) * i / count);
+      samples.push_back({p.X(), p.Y(), p.Z()});
+      if (i > 0) spacing = std::max(spacing, distance(samples[samples.size() - 2], samples.back()));
+    }
+    const auto from_samples = [&](const Point& p) {
+      double least = INFINITY;
+      for (const Point& sample : samples) least = std::min(least, squared_distance(p, sample));
+      return std::sqrt(least);
+    };
+    for (std::size_t i = 0; i < samples.size(); i += 50) {
+      const Point p = samples[i] + Vector{offset(random), offset(random), offset(random)};
+      const auto nearest = model.nearest(1, number, p);
+      ASSERT_TRUE(nearest.has_value());
+      EXPECT_LE(distance(p, *nearest), from_samples(p) + 1e-12);
+      EXPECT_LE(from_samples(*nearest), spacing);
+    }
+  }
+  EXPECT_GE(splines, 1);
 }
 
 }  // namespace

@@ -37,16 +37,12 @@ void keep_nearer(std::optional<Point>& best, const std::optional<Point>& other, 
   if (other && (!best || squared_distance(*other, p) < squared_distance(*best, p))) best = other;
 }
 
-std::optional<Point> nearest_on_curve(const TopoDS_Shape& edge, const Point& p) {
-  const BRepAdaptor_Curve curve(TopoDS::Edge(edge));
-  const Extrema_ExtPC extrema(to_gp(p), curve);
-  std::optional<Point> best;
-  if (extrema.IsDone())
-    for (int i = 1; i <= extrema.NbExt(); ++i) keep_nearer(best, to_point(extrema.Point(i).Value()), p);
-  for (const double end : {curve.FirstParameter(), curve.LastParameter()})
-    keep_nearer(best, to_point(curve.Value(end)), p);
-  return best;
-}
+/// The limits of a descent to the nearest point, relative to the extent of the coordinates.
+namespace descent {
+constexpr int steps = 50, halvings = 20;
+constexpr double rounding = 1e-15;
+constexpr double converged = 1e-11;  // a step this small is as good as rounding allows
+}  // namespace descent
 
 /// Returns the weights of a triangle's corners for its point nearest to p.
 std::array<double, 3> nearest_weights(const Point& p, const std::array<Point, 3>& corners) {
@@ -73,6 +69,75 @@ std::array<double, 3> nearest_weights(const Point& p, const std::array<Point, 3>
 }
 
 }  // namespace
+
+class EdgeCurve {
+ public:
+  explicit EdgeCurve(const Samples& samples) : curve_(TopoDS::Edge(samples.shape)), samples_(samples) {}
+
+  std::optional<Point> nearest(const Point& p) const {
+    const bool is_elementary = curve_.GetType() <= GeomAbs_Parabola;
+    if (is_elementary || samples_.points.empty()) return nearest_of_all(p);
+    const std::optional<Point> near = descend(start_near(p), to_gp(p));
+    return near ? near : nearest_of_all(p);
+  }
+
+ private:
+  /// Returns the parameter of the nearest point of the edge's chords.
+  double start_near(const Point& p) const {
+    const auto& [shape, points, parameters, triangles] = samples_;
+    double start = parameters[0][0], least = squared_distance(p, points[0]);
+    for (std::size_t i = 1; i < points.size(); ++i) {
+      const Vector chord = points[i] - points[i - 1];
+      const double length = squared_norm(chord);
+      const double t = length > 0 ? std::clamp(dot(p - points[i - 1], chord) / length, 0., 1.) : 0;
+      const double off = squared_distance(p, points[i - 1] + t * chord);
+      if (off >= least) continue;
+      least = off;
+      start = (1 - t) * parameters[i - 1][0] + t * parameters[i][0];
+    }
+    return start;
+  }
+
+  /// Moves in each step to the nearest point of the tangent, and halves the step until the distance
+  /// decreases. Ends when the next step is within rounding. Returns nothing if it does not converge.
+  std::optional<Point> descend(double at, const gp_Pnt& p) const {
+    using namespace descent;
+    const double scale = p.XYZ().Modulus() + p.Distance(curve_.Value(at));
+    for (int step = 0; step < steps; ++step) {
+      gp_Pnt point;
+      gp_Vec tangent;
+      curve_.D1(at, point, tangent);
+      if (!(tangent.SquareMagnitude() > 0)) return std::nullopt;
+      const double next = std::clamp(at + gp_Vec(point, p).Dot(tangent) / tangent.SquareMagnitude(),
+                                     curve_.FirstParameter(), curve_.LastParameter());
+      const double move = std::fabs(next - at) * tangent.Magnitude();
+      if (move <= rounding * scale) return to_point(point);
+      double part = 1;
+      int k = 0;
+      for (; k < halvings; ++k, part *= 0.5) {
+        const double trial = at + part * (next - at);
+        if (curve_.Value(trial).Distance(p) > point.Distance(p) + rounding * scale) continue;
+        at = trial;
+        break;
+      }
+      if (k == halvings) return move <= converged * scale ? std::optional(to_point(point)) : std::nullopt;
+    }
+    return std::nullopt;
+  }
+
+  std::optional<Point> nearest_of_all(const Point& p) const {
+    const Extrema_ExtPC extrema(to_gp(p), curve_);
+    std::optional<Point> best;
+    if (extrema.IsDone())
+      for (int i = 1; i <= extrema.NbExt(); ++i) keep_nearer(best, to_point(extrema.Point(i).Value()), p);
+    for (const double end : {curve_.FirstParameter(), curve_.LastParameter()})
+      keep_nearer(best, to_point(curve_.Value(end)), p);
+    return best;
+  }
+
+  BRepAdaptor_Curve curve_;
+  const Samples& samples_;
+};
 
 class FaceSurface {
  public:
@@ -162,8 +227,7 @@ class FaceSurface {
   /// Moves in each step to the nearest point of the tangent plane, and halves the step until the distance
   /// decreases. Ends when the next step is within rounding. Returns nothing if it does not converge.
   std::optional<Point> descend(std::array<double, 2> uv, const gp_Pnt& p) const {
-    constexpr int steps = 50, halvings = 20;
-    constexpr double rounding = 1e-15;
+    using namespace descent;
     const double scale = p.XYZ().Modulus() + p.Distance(surface_.Value(uv[0], uv[1]));
     for (int step = 0; step < steps; ++step) {
       gp_Pnt at;
@@ -209,8 +273,7 @@ class FaceSurface {
     return next;
   }
 
-  static constexpr double flat = 1e-14;       // determinant of dependent tangents, relative
-  static constexpr double converged = 1e-11;  // a step this small is as good as rounding allows
+  static constexpr double flat = 1e-14;  // determinant of dependent tangents, relative
 
   BRepAdaptor_Surface surface_;
   const Samples& samples_;
@@ -224,7 +287,10 @@ std::optional<Point> NearestOnShape::on_edge(int number, const Point& p) const {
   std::optional<Point> best;
   const auto pieces = tessellation_.edges.find(number);
   if (pieces == tessellation_.edges.end()) return best;
-  for (const Samples& piece : pieces->second) keep_nearer(best, nearest_on_curve(piece.shape, p), p);
+  auto& curves = curves_[number];
+  if (curves.empty())
+    for (const Samples& piece : pieces->second) curves.push_back(std::make_unique<EdgeCurve>(piece));
+  for (const auto& curve : curves) keep_nearer(best, curve->nearest(p), p);
   return best;
 }
 

@@ -9,6 +9,7 @@
 
 namespace collarmesh::brep {
 
+class EdgeCurve;
 class FaceSurface;
 
 /// Finds nearest points on the exact edges and surfaces, from the tessellation.
@@ -22,7 +23,9 @@ class NearestOnShape {
 
  private:
   const Tessellation& tessellation_;
-  mutable std::map<int, std::vector<std::unique_ptr<FaceSurface>>> surfaces_;  // built on first use
+  // Both are built on first use.
+  mutable std::map<int, std::vector<std::unique_ptr<EdgeCurve>>> curves_;
+  mutable std::map<int, std::vector<std::unique_ptr<FaceSurface>>> surfaces_;
 };
 
 }  // namespace collarmesh::brep
