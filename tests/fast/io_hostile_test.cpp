@@ -139,8 +139,7 @@ TEST(IoVtk, SkipsOtherAttributes) {
   expect_same(mesh, read("a.vtk", vtk));
   expect_refused("a.vtk", replaced(vtk, "VECTORS v", replaced(kinds, "x 2 float", "x 9 float") + "VECTORS v"),
                  "expected a ");
-  expect_refused("a.vtk",
-                 replaced(vtk, "SCALARS CellEntityIds int", "SCALARS CellEntityIds double 100"),
+  expect_refused("a.vtk", replaced(vtk, "SCALARS CellEntityIds int", "SCALARS CellEntityIds double 100"),
                  "do not fit into the");
   expect_refused("a.vtk",
                  replaced(replaced(vtk, "CellEntityIds int", "CellEntityIds double"), "7\n8\n", "1e30\n8\n"),
