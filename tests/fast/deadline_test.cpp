@@ -2,7 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
+#include <thread>
+#include <vector>
+
+#include "collarmesh/error.h"
+#include "common/run_control.h"
 
 namespace collarmesh::deadline_test {
 namespace {
@@ -26,6 +32,54 @@ TEST(CommonDeadline, PassesAtItsTime) {
   EXPECT_GT(past.as_option(), 0);  // 0 would mean that there is no limit
   EXPECT_FALSE(future.passed());
   EXPECT_GT(future.remaining(), 2e7);
+}
+
+// RunControl
+
+TEST(RunControl, AStageThatItsProgressEndedEndsTheRun) {
+  for (const bool goes_on : {true, false}) {
+    PipelineResult made;
+    Execution execution;
+    std::vector<double> told;
+    execution.progress = [&](const ProgressReport& report) {
+      told.push_back(report.fraction);
+      return report.begins || goes_on;
+    };
+    RunControl control({}, execution, made);
+    control.begin("check", 0.5, 0.9);
+    bool went_on = false;
+    const auto stage = [&](const Execution& watched) { went_on = watched.progress({"check", 0.5}); };
+    if (goes_on) {
+      control.watch(stage);
+    } else {
+      EXPECT_THROW(control.watch(stage), Ended);
+      EXPECT_EQ(made.result.status, MeshStatus::cancelled);
+      EXPECT_EQ(made.result.message, "the run was stopped (check)");
+    }
+    EXPECT_EQ(went_on, goes_on);
+    ASSERT_EQ(told.size(), 2U);
+    EXPECT_NEAR(told[1], 0.7, 1e-12) << "the middle of its share of the run";
+  }
+}
+
+TEST(RunControl, AnAttemptThatFailsGivesItsTimeBack) {
+  PipelineResult made;
+  PipelineOptions options;
+  options.mesh.time_limit = 1000;
+  const Execution execution;
+  RunControl control(options, execution, made);
+  const std::atomic<bool>* const flag = control.execution().cancel;
+  EXPECT_THROW(control.attempt(1e-9,
+                               [&] {
+                                 EXPECT_NE(control.execution().cancel, flag);
+                                 while (!control.execution().cancelled()) std::this_thread::yield();
+                                 EXPECT_TRUE(control.out_of_time());
+                                 throw OptionError("no such tag");
+                               }),
+               OptionError);
+  EXPECT_EQ(control.execution().cancel, flag);
+  EXPECT_FALSE(control.out_of_time());
+  EXPECT_NO_THROW(control.stop_if_asked());
 }
 
 }  // namespace

@@ -126,6 +126,26 @@ TEST(IoVtk, ReadsOthers) {
   expect_same(read("a.vtk", version_5), mesh);
 }
 
+/// Arrays that are no tags are skipped, by the length that each kind has.
+TEST(IoVtk, SkipsOtherAttributes) {
+  const std::string nine = "1 2 3 4 5 6 7 8 9\n",
+                    kinds = "TENSORS t double\n" + nine + nine + nine + "TENSORS6 s float\n" + nine + nine +
+                            "GLOBAL_IDS g vtkIdType\n1 2 3\nPEDIGREE_IDS p int\n4 5 6\n"
+                            "TEXTURE_COORDINATES x 2 float\n1 2 3 4 5 6\nCOLOR_SCALARS c 4\n0 0 0 1 0 0 0 1 "
+                            "1 1 1 1\nSCALARS more int 1\nLOOKUP_TABLE mine\n1 2 3\nLOOKUP_TABLE mine 2\n0 0 "
+                            "0 1 1 1 1 1\nFIELD f 2\nMETADATA\nINFORMATION 0\n\nfirst 1 3 int\n1 2 3\n"
+                            "METADATA\nINFORMATION 0\n\nsecond 1 3 int\n4 5 6\n";
+  const TetMesh mesh = read("a.vtk", replaced(vtk, "VECTORS v", kinds + "VECTORS v"));
+  expect_same(mesh, read("a.vtk", vtk));
+  expect_refused("a.vtk", replaced(vtk, "VECTORS v", replaced(kinds, "x 2 float", "x 9 float") + "VECTORS v"),
+                 "expected a ");
+  expect_refused("a.vtk", replaced(vtk, "SCALARS CellEntityIds int", "SCALARS CellEntityIds double 100"),
+                 "do not fit into the");
+  expect_refused("a.vtk",
+                 replaced(replaced(vtk, "CellEntityIds int", "CellEntityIds double"), "7\n8\n", "1e30\n8\n"),
+                 "the value 1e+30 is not a number, or too large");
+}
+
 TEST(IoVtk, RefusesBadFiles) {
   expect_refused("a.vtk", "", "line 1: expected '# vtk DataFile Version'");
   expect_refused("a.vtk", replaced(vtk, "ASCII", "BASE64"), "line 3: expected ASCII or BINARY");
@@ -262,6 +282,18 @@ TEST(IoUnv, RefusesBadFiles) {
   const std::size_t groups = unv.find("  2467\n") + 7;
   expect_refused("a.unv", std::string(unv).replace(groups + 70, 10, " 200000000"),
                  "the number of members is 200000000");
+}
+
+TEST(IoUnv, RefusesDatasetsThatDoNotEndAndElementsThatOccurTwice) {
+  const std::string unv = sample_file("a.unv", sample_mesh(1)), end = "    -1\n";
+  const std::size_t second = unv.find(end, unv.find("  2411"));
+  ASSERT_NE(second, std::string::npos);
+  const std::size_t again = unv.find(end, second + end.size());
+  ASSERT_NE(again, std::string::npos);
+  expect_refused("a.unv", std::string(unv).replace(again, end.size(), "    -7\n"),
+                 "expected -1, the beginning");
+  const std::string empty = "    -1\n  2411\n    -1\n";
+  expect_refused("a.unv", empty, "expected tetrahedra (111, 118), found none");
 }
 
 // .ele

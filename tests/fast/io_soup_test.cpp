@@ -315,6 +315,64 @@ TEST(IoPly, ReadsEdges) {
   EXPECT_EQ(soup.segments[0].b, 3);
 }
 
+/// Numbers of all types in binary files, before and behind those that are read.
+TEST(IoPly, SkipsAndReadsNumbersOfAllTypes) {
+  for (const std::endian order : {std::endian::little, std::endian::big}) {
+    std::string header = order == std::endian::little ? "ply\nformat binary_little_endian 1.0\n"
+                                                      : "ply\nformat binary_big_endian 1.0\n";
+    header +=
+        "element vertex 4\nproperty char a\nproperty double x\nproperty ushort b\nproperty float y\nproperty "
+        "short z\nelement face 4\nproperty list int16 double c\nproperty list ushort uint "
+        "vertex_index\nproperty "
+        "int tag\nelement edge 1\nproperty uchar vertex1\nproperty double d\nproperty uint "
+        "vertex2\nend_header\n";
+    const std::vector<std::array<int, 3>> places{{0, 0, 0}, {2, 0, 0}, {0, 3, 0}, {0, 0, -5}};
+    std::string body;
+    for (const auto& [x, y, z] : places)
+      body += raw(std::int8_t{-1}, order) + raw(double(x), order) + raw(std::uint16_t{9}, order) +
+              raw(float(y), order) + raw(static_cast<std::int16_t>(z), order);
+    for (std::size_t f = 0; f < expected_faces.size(); ++f) {
+      body += raw(std::int16_t{1}, order) + raw(7.5, order) + raw(std::uint16_t{3}, order);
+      for (const Index v : expected_faces[f]) body += raw(static_cast<std::uint32_t>(v), order);
+      body += raw(static_cast<std::int32_t>(10 * f), order);
+    }
+    body += raw(std::uint8_t{1}, order) + raw(2.5, order) + raw(std::uint32_t{3}, order);
+    const TemporaryFolder folder;
+    const PolygonSoup soup = io::read_soup(folder.write("a.ply", header + body));
+    ASSERT_EQ(soup.points.size(), 4U);
+    for (std::size_t i = 0; i < 4; ++i)
+      EXPECT_EQ(soup.points[i], (Point{double(places[i][0]), double(places[i][1]), double(places[i][2])}));
+    ASSERT_EQ(soup.facet_count(), expected_faces.size());
+    for (Index f = 0; f < soup.facet_count(); ++f) {
+      EXPECT_TRUE(std::ranges::equal(soup.polygon(f), expected_faces[f]));
+      EXPECT_EQ(soup.facet_tag(f), 10 * static_cast<Tag>(f));
+    }
+    ASSERT_EQ(soup.segments.size(), 1U);
+    EXPECT_EQ(soup.segments[0].a, 1U);
+    EXPECT_EQ(soup.segments[0].b, 3U);
+  }
+}
+
+TEST(IoPly, FacesOfTwoCornersAreSegments) {
+  const TemporaryFolder folder;
+  const PolygonSoup soup = io::read_soup(
+      folder.write("a.ply", ply_header("ascii", "double", "4", "5") + points + faces + "2 1 3\n"));
+  EXPECT_EQ(soup.facet_count(), 4U);
+  ASSERT_EQ(soup.segments.size(), 1U);
+  EXPECT_EQ(soup.segments[0].a, 1U);
+  EXPECT_EQ(soup.segments[0].b, 3U);
+}
+
+TEST(IoPly, RefusesStripsAndListsOfFractionalLength) {
+  const std::string text = ply_header("ascii") + points + faces;
+  expect_refused("a.ply", replaced(text, "list uchar int", "list float int"),
+                 "the length of a list has to have an integer type");
+  expect_refused(
+      "a.ply",
+      replaced(text, "end_header", "element tristrips 1\nproperty list int int s\nend_header") + "3 0 1 2\n",
+      "triangle strips are not supported");
+}
+
 TEST(IoPly, RefusesBadFiles) {
   const std::string text = ply_header("ascii") + points + faces;
   const std::string header = ply_header("binary_little_endian"), body = ply_body(std::endian::little);

@@ -3,10 +3,14 @@
 
 #include <sys/resource.h>
 #include <algorithm>
+#include <array>
 #include <csignal>
 #include <fstream>
 #include <random>
+#include <set>
+#include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "collarmesh/io/tet_mesh_io.h"
@@ -16,6 +20,7 @@
 #include "support/replaced.h"
 #include "support/sample_mesh.h"
 #include "support/sanitized.h"
+#include "support/second_order.h"
 #include "support/temporary_file.h"
 #include "support/tet_mesh_comparison.h"
 
@@ -271,6 +276,55 @@ TEST(IoWrite, LeavesNothingWhenTheDiskIsFull) {
   setrlimit(RLIMIT_FSIZE, &before);
   std::signal(SIGXFSZ, handler);
   EXPECT_EQ(folder.file_count(), 0);
+}
+
+TEST(IoWrite, FormatsWithoutPlaceForGhostCellsAreNamed) {
+  const TemporaryFolder folder;
+  TetMesh mesh = sample_mesh(1);
+  mesh.tet_partition.assign(mesh.tets.size(), 0);
+  mesh.tet_partition.back() = 1;
+  const std::vector<std::string> able = io::formats_with_ghost_cells();
+  for (const std::string& format : io::written_tet_mesh_formats()) {
+    const std::string path = folder.file("a" + format);
+    if (std::count(able.begin(), able.end(), format) > 0)
+      EXPECT_NO_THROW(io::write_tet_mesh(path, mesh, {}, GhostCells::one_layer)) << format;
+    else
+      expect_error<WriteError>([&] { io::write_tet_mesh(path, mesh, {}, GhostCells::one_layer); }, path,
+                               "has no place for ghost cells");
+  }
+  EXPECT_EQ(io::formats_of_first_order(), (std::vector<std::string>{".su2", ".polymesh"}));
+}
+
+/// MFEM numbers the nodes of edges in the order ab, ac, ad, bc, bd, cd, element by element.
+TEST(IoMfem, NodesOfSecondOrderFollowTheCorners) {
+  const TemporaryFolder folder;
+  const TetMesh mesh = testing::second_order(sample_mesh(1));
+  io::write_tet_mesh(folder.file("a.mfem"), mesh);
+  const std::string text = folder.read("a.mfem");
+  std::istringstream elements(text.substr(text.find("\nelements\n") + 10)),
+      nodes(text.substr(text.find("Ordering: 1\n") + 12)),
+      vertices(text.substr(text.find("\nvertices\n") + 10));
+  std::size_t tets = 0, corners = 0;
+  elements >> tets;
+  vertices >> corners;
+  ASSERT_EQ(tets, mesh.tets.size());
+  std::vector<Point> points;
+  for (Point p; nodes >> p.x >> p.y >> p.z;) points.push_back(p);
+  ASSERT_EQ(points.size(), mesh.points.size());
+  std::set<std::pair<std::size_t, std::size_t>> known;
+  for (std::size_t t = 0; t < tets; ++t) {
+    std::size_t attribute = 0, geometry = 0;
+    std::array<std::size_t, 4> tet;
+    elements >> attribute >> geometry >> tet[0] >> tet[1] >> tet[2] >> tet[3];
+    EXPECT_EQ(geometry, 4U);
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t j = i + 1; j < 4; ++j)
+        if (known.insert(std::minmax(tet[i], tet[j])).second) {
+          EXPECT_LT(distance(points[corners + known.size() - 1], 0.5 * (points[tet[i]] + points[tet[j]])),
+                    1e-12);
+        }
+  }
+  EXPECT_EQ(corners + known.size(), points.size());
 }
 
 // The mesh has so many cells that each thread writes several blocks of them; with sanitizers, some blocks.

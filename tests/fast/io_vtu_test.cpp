@@ -4,14 +4,19 @@
 
 #include <array>
 #include <bit>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <random>
 #include <string>
 #include <vector>
 
+#include "collarmesh/io/mesh_surface_io.h"
+#include "collarmesh/io/point_field_io.h"
 #include "collarmesh/io/tet_mesh_io.h"
 #include "io/base64.h"
+#include "io/number_bytes.h"
+#include "io/vtk_array.h"
 #include "support/comma_locale.h"
 #include "support/replaced.h"
 #include "support/sample_mesh.h"
@@ -249,6 +254,210 @@ TEST(IoVtu, RefusesBadAppendedValues) {
   expect_refused(std::string(packed).replace(start + 8, 8, gigabyte), "cannot hold 1073741824");
   const std::string base64 = ForeignFile({"binary"}).text();
   expect_refused(replaced(base64, "eAAAAA", "e!AAAA"), "the values are not base64");
+}
+
+// Other kinds of contents
+
+/// Adds arrays of points to the file, behind its cells' data.
+std::string with_point_data(const std::string& text, const std::string& arrays) {
+  return replaced(text, "</CellData>\n", "</CellData>\n<PointData>\n" + arrays + "</PointData>\n");
+}
+
+std::string field(const std::string& name, const std::string& values, const std::string& more = "") {
+  return "<DataArray type=\"Float64\" Name=\"" + name + "\" format=\"ascii\"" + more + ">" + values +
+         "</DataArray>\n";
+}
+
+TEST(IoVtu, HasFieldsOnPoints) {
+  const TemporaryFolder folder;
+  const auto read_field = [&](const std::string& text, const std::string& name = "") {
+    return io::read_point_field(folder.write("a.vtu", text), name);
+  };
+  const std::string text = ForeignFile({}).text(), size = field("size", "1 2 3 4 5.5"),
+                    vectors = field("v", "1 2 3 4 5 6 7 8 9 10 11 12 13 14 15", " NumberOfComponents=\"3\""),
+                    other = field("other", "9 8 7 6 5");
+  const io::PointField only = read_field(with_point_data(text, size + vectors));
+  EXPECT_EQ(only.name, "size");
+  EXPECT_EQ(only.values, (std::vector<double>{1, 2, 3, 4, 5.5}));
+  expect_two_tets(only.mesh);
+  EXPECT_EQ(read_field(with_point_data(text, size + other), "other").values,
+            (std::vector<double>{9, 8, 7, 6, 5}));
+  const std::string path = folder.file("a.vtu");
+  const auto refused = [&](const std::string& content, const std::string& name, const std::string& part) {
+    expect_error<ReadError>([&] { read_field(content, name); }, path, part);
+  };
+  refused(with_point_data(text, size + other), "", "expected one scalar field on points; its points have");
+  refused(with_point_data(text, size + other), "third", "no field 'third'");
+  refused(text, "", "its points have no scalar field");
+  refused(with_point_data(text, field("size", "1 2 3")), "", "expected 5 values");
+  // Each piece has to have the field.
+  const std::string with = with_point_data(text, size);
+  const std::size_t begin = text.find("<Piece"), end = text.find("</UnstructuredGrid>");
+  const std::string without = text.substr(begin, end - begin);
+  const std::size_t behind = with.find("</UnstructuredGrid>");
+  refused(std::string(with).insert(behind, without), "", "expected an array 'size' as in the first piece");
+  const io::PointField two = read_field(
+      std::string(with).insert(behind, with.substr(with.find("<Piece"), behind - with.find("<Piece"))));
+  EXPECT_EQ(two.values, (std::vector<double>{1, 2, 3, 4, 5.5, 1, 2, 3, 4, 5.5}));
+  EXPECT_EQ(two.mesh.points.size(), 10U);
+}
+
+TEST(IoVtu, OurOwnLabelsAreNoFields) {
+  const TemporaryFolder folder;
+  io::write_tet_mesh(folder.file("a.vtu"), sample_mesh(1));
+  expect_error<ReadError>([&] { io::read_point_field(folder.file("a.vtu")); }, folder.file("a.vtu"),
+                          "its points have no scalar field");
+}
+
+const std::string polygons =
+    "<VTKFile type=\"PolyData\" byte_order=\"LittleEndian\"><PolyData><Piece NumberOfPoints=\"4\" "
+    "NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"2\"><Points><DataArray "
+    "type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 1 1 0 0 1 0</DataArray></Points>"
+    "<Polys><DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">0 1 2 0 2 "
+    "3</DataArray><DataArray "
+    "type=\"Int64\" Name=\"offsets\" format=\"ascii\">3 6</DataArray></Polys><CellData><DataArray "
+    "type=\"Int32\" Name=\"gmsh:physical\" format=\"ascii\">8 5</DataArray></CellData></Piece></PolyData>"
+    "</VTKFile>";
+
+TEST(IoVtp, TrianglesHaveTheirTags) {
+  const TemporaryFolder folder;
+  const PolygonSoup soup = io::read_mesh_surface(folder.write("a.vtp", polygons));
+  ASSERT_EQ(soup.facet_count(), 2U);
+  EXPECT_EQ(soup.facet_tag(0), 8);
+  EXPECT_EQ(soup.facet_tag(1), 5);
+  double area = 0;
+  for (Index f = 0; f < 2; ++f) {
+    const auto corners = soup.polygon(f);
+    ASSERT_EQ(corners.size(), 3U);
+    const Point &a = soup.points[corners[0]], &b = soup.points[corners[1]], &c = soup.points[corners[2]];
+    area += 0.5 * cross(b - a, c - a).z;
+  }
+  EXPECT_EQ(area, 1);
+  EXPECT_TRUE(io::is_mesh_surface_format("a.vtp"));
+  EXPECT_FALSE(io::is_mesh_surface_format("a.stl"));
+}
+
+TEST(IoVtp, OtherCellsAreRefused) {
+  const TemporaryFolder folder;
+  const auto refused = [&](const std::string& content, const std::string& part) {
+    const std::string path = folder.write("a.vtp", content);
+    expect_error<ReadError>([&] { io::read_mesh_cells(path); }, path, part);
+  };
+  for (const char* kind : {"NumberOfVerts", "NumberOfLines", "NumberOfStrips"})
+    refused(replaced(polygons, std::string(kind) + "=\"0\"", std::string(kind) + "=\"1\""),
+            std::string(kind) + " is not 0; save the triangles alone");
+  refused(replaced(polygons, "3 6<", "4 6<"), "cell 0 of type 5 has 3 nodes");
+  refused(replaced(polygons, "type=\"PolyData\"", "type=\"UnstructuredGrid\""), "expected the type PolyData");
+  refused(replaced(polygons, "0 1 2 0 2 3", "0 1 2 0 2 4"), "cell 1 has the corner 4");
+}
+
+// .pvtu
+
+/// A piece as text. Cells are tets; a cell that is a ghost belongs to another piece.
+struct AsciiPiece {
+  std::string points, point_ids, connectivity, offsets, cell_ids, ghosts;
+  std::size_t point_count = 4, cell_count = 1;
+
+  std::string text(const std::string& name_of_ids = "GlobalPointIds") const {
+    const auto array = [](const std::string& type, const std::string& name, const std::string& values,
+                          const std::string& more = "") {
+      return "<DataArray type=\"" + type + "\" Name=\"" + name + "\" format=\"ascii\"" + more + ">" + values +
+             "</DataArray>\n";
+    };
+    std::string types;
+    for (std::size_t i = 0; i < cell_count; ++i) types += "10 ";
+    return "<VTKFile type=\"UnstructuredGrid\" byte_order=\"LittleEndian\"><UnstructuredGrid><Piece "
+           "NumberOfPoints=\"" +
+           std::to_string(point_count) + "\" NumberOfCells=\"" + std::to_string(cell_count) + "\"><Points>" +
+           array("Float64", "Points", points, " NumberOfComponents=\"3\"") + "</Points><Cells>" +
+           array("Int64", "connectivity", connectivity) + array("Int64", "offsets", offsets) +
+           array("UInt8", "types", types) + "</Cells><PointData>" + array("Int64", name_of_ids, point_ids) +
+           "</PointData><CellData>" + array("Int64", "GlobalCellIds", cell_ids) +
+           array("UInt8", "vtkGhostType", ghosts) + "</CellData></Piece></UnstructuredGrid></VTKFile>\n";
+  }
+};
+
+// The second piece has the first one's tet as a ghost.
+const AsciiPiece first_piece{"0 0 0 1 0 0 0 1 0 0 0 1", "0 1 2 3", "0 1 2 3", "4", "0", "0"},
+    second_piece{"1 0 0 0 1 0 0 0 1 1 1 1 0 0 0", "1 2 3 4 0", "0 1 2 3 4 0 1 2", "4 8", "1 0", "0 1", 5, 2};
+
+const std::string list_of_pieces =
+    "<VTKFile type=\"PUnstructuredGrid\"><PUnstructuredGrid><Piece Source=\"1.vtu\"/><Piece "
+    "Source=\"2.vtu\"/></PUnstructuredGrid></VTKFile>\n";
+
+TEST(IoPvtu, PiecesArePutTogetherByTheNumbersOfPointsAndCells) {
+  const TemporaryFolder folder;
+  folder.write("1.vtu", first_piece.text());
+  folder.write("2.vtu", second_piece.text());
+  const TetMesh mesh = io::read_tet_mesh(folder.write("a.pvtu", list_of_pieces));
+  EXPECT_EQ(mesh.points, (std::vector<Point>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}}));
+  EXPECT_EQ(mesh.tets, (std::vector<std::array<Index, 4>>{{0, 1, 2, 3}, {1, 2, 3, 4}}));
+}
+
+TEST(IoPvtu, PiecesThatDoNotFitAreRefused) {
+  const TemporaryFolder folder;
+  const std::string path = folder.write("a.pvtu", list_of_pieces);
+  const auto refused = [&](const std::string& first, const std::string& second, const std::string& file,
+                           const std::string& part) {
+    folder.write("1.vtu", first);
+    folder.write("2.vtu", second);
+    expect_error<ReadError>([&] { io::read_tet_mesh(path); }, folder.file(file), part);
+  };
+  const std::string first = first_piece.text(), second = second_piece.text();
+  refused(first, second_piece.text("Ids"), "2.vtu",
+          "expected an array 'GlobalPointIds', by which the pieces");
+  AsciiPiece changed = second_piece;
+  changed.points = "1 0 0 0 1 0 0 0 2 1 1 1 0 0 0";
+  refused(first, changed.text(), "2.vtu", "point 3 is at (0, 0, 2), but in another piece at (0, 0, 1)");
+  changed = second_piece;
+  changed.ghosts = "0 0";
+  refused(first, changed.text(), "2.vtu", "cell 0 occurs twice, and neither copy is marked as a ghost");
+  changed = second_piece;
+  changed.offsets = "9 8";
+  refused(first, changed.text(), "2.vtu", "the connectivity of cell 0 goes from 0 to 9, of 8 entries");
+  changed = second_piece;
+  changed.connectivity = "0 1 2 7 4 0 1 2";
+  refused(first, changed.text(), "2.vtu", "cell 0 has the corner 7, but there are 5 points");
+  changed = second_piece;
+  changed.connectivity = "0 1 2";
+  changed.offsets = "3 3";
+  refused(first, changed.text(), "a.pvtu", "has 4 nodes");
+}
+
+// Values
+
+template <class T>
+void expect_converted(io::NumberType type) {
+  EXPECT_EQ(io::size_of(type), sizeof(T));
+  const std::vector<T> values{0, 1, std::numeric_limits<T>::lowest(), static_cast<T>(100)};
+  for (const std::endian order : {std::endian::little, std::endian::big}) {
+    std::string bytes;
+    for (const T value : values) {
+      const auto raw = io::bytes_of(value, order);
+      bytes.append(raw.data(), raw.size());
+    }
+    std::vector<double> doubles;
+    std::vector<std::int64_t> integers;
+    for (const T value : values) {
+      doubles.push_back(static_cast<double>(value));
+      integers.push_back(static_cast<std::int64_t>(value));
+    }
+    EXPECT_EQ(io::convert_vtk_values<double>(bytes, type, order), doubles);
+    EXPECT_EQ(io::convert_vtk_values<std::int64_t>(bytes, type, order), integers);
+  }
+}
+
+TEST(VtkValues, OfAllIntegerTypesAreConverted) {
+  using Type = io::NumberType;
+  expect_converted<std::int8_t>(Type::i8);
+  expect_converted<std::uint8_t>(Type::u8);
+  expect_converted<std::int16_t>(Type::i16);
+  expect_converted<std::uint16_t>(Type::u16);
+  expect_converted<std::int32_t>(Type::i32);
+  expect_converted<std::uint32_t>(Type::u32);
+  expect_converted<std::int64_t>(Type::i64);
+  expect_converted<std::uint64_t>(Type::u64);
+  EXPECT_TRUE(io::convert_vtk_values<double>("12345678", Type::unknown, std::endian::little).empty());
 }
 
 /// A base64 run with padding one character too early is one byte too short.

@@ -1,12 +1,15 @@
 // The rules of boundary layers one by one: directions, rings, and the bounds on tets beside layers.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
 #include <vector>
 
 #include "check/layer_cells.h"
+#include "collarmesh/pipeline.h"
 #include "collarmesh/plc_builder.h"
 #include "layers/direction.h"
 #include "layers/front.h"
@@ -164,6 +167,44 @@ TEST(CoreAngles, AreThoseOfThinTets) {
   TetMesh in_layer = flat_tet(0.002);
   in_layer.layers.tet_layer = {1};
   EXPECT_EQ(findings(in_layer), 0U);  // flat as layers are
+}
+
+// Nodes of layers on the bottom of a cylinder slide along its round side.
+TEST(LayerHeights, NodesThatSlideAlongACurvedFaceStayOnIt) {
+  constexpr unsigned around = 48;
+  const double chord = std::cos(std::numbers::pi / around);
+  const PolygonSoup plain = testing::polygonal_cylinder(around, 1, 2);
+  PolygonSoup soup;
+  soup.points = plain.points;
+  for (Index f = 0; f < plain.facet_count(); ++f) {
+    const auto corners = plain.polygon(plain.facet_polygons(f)[0]);
+    const auto all_at = [&](double z) {
+      return std::ranges::all_of(corners, [&](Index v) { return plain.points[v].z == z; });
+    };
+    soup.add_facet(corners, all_at(0) ? 2 : all_at(2) ? 3 : 1);
+  }
+  PipelineOptions options;
+  options.mesh.size = 0.5;
+  options.mesh.bounds.distance = 0.02;
+  options.layers.walls = {"2:first=0.02,count=3"};
+  const SoupPipelineResult made = run_pipeline({&soup, 1}, options);
+  ASSERT_EQ(made.missed(), "");
+  const TetMesh& mesh = made.result.mesh;
+  ASSERT_GT(mesh.layers.quads.size(), 10U);
+  std::size_t on_side = 0;
+  for (std::size_t q = 0; q < mesh.layers.quads.size(); ++q) {
+    EXPECT_EQ(mesh.layers.quad_tag[q], 1);
+    for (const Index v : mesh.layers.quads[q]) {
+      const double radius = std::hypot(mesh.points[v].x, mesh.points[v].y);
+      EXPECT_GT(radius, chord - options.mesh.bounds.distance);
+      EXPECT_LT(radius, 1 + options.mesh.bounds.distance);
+      ++on_side;
+    }
+  }
+  EXPECT_GT(on_side, 0U);
+  ASSERT_EQ(made.layers->patches.size(), 1U);
+  EXPECT_NEAR(made.layers->patches[0].area, std::numbers::pi, 0.2);
+  EXPECT_GT(made.layers->coverage(), 0.9);
 }
 
 }  // namespace

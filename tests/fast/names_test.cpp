@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "collarmesh/io/tet_mesh_io.h"
 #include "collarmesh/name_features.h"
 #include "collarmesh/pipeline.h"
+#include "io/names_text.h"
 #include "support/shapes.h"
 #include "support/temporary_file.h"
 
@@ -206,6 +208,38 @@ TEST(Names, OfUnvAreKept) {
   io::write_tet_mesh(folder.file("b.msh"), io::read_tet_mesh(folder.file("b.unv")));
   for (const char* word : {"\"Face6\"", "\"Edge12\"", "\"Solid1\""})
     EXPECT_NE(folder.read("b.msh").find(word), std::string::npos) << word;
+}
+
+TEST(Names, OfVtkAreKept) {
+  const TemporaryFolder folder;
+  Plc plc = plc_of(untagged(box()));
+  name_features(R"({"patches": {"Inlet 1": 1}, "curves": {"rim": 1}, "regions": {"steel": 1}})", plc);
+  TetMesh mesh = run_pipeline(plc).result.mesh;
+  for (const std::string& format : io::read_tet_mesh_formats()) {
+    if (format != ".vtu" && format != ".vtk" && format != ".pvtu" && format != ".xdmf") continue;
+    SCOPED_TRACE(format);
+    mesh.group_names = GroupNames::complex;
+    io::write_tet_mesh(folder.file("a" + format), mesh);
+    const TetMesh again = io::read_tet_mesh(folder.file("a" + format));
+    for (std::size_t dimension = 0; dimension < 4; ++dimension)
+      EXPECT_EQ(again.names.of(dimension), mesh.names.of(dimension)) << dimension;
+    EXPECT_EQ(again.group_names, GroupNames::complex);
+    if (format == ".xdmf") continue;  // has no place for the names of CAD shapes
+    mesh.group_names = GroupNames::cad;
+    io::write_tet_mesh(folder.file("b" + format), mesh);
+    const TetMesh of_cad = io::read_tet_mesh(folder.file("b" + format));
+    EXPECT_EQ(of_cad.group_names, GroupNames::cad);
+    EXPECT_EQ(of_cad.names.of(2), mesh.names.of(2));
+  }
+}
+
+TEST(Names, LinesThatAreNoNamesAreIgnored) {
+  TetMesh mesh;
+  io::take_names("patch 7 a name of words\n\npatch\npatch 8\npatch x y\nplanet 3 mars\nregion -2 ends", mesh);
+  EXPECT_EQ(mesh.names.of(2), (std::map<Tag, std::string>{{7, "a name of words"}}));
+  EXPECT_EQ(mesh.names.of(3), (std::map<Tag, std::string>{{-2, "ends"}}));
+  EXPECT_TRUE(mesh.names.of(0).empty() && mesh.names.of(1).empty());
+  EXPECT_EQ(mesh.group_names, GroupNames::complex);
 }
 
 TEST(Names, OfMsh2HaveNumbersOfTheirOwn) {

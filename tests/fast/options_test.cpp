@@ -75,6 +75,41 @@ TEST(OptionTable, ReadingChangesOneOption) {
   }
 }
 
+TEST(OptionTable, KeysAreNamesWithUnderscores) {
+  for (const Option& option : option_table()) {
+    const std::string key = option.key();
+    ASSERT_EQ(key.size(), option.name.size());
+    for (std::size_t i = 0; i < key.size(); ++i)
+      EXPECT_EQ(key[i], option.name[i] == '-' ? '_' : option.name[i]);
+  }
+}
+
+// A flag is set by its name alone, so no text fits it. Defaults that are shown are read as the default.
+TEST(OptionTable, DefaultsAndDescriptionsOfValuesFit) {
+  for (const Option& option : option_table()) {
+    SCOPED_TRACE(option.name);
+    const std::string fitting = option.fitting(), shown = option.default_value();
+    for (const std::string& word : option.words)
+      if (option.kind() == Kind::choice) {
+        EXPECT_NE(fitting.find(word), std::string::npos) << fitting;
+      }
+    if (option.kind() == Kind::sizes) {
+      EXPECT_NE(fitting.find("TAG=LENGTH"), std::string::npos);
+    }
+    RunOptions options;
+    if (option.kind() == Kind::flag) {
+      EXPECT_FALSE(option.read("on", options));
+      if (!option.words.empty() && option.default_text.empty()) {
+        EXPECT_EQ(shown, option.words[std::get<bool>(option.get({})) ? 0 : 1]);
+      }
+    } else if (option.default_text.empty() && !shown.empty()) {
+      EXPECT_TRUE(option.read(shown, options)) << shown;
+      EXPECT_EQ(option.get(options), option.get({})) << shown;
+    }
+  }
+  EXPECT_NE(row("max-memory").fitting().find("500M"), std::string::npos);
+}
+
 TEST(OptionTable, DefaultsAreValid) { EXPECT_NO_THROW(validate({})); }
 
 TEST(OptionTable, RangesHoldForTextAndForValues) {

@@ -14,10 +14,12 @@
 #include <vector>
 
 #include "collarmesh/error.h"
+#include "collarmesh/pipeline.h"
 #include "io/cell_partitions.h"
 #include "partition/level_partitions.h"
 #include "support/sample_mesh.h"
 #include "support/second_order.h"
+#include "support/shapes.h"
 
 namespace collarmesh::partition_test {
 namespace {
@@ -109,6 +111,30 @@ TEST(Partition, SecondOrderIsDividedLikeFirst) {
   if (!reason_against().empty()) GTEST_SKIP() << reason_against();
   EXPECT_EQ(partitioned(second_order(sample_mesh(2)), 4).tet_partition,
             partitioned(sample_mesh(2), 4).tet_partition);
+}
+
+TEST(Partition, IsAStageOfARun) {
+  if (!reason_against().empty()) GTEST_SKIP() << reason_against();
+  PipelineOptions options;
+  options.mesh.size = 0.5;
+  options.partitions = 3;
+  const PolygonSoup soup = testing::box();
+  const SoupPipelineResult made = run_pipeline({&soup, 1}, options);
+  EXPECT_EQ(made.missed(), "");
+  const std::vector<Index>& parts = made.result.mesh.tet_partition;
+  ASSERT_EQ(parts.size(), made.result.mesh.tets.size());
+  EXPECT_EQ(std::set<Index>(parts.begin(), parts.end()), (std::set<Index>{0, 1, 2}));
+}
+
+TEST(DistanceOfARun, IsTheGivenOneElseTheDefaultOfTheSize) {
+  PipelineOptions options;
+  options.mesh.size = 0.2;
+  EXPECT_DOUBLE_EQ(distance_of(options, 100), 0.02) << "a tenth of the size";
+  EXPECT_DOUBLE_EQ(distance_of(options, 1), 1.0 / 200) << "a share of the diagonal";
+  options.order = 2;
+  EXPECT_DOUBLE_EQ(distance_of(options, 1), 1.0 / 550);
+  options.mesh.bounds.distance = 0.125;
+  EXPECT_EQ(distance_of(options, 1), 0.125);
 }
 
 TEST(Partition, NumbersOutOfRangeAreErrors) {

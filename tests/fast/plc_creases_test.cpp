@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -157,6 +158,23 @@ TEST(PlcCreases, DescriptionsNameWhatMeetsWhere) {
   EXPECT_NE(sentence.find("40.00 degrees"), std::string::npos) << sentence;
   EXPECT_NE(sentence.find("(0, 0, 1)"), std::string::npos) << sentence;
   for (const Crease& c : creases) EXPECT_EQ(describe(plc, c).back(), '.');
+}
+
+TEST(PlcCreases, DescriptionsOfPatchesThatMeetInAPointOrFold) {
+  const Plc pyramid = build(testing::polygonal_cone(4, 60, 1));
+  const auto meeting = of_kind(find_creases(pyramid, 89), Kind::facets_in_vertex);
+  ASSERT_EQ(meeting.size(), 1U);
+  const std::string meets = describe(pyramid, meeting[0]);
+  EXPECT_NE(meets.find(" only in the point "), std::string::npos) << meets;
+  EXPECT_NE(meets.find("at " + fmt::format("{:.2f}", meeting[0].angle) + " degrees."), std::string::npos)
+      << meets;
+  const Plc cone = build(testing::polygonal_cone(100, 20, 1));
+  const auto folds = of_kind(find_creases(cone, 89), Kind::patch_fold);
+  ASSERT_EQ(folds.size(), 1U);
+  const std::string folded = describe(cone, folds[0]);
+  EXPECT_NE(folded.find(" folds to " + fmt::format("{:.2f}", folds[0].angle) + " degrees in "),
+            std::string::npos)
+      << folded;
 }
 
 TEST(PlcCreases, SummaryCountsAndMeasures) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <vector>
 
 #include "collarmesh/plc_builder.h"
 #include "facets/cleanup.h"
@@ -159,6 +160,27 @@ TEST(PlcFacets, CollinearTrianglesAreReplacedByCuts) {
     const Point &a = plc.points[t.points[0]], &b = plc.points[t.points[1]], &c = plc.points[t.points[2]];
     EXPECT_GT(norm(cross(b - a, c - a)), 0);
   }
+}
+
+// A triangle without area whose long side is also a segment.
+TEST(CollinearTriangles, SegmentsAreCutLikeTheEdges) {
+  facets::Draft draft;
+  draft.points = {{0, 0, 0}, {4, 0, 0}, {1, 0, 0}, {3, 0, 0}, {2, 2, 0}};
+  draft.add_triangle({0, 1, 2}, {});
+  draft.add_triangle({2, 1, 3}, {});
+  draft.add_triangle({0, 1, 4}, {});
+  draft.segments.push_back({.a = 1, .b = 0, .tag = 7});
+  draft.segments.push_back({.a = 0, .b = 4, .tag = 8});
+  facets::remove_collinear_triangles(draft);
+  std::vector<std::array<Index, 2>> seven;
+  for (const facets::Segment& segment : draft.segments)
+    if (segment.tag == 7) seven.push_back({segment.a, segment.b});
+  EXPECT_EQ(seven, (std::vector<std::array<Index, 2>>{{1, 3}, {3, 2}, {2, 0}}));
+  EXPECT_EQ(draft.segments.size(), 4U);
+  ASSERT_EQ(draft.triangles.size(), 3U);
+  for (Index t = 0; t < 3; ++t)
+    EXPECT_GT(norm(cross(draft.corner(t, 1) - draft.corner(t, 0), draft.corner(t, 2) - draft.corner(t, 0))),
+              0);
 }
 
 TEST(EdgeTable, ListsTheSidesOfEachEdge) {

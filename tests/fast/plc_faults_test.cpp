@@ -4,8 +4,11 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "collarmesh/plc_builder.h"
+#include "facets/faults.h"
 #include "support/plc_shapes.h"
 
 namespace collarmesh::plc_faults_test {
@@ -41,6 +44,34 @@ TEST(PlcFaults, CoordinatesOutOfRange) {
     expect_fault({testing::polygonal_box({0, 0, 0}, {scale, scale, scale})}, Kind::bad_point, "scale it");
   for (const double scale : {1e29, 1e-29})
     EXPECT_FALSE(error_of({testing::polygonal_box({0, 0, 0}, {scale, scale, scale})}));
+}
+
+TEST(PlcFaults, CoordinatesTooCoarseForTheExtent) {
+  const double far = 1e14;
+  expect_fault({testing::polygonal_box({far, 0, 0}, {far + 1, 1, 1})}, Kind::bad_point,
+               "move it towards the origin");
+  EXPECT_FALSE(error_of({testing::polygonal_box({1e9, 0, 0}, {1e9 + 1, 1, 1})}));
+}
+
+// Kinds that make others meaningless come first.
+TEST(PlcFaults, AreSortedByKind) {
+  const std::vector<Kind> kinds{
+      Kind::bad_point,    Kind::non_planar_polygon, Kind::degenerate_facet, Kind::duplicate_points,
+      Kind::intersection, Kind::not_orientable,     Kind::open_boundary,    Kind::empty};
+  facets::Faults faults;
+  for (auto kind = kinds.rbegin(); kind != kinds.rend(); ++kind)
+    for (const char* which : {"first", "second"}) faults.add(*kind, which, {}, {});
+  try {
+    faults.raise();
+    ADD_FAILURE();
+  } catch (const PlcError& error) {
+    ASSERT_EQ(error.faults.size(), 2 * kinds.size());
+    for (std::size_t i = 0; i < error.faults.size(); ++i) {
+      EXPECT_EQ(error.faults[i].kind, kinds[i / 2]);
+      EXPECT_EQ(error.faults[i].message, i % 2 == 0 ? "first" : "second");
+    }
+    EXPECT_NE(std::string(error.what()).find("15 other faults found"), std::string::npos) << error.what();
+  }
 }
 
 TEST(PlcFaults, IndexOutOfRange) {

@@ -251,5 +251,55 @@ TEST(PlcFeatures, FoldsAreCurvesWhereFeaturesAreGiven) {
   EXPECT_DOUBLE_EQ(length, 4);
 }
 
+// summarize_patches, summarize_curves
+
+TEST(SummaryByTag, PatchesHaveTheirAreaAndAPlaceOnTheFirst) {
+  Plc plc = build(testing::polygonal_box({0, 0, 0}, {1, 2, 3}));
+  for (Plc::Patch& patch : plc.patches) {  // sides across x get one tag, all others another
+    patch.tag = std::fabs(patch.normal.x) > 0.5 ? 4 : -9;
+    patch.planar = patch.normal.z < 0.5;
+  }
+  plc.names.set(2, 4, "ends");
+  const std::vector<PatchSummary> summaries = summarize_patches(plc);
+  ASSERT_EQ(summaries.size(), 2U);
+  const PatchSummary &rest = summaries[0], &ends = summaries[1];
+  EXPECT_EQ(ends.tag, 4);
+  EXPECT_EQ(ends.name, "ends");
+  EXPECT_EQ(ends.count, 2U);
+  EXPECT_TRUE(ends.planar);
+  EXPECT_DOUBLE_EQ(ends.area, 12);
+  EXPECT_TRUE(ends.where.x == 0 || ends.where.x == 1);
+  EXPECT_TRUE(ends.where.y > 0 && ends.where.y < 2 && ends.where.z > 0 && ends.where.z < 3);
+  EXPECT_EQ(rest.tag, -9);
+  EXPECT_EQ(rest.name, "");
+  EXPECT_EQ(rest.count, 4U);
+  EXPECT_FALSE(rest.planar) << "one of them is not";
+  EXPECT_DOUBLE_EQ(rest.area, 2 * (3 + 2));
+}
+
+TEST(SummaryByTag, CurvesHaveTheirLengthAndAPlaceOnTheFirst) {
+  Plc plc = build(testing::polygonal_cylinder(24, 1, 3));
+  ASSERT_EQ(plc.curves.size(), 2U);
+  const double length = 24 * 2 * std::sin(std::numbers::pi / 24);
+  for (Plc::Curve& curve : plc.curves) curve.tag = 5;
+  plc.names.set(1, 5, "rims");
+  const std::vector<CurveSummary> both = summarize_curves(plc);
+  ASSERT_EQ(both.size(), 1U);
+  EXPECT_EQ(both[0].name, "rims");
+  EXPECT_EQ(both[0].count, 2U);
+  EXPECT_FALSE(both[0].straight);
+  EXPECT_NEAR(both[0].length, 2 * length, 1e-12);
+  EXPECT_NEAR(std::hypot(both[0].where.x, both[0].where.y), std::cos(std::numbers::pi / 24), 1e-12);
+  EXPECT_EQ(both[0].where.z, plc.points[plc.curves[0].points[0]].z);
+  const std::vector<CurveSummary> edges =
+      summarize_curves(build(testing::polygonal_box({0, 0, 0}, {1, 2, 3})));
+  double sum = 0;
+  for (const CurveSummary& each : edges) {
+    EXPECT_TRUE(each.straight);
+    sum += each.length;
+  }
+  EXPECT_DOUBLE_EQ(sum, 4 * (1 + 2 + 3));
+}
+
 }  // namespace
 }  // namespace collarmesh::plc_features_test

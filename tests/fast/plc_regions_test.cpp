@@ -317,6 +317,22 @@ TEST(PlcRegions, PointsWithoutEffectAreTold) {
   EXPECT_TRUE(build({soup}).warnings.empty());
 }
 
+TEST(PlcRegions, PointsInCavitiesAreTold) {
+  PolygonSoup hollow = named_box({0, 0, 0}, {4, 4, 4}, "a");
+  const PolygonSoup cavity = reversed(polygonal_box({1, 1, 1}, {3, 3, 3}));
+  hollow.region_points.clear();
+  PolygonSoup soup = joined({hollow, cavity});
+  soup.name = "a";
+  PolygonSoup points;
+  points.name = "b";
+  points.region_points.push_back({{2, 2, 2}, 7, 0});
+  const Plc plc = build({soup, points});
+  ASSERT_EQ(plc.warnings.size(), 1U);
+  EXPECT_NE(plc.warnings[0].message.find("lies in a cavity and has no effect"), std::string::npos)
+      << plc.warnings[0].message;
+  EXPECT_EQ(plc.warnings[0].where, (Point{2, 2, 2}));
+}
+
 TEST(PlcRegions, PointsThatContradictEachOtherAreTold) {
   PolygonSoup soup = named_box({0, 0, 0}, {1, 1, 1}, "a");
   soup.region_points.push_back({{0.25, 0.5, 0.5}, 7, 0.125});

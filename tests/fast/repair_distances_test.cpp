@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "support/repair_shapes.h"
 #include "support/shapes.h"
@@ -134,6 +136,96 @@ TEST(RepairReport, TellsTheShareOfSheetsThatWereRemoved) {
   EXPECT_TRUE(std::ranges::any_of(describe(report), [](const std::string& line) {
     return line.find("outside of all solids removed, 8.8% of the area, the first at") != std::string::npos;
   })) << fmt::format("{}", fmt::join(describe(report), "\n"));
+}
+
+TEST(RepairReport, HasALineForEachKindOfChange) {
+  EXPECT_TRUE(describe({}).empty());
+  const auto places = [](std::size_t count) { return RepairPlaces{count, 0.25, {{7, 8, 9}}}; };
+  const auto line_of = [](const RepairReport& report) {
+    const std::vector<std::string> lines = describe(report);
+    EXPECT_EQ(lines.size(), 1U);
+    return lines.empty() ? std::string() : lines.front();
+  };
+  struct Kind {
+    RepairPlaces RepairReport::*places;
+    std::string one, many;
+    bool has_size;
+  };
+  const std::vector<Kind> kinds{
+      {&RepairReport::repeated, "1 repeated facet dropped", "3 repeated facets dropped", false},
+      {&RepairReport::turned, "1 inside-out closed surface turned", "3 inside-out closed surfaces turned",
+       false},
+      {&RepairReport::stitched, "1 place stitched", "3 places stitched", true},
+      {&RepairReport::collapsed, "1 feature below the tolerance of 0.5", "3 features below", true},
+      {&RepairReport::cut, "1 pair of intersecting facets cut", "3 pairs of intersecting", false},
+      {&RepairReport::kept, "1 place left as before", "3 places left as before", false},
+      {&RepairReport::flakes, "1 closed part thinner than the tolerance of 0.5", "3 closed parts", true},
+      {&RepairReport::merged, "1 triangle removed that lay inside", "3 triangles removed that", true},
+      {&RepairReport::dropped, "1 triangle of sheets", "3 triangles of sheets", false},
+      {&RepairReport::thin_chambers, "around it,", "around them,", true},
+      {&RepairReport::vanished, "keeps it", "keeps them", true},
+      {&RepairReport::united, "1 region fewer than before", "3 regions fewer than before", false}};
+  for (const Kind& kind : kinds)
+    for (const std::size_t count : {1U, 3U}) {
+      RepairReport report;
+      report.tolerance = 0.5;
+      report.*kind.places = places(count);
+      const std::string line = line_of(report);
+      EXPECT_NE(line.find(count == 1 ? kind.one : kind.many), std::string::npos) << line;
+      EXPECT_NE(line.find(", the first at (7, 8, 9)"), std::string::npos) << line;
+      EXPECT_EQ(line.find("0.25") != std::string::npos, kind.has_size) << line;
+      (report.*kind.places).where.clear();
+      EXPECT_EQ(line_of(report).find("the first at"), std::string::npos);
+    }
+  for (const auto& [count, says] : {std::pair{std::size_t{1}, "1 polygon cut into triangles, because it was"},
+                                    {std::size_t{2}, "2 polygons cut into triangles, because they were"}}) {
+    RepairReport report;
+    report.split_polygons = count;
+    EXPECT_TRUE(line_of(report).starts_with(says)) << line_of(report);
+  }
+  RepairReport dropped, second;
+  dropped.dropped_polygons = 2;
+  EXPECT_EQ(line_of(dropped), "2 polygons without an area dropped");
+  second.second_sides = 4;
+  EXPECT_TRUE(line_of(second).starts_with("4 triangles dropped that coincided")) << line_of(second);
+}
+
+TEST(RepairReport, ListsSmallFeaturesAndLostTags) {
+  RepairReport report;
+  report.feature_size = 0.5;
+  report.lost_tags = {4, 9};
+  report.filled.push_back({.tag = 3, .edges = 5, .area = 2.5, .where = {1, 2, 3}});
+  using Kind = SmallFeature::Kind;
+  for (const Kind kind : {Kind::curve, Kind::patch, Kind::tip})
+    report.small_features.push_back({kind, 0.125, kind == Kind::tip ? 0 : 6, {1, 2, 3}});
+  for (int more = 0; more < 9; ++more) report.small_features.push_back({Kind::curve, 0.25, 8, {4, 5, 6}});
+  std::vector<std::string> lines = describe(report);
+  ASSERT_EQ(lines.size(), 3U);
+  EXPECT_EQ(lines[0], "a hole of 5 edges around (1, 2, 3) filled with an area of 2.5, tag 3");
+  EXPECT_TRUE(
+      lines[1].starts_with("12 features smaller than the feature size of 0.5 collapsed: curve (tag 6) of "
+                           "size 0.125 at (1, 2, 3), patch (tag 6) of size 0.125 at (1, 2, 3), tip of "
+                           "size 0.125 at (1, 2, 3), curve (tag 8)"))
+      << lines[1];
+  EXPECT_NE(lines[1].find("... and 2 more"), std::string::npos) << lines[1];
+  EXPECT_EQ(lines[2], "nothing is left of the facets with tags 4, 9");
+  report = {};
+  report.repaired = true;
+  EXPECT_EQ(describe(report), std::vector<std::string>{"repair moved nothing"});
+  report.tolerance = 0.5;
+  report.largest_distance = 0.25;
+  report.largest_distance_of_input = 2;
+  report.farthest_of_input = {1, 2, 3};
+  lines = describe(report);
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_TRUE(
+      lines[0].ends_with("within 2 of the repaired surface; the farthest part of the input that is gone "
+                         "is at (1, 2, 3)"))
+      << lines[0];
+  report.wrapped = true;
+  EXPECT_EQ(describe(report),
+            std::vector<std::string>{"a closed surface was wrapped around everything; it keeps "
+                                     "within 0.25 of the input"});
 }
 
 // kept_volume

@@ -5,11 +5,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <random>
+#include <string>
+#include <vector>
 
 #include "collarmesh/error.h"
 #include "collarmesh/io/point_field_io.h"
+#include "collarmesh/io/size_field_io.h"
 #include "collarmesh/io/tet_mesh_io.h"
 #include "collarmesh/plc_builder.h"
 #include "support/meshing.h"
@@ -200,6 +204,59 @@ TEST(PointField, OfGmsh) {
   EXPECT_THROW(io::read_point_field(two, "c"), ReadError);
   EXPECT_THROW(io::read_point_field(folder.write("none.msh", msh_text(mesh, "2.2", ""))), ReadError);
   EXPECT_THROW(io::read_point_field(folder.write("x.mesh", "")), ReadError);
+}
+
+// read_size_field
+
+TEST(ReadSizeField, IsTheFieldOfItsFile) {
+  const testing::TemporaryFolder folder;
+  const Plc plc = cylinder();
+  const SizeField ball = io::read_size_field(
+      folder.write("a.json", R"({"sources": [{"ball": {"centre": [0, 0, 0], "radius": 1}, "size": 0.1}]})"),
+      plc);
+  EXPECT_DOUBLE_EQ(ball({0, 0, 3}), 0.1 + 0.3 * 2);
+  const TetMesh mesh = testing::mesh_of(testing::box(), testing::with_size(0.5), 0).result.mesh;
+  const SizeField field = io::read_size_field(folder.write("a.msh", msh_text(mesh, "2.2", "a")), plc);
+  for (const Point& p : {Point{0.1, 0.2, 0.3}, Point{0.9, 0.5, 0.7}}) EXPECT_NEAR(field(p), linear(p), 1e-9);
+}
+
+TEST(ReadSizeField, RecordsTheSourcesThatAskForLess) {
+  const testing::TemporaryFolder folder;
+  const Plc plc = cylinder();
+  const auto use = std::make_shared<SizeFieldUse>(1.0);
+  const SizeField both = io::read_size_field(folder.write("a.json", R"({"size": 3, "sources": [
+                       {"ball": {"centre": [0, 0, 0], "radius": 1}, "size": 0.1},
+                       {"box": {"min": [5, 5, 5], "max": [6, 6, 6]}, "size": 2}]})"),
+                                             plc, use);
+  both({0, 0, 0});
+  EXPECT_EQ(use->without_effect(), (std::vector<std::string>{"sources[1] (box)"}));
+  const TetMesh mesh = testing::mesh_of(testing::box(), testing::with_size(0.5), 0).result.mesh;
+  const std::string path = folder.write("a.msh", msh_text(mesh, "2.2", "a"));
+  for (const double size : {0.9, 1.5}) {  // the field is 1 at the origin and above 1 along x
+    const auto of_mesh = std::make_shared<SizeFieldUse>(size);
+    const SizeField field = io::read_size_field(path, plc, of_mesh);
+    EXPECT_EQ(of_mesh->without_effect(), std::vector<std::string>{"the field"});
+    EXPECT_NEAR(field({0.5, 0, 0}), 1.15, 1e-9);
+    EXPECT_EQ(of_mesh->without_effect().empty(), size > 1.15);
+  }
+}
+
+TEST(ReadSizeField, ErrorsNameTheFile) {
+  const testing::TemporaryFolder folder;
+  const Plc plc = cylinder();
+  const auto refused = [&]<class Error>(Error*, const std::string& name, const std::string& content,
+                                        const std::string& part) {
+    const std::string path = folder.write(name, content);
+    testing::expect_error<Error>([&] { io::read_size_field(path, plc); }, path, part);
+  };
+  OptionError* const option = nullptr;
+  ReadError* const read = nullptr;
+  refused(option, "a.json", "{", "this is not JSON");
+  refused(option, "a.json", R"({"size": 1e999})", "larger than any double");
+  refused(option, "a.json", "{}", "asks for no size");
+  refused(read, "a.json", std::string(5000, '['), "nested deeper than");
+  refused(read, "a.msh", "$Nodes\n", "");
+  refused(read, "a.stl", "", "fields on points are read from .vtu and .msh only");
 }
 
 }  // namespace

@@ -2,9 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <string>
 #include <utility>
 
+#include "adapt/mesh_complex.h"
+#include "collarmesh/check.h"
 #include "collarmesh/error.h"
+#include "support/meshes.h"
 
 namespace collarmesh::tet_complex_test {
 namespace {
@@ -40,6 +45,39 @@ TEST(TetComplex, RefusesTetsThatFormNoRing) {
     const TetComplex complex(mesh);
     TetComplex::Ring ring;
     EXPECT_THROW(complex.ring((turned + 1) % 4, 0, 1, ring), PlcError) << turned;
+  }
+}
+
+// The complex of a mesh
+
+using remeshing::adapting::complex_of;
+
+TEST(MeshComplex, OfABoxIsTheBox) {
+  const testing::MeshedComplex box = testing::meshed_two_boxes(2);
+  const TetMesh given = testing::without_features(box.mesh);
+  const auto [plc, mesh] = complex_of(given, {});
+  EXPECT_EQ(plc.patches.size(), box.plc.patches.size());
+  EXPECT_EQ(plc.regions.size(), 3U);
+  for (Index r = 1; r < plc.regions.size(); ++r) EXPECT_NEAR(plc.regions[r].volume, 1, 1e-12);
+  for (const Plc::Patch& patch : plc.patches) EXPECT_NE(patch.regions[0], 0U) << "the outside is in front";
+  EXPECT_EQ(mesh.tets.size(), given.tets.size());
+  EXPECT_TRUE(check(mesh, plc, {.bounds = {.radius_edge = 10}}).passed());
+}
+
+TEST(MeshComplex, LinesThatJoinNoCornersOfATetAreRefused) {
+  TetMesh mesh = testing::without_features(testing::meshed_box(2).mesh);
+  const auto corner = [&](const Point& p) {
+    return static_cast<Index>(std::find(mesh.points.begin(), mesh.points.end(), p) - mesh.points.begin());
+  };
+  mesh.edges.push_back({corner({0, 0, 0}), corner({1, 1, 1})});
+  mesh.edge_curve.push_back(none);
+  mesh.edge_tag.push_back(99);
+  try {
+    complex_of(mesh, {});
+    ADD_FAILURE();
+  } catch (const PlcError& error) {
+    EXPECT_NE(std::string(error.what()).find("is no edge of a tetrahedron"), std::string::npos)
+        << error.what();
   }
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <set>
 
 #include "collarmesh/plc_builder.h"
@@ -206,6 +207,45 @@ MeshedComplex meshed_ball(unsigned frequency, unsigned finer) {
 
 MeshedComplex meshed_cylinder(unsigned segments, unsigned finer) {
   return with_features(star_mesh(cylinder(1, 1, segments), {0, 0, 0.5}), cylinder(1, 1, segments * finer));
+}
+
+MeshedComplex meshed_cylinder_with_ears(unsigned segments, unsigned finer) {
+  PolygonSoup surface;
+  for (const double z : {0.0, 1.0})
+    for (unsigned i = 0; i < segments; ++i) {
+      const double angle = 2 * std::numbers::pi * i / segments;
+      surface.points.push_back({std::cos(angle), std::sin(angle), z});
+    }
+  for (Index i = 0; i < segments; ++i) {
+    const Index next = (i + 1) % segments;
+    surface.add_facet(std::array<Index, 3>{i, next, segments + next});
+    surface.add_facet(std::array<Index, 3>{i, segments + next, segments + i});
+    if (i == 0 || next == 0) continue;
+    surface.add_facet(std::array<Index, 3>{0, next, i});
+    surface.add_facet(std::array<Index, 3>{segments, segments + i, segments + next});
+  }
+  MeshedComplex made = with_features(star_mesh(surface, {0, 0, 0.5}), cylinder(1, 1, segments * finer));
+  auto& [plc, mesh] = made;
+  // All corners of a cap lie on its circle, so that chords look like edges of the circle, and caps like the
+  // side.
+  for (Index f = 0; f < mesh.faces.size(); ++f) {
+    const auto& [a, b, c] = mesh.faces[f];
+    if (mesh.points[a].z != mesh.points[b].z || mesh.points[a].z != mesh.points[c].z) continue;
+    for (Index p = 0; p < plc.patches.size(); ++p)
+      if (plc.patches[p].planar && std::fabs(plc.patches[p].origin.z - mesh.points[a].z) < near)
+        mesh.face_patch[f] = p;
+  }
+  std::erase_if(mesh.edges, [&](const std::array<Index, 2>& edge) {
+    const Point middle = 0.5 * (mesh.points[edge[0]] + mesh.points[edge[1]]);
+    return std::hypot(middle.x, middle.y) < std::cos(std::numbers::pi / segments) - near;
+  });
+  mesh.edge_curve.clear();
+  for (const auto& edge : mesh.edges)
+    for (Index c = 0; c < plc.curves.size(); ++c)
+      if (std::fabs(plc.points[plc.curves[c].points[0]].z - mesh.points[edge[0]].z) < near)
+        mesh.edge_curve.push_back(c);
+  mesh.edge_tag.assign(mesh.edges.size(), plc.curves[0].tag);
+  return made;
 }
 
 TetMesh without_features(TetMesh mesh) {

@@ -28,6 +28,10 @@ MeshedComplex meshed_ball(unsigned frequency, unsigned finer);
 /// segments. It has smooth closed curves, and planar patches with a smooth border.
 MeshedComplex meshed_cylinder(unsigned segments, unsigned finer);
 
+/// The same cylinder and complex, but no point in the middle of a cap: each cap is a fan of triangles around
+/// a point of its circle, so that two of them have two sides on the circle.
+MeshedComplex meshed_cylinder_with_ears(unsigned segments, unsigned finer);
+
 /// Returns the mesh as it is when read from a file: without features.
 TetMesh without_features(TetMesh mesh);
 

@@ -131,6 +131,10 @@ class ChangingTriangles {
   /// Returns the draft without gaps: triangles keep their order, but get new numbers.
   facets::Draft compacted() const;
 
+  /// For assertions and tests: returns whether the lists at these points contain sides of existing triangles
+  /// only, and the right number of them.
+  bool consistent(const facets::Corners& corners) const;
+
  private:
   static constexpr std::size_t few = 8;  // while at most one triangle in eight has changed,
                                          // changed ones are looked up one by one
@@ -147,9 +151,6 @@ class ChangingTriangles {
   // Returns whether t is farther than `reach` from the plane of s.
   bool beyond(Index s, Index t) const;
   void link(Index triangle);
-  /// Returns whether the lists at these points contain sides of existing triangles only, and the right number
-  /// of them.
-  bool consistent(const facets::Corners& corners) const;
 
   facets::Draft& draft_;
   double reach_;
