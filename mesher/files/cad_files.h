@@ -81,6 +81,8 @@ class CadFiles {
   /// Returns faces that were merged with others: pairs of the number that is gone and the number that
   /// replaces it.
   std::vector<std::pair<Tag, Tag>> replaced_faces() const;
+  /// Returns whether a soup is that of a CAD file.
+  bool has(Index soup) const { return file_of(soup) != nullptr; }
   /// Returns false if solids that touch or overlap could not be fused. Their soups then intersect, even with
   /// fine triangles.
   bool fused() const;

@@ -260,25 +260,25 @@ Plc ComplexInput::build_unnamed(const PlcOptions& options, const RepairOptions& 
 /// Returns nothing if that fails, too; then `first` is the error of the first attempt.
 std::optional<Plc> ComplexInput::build_of_shapes(const PlcOptions& options, const RepairOptions& repair,
                                                  std::optional<PlcError>& first) {
-  constexpr unsigned most_rounds = 3;  // of attempts with finer triangles on some faces
+  constexpr unsigned most_partial = 2;  // attempts with finer triangles on some faces
   std::set<SoupFace> faces;
   tessellate(1);
-  for (unsigned round = 0; round <= most_rounds; ++round) {
+  for (unsigned partial = 0;;) {
     try {
       Plc plc = build_valid(options, repair);
       return finer_ == finest ? std::move(plc) : resolved(std::move(plc), faces, options, repair);
     } catch (const PlcError& error) {
       if (!first) first = with_names(error, cad_);
-      if (!cad_.fused() || !may_be_too_coarse(error) || finer_ == finest) return std::nullopt;
+      if (finer_ == finest || !cad_.fused() || !may_be_too_coarse(*first)) return std::nullopt;
       const std::size_t before = faces.size();
-      faces.merge(faces_at(error.faults, soups_));
-      if (faces.size() > before && round + 1 < most_rounds)
+      for (const SoupFace& face : faces_at(error.faults, soups_))
+        if (cad_.has(face.first)) faces.insert(face);
+      if (may_be_too_coarse(error) && faces.size() > before && partial++ < most_partial)
         tessellate(finest, faces);
       else
         tessellate(finest);
     }
   }
-  return std::nullopt;
 }
 
 Plc ComplexInput::build_valid(const PlcOptions& options, const RepairOptions& repair) {
@@ -326,7 +326,8 @@ Plc ComplexInput::resolved(Plc plc, const std::set<SoupFace>& fine, const PlcOpt
     }
     built_ = {};
   }
-  fine.empty() ? tessellate(1) : tessellate(finest, fine);
+  tessellate(1);  // a partial cut leaves files without such faces as they are
+  if (!fine.empty()) tessellate(finest, fine);
   built_ = std::move(coarse);
   return plc;
 }

@@ -9,10 +9,11 @@
 
 namespace collarmesh::files {
 
-/// A face of a CAD shape: the soup of its triangles and their tag.
+/// The facets of a soup with one tag, as those of a face of a CAD shape.
 using SoupFace = std::pair<Index, Tag>;
 
-/// Returns the faces with a facet at the place of a fault.
+/// Returns the faces with a facet at the place of a fault. Cost: facets times faults, of which PlcError holds
+/// only the first ones of each kind.
 std::set<SoupFace> faces_at(std::span<const PlcFault> faults, std::span<const PolygonSoup> soups);
 
 }  // namespace collarmesh::files

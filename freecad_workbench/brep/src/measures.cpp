@@ -123,7 +123,7 @@ class FaceIntegrals {
     BRepGProp_Domain domain(face);
     const int spans = surface.SUIntSubs() * surface.SVIntSubs();
     constexpr int few = 8, many = 10'000;             // with many spans adaptive integrals would take long
-    const double error = spans <= few ? 1e-3 : 1e-4;  // OpenCASCADE's estimate; on waves it is too low
+    const double error = spans <= few ? 1e-3 : 1e-5;  // OpenCASCADE's estimate; on waves it is too low
     Integral integral;
     integral.SetLocation(apex_);
     if (face.NbChildren() == 0)

@@ -72,30 +72,65 @@ std::array<double, 3> nearest_weights(const Point& p, const std::array<Point, 3>
 
 class EdgeCurve {
  public:
-  explicit EdgeCurve(const Samples& samples) : curve_(TopoDS::Edge(samples.shape)), samples_(samples) {}
+  explicit EdgeCurve(const Samples& samples) : curve_(TopoDS::Edge(samples.shape)), samples_(samples) {
+    for (std::size_t i = 1; i < samples.points.size() && !is_elementary(); ++i) {
+      const Point middle = to_point(curve_.Value((parameter(i - 1) + parameter(i)) / 2));
+      const double from_chord = distance(middle, on_chord(middle, i).point);
+      reach_ = std::max(reach_, chords_apart * from_chord);
+    }
+  }
 
   std::optional<Point> nearest(const Point& p) const {
-    const bool is_elementary = curve_.GetType() <= GeomAbs_Parabola;
-    if (is_elementary || samples_.points.empty()) return nearest_of_all(p);
-    const std::optional<Point> near = descend(start_near(p), to_gp(p));
-    return near ? near : nearest_of_all(p);
+    if (is_elementary() || samples_.points.size() < 2) return nearest_of_all(p);
+    std::optional<Point> best;
+    for (const double start : starts_near(p)) {
+      const std::optional<Point> found = descend(start, to_gp(p));
+      if (!found) return nearest_of_all(p);
+      keep_nearer(best, found, p);
+    }
+    return best;
   }
 
  private:
-  /// Returns the parameter of the nearest point of the edge's chords.
-  double start_near(const Point& p) const {
-    const auto& [shape, points, parameters, triangles] = samples_;
-    double start = parameters[0][0], least = squared_distance(p, points[0]);
-    for (std::size_t i = 1; i < points.size(); ++i) {
-      const Vector chord = points[i] - points[i - 1];
-      const double length = squared_norm(chord);
-      const double t = length > 0 ? std::clamp(dot(p - points[i - 1], chord) / length, 0., 1.) : 0;
-      const double off = squared_distance(p, points[i - 1] + t * chord);
-      if (off >= least) continue;
-      least = off;
-      start = (1 - t) * parameters[i - 1][0] + t * parameters[i][0];
+  bool is_elementary() const { return curve_.GetType() <= GeomAbs_Parabola; }
+  double parameter(std::size_t i) const { return samples_.parameters[i][0]; }
+
+  struct OnChord {
+    Point point;
+    double parameter;
+  };
+  /// Returns the point nearest to p of the chord that ends at the i-th sample.
+  OnChord on_chord(const Point& p, std::size_t i) const {
+    const Point& from = samples_.points[i - 1];
+    const Vector chord = samples_.points[i] - from;
+    const double length = squared_norm(chord);
+    const double t = length > 0 ? std::clamp(dot(p - from, chord) / length, 0., 1.) : 0;
+    return {from + t * chord, (1 - t) * parameter(i - 1) + t * parameter(i)};
+  }
+
+  /// Returns parameters from which to search. Each is that of the nearest point of a run of chords so near
+  /// that their part of the edge may be the nearest one, as another branch or the other end of a closed edge
+  /// may be.
+  std::vector<double> starts_near(const Point& p) const {
+    std::vector<std::pair<double, double>> chords;  // distances and parameters
+    double least = INFINITY;
+    for (std::size_t i = 1; i < samples_.points.size(); ++i) {
+      const OnChord near = on_chord(p, i);
+      chords.emplace_back(distance(p, near.point), near.parameter);
+      least = std::min(least, chords.back().first);
     }
-    return start;
+    std::vector<double> starts;
+    double nearest_of_run = INFINITY;
+    for (const auto& [off, at] : chords) {
+      if (off > least + reach_) {
+        nearest_of_run = INFINITY;
+      } else if (off < nearest_of_run) {
+        if (nearest_of_run == INFINITY) starts.emplace_back();
+        starts.back() = at;
+        nearest_of_run = off;
+      }
+    }
+    return starts;
   }
 
   /// Moves in each step to the nearest point of the tangent, and halves the step until the distance
@@ -103,15 +138,16 @@ class EdgeCurve {
   std::optional<Point> descend(double at, const gp_Pnt& p) const {
     using namespace descent;
     const double scale = p.XYZ().Modulus() + p.Distance(curve_.Value(at));
+    double move = INFINITY;
+    gp_Pnt point;
     for (int step = 0; step < steps; ++step) {
-      gp_Pnt point;
       gp_Vec tangent;
       curve_.D1(at, point, tangent);
       if (!(tangent.SquareMagnitude() > 0)) return std::nullopt;
       const double next = std::clamp(at + gp_Vec(point, p).Dot(tangent) / tangent.SquareMagnitude(),
                                      curve_.FirstParameter(), curve_.LastParameter());
-      const double move = std::fabs(next - at) * tangent.Magnitude();
-      if (move <= rounding * scale) return to_point(point);
+      move = std::fabs(next - at) * tangent.Magnitude();
+      if (move <= rounding * scale) break;
       double part = 1;
       int k = 0;
       for (; k < halvings; ++k, part *= 0.5) {
@@ -120,9 +156,9 @@ class EdgeCurve {
         at = trial;
         break;
       }
-      if (k == halvings) return move <= converged * scale ? std::optional(to_point(point)) : std::nullopt;
+      if (k == halvings) break;
     }
-    return std::nullopt;
+    return move <= converged * scale ? std::optional(to_point(point)) : std::nullopt;
   }
 
   std::optional<Point> nearest_of_all(const Point& p) const {
@@ -135,8 +171,13 @@ class EdgeCurve {
     return best;
   }
 
+  // A chord is at most half of `reach_` away from its part of the edge. That is estimated from the middle of
+  // the part, with a margin for parts that are no arcs.
+  static constexpr double chords_apart = 3;
+
   BRepAdaptor_Curve curve_;
   const Samples& samples_;
+  double reach_ = 0;
 };
 
 class FaceSurface {
@@ -229,13 +270,14 @@ class FaceSurface {
   std::optional<Point> descend(std::array<double, 2> uv, const gp_Pnt& p) const {
     using namespace descent;
     const double scale = p.XYZ().Modulus() + p.Distance(surface_.Value(uv[0], uv[1]));
+    double length = INFINITY;
+    gp_Pnt at;
     for (int step = 0; step < steps; ++step) {
-      gp_Pnt at;
       gp_Vec du, dv;
       surface_.D1(uv[0], uv[1], at, du, dv);
       const auto next = tangent_step(uv, gp_Vec(at, p), du, dv);
-      const gp_Vec move = (next[0] - uv[0]) * du + (next[1] - uv[1]) * dv;
-      if (move.Magnitude() <= rounding * scale) return to_point(at);
+      length = ((next[0] - uv[0]) * du + (next[1] - uv[1]) * dv).Magnitude();
+      if (length <= rounding * scale) break;
       double part = 1;
       int k = 0;
       for (; k < halvings; ++k, part *= 0.5) {
@@ -244,10 +286,9 @@ class FaceSurface {
         uv = trial;
         break;
       }
-      if (k == halvings)
-        return move.Magnitude() <= converged * scale ? std::optional(to_point(at)) : std::nullopt;
+      if (k == halvings) break;
     }
-    return std::nullopt;
+    return length <= converged * scale ? std::optional(to_point(at)) : std::nullopt;
   }
 
   /// Returns the parameters of the tangent plane's point nearest to at + d, within the face's bounds.

@@ -103,6 +103,7 @@ MeshStatus Refinement::run() {
       mending_collars = true;
       continue;
     }
+    assert(outcome_.given_up() || points_.all_resolved());
     stitching_.stitch();
     if (outcome_.given_up()) break;
     if (by_all_threads([&] { return topology_.check(); }) || bound_narrow_cells()) continue;

@@ -1,7 +1,6 @@
 #include "refine/rip_and_stitch.h"
 
 #include <algorithm>
-#include <cassert>
 #include <iterator>
 
 #include "common/sorted.h"
@@ -22,7 +21,6 @@ struct FaceUse {
 void RipAndStitch::stitch() {
   stitched_ = {};
   if (collars_.empty()) return;
-  assert(points_.all_resolved());
   const std::vector<CollarTriangle> triangles = collar_surface_.triangles();
   for (const CollarTriangle& t : triangles) {
     const Index region = surface_.region(cell_of(t.face));

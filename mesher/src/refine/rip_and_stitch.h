@@ -51,8 +51,9 @@ class RipAndStitch {
         creator_(creator),
         collar_surface_(collar_surface) {}
 
-  /// Makes the tets. Precondition: every point is resolved. If refinement has given up, so that the collar
-  /// surface is not well represented, some collars are `open` or have cells other than the paper's.
+  /// Makes the tets. Precondition: every point is resolved, unless refinement has given up. If it has, so
+  /// that the collar surface is not well represented, some collars are `open` or have cells other than the
+  /// paper's.
   void stitch();
   const Stitched& result() const { return stitched_; }
 

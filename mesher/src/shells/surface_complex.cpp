@@ -58,7 +58,6 @@ Index SurfaceComplex::add_triangle(const std::array<Index, 3>& corners, Index pa
     vertices[v].triangles.push_back(number);
     ++vertices[v].changes;
   }
-  assert(std::ranges::all_of(corners, [this](Index v) { return consistent(v); }));
   return number;
 }
 
@@ -67,7 +66,6 @@ void SurfaceComplex::remove_triangle(Index triangle) {
   const std::array<Index, 3> corners = triangles[triangle].corners;
   for (const Index v : corners) erase_one(vertices[v].triangles, triangle);
   triangles[triangle] = {};
-  assert(std::ranges::all_of(corners, [this](Index v) { return consistent(v); }));
 }
 
 void SurfaceComplex::move_vertex(Index vertex, const Point& to) {
@@ -80,7 +78,6 @@ Index SurfaceComplex::add_edge(const std::array<Index, 2>& ends, Index curve,
   const auto number = static_cast<Index>(edges.size());
   edges.push_back({ends, curve, at});
   for (const Index v : ends) vertices[v].edges.push_back(number);
-  assert(consistent(ends[0]) && consistent(ends[1]));
   return number;
 }
 
@@ -89,7 +86,6 @@ void SurfaceComplex::remove_edge(Index edge) {
   const std::array<Index, 2> ends = edges[edge].ends;
   for (const Index v : ends) erase_one(vertices[v].edges, edge);
   edges[edge] = {};
-  assert(consistent(ends[0]) && consistent(ends[1]));
 }
 
 std::vector<Index> SurfaceComplex::triangles_at(Index a, Index b) const {
