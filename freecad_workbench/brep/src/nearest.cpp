@@ -72,64 +72,74 @@ std::array<double, 3> nearest_weights(const Point& p, const std::array<Point, 3>
 
 class EdgeCurve {
  public:
-  explicit EdgeCurve(const Samples& samples) : curve_(TopoDS::Edge(samples.shape)), samples_(samples) {
-    for (std::size_t i = 1; i < samples.points.size() && !is_elementary(); ++i) {
-      const Point middle = to_point(curve_.Value((parameter(i - 1) + parameter(i)) / 2));
-      const double from_chord = distance(middle, on_chord(middle, i).point);
-      reach_ = std::max(reach_, chords_apart * from_chord);
-    }
+  explicit EdgeCurve(const Samples& samples) : curve_(TopoDS::Edge(samples.shape)) {
+    if (is_elementary() || samples.points.empty()) return;
+    add(samples.parameters[0][0]);
+    for (std::size_t i = 1; i < samples.points.size(); ++i) add_up_to(samples.parameters[i][0], 0);
   }
 
   std::optional<Point> nearest(const Point& p) const {
-    if (is_elementary() || samples_.points.size() < 2) return nearest_of_all(p);
+    if (points_.size() < 2) return nearest_of_all(p);
     std::optional<Point> best;
     for (const double start : starts_near(p)) {
       const std::optional<Point> found = descend(start, to_gp(p));
       if (!found) return nearest_of_all(p);
       keep_nearer(best, found, p);
     }
-    return best;
+    return best ? best : nearest_of_all(p);
   }
 
  private:
   bool is_elementary() const { return curve_.GetType() <= GeomAbs_Parabola; }
-  double parameter(std::size_t i) const { return samples_.parameters[i][0]; }
 
-  struct OnChord {
-    Point point;
-    double parameter;
-  };
-  /// Returns the point nearest to p of the chord that ends at the i-th sample.
-  OnChord on_chord(const Point& p, std::size_t i) const {
-    const Point& from = samples_.points[i - 1];
-    const Vector chord = samples_.points[i] - from;
-    const double length = squared_norm(chord);
-    const double t = length > 0 ? std::clamp(dot(p - from, chord) / length, 0., 1.) : 0;
-    return {from + t * chord, (1 - t) * parameter(i - 1) + t * parameter(i)};
+  void add(double parameter) {
+    parameters_.push_back(parameter);
+    points_.push_back(to_point(curve_.Value(parameter)));
   }
 
-  /// Returns parameters from which to search. Each is that of the nearest point of a run of chords so near
-  /// that their part of the edge may be the nearest one, as another branch or the other end of a closed edge
-  /// may be.
+  /// Adds points up to this parameter, so many that the chords between them are nearly straight.
+  void add_up_to(double parameter, int depth) {
+    constexpr int deepest = 10;
+    constexpr double straight = 0.02;  // largest distance from the edge, relative to the chord's length
+    const double from = parameters_.back();
+    const Point start = points_.back(), end = to_point(curve_.Value(parameter));
+    double off = 0;
+    for (const double share : {0.25, 0.5, 0.75}) {
+      const Point p = to_point(curve_.Value(from + share * (parameter - from)));
+      off = std::max(off, distance(p, nearest_on_chord(p, start, end).first));
+    }
+    if (off > straight * distance(start, end) && depth < deepest) {
+      add_up_to((from + parameter) / 2, depth + 1);
+      return add_up_to(parameter, depth + 1);
+    }
+    reach_ = std::max(reach_, chords_apart * off);
+    add(parameter);
+  }
+
+  /// Returns the point of a chord nearest to p, and the share of the chord before it.
+  static std::pair<Point, double> nearest_on_chord(const Point& p, const Point& from, const Point& to) {
+    const Vector chord = to - from;
+    const double length = squared_norm(chord);
+    const double t = length > 0 ? std::clamp(dot(p - from, chord) / length, 0., 1.) : 0;
+    return {from + t * chord, t};
+  }
+
+  /// Returns parameters from which to search: those of the nearest points of chords that are nearer than the
+  /// chords beside them, and so near that their part of the edge may be the nearest one.
   std::vector<double> starts_near(const Point& p) const {
-    std::vector<std::pair<double, double>> chords;  // distances and parameters
-    double least = INFINITY;
-    for (std::size_t i = 1; i < samples_.points.size(); ++i) {
-      const OnChord near = on_chord(p, i);
-      chords.emplace_back(distance(p, near.point), near.parameter);
-      least = std::min(least, chords.back().first);
+    const std::size_t count = points_.size() - 1;
+    std::vector<double> distances(count), at(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto [near, share] = nearest_on_chord(p, points_[i], points_[i + 1]);
+      distances[i] = distance(p, near);
+      at[i] = (1 - share) * parameters_[i] + share * parameters_[i + 1];
     }
+    const double far = *std::min_element(distances.begin(), distances.end()) + reach_;
     std::vector<double> starts;
-    double nearest_of_run = INFINITY;
-    for (const auto& [off, at] : chords) {
-      if (off > least + reach_) {
-        nearest_of_run = INFINITY;
-      } else if (off < nearest_of_run) {
-        if (nearest_of_run == INFINITY) starts.emplace_back();
-        starts.back() = at;
-        nearest_of_run = off;
-      }
-    }
+    for (std::size_t i = 0; i < count; ++i)
+      if (distances[i] <= far && (i == 0 || distances[i] <= distances[i - 1]) &&
+          (i + 1 == count || distances[i] < distances[i + 1]))
+        starts.push_back(at[i]);
     return starts;
   }
 
@@ -171,12 +181,13 @@ class EdgeCurve {
     return best;
   }
 
-  // A chord is at most half of `reach_` away from its part of the edge. That is estimated from the middle of
-  // the part, with a margin for parts that are no arcs.
+  // A chord is at most half of `reach_` away from its part of the edge. That is estimated from a few points
+  // of the part, with a margin.
   static constexpr double chords_apart = 3;
 
   BRepAdaptor_Curve curve_;
-  const Samples& samples_;
+  std::vector<Point> points_;  // of chords; none for elementary curves
+  std::vector<double> parameters_;
   double reach_ = 0;
 };
 
