@@ -64,7 +64,7 @@ def children(process_id):
     return [int(each) for text in lists for each in text.split()]
 
 
-def wait_until(condition, what, seconds=60):
+def wait_until(condition, what, seconds=180):
     end = time.monotonic() + seconds
     while not condition():
         if time.monotonic() > end:
