@@ -225,7 +225,8 @@ MeshedComplex meshed_cylinder_with_ears(unsigned segments, unsigned finer) {
     surface.add_facet(std::array<Index, 3>{segments, segments + i, segments + next});
   }
   MeshedComplex made = with_features(star_mesh(surface, {0, 0, 0.5}), cylinder(1, 1, segments * finer));
-  auto& [plc, mesh] = made;
+  const Plc& plc = made.plc;
+  TetMesh& mesh = made.mesh;
   // All corners of a cap lie on its circle, so that chords look like edges of the circle, and caps like the
   // side.
   for (Index f = 0; f < mesh.faces.size(); ++f) {
