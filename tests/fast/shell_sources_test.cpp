@@ -8,6 +8,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "collarmesh/error.h"
@@ -234,11 +235,21 @@ TEST(ShellSources, RunsThatAreStoppedHaveNoMesh) {
   }
 }
 
+/// A source that takes until the run is told to end.
+class LateSource : public Source {
+ public:
+  using Source::Source;
+  RepairedPlc build(const RepairOptions& repair, const Execution& execution) override {
+    while (!execution.cancelled()) std::this_thread::yield();
+    return Source::build(repair, execution);
+  }
+};
+
 TEST(ShellSources, TheTimeLimitIsTold) {
   const PolygonSoup soup = cylinder(1, 2, 48);
   PipelineOptions options = asked(0.4);
   options.mesh.time_limit = 1e-9;
-  Source source(soup);
+  LateSource source(soup);
   const SoupPipelineResult made = run_pipeline(source, options);
   EXPECT_EQ(made.result.status, MeshStatus::budget_hit);
   EXPECT_NE(made.result.message.find("time limit"), std::string::npos);
