@@ -154,7 +154,7 @@ void Process::catch_signals() {
   for (const int number : {SIGHUP, SIGQUIT}) catch_unless_ignored(number, action);
   std::signal(SIGXCPU, on_processor_time);
   // `ulimit -t` sets the soft and the hard limit to the same time, and the signal of the hard limit cannot be
-  // caught. Lowers the soft limit so that these CPU seconds, of all threads, remain to end in.
+  // caught. A lower soft limit leaves some CPU seconds, of all threads, in which the program can end.
   constexpr rlim_t to_end_within = 2;
   rlimit limit = {};
   if (getrlimit(RLIMIT_CPU, &limit) == 0 && limit.rlim_max != RLIM_INFINITY &&
