@@ -6,6 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
 #include <functional>
 #include <random>
 #include <set>
@@ -245,6 +248,47 @@ TEST(DelaunayTriangulationZone, OfAVertexWithManyNeighboursIsLinked) {
         EXPECT_EQ(mesh.opposite(mesh.opposite(face)), face);
       }
     }
+}
+
+// Compares with integers: vectors that are parallel, nearly parallel or any, with zeros, at scales whose
+// products underflow or overflow.
+TEST(Predicates, SignsOfCrossProductsAreExact) {
+  __extension__ using Wide = __int128;
+  using Integers = std::array<std::int64_t, 3>;
+  std::mt19937_64 random(5);
+  const auto vector = [&](std::int64_t largest) {
+    std::uniform_int_distribution<std::int64_t> any(-largest, largest);
+    Integers v{any(random), any(random), any(random)};
+    for (std::int64_t& x : v)
+      if (random() % 4 == 0) x = 0;
+    return v;
+  };
+  const auto sum = [](const Integers& a, const Integers& b) {
+    return Integers{a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+  };
+  std::array<int, 3> found{};
+  for (int i = 0; i < 20'000; ++i) {
+    const std::int64_t largest = i % 2 == 0 ? 1 << 10 : std::int64_t{1} << 48;
+    const Integers u = vector(largest);
+    Integers v = vector(largest);
+    if (i % 3 != 0) v = sum({-u[0], -u[1], -u[2]}, i % 3 == 1 ? Integers{} : vector(1));
+    const Integers p = vector(largest), a = vector(largest), q = sum(p, u), b = sum(a, v);
+    int wanted = 0;
+    for (std::size_t axis = 0; axis < 3 && wanted == 0; ++axis) {
+      const std::size_t j = (axis + 1) % 3, k = (axis + 2) % 3;
+      const Wide left = Wide{u[j]} * v[k], right = Wide{u[k]} * v[j];
+      wanted = left > right ? 1 : left < right ? -1 : 0;
+    }
+    for (const int exponent : {0, -560, 900}) {
+      const auto at = [&](const Integers& x) {
+        const auto scaled = [&](std::int64_t y) { return std::ldexp(static_cast<double>(y), exponent); };
+        return Point{scaled(x[0]), scaled(x[1]), scaled(x[2])};
+      };
+      ASSERT_EQ(predicates::cross_product_sign_exact(at(p), at(q), at(a), at(b)), wanted);
+    }
+    ++found[static_cast<std::size_t>(wanted + 1)];
+  }
+  for (const int count : found) EXPECT_GT(count, 1000);
 }
 
 }  // namespace

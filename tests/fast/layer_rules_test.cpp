@@ -14,6 +14,7 @@
 #include "layers/direction.h"
 #include "layers/front.h"
 #include "support/plc_shapes.h"
+#include "support/tagged_cylinder.h"
 
 namespace collarmesh::layering::layer_rules_test {
 namespace {
@@ -173,16 +174,7 @@ TEST(CoreAngles, AreThoseOfThinTets) {
 TEST(LayerHeights, NodesThatSlideAlongACurvedFaceStayOnIt) {
   constexpr unsigned around = 48;
   const double chord = std::cos(std::numbers::pi / around);
-  const PolygonSoup plain = testing::polygonal_cylinder(around, 1, 2);
-  PolygonSoup soup;
-  soup.points = plain.points;
-  for (Index f = 0; f < plain.facet_count(); ++f) {
-    const auto corners = plain.polygon(plain.facet_polygons(f)[0]);
-    const auto all_at = [&](double z) {
-      return std::ranges::all_of(corners, [&](Index v) { return plain.points[v].z == z; });
-    };
-    soup.add_facet(corners, all_at(0) ? 2 : all_at(2) ? 3 : 1);
-  }
+  const PolygonSoup soup = testing::with_tagged_ends(testing::polygonal_cylinder(around, 1, 2), 2);
   PipelineOptions options;
   options.mesh.size = 0.5;
   options.mesh.bounds.distance = 0.02;

@@ -21,18 +21,7 @@ namespace {
 using namespace facets;
 using testing::polygonal_box;
 using testing::faulty::draft_of;
-
-Draft with_moved_corners(Draft draft) {
-  for (const double x : {0.0, 6.0}) {
-    const auto moved = static_cast<Index>(draft.points.size());
-    draft.points.push_back({x, 0.1, 0.2});
-    draft.point_tags.push_back(0);
-    for (Corners& t : draft.triangles)
-      for (Index& p : t)
-        if (draft.points[p] == Point{x, 0, 0}) p = moved;
-  }
-  return draft;
-}
+using testing::faulty::with_moved_corners;
 
 // Edges of the boxes at the moved corners are segments, too, and one far from all changes.
 TEST(Changes, SegmentsAreThoseOfTheirPlaces) {

@@ -668,18 +668,6 @@ TEST(DropFlakes, WhatIsThinAndSmallGoes) {
 
 // Changes
 
-Draft with_moved_corners(Draft draft) {
-  for (const double x : {0.0, 6.0}) {
-    const auto moved = static_cast<Index>(draft.points.size());
-    draft.points.push_back({x, 0.1, 0.2});
-    draft.point_tags.push_back(0);
-    for (Corners& t : draft.triangles)
-      for (Index& p : t)
-        if (draft.points[p] == Point{x, 0, 0}) p = moved;
-  }
-  return draft;
-}
-
 // Two boxes far apart, each with one corner moved: the change at either place can be undone alone.
 TEST(Changes, ArePlacesThatCanBeTakenBackAlone) {
   const std::vector<PolygonSoup> soups{soup_of({{0, 0, 0}, {1, 1, 1}}), soup_of({{5, 0, 0}, {6, 1, 1}})};

@@ -15,6 +15,7 @@
 #include "collarmesh/shells.h"
 #include "support/repair_shapes.h"
 #include "support/shapes.h"
+#include "support/tagged_cylinder.h"
 
 namespace collarmesh::shell_sources_test {
 namespace {
@@ -132,23 +133,8 @@ TEST(ShellSources, NodesFarFromTheExactGeometryStay) {
   }
 }
 
-/// A cylinder whose side has the tag 1 and whose ends have the tags 2 and 3.
-PolygonSoup cylinder_with_tags(double height) {
-  const PolygonSoup plain = cylinder(1, height, 48);
-  PolygonSoup soup;
-  soup.points = plain.points;
-  for (Index f = 0; f < plain.facet_count(); ++f) {
-    const auto corners = plain.polygon(plain.facet_polygons(f)[0]);
-    const auto all_at = [&](double z) {
-      return std::ranges::all_of(corners, [&](Index v) { return plain.points[v].z == z; });
-    };
-    soup.add_facet(corners, all_at(0) ? 2 : all_at(height) ? 3 : 1);
-  }
-  return soup;
-}
-
 TEST(ShellSources, ChosenFacesKeepTheirExactGeometry) {
-  const PolygonSoup soup = cylinder_with_tags(2);
+  const PolygonSoup soup = testing::with_tagged_ends(cylinder(1, 2, 48), 2);
   Source whole(soup);
   const Plc plc = whole.build({}, {}).plc;
   ASSERT_EQ(plc.patches.size(), 3U);

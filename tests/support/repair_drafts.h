@@ -33,4 +33,17 @@ inline facets::Draft draft_of(std::span<const PolygonSoup> soups, bool torn = fa
 }
 inline facets::Draft draft_of(const PolygonSoup& soup) { return draft_of({&soup, 1}); }
 
+/// Returns the draft with its corners at (0, 0, 0) and (6, 0, 0) moved a little.
+inline facets::Draft with_moved_corners(facets::Draft draft) {
+  for (const double x : {0.0, 6.0}) {
+    const auto moved = static_cast<Index>(draft.points.size());
+    draft.points.push_back({x, 0.1, 0.2});
+    draft.point_tags.push_back(0);
+    for (auto& t : draft.triangles)
+      for (Index& p : t)
+        if (draft.points[p] == Point{x, 0, 0}) p = moved;
+  }
+  return draft;
+}
+
 }  // namespace collarmesh::testing::faulty
