@@ -152,7 +152,7 @@ class ThicknessKept {
         sums.where.y, sums.where.z, 100 * std::fabs(sums.mesh / sums.input - 1),
         sums.mesh < sums.input ? "thinner" : "thicker");
     if (subject_.options.bounds.distance <= 0)
-      findings.add(guarantee::thickness_kept, sums.where, {patch},
+      findings.add(guarantee::thickness_kept, sums.where, {patch, sums.opposite},
                    "{}; allowed are {:.0f} %. Ask for a smaller size or distance.", found, 100 * allowed);
     else
       report.warnings.push_back(found + "; a smaller size or distance reduces the difference.");

@@ -14,6 +14,12 @@ bool is_about_shape(const Finding& f) {
          f.guarantee == guarantee::radius_edge;
 }
 
+bool misses_volumes_only(const CheckReport& check) {
+  return !check.findings.empty() && std::ranges::all_of(check.findings, [](const Finding& f) {
+    return f.guarantee == guarantee::volume_kept || f.guarantee == guarantee::thickness_kept;
+  });
+}
+
 std::size_t count_misshapen(const MeshJob& job, const TetMesh& mesh) {
   Bounds promised = job.bounds();
   promised.tolerance = job.refined_with.bounds.tolerance;

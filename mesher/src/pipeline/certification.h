@@ -9,6 +9,9 @@ namespace collarmesh::pipeline {
 /// Returns whether a finding says that a tet misses the bounds on its shape.
 bool is_about_shape(const Finding& finding);
 
+/// Returns whether all missed guarantees may hold with a smaller surface distance.
+bool misses_volumes_only(const CheckReport& check);
+
 /// Returns the number of tets that miss the bounds on their shapes, plus, with a far larger weight, the
 /// number of nodes, edges and faces of periodic pairs that have no image.
 std::size_t count_misshapen(const MeshJob& job, const TetMesh& mesh);

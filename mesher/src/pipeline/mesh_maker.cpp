@@ -7,7 +7,6 @@
 #include <memory>
 #include <utility>
 
-#include "check/guarantees.h"
 #include "collarmesh/error.h"
 #include "common/disjoint_sets.h"
 #include "common/thread_limit.h"
@@ -27,13 +26,6 @@ namespace {
 
 /// With thin shells, a refinement that needs more vertices takes longer than constrained tetrahedra.
 constexpr std::size_t few_vertices = 15'000;
-
-/// Returns whether all missed guarantees may hold with a smaller surface distance.
-bool misses_volumes_only(const CheckReport& check) {
-  return !check.findings.empty() && std::ranges::all_of(check.findings, [](const Finding& f) {
-    return f.guarantee == guarantee::volume_kept || f.guarantee == guarantee::thickness_kept;
-  });
-}
 
 /// Moves the vertices of a complete mesh onto the exact geometry, if there is any.
 void project(MeshJob& job) {

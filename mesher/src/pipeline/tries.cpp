@@ -16,6 +16,7 @@
 #include "check/guarantees.h"
 #include "collarmesh/plc_builder.h"
 #include "common/thread_limit.h"
+#include "pipeline/certification.h"
 #include "pipeline/explosion.h"
 #include "pipeline/lost_parts.h"
 #include "pipeline/vertex_bound.h"
@@ -109,7 +110,7 @@ void Tries::mesh_any_repaired(SoupPipelineResult& all) {
   const End end = tried.first;
   const std::string& why = tried.second;
   if (!sharp.empty() && end != End::exploded && end != End::refused) made.check.notes.push_back(sharp);
-  if (end == End::holds) return;
+  if (end == End::holds || (end == End::missed && come_nearer_where_missed(all.plc))) return;
   bool has_mesh = end == End::missed, built_last = true;
   std::optional<Point> place;
   // If places far thinner than the sizes spoil the mesh, a change at any of them may help.
@@ -405,6 +406,26 @@ double Tries::largest_loss(const Plc& plc, std::vector<double>* shares) const {
       if (std::ranges::count(plc.patches[p].regions, r) == 1) (*shares)[p] = std::min((*shares)[p], share);
   }
   return largest;
+}
+
+/// If nothing but volumes and thicknesses misses its limit, makes the mesh again, nearer to the smooth patches
+/// where they do. Returns whether every guarantee holds then.
+bool Tries::come_nearer_where_missed(const Plc& plc) {
+  constexpr double least = 0.25;
+  PipelineResult& made = job_.made;
+  const Bounds& bounds = job_.given.mesh.bounds;
+  if (bounds.distance > 0 || bounds.tolerance || !misses_volumes_only(made.check)) return false;
+  std::vector<double> shares(plc.patches.size(), 1);
+  largest_loss(plc, &shares);
+  for (const Finding& finding : made.check.findings)
+    if (finding.guarantee == guarantee::thickness_kept)
+      for (const Index patch : finding.ids) shares[patch] = std::min(shares[patch], least);
+  if (std::ranges::all_of(shares, [](double share) { return share >= 1; })) return false;
+  const std::string missed = made.missed();
+  maker_.come_nearer(plc, shares);
+  if (!find_better(true, [&] { maker_.make(plc, seed_); })) return false;
+  made.check.notes.push_back(fmt::format("made nearer to smooth surfaces, because otherwise: {}", missed));
+  return true;
 }
 
 /// Returns whether the kept mesh is small, keeps every guarantee, and was refined with the default distances

@@ -57,6 +57,7 @@ class Tries {
   bool may_keep_volumes() const;
   void keep_volumes(const Plc& plc);
   bool come_nearer(const Plc& plc, const std::vector<double>& shares, double loss);
+  bool come_nearer_where_missed(const Plc& plc);
 
   /// Tries another way to make a mesh. The present result stays unless it has no mesh or the new one keeps
   /// every guarantee.
