@@ -112,8 +112,8 @@ bool Detours::help(Index tet, Effort effort) {
   for (const Index place : places(tet, effort)) {
     const bool may_change_vertices = place == tet || remedies_.may_change_vertices(place);
     for (unsigned edge = 0; edge < cell_shapes::corner_pairs.size(); ++edge)
-      for (const Operation operation : {Operation::contraction, Operation::contraction_turned,
-                                        Operation::insertion, Operation::removal}) {
+      for (const Operation operation :
+           {Operation::collapse, Operation::collapse_turned, Operation::insertion, Operation::removal}) {
         if (operation != Operation::removal && !may_change_vertices) continue;
         const FirstStep tried{place, edge, operation};
         const Result found = attempt(tried, is_perfect);
@@ -158,8 +158,8 @@ Change Detours::first_step(const FirstStep& step) {
   Change change;
   const double above = least_quality_on_way;
   switch (step.operation) {
-    case Operation::contraction: operations_.contract_edge(a, b, change, above); break;
-    case Operation::contraction_turned: operations_.contract_edge(b, a, change, above); break;
+    case Operation::collapse: operations_.collapse_edge(a, b, change, above); break;
+    case Operation::collapse_turned: operations_.collapse_edge(b, a, change, above); break;
     case Operation::insertion: operations_.split_edge_anyhow(a, b, above, change); break;
     case Operation::removal: operations_.remove_edge(step.tet, i, j, change, above); break;
   }

@@ -33,7 +33,7 @@ class Detours {
   std::size_t trials() const { return trials_; }
 
  private:
-  enum class Operation : std::uint8_t { contraction, contraction_turned, insertion, removal };
+  enum class Operation : std::uint8_t { collapse, collapse_turned, insertion, removal };
   /// The beginning of a detour: an operation at an edge of a tet.
   struct FirstStep {
     Index tet;

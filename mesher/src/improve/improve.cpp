@@ -224,7 +224,7 @@ class Improvement {
       case Change::Kind::edge_removal: ++report_.edge_removals; break;
       case Change::Kind::boundary_flip: ++report_.boundary_flips; break;
       case Change::Kind::move: ++report_.moved_vertices; break;
-      case Change::Kind::contraction:
+      case Change::Kind::collapse:
         if (!edited_.curve_can_spare(change)) return;
         ++report_.contracted_edges;
         break;

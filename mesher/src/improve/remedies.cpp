@@ -42,7 +42,7 @@ Change Remedies::propose(Operations& operations, Index tet) const {
   for (const Index v : corners)
     if (!stays(v)) operations.move_vertex(v, change);
   if (found() || !may_change_vertices(tet)) return change;
-  operations.contract_best_edge(tet, change);
+  operations.collapse_best_edge(tet, change);
   for (const auto& [i, j] : cell_shapes::corner_pairs)
     if (!found()) operations.split_edge(corners[i], corners[j], enough * wanted_, change);
   if (found() || !rule_.is_blunt(quality(tet))) return change;
@@ -50,7 +50,7 @@ Change Remedies::propose(Operations& operations, Index tet) const {
   if (refill_) operations.reconnect(tet, change);
   if (found()) return change;
   // A longer edge is better than a missed guarantee, so any length is allowed here.
-  operations.contract_best_edge(tet, change, Operations::Lengths::any);
+  operations.collapse_best_edge(tet, change, Operations::Lengths::any);
   return change;
 }
 
