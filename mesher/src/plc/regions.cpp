@@ -49,7 +49,7 @@ struct Chamber {
 
 class RegionFinder {
  public:
-  RegionFinder(const Draft& draft, const EdgeTable& edges, const BoxTree& boxes, Faults& faults)
+  RegionFinder(const ComplexDraft& draft, const EdgeTable& edges, const BoxTree& boxes, Faults& faults)
       : draft_(draft),
         faults_(faults),
         count_(static_cast<Index>(draft.triangles.size())),
@@ -369,7 +369,7 @@ class RegionFinder {
     for (std::size_t r = 1; r < sums.size(); ++r) result.list[r].volume = sums[r].value() / 6;
   }
 
-  const Draft& draft_;
+  const ComplexDraft& draft_;
   Faults& faults_;
   Index count_;
   Index outside_;            // representative of the outside
@@ -388,7 +388,7 @@ class RegionFinder {
 
 }  // namespace
 
-Regions find_regions(const Draft& draft, const EdgeTable& edges, const BoxTree& boxes,
+Regions find_regions(const ComplexDraft& draft, const EdgeTable& edges, const BoxTree& boxes,
                      std::span<const PolygonSoup> soups, Faults& faults) {
   return RegionFinder(draft, edges, boxes, faults).run(soups);
 }

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "facets/draft.h"
+#include "facets/complex_draft.h"
 #include "repair/work.h"
 
 namespace collarmesh::repairing {
@@ -33,10 +33,10 @@ enum class KeptMerges {
 /// each other, and none do if `cancel_twins` is false. Throws WorkStopped; the draft is then unusable. Pieces
 /// keep their triangle's origin, except `Origin::facet`, which is renumbered. Cost: O(n log n), and for k
 /// intersecting pairs O(k log k) exact constructions.
-ArrangementReport arrange(facets::Draft& draft, double grain, Work* work = nullptr, bool cancel_twins = true,
-                          KeptMerges kept = KeptMerges::all);
+ArrangementReport arrange(facets::ComplexDraft& draft, double grain, Work* work = nullptr,
+                          bool cancel_twins = true, KeptMerges kept = KeptMerges::all);
 
 /// Merges points with equal coordinates, and drops triangles and segments that thereby lose a corner.
-void unify_equal_points(facets::Draft& draft);
+void unify_equal_points(facets::ComplexDraft& draft);
 
 }  // namespace collarmesh::repairing

@@ -13,7 +13,7 @@
 #include "collarmesh/noise.h"
 #include "facets/box_around.h"
 #include "facets/cleanup.h"
-#include "facets/draft.h"
+#include "facets/complex_draft.h"
 #include "facets/edges.h"
 #include "facets/facet_triangulation.h"
 #include "facets/faults.h"
@@ -110,7 +110,7 @@ class Repairer {
       const std::vector<CollapsedFeature> collapsed =
           collapse_in_draft(draft_, complex.plc, size, options_, work_);
       if (collapsed.empty()) return finished();
-      const Draft after = draft_;
+      const ComplexDraft after = draft_;
       if (!cut_and_keep() || encloses_nothing_) {
         const Changes changes(valid.draft, after);
         std::vector<bool> taken_back(changes.places(), false);
@@ -228,7 +228,7 @@ class Repairer {
     for (const double factor : {1.0, 10.0, 100.0}) {
       const double width = factor * tolerance_;
       if (open == 0 || (factor > 1 && width > widest_stitch * draft_.bounds.diagonal())) break;
-      Draft stitched = draft_;
+      ComplexDraft stitched = draft_;
       const SnapReport snapped = snap_near_features(stitched, width, SnapWhat::borders, &work_);
       const std::size_t left = count_open_edges(stitched);
       if (left >= open) continue;
@@ -262,7 +262,7 @@ class Repairer {
 
   /// The state of the draft. Once it is clean, steps must keep it clean.
   struct State {
-    Draft draft;
+    ComplexDraft draft;
     RepairReport report;
   };
   State state() const { return {draft_, report_}; }
@@ -360,7 +360,7 @@ class Repairer {
     add_places(report_.kept, better.taken_back.size(), 0, better.taken_back);
   }
 
-  std::optional<Plc> complex_of(const Draft& draft) const {
+  std::optional<Plc> complex_of(const ComplexDraft& draft) const {
     PlcOptions options = complex_;
     options.require_solid = false;
     try {
@@ -373,7 +373,7 @@ class Repairer {
   // Cuts facets that nearly coincide. Rounding their cuts would make ever more intersections, so they are
   // first snapped together, within the smallest distance that helps.
   bool cut_what_nearly_coincides() {
-    const Draft before = draft_;
+    const ComplexDraft before = draft_;
     const RepairReport report_before = report_;
     if (cut_and_keep()) return true;
     draft_ = before;
@@ -440,7 +440,7 @@ class Repairer {
   const RepairOptions& options_;
   const PlcOptions& complex_;
   Of of_;
-  Draft draft_;
+  ComplexDraft draft_;
   std::vector<CornerPoints> input_triangles_;
   double tolerance_ = 0;  // absolute; the tolerance that is used
   Index first_new_point_ = none;

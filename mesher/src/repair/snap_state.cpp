@@ -9,7 +9,8 @@ namespace collarmesh::repairing {
 
 using namespace facets;
 
-SnapState::SnapState(Draft& draft, double limit, SnapWhat what, Work& work, const std::vector<bool>& known)
+SnapState::SnapState(ComplexDraft& draft, double limit, SnapWhat what, Work& work,
+                     const std::vector<bool>& known)
     : draft_(draft),
       limit_(limit),
       what_(what),
@@ -79,7 +80,7 @@ std::vector<bool> SnapState::unseen(By by) const {
 
 std::size_t cancel_new_twins(SnapState& state) {
   std::size_t cancelled = 0;
-  const Draft& draft = state.draft();
+  const ComplexDraft& draft = state.draft();
   for (const Index t : state.take_added()) {
     if (!state.triangles().alive(t)) continue;
     const Corners& corners = draft.triangles[t];

@@ -36,7 +36,7 @@ namespace {
 
 // Visits groups of triangles of one soup with the same corners.
 template <class Visit>
-void for_each_group(const Draft& draft, const Visit& visit) {
+void for_each_group(const ComplexDraft& draft, const Visit& visit) {
   struct Key {
     Corners corners;
     Index soup, triangle;
@@ -61,7 +61,7 @@ void for_each_group(const Draft& draft, const Visit& visit) {
 }
 
 // Removes triangles. Returns their number.
-std::size_t drop(Draft& draft, const std::vector<bool>& removed) {
+std::size_t drop(ComplexDraft& draft, const std::vector<bool>& removed) {
   std::size_t kept = 0;
   for (Index t = 0; t < draft.triangles.size(); ++t) {
     if (removed[t]) continue;
@@ -75,7 +75,7 @@ std::size_t drop(Draft& draft, const std::vector<bool>& removed) {
 }
 
 // Returns the components of triangles that are connected by common corners, as sets of points.
-DisjointSets components_of(const Draft& draft) {
+DisjointSets components_of(const ComplexDraft& draft) {
   DisjointSets sets(draft.points.size());
   for (const Corners& t : draft.triangles) {
     sets.unite(t[0], t[1]);
@@ -86,7 +86,7 @@ DisjointSets components_of(const Draft& draft) {
 
 }  // namespace
 
-std::size_t cancel_twins(Draft& draft) {
+std::size_t cancel_twins(ComplexDraft& draft) {
   std::vector<bool> removed(draft.triangles.size(), false);
   for_each_group(draft, [&](const std::vector<Twin>& twins) {
     for (const Index t : cancelled_among(twins, draft.soup_is_complex[draft.origins[twins[0].triangle].soup]))
@@ -95,7 +95,7 @@ std::size_t cancel_twins(Draft& draft) {
   return drop(draft, removed);
 }
 
-bool is_two_sided(const Draft& draft) {
+bool is_two_sided(const ComplexDraft& draft) {
   constexpr double least = 1e-6;  // volume relative to that of a box with the surface's area
   const Point centre = draft.bounds.centre();
   double six = 0, area = 0;
@@ -106,7 +106,7 @@ bool is_two_sided(const Draft& draft) {
   return std::fabs(six) < least * std::pow(area, 1.5);
 }
 
-std::size_t keep_one_side(Draft& draft) {
+std::size_t keep_one_side(ComplexDraft& draft) {
   std::vector<bool> second(draft.triangles.size(), false);
   for_each_group(draft, [&](std::vector<Twin> twins) {
     std::sort(twins.begin(), twins.end());

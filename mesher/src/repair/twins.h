@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "facets/draft.h"
+#include "facets/complex_draft.h"
 
 namespace collarmesh::repairing {
 
@@ -28,13 +28,13 @@ bool is_odd(const facets::Corners& corners);
 std::vector<Index> cancelled_among(std::vector<Twin> twins, bool in_complex);
 
 /// Drops cancelled triangles and returns their number. Cost: O(n log n).
-std::size_t cancel_twins(facets::Draft& draft);
+std::size_t cancel_twins(facets::ComplexDraft& draft);
 
 /// Returns whether the oriented surface encloses no volume, like a surface that is double everywhere.
-bool is_two_sided(const facets::Draft& draft);
+bool is_two_sided(const facets::ComplexDraft& draft);
 
 /// In closed, consistently oriented surfaces that consist of pairs of opposite copies, keeps one copy of each
 /// pair. Returns the number of dropped triangles. Cost: O(n log n).
-std::size_t keep_one_side(facets::Draft& draft);
+std::size_t keep_one_side(facets::ComplexDraft& draft);
 
 }  // namespace collarmesh::repairing
