@@ -6,8 +6,8 @@
 #include <cmath>
 #include <random>
 
+#include "check/mesh_to_check.h"
 #include "check/polyline.h"
-#include "check/subject.h"
 #include "collarmesh/plc_builder.h"
 #include "collarmesh/tet_mesh.h"
 #include "common/distance_tree.h"
