@@ -16,11 +16,11 @@
 #include "repair/arrangement.h"
 #include "repair/better_places.h"
 #include "repair/changes.h"
+#include "repair/duplicate_triangles.h"
 #include "repair/holes.h"
 #include "repair/inside.h"
 #include "repair/repeated.h"
 #include "repair/snapping.h"
-#include "repair/twins.h"
 #include "repair/winding_number.h"
 #include "support/repair_drafts.h"
 #include "support/repair_shapes.h"
@@ -449,15 +449,15 @@ TEST(Snapping, IsTakenBackOnlyWhereItDoesNotSettle) {
     EXPECT_NE(std::find(draft.triangles.begin(), draft.triangles.end(), t), draft.triangles.end());
 }
 
-TEST(Snapping, CancelsTwins) {
+TEST(Snapping, CancelsDuplicates) {
   const PolygonSoup ball = testing::icosphere(1, 2);
   ComplexDraft draft = draft_of(joined(std::array{ball, testing::inverted(ball), ball}));
   EXPECT_EQ(draft.triangles.size(), 3U * ball.facet_count());
-  EXPECT_EQ(cancel_twins(draft), 2U * ball.facet_count());
+  EXPECT_EQ(cancel_duplicates(draft), 2U * ball.facet_count());
   EXPECT_NEAR(volume_of(draft), signed_volume(ball), 1e-12);
-  // Twins of different soups stay.
+  // Duplicates of different soups stay.
   ComplexDraft two = draft_of(std::array{ball, testing::inverted(ball)});
-  EXPECT_EQ(cancel_twins(two), 0U);
+  EXPECT_EQ(cancel_duplicates(two), 0U);
 }
 
 // drop_repeated
@@ -766,7 +766,7 @@ TEST(KeepBoundaries, OfLatticeBoxesIsTheBoundaryOfTheirUnion) {
     ComplexDraft one = draft_of(joined(soups));
     // Clusters without any tangle stay as they are, so all of them must be tangled to be compared.
     const bool meet = arrange(one, 0).intersecting_pairs > 0;
-    cancel_twins(one);
+    cancel_duplicates(one);
     const InsideReport report = keep_boundaries(one, 0);
     EXPECT_TRUE(balanced(one));
     double all = 0;

@@ -43,13 +43,13 @@ class ConformityCheck {
   void collect_sides(std::span<const TriangleUse> sides) {
     sides_.clear();
     for (const TriangleUse& use : sides) {
-      const auto twin = std::find_if(sides_.begin(), sides_.end(), [&](const TriangleUse& other) {
+      const auto duplicate = std::find_if(sides_.begin(), sides_.end(), [&](const TriangleUse& other) {
         return other.odd == use.odd && opposite(other) == opposite(use);
       });
-      if (twin == sides_.end())
+      if (duplicate == sides_.end())
         sides_.push_back(use);
       else if (opposite(use) > corners_[2])  // each tet once, not for each of its four sides
-        report_twins(twin->cell, use.cell);
+        report_duplicates(duplicate->cell, use.cell);
     }
   }
 
@@ -113,7 +113,7 @@ class ConformityCheck {
         face, corners_[0], corners_[1], corners_[2], At{where()}, given[0], given[1], regions[0], regions[1]);
   }
 
-  void report_twins(Index first, Index second) {
+  void report_duplicates(Index first, Index second) {
     findings_.add(guarantee::distinct_tets, where(), {first, second},
                   "Tets {} and {} at {} have the same four corners; list the tet once.", first, second,
                   At{where()});

@@ -90,20 +90,23 @@ void add_cut(const Segment& segment, const CollinearGroups& groups, ComplexDraft
   result.segments.push_back(piece);
 }
 
-struct Twin {
+// A triangle as sorting by corners needs it.
+struct TriangleByCorners {
   Corners key;  // sorted corners
   Index triangle;
 
-  friend bool operator<(const Twin& a, const Twin& b) {
+  friend bool operator<(const TriangleByCorners& a, const TriangleByCorners& b) {
     return std::tie(a.key, a.triangle) < std::tie(b.key, b.triangle);
   }
 };
 
 // Sorts triangles so that those with the same corners follow each other, in their original order.
-std::vector<Twin> sort_by_corners(const ComplexDraft& draft) {
-  const auto twin = [&](std::size_t t) { return Twin{sorted(draft.triangles[t]), static_cast<Index>(t)}; };
-  return sorted_by_vertex(draft.triangles.size(), draft.points.size(), twin,
-                          [](const Twin& t) { return t.key[0]; });
+std::vector<TriangleByCorners> sort_by_corners(const ComplexDraft& draft) {
+  const auto by_corners = [&](std::size_t t) {
+    return TriangleByCorners{sorted(draft.triangles[t]), static_cast<Index>(t)};
+  };
+  return sorted_by_vertex(draft.triangles.size(), draft.points.size(), by_corners,
+                          [](const TriangleByCorners& t) { return t.key[0]; });
 }
 
 // Removes the marked triangles and renumbers the claims on the remaining ones. Returns the number of removed
@@ -146,8 +149,8 @@ void remove_collinear_triangles(ComplexDraft& draft) {
   draft.origins = std::move(result.origins);
 }
 
-void remove_twins_within_soups(ComplexDraft& draft) {
-  const std::vector<Twin> order = sort_by_corners(draft);
+void remove_duplicates_within_soups(ComplexDraft& draft) {
+  const std::vector<TriangleByCorners> order = sort_by_corners(draft);
   std::vector<bool> removed(draft.triangles.size(), false);
   for (std::size_t i = 1; i < order.size(); ++i)
     removed[order[i].triangle] =
@@ -156,8 +159,8 @@ void remove_twins_within_soups(ComplexDraft& draft) {
   draft.cleanup.repeated_triangles += compact(draft, removed);
 }
 
-void merge_twins_across_soups(ComplexDraft& draft) {
-  const std::vector<Twin> order = sort_by_corners(draft);
+void merge_duplicates_across_soups(ComplexDraft& draft) {
+  const std::vector<TriangleByCorners> order = sort_by_corners(draft);
   std::vector<bool> removed(draft.triangles.size(), false);
   std::set<std::pair<Tag, Tag>> replaced;
   for (std::size_t i = 1, first = 0; i < order.size(); ++i) {

@@ -9,11 +9,11 @@ namespace collarmesh::facets {
 void remove_collinear_triangles(ComplexDraft& draft);
 
 /// Removes duplicate triangles within each soup, except the first.
-void remove_twins_within_soups(ComplexDraft& draft);
+void remove_duplicates_within_soups(ComplexDraft& draft);
 
 /// Removes duplicate triangles of different soups, except the first: touching solids then share one
 /// interface. If the soup of a removed triangle had its solid on one side, it gets a claim (Claim) to that
 /// side. Precondition: the triangles of each soup are oriented.
-void merge_twins_across_soups(ComplexDraft& draft);
+void merge_duplicates_across_soups(ComplexDraft& draft);
 
 }  // namespace collarmesh::facets

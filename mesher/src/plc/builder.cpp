@@ -199,13 +199,13 @@ Plc build_plc(std::span<const PolygonSoup> soups, const PlcOptions& options) {
   add_unused_points(map, draft);
   add_named_vertices(soups, map, draft);
   remove_collinear_triangles(draft);
-  remove_twins_within_soups(draft);
+  remove_duplicates_within_soups(draft);
   require_content(draft, faults);
   EdgeTable edges(draft.triangles, draft.points.size());
   orient_components(draft, edges, faults);
   if (soups.size() > 1) {
     unify_interfaces(draft);
-    merge_twins_across_soups(draft);
+    merge_duplicates_across_soups(draft);
     edges = EdgeTable(draft.triangles, draft.points.size());
   }
   const Simplices simplices(draft, edges);

@@ -541,11 +541,12 @@ void unify_equal_points(ComplexDraft& draft) {
   for (Index& p : draft.loose_points) p = merged[p];
 }
 
-ArrangementReport arrange(ComplexDraft& draft, double grain, Work* work, bool cancel_twins, KeptMerges kept) {
+ArrangementReport arrange(ComplexDraft& draft, double grain, Work* work, bool cancel_duplicates,
+                          KeptMerges kept) {
   ArrangementReport report;
   constexpr std::size_t few = 1000;
   Settled settled;
-  GrainSnapper snapper(draft, grain, work, cancel_twins, kept);
+  GrainSnapper snapper(draft, grain, work, cancel_duplicates, kept);
   std::optional<ComplexDraft> clean_before;
   for (std::size_t fewest = none;; ++report.rounds) {
     unify_equal_points(draft);

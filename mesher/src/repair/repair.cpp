@@ -25,6 +25,7 @@
 #include "repair/better_places.h"
 #include "repair/changes.h"
 #include "repair/distances.h"
+#include "repair/duplicate_triangles.h"
 #include "repair/holes.h"
 #include "repair/inside.h"
 #include "repair/most_places.h"
@@ -33,7 +34,6 @@
 #include "repair/small_features.h"
 #include "repair/snapping.h"
 #include "repair/to_soups.h"
-#include "repair/twins.h"
 #include "repair/work.h"
 #include "repair/wrap.h"
 
@@ -408,7 +408,7 @@ class Repairer {
     if (encloses_nothing_) return true;
     double area = 0;
     for (const Corners& t : draft_.triangles) area += area_of(draft_, t);
-    cancel_twins(draft_);
+    cancel_duplicates(draft_);
     const InsideReport kept = keep_boundaries(draft_, tolerance_);
     encloses_nothing_ = kept.dropped_area > most_in_open_sheets * area;
     report_.merged.count += kept.removed_triangles;

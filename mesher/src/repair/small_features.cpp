@@ -403,7 +403,7 @@ class FeatureCollapser {
     cuts_.apply();
     rename_edges();
     rename_points(state_, merges_);
-    cancel_new_twins(state_);
+    cancel_new_duplicates(state_);
     return true;
   }
 

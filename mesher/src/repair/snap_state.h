@@ -82,8 +82,8 @@ class SnapState {
   std::vector<Done> done_;
 };
 
-/// Cancels twins among the triangles added since the last call; others cannot have become twins. Returns the
-/// number of cancelled triangles.
-std::size_t cancel_new_twins(SnapState& state);
+/// Cancels duplicates among the triangles added since the last call; others cannot have become duplicates.
+/// Returns the number of cancelled triangles.
+std::size_t cancel_new_duplicates(SnapState& state);
 
 }  // namespace collarmesh::repairing

@@ -5,13 +5,13 @@
 
 #include "facets/edges.h"
 #include "repair/changes.h"
+#include "repair/duplicate_triangles.h"
 #include "repair/most_places.h"
 #include "repair/snap_corners.h"
 #include "repair/snap_cuts.h"
 #include "repair/snap_overlay.h"
 #include "repair/snap_points.h"
 #include "repair/snap_state.h"
-#include "repair/twins.h"
 
 namespace collarmesh::repairing {
 
@@ -38,7 +38,7 @@ class Snapper {
         overlay_(state_, cuts_) {}
 
   SnapReport run() {
-    if (knows_some_) cancel_new_twins();
+    if (knows_some_) cancel_new_duplicates();
     // Snapping corners makes few triangles. If this multiplies them, triangles run along each other, and the
     // limit stops the snapping.
     const std::size_t count = state_.triangles().count();
@@ -59,7 +59,7 @@ class Snapper {
     for (std::size_t overlays = 0;; ++overlays) {
       corners_.allow_cuts();
       if (!overlay_.run()) return finish();
-      cancel_new_twins();
+      cancel_new_duplicates();
       if (overlays == most_overlays ||
           (overlay_.count() > few_crossings && 2 * overlay_.count() > crossings) ||
           !snap_all_corners(most_rounds_after_overlay) || !settled_)
@@ -108,7 +108,7 @@ class Snapper {
       if (snapped == CornerSnapper::Outcome::too_many) return false;
       settled_ = !merged && snapped == CornerSnapper::Outcome::nothing_near;
       if (settled_) return true;
-      cancel_new_twins();
+      cancel_new_duplicates();
       if (state_.triangles().count() > most_triangles_) return false;
     }
     return true;
@@ -123,11 +123,11 @@ class Snapper {
     if (report_.places.size() < most_places) report_.places.push_back(state_.at(done.point));
   }
 
-  void cancel_new_twins() {
-    if (cancel_) report_.cancelled_triangles += repairing::cancel_new_twins(state_);
+  void cancel_new_duplicates() {
+    if (cancel_) report_.cancelled_triangles += repairing::cancel_new_duplicates(state_);
   }
 
-  bool cancel_;      // whether twins are cancelled
+  bool cancel_;      // whether duplicates are cancelled
   bool knows_some_;  // whether some triangles are known
   ComplexDraft& draft_;
   SnapWhat what_;
@@ -146,11 +146,11 @@ class Snapper {
 SnapReport snap_near_features(ComplexDraft& draft, double distance, SnapWhat what, Work* work,
                               const std::vector<bool>& known, bool cancel) {
   Work any;
-  const std::size_t twins = known.empty() && cancel ? cancel_twins(draft) : 0;
+  const std::size_t duplicates = known.empty() && cancel ? cancel_duplicates(draft) : 0;
   SnapReport report;
   if (distance > 0)
     report = Snapper(draft, distance, what, work != nullptr ? *work : any, known, cancel).run();
-  report.cancelled_triangles += twins;
+  report.cancelled_triangles += duplicates;
   return report;
 }
 
