@@ -292,20 +292,20 @@ class BoundaryKeeper {
     });
   }
 
-  // The space that a shell encloses.
-  struct Chamber {
+  // A component of space without the triangles that is thinner than `thickness`.
+  struct ThinChamber {
     Point origin;
     double volume = 0, area = 0;
     std::vector<std::pair<Index, double>> neighbours;  // shells on the other side, and the common area
   };
 
-  std::map<Index, Chamber> thin_chambers() const {
-    std::map<Index, Chamber> chambers;
+  std::map<Index, ThinChamber> thin_chambers() const {
+    std::map<Index, ThinChamber> chambers;
     for (Index side = 0; side < shell_.size(); ++side) {
       if (!tangled_[side / 2]) continue;
       const auto p = corner_points(draft_, sheets_.unique.triangles[side / 2]);
       const auto [at, added] = chambers.try_emplace(shell_[side]);
-      Chamber& chamber = at->second;
+      ThinChamber& chamber = at->second;
       if (added) chamber.origin = p[0];
       const double area = 0.5 * norm(cross(p[1] - p[0], p[2] - p[0]));
       chamber.volume +=
@@ -314,7 +314,7 @@ class BoundaryKeeper {
       if (shell_[side ^ 1U] != shell_[side]) chamber.neighbours.emplace_back(shell_[side ^ 1U], area);
     }
     std::erase_if(chambers, [&](const auto& entry) {
-      const Chamber& c = entry.second;
+      const ThinChamber& c = entry.second;
       return c.volume < 0 || 2 * c.volume > thickness_ * c.area || c.neighbours.empty();
     });
     return chambers;
@@ -323,7 +323,7 @@ class BoundaryKeeper {
   // Gives each thin chamber the label with which it has the largest common area, beginning beside thick
   // chambers.
   void give_away_thin_chambers() {
-    std::map<Index, Chamber> left = thin_chambers();
+    std::map<Index, ThinChamber> left = thin_chambers();
     while (!left.empty()) {
       std::vector<std::pair<Index, Index>> labelled;
       for (const auto& [shell, chamber] : left) {

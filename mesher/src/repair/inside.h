@@ -52,10 +52,10 @@ struct InsideReport {
 /// number of its surface is above 1/2 there; if it is inside several soups, the first one counts. Each soup
 /// then has the boundary of its part of space, oriented outwards; triangles between two soups have a copy for
 /// each. Components stay as they are if each of their edges has two triangles of one soup with consistent
-/// orientation; so do the facets of complexes. A chamber thinner than `thickness` (absolute: twice its volume
-/// divided by its area) becomes part of the neighbour with the largest common area; many such chambers lie
-/// between sheets that nearly coincide. Precondition: triangles only meet in common edges and corners, or are
-/// copies of each other. Cost: O(n log n).
+/// orientation; so do the facets of complexes. A chamber (a component of space without the triangles) thinner
+/// than `thickness` (absolute: twice its volume divided by its area) becomes part of the neighbour with the
+/// largest common area; many such chambers lie between sheets that nearly coincide. Precondition: triangles
+/// only meet in common edges and corners, or are copies of each other. Cost: O(n log n).
 InsideReport keep_boundaries(facets::ComplexDraft& draft, double thickness);
 
 }  // namespace collarmesh::repairing
