@@ -21,7 +21,7 @@ constexpr unsigned most_detours = 30;
 // taken.
 constexpr std::size_t first_trials = 2000, trials_per_detour = 200;
 // Most proposals for tets with angles near 180 degrees, each of which costs as much as several trials.
-constexpr std::size_t most_blunt = 2000;
+constexpr std::size_t most_obtuse = 2000;
 constexpr double least_detour_gain = 1e-3, rounding = 1e-9;
 
 // Compares two sorted lists from the worst entry up. Returns whether the first differing entry is larger in
@@ -38,12 +38,12 @@ bool is_better(const std::vector<double>& now, const std::vector<double>& before
 }  // namespace
 
 bool Detours::exhausted() const {
-  return blunt_ >= most_blunt ||
+  return obtuse_ >= most_obtuse ||
          trials_ >= std::min(most_trials_, first_trials + trials_per_detour * taken());
 }
 
 Change Detours::propose(Index tet) {
-  if (remedies_.is_blunt(tet)) ++blunt_;
+  if (remedies_.is_too_obtuse(tet)) ++obtuse_;
   return remedies_.propose(operations_, tet);
 }
 

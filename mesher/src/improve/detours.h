@@ -73,7 +73,7 @@ class Detours {
   Remedies& remedies_;
   Operations& operations_;
   std::size_t most_trials_, trials_ = 0;
-  std::size_t blunt_ = 0;                                // number of proposals for blunt tets
+  std::size_t obtuse_ = 0;                               // number of proposals for tets that are too obtuse
   ChangeTimes changes_{complex().mesh().points.size()};  // the time is the number of detours taken
   bool ended_ = false;                                   // no trials remain, or the caller stopped it
   std::array<Asked, 3> asked_;                           // by Effort

@@ -45,7 +45,7 @@ Change Remedies::propose(Operations& operations, Index tet) const {
   operations.collapse_best_edge(tet, change);
   for (const auto& [i, j] : cell_shapes::corner_pairs)
     if (!found()) operations.split_edge(corners[i], corners[j], enough * wanted_, change);
-  if (found() || !rule_.is_blunt(quality(tet))) return change;
+  if (found() || !rule_.is_too_obtuse(quality(tet))) return change;
   // Reconnection helps flat tets, such as those between two prisms of a thin wall.
   if (refill_) operations.reconnect(tet, change);
   if (found()) return change;
@@ -55,7 +55,7 @@ Change Remedies::propose(Operations& operations, Index tet) const {
 }
 
 bool Remedies::may_change_vertices(Index tet) const {
-  if (!keep_vertices_ || rule_.is_blunt(quality(tet))) return true;
+  if (!keep_vertices_ || rule_.is_too_obtuse(quality(tet))) return true;
   std::vector<Index> star;
   for (const Index v : complex_[tet].corners) {
     complex_.star(v, star);
