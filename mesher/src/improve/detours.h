@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "improve/remedies.h"
+#include "improve/operation_chooser.h"
 #include "remesh/change_times.h"
 
 namespace collarmesh::remeshing::improvement {
@@ -15,13 +15,13 @@ namespace collarmesh::remeshing::improvement {
 /// tet or beside it, need not improve any tet; the tets that it makes are then improved for some steps. The
 /// result is kept if it is better than the mesh before, else undone. Meshes are compared from the worst tet
 /// up, so the mesh never returns to an earlier state.
-/// Uses one thread. Precondition: `Remedies::forget` was called, so that a repeated trial has the same
-/// result.
+/// Uses one thread. Precondition: `OperationChooser::forget` was called, so that a repeated trial has the
+/// same result.
 class Detours {
  public:
   /// Keeps all by reference. Starts no detour after `most_trials` operations, but completes the current tet.
-  Detours(EditableMesh& edited, Remedies& remedies, Operations& operations, std::size_t most_trials)
-      : edited_(edited), remedies_(remedies), operations_(operations), most_trials_(most_trials) {}
+  Detours(EditableMesh& edited, OperationChooser& chooser, Operations& operations, std::size_t most_trials)
+      : edited_(edited), chooser_(chooser), operations_(operations), most_trials_(most_trials) {}
 
   /// Takes detours for these tets and, where the number of vertices may change, for poor tets that detours
   /// leave. Takes the worst tet first; tries operations at the tet itself, then beside it; tries again after
@@ -70,7 +70,7 @@ class Detours {
   const TetComplex& complex() const { return edited_.complex; }
 
   EditableMesh& edited_;
-  Remedies& remedies_;
+  OperationChooser& chooser_;
   Operations& operations_;
   std::size_t most_trials_, trials_ = 0;
   std::size_t obtuse_ = 0;                               // number of proposals for tets that are too obtuse

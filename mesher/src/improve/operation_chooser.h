@@ -11,12 +11,12 @@ namespace collarmesh::remeshing::improvement {
 /// A source of operations that may improve a poor tet, in the order in which to try them. Remembers for each
 /// vertex whether moving it is known to be useless. Only reads the mesh; several threads may call it at once,
 /// each with its own operations.
-class Remedies {
+class OperationChooser {
  public:
   /// Keeps references to the mesh and the rule. `refill`: fill the space around flat tets again where nothing
   /// else helps.
-  Remedies(const EditableMesh& edited, const SliverRule& rule, const ImproveOptions& options,
-           bool refill = true);
+  OperationChooser(const EditableMesh& edited, const SliverRule& rule, const ImproveOptions& options,
+                   bool refill = true);
 
   /// Returns the sine of the angle up to which tets are improved.
   double wanted() const { return wanted_; }
