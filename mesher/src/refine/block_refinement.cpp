@@ -273,9 +273,9 @@ void BlockRefinement::refine(Block block, const std::vector<WorkQueue::Entry>& e
     if (!is_due(item)) continue;
     const double radius = squared_radius(item);
     const Fate fate = destroy(item, block, worker);
-    if (fate == Fate::waits) waiting.push_back({item.priority, queue.bucket_of(radius), item.entry});
-    // Another vertex was inserted, and the item still exists.
-    else if (fate == Fate::destroyed && is_due(item))
+    if (fate == Fate::waits)
+      waiting.push_back({item.priority, queue.bucket_of(radius), item.entry});
+    else if (fate == Fate::destroyed && is_due(item))  // another vertex was inserted, and the item remains
       queue.push(item.priority, radius, item.entry);
   }
   for (WorkQueue::Priority priority = queue.first_priority(); priority < WorkQueue::priority_count;
