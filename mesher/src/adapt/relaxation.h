@@ -53,7 +53,7 @@ class Relaxation {
   };
   struct Neighbours {
     std::vector<Index> all;
-    std::vector<Near> near;  ///< those onto which the vertex may be collapsed, by length
+    std::vector<Near> near;  ///< neighbours onto which the vertex may be collapsed, by length
     double longest = 0;      ///< length of the longest edge
   };
 

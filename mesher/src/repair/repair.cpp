@@ -399,7 +399,7 @@ class Repairer {
     const ArrangementReport arranged = arrange(draft_, grain * tolerance_, &work_, !two_sided, merges);
     if (report_.cut.count == 0) add_places(report_.cut, arranged.intersecting_pairs, 0, arranged.places);
     if (!arranged.clean) return false;
-    if (of_ == Of::sheets) {  // of triangles that cover each other, one stays
+    if (of_ == Of::sheets) {  // one of several triangles that cover each other stays
       drop_repeated(draft_);
       return true;
     }

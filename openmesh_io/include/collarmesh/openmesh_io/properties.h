@@ -14,14 +14,16 @@ namespace collarmesh::openmesh_io {
 
 // Names of the properties that `boundary_surface` writes, and that are read by default. Tags are
 // std::int64_t.
-inline constexpr const char* patch_tag = "collarmesh:patch_tag";      ///< of faces
-inline constexpr const char* curve_tag = "collarmesh:curve_tag";      ///< of edges
-inline constexpr const char* vertex_tag = "collarmesh:vertex_tag";    ///< of vertices
-inline constexpr const char* region_back = "collarmesh:region_back";  ///< of faces: int, the region behind
+inline constexpr const char* patch_tag = "collarmesh:patch_tag";    ///< property of faces
+inline constexpr const char* curve_tag = "collarmesh:curve_tag";    ///< property of edges
+inline constexpr const char* vertex_tag = "collarmesh:vertex_tag";  ///< property of vertices
+inline constexpr const char* region_back =
+    "collarmesh:region_back";  ///< property of faces: int, the region behind
 inline constexpr const char* region_front = "collarmesh:region_front";
 inline constexpr const char* mesh_point =
-    "collarmesh:mesh_point";  ///< of vertices: int, index in TetMesh::points
-inline constexpr const char* mesh_face = "collarmesh:mesh_face";  ///< of faces: int, index in TetMesh::faces
+    "collarmesh:mesh_point";  ///< property of vertices: int, index in TetMesh::points
+inline constexpr const char* mesh_face =
+    "collarmesh:mesh_face";  ///< property of faces: int, index in TetMesh::faces
 
 namespace detail {
 
