@@ -30,7 +30,7 @@ struct SurfaceOptions {
       curve_tag;  ///< property of edges: a value other than 0 makes a curve with that tag
   std::string vertex_property = vertex_tag;  ///< property of vertices: where it is not 0, the vertex becomes
                                              ///< a feature with this tag
-  bool feature_edges = true;  ///< edges with the feature bit of their status are curves
+  bool feature_edges = true;                 ///< edges with the feature bit of their status are curves
 };
 
 /// Counts of the contents of an OpenMesh mesh. None of them is an error by itself: `build_plc` decides.
